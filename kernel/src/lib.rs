@@ -1,1 +1,6 @@
-//! placeholder
+//! Exact geometry: numbers and signs, surfaces, curves and their intersections, and the boundary
+//! representation built from them.
+
+pub mod brep;
+pub mod geometry;
+pub mod number;

@@ -1,0 +1,92 @@
+//! The boundary representation: topology as ids in one arena, geometry hung on the ids.
+//!
+//! Faces are maximal and there are no seams: a sphere is one face without a loop, a cylinder has
+//! three faces, two closed edges and no vertex. An edge that bounds more than two face corners, and
+//! a vertex where several fans of faces meet, are represented as they are.
+
+pub mod topology;
+
+use crate::geometry::curve::Curve;
+use crate::geometry::surface::Surface;
+use nalgebra::{Point3, Vector3};
+use topology::{EdgeId, FaceId, Sense, Topology, VertexId};
+
+/// The geometry that hangs on the entities: indexed by their ids.
+#[derive(Clone, Debug, Default)]
+pub struct Geometry {
+    /// The distinct carriers that have a face.
+    pub surfaces: Vec<Surface>,
+    /// The distinct curves that have an edge.
+    pub curves: Vec<Curve>,
+    /// The place of each vertex, by [`VertexId`].
+    pub points: Vec<Point3<f64>>,
+    /// Each edge's curve (an index into `curves`) and range of its parameter, by [`EdgeId`]; a
+    /// closed edge runs over one period, and a range may pass the end of a period.
+    pub arcs: Vec<Arc>,
+    /// Each face's surface (an index into `surfaces`) and whether the face's outward normal is the
+    /// surface's own, by [`FaceId`].
+    pub patches: Vec<Patch>,
+}
+
+/// The geometry of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    /// The index of the curve.
+    pub curve: usize,
+    /// The parameter from the edge's first end to its last, increasing.
+    pub range: [f64; 2],
+}
+
+/// The geometry of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patch {
+    /// The index of the surface.
+    pub surface: usize,
+    /// `Along` where the outward normal of the solid is the surface's normal.
+    pub sense: Sense,
+}
+
+/// A boundary representation.
+#[derive(Clone, Debug, Default)]
+pub struct Brep {
+    /// Who meets whom.
+    pub topology: Topology,
+    /// Where.
+    pub geometry: Geometry,
+}
+
+impl Brep {
+    /// The curve of an edge.
+    pub fn curve(&self, edge: EdgeId) -> &Curve {
+        &self.geometry.curves[self.geometry.arcs[edge.0 as usize].curve]
+    }
+
+    /// The range of an edge on its curve.
+    pub fn range(&self, edge: EdgeId) -> [f64; 2] {
+        self.geometry.arcs[edge.0 as usize].range
+    }
+
+    /// The surface of a face.
+    pub fn surface(&self, face: FaceId) -> &Surface {
+        &self.geometry.surfaces[self.geometry.patches[face.0 as usize].surface]
+    }
+
+    /// The sense of a face's surface.
+    pub fn sense(&self, face: FaceId) -> Sense {
+        self.geometry.patches[face.0 as usize].sense
+    }
+
+    /// The place of a vertex.
+    pub fn point(&self, vertex: VertexId) -> Point3<f64> {
+        self.geometry.points[vertex.0 as usize]
+    }
+
+    /// The normal of a face at a point of it, pointing out of the material.
+    pub fn outward(&self, face: FaceId, p: &Point3<f64>) -> Vector3<f64> {
+        let n = self.surface(face).normal(p);
+        match self.sense(face) {
+            Sense::Along => n,
+            Sense::Against => -n,
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Who meets whom: no coordinates here.
+
+/// Along or against the direction that geometry gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Sense {
+    /// The same direction.
+    Along,
+    /// The opposite direction.
+    Against,
+}
+
+impl Sense {
+    /// The other sense.
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Along => Self::Against,
+            Self::Against => Self::Along,
+        }
+    }
+
+    /// +1 or -1.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Along => 1.0,
+            Self::Against => -1.0,
+        }
+    }
+}
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident),*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// The place in the arena.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+    )*};
+}
+
+ids! {
+    /// A vertex.
+    VertexId,
+    /// An edge.
+    EdgeId,
+    /// The use of an edge by a loop.
+    CoedgeId,
+    /// A loop of coedges around a face.
+    LoopId,
+    /// A face.
+    FaceId,
+    /// A connected shell of faces.
+    ShellId,
+    /// A solid: an outer shell and its voids.
+    SolidId
+}
+
+/// An edge: a piece of a curve where faces meet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// Its first and its last vertex; none for a closed edge.
+    pub ends: Option<[VertexId; 2]>,
+    /// Its uses, in the order in which their faces lie around it, counterclockwise as seen against
+    /// the edge's direction; a pair (2i, 2i+1) encloses material.
+    pub coedges: Vec<CoedgeId>,
+    /// Whether it has two faces whose normals agree along it.
+    pub smooth: bool,
+}
+
+/// The use of an edge by a loop: the face lies to the left, seen from outside the material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Coedge {
+    /// The edge.
+    pub edge: EdgeId,
+    /// Whether it is run along its own direction.
+    pub sense: Sense,
+    /// The loop it belongs to.
+    pub owner: LoopId,
+}
+
+/// A closed run of coedges.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Loop {
+    /// In order; the end of each is the start of the next.
+    pub coedges: Vec<CoedgeId>,
+    /// The face it bounds.
+    pub face: FaceId,
+}
+
+/// A face: a maximal connected piece of one surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Face {
+    /// Its loops; none where the face is a whole closed surface.
+    pub loops: Vec<LoopId>,
+    /// Its shell.
+    pub shell: ShellId,
+    /// Its Euler characteristic.
+    pub euler: i32,
+}
+
+/// A connected shell.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shell {
+    /// Its faces.
+    pub faces: Vec<FaceId>,
+    /// The solid it bounds.
+    pub solid: SolidId,
+    /// Whether it bounds a void.
+    pub void: bool,
+    /// Its genus.
+    pub genus: i32,
+}
+
+/// A solid: one outer shell, then its voids.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Solid {
+    /// The outer shell first.
+    pub shells: Vec<ShellId>,
+}
+
+/// The entities of a boundary.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Topology {
+    /// How many vertices there are.
+    pub vertices: u32,
+    /// The edges, by id.
+    pub edges: Vec<Edge>,
+    /// The coedges, by id.
+    pub coedges: Vec<Coedge>,
+    /// The loops, by id.
+    pub loops: Vec<Loop>,
+    /// The faces, by id.
+    pub faces: Vec<Face>,
+    /// The shells, by id.
+    pub shells: Vec<Shell>,
+    /// The solids, by id.
+    pub solids: Vec<Solid>,
+}
+
+impl Topology {
+    /// An edge.
+    pub fn edge(&self, id: EdgeId) -> &Edge {
+        &self.edges[id.index()]
+    }
+
+    /// A coedge.
+    pub fn coedge(&self, id: CoedgeId) -> &Coedge {
+        &self.coedges[id.index()]
+    }
+
+    /// A loop.
+    pub fn ring(&self, id: LoopId) -> &Loop {
+        &self.loops[id.index()]
+    }
+
+    /// A face.
+    pub fn face(&self, id: FaceId) -> &Face {
+        &self.faces[id.index()]
+    }
+
+    /// The face on which a coedge lies.
+    pub fn face_of(&self, id: CoedgeId) -> FaceId {
+        self.ring(self.coedge(id).owner).face
+    }
+
+    /// The faces around an edge, in order.
+    pub fn faces_of(&self, id: EdgeId) -> impl Iterator<Item = FaceId> + '_ {
+        self.edge(id).coedges.iter().map(|&c| self.face_of(c))
+    }
+
+    /// Where a coedge starts and ends; none for a closed edge.
+    pub fn run(&self, id: CoedgeId) -> Option<[VertexId; 2]> {
+        let c = self.coedge(id);
+        let [a, b] = self.edge(c.edge).ends?;
+        Some(match c.sense {
+            Sense::Along => [a, b],
+            Sense::Against => [b, a],
+        })
+    }
+
+    /// The ids of all edges.
+    pub fn edge_ids(&self) -> impl Iterator<Item = EdgeId> + use<> {
+        (0..self.edges.len() as u32).map(EdgeId)
+    }
+
+    /// The ids of all faces.
+    pub fn face_ids(&self) -> impl Iterator<Item = FaceId> + use<> {
+        (0..self.faces.len() as u32).map(FaceId)
+    }
+}

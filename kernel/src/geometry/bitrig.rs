@@ -1,0 +1,119 @@
+//! Trigonometric polynomials of degree two in each of two angles: what any of the five surfaces,
+//! and the limb of a torus, is on the parameter torus of a torus.
+
+use crate::number::scalar::Scalar;
+
+/// Coefficients by (function of the first angle, function of the second), each of
+/// 1, cos, sin, cos 2, sin 2.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BiTrig(pub [[f64; 5]; 5]);
+
+/// A value with its partial derivatives to the second order: f, f_x, f_y, f_xx, f_xy, f_yy.
+#[derive(Clone, Copy, Debug)]
+pub struct Partials<S> {
+    /// The value.
+    pub f: S,
+    /// By the first angle.
+    pub x: S,
+    /// By the second angle.
+    pub y: S,
+    /// Twice by the first angle.
+    pub xx: S,
+    /// By both.
+    pub xy: S,
+    /// Twice by the second angle.
+    pub yy: S,
+}
+
+/// The five functions of an angle with two derivatives.
+fn basis<S: Scalar>(angle: S) -> [[S; 5]; 3] {
+    let (s, c) = angle.sin_cos();
+    let (s2, c2) = angle.scale(2.0).sin_cos();
+    let (one, zero) = (S::constant(1.0), S::constant(0.0));
+    [
+        [one, c, s, c2, s2],
+        [zero, -s, c, -s2.scale(2.0), c2.scale(2.0)],
+        [zero, -c, -s, -c2.scale(4.0), -s2.scale(4.0)],
+    ]
+}
+
+impl BiTrig {
+    /// The zero polynomial.
+    pub fn zero() -> Self {
+        Self([[0.0; 5]; 5])
+    }
+
+    /// The polynomial that takes the values of `f`, which is known to be one: found from 25
+    /// samples by the discrete orthogonality of the five functions.
+    pub fn interpolate(f: impl Fn(f64, f64) -> f64) -> Self {
+        let node = |i: usize| std::f64::consts::TAU * (i as f64) / 5.0;
+        let rows: [[f64; 5]; 5] = std::array::from_fn(|i| basis(node(i))[0]);
+        let weight = |m: usize| if m == 0 { 0.2 } else { 0.4 };
+        let mut k = [[0.0; 5]; 5];
+        for i in 0..5 {
+            for j in 0..5 {
+                let value = f(node(i), node(j));
+                for (m, row) in k.iter_mut().enumerate() {
+                    for (n, c) in row.iter_mut().enumerate() {
+                        *c += weight(m) * weight(n) * rows[i][m] * rows[j][n] * value;
+                    }
+                }
+            }
+        }
+        Self(k)
+    }
+
+    /// The sum of the absolute coefficients: a bound of the value.
+    pub fn bound(&self) -> f64 {
+        self.0.iter().flatten().map(|c| c.abs()).sum()
+    }
+
+    /// The value.
+    pub fn value<S: Scalar>(&self, x: S, y: S) -> S {
+        let (bx, by) = (basis(x), basis(y));
+        self.sum(&bx[0], &by[0])
+    }
+
+    fn sum<S: Scalar>(&self, bx: &[S; 5], by: &[S; 5]) -> S {
+        let mut total = S::constant(0.0);
+        for (row, a) in self.0.iter().zip(bx) {
+            if row.iter().all(|&c| c == 0.0) {
+                continue;
+            }
+            let mut inner = S::constant(0.0);
+            for (&c, &b) in row.iter().zip(by) {
+                if c != 0.0 {
+                    inner = inner + b.scale(c);
+                }
+            }
+            total = total + inner * *a;
+        }
+        total
+    }
+
+    /// The value with its partial derivatives.
+    pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
+        let (bx, by) = (basis(x), basis(y));
+        Partials {
+            f: self.sum(&bx[0], &by[0]),
+            x: self.sum(&bx[1], &by[0]),
+            y: self.sum(&bx[0], &by[1]),
+            xx: self.sum(&bx[2], &by[0]),
+            xy: self.sum(&bx[1], &by[1]),
+            yy: self.sum(&bx[0], &by[2]),
+        }
+    }
+
+    /// A bound of the third derivatives in any direction of length one in each angle.
+    pub fn third(&self) -> f64 {
+        let degree = [0.0, 1.0, 1.0, 2.0, 2.0];
+        let mut total = 0.0;
+        for (i, row) in self.0.iter().enumerate() {
+            for (j, c) in row.iter().enumerate() {
+                let d: f64 = degree[i] + degree[j];
+                total += c.abs() * d * d * d;
+            }
+        }
+        total
+    }
+}

@@ -1,0 +1,306 @@
+//! Curves in space, each with its parameter.
+
+use super::frame::Frame;
+use super::quartic::{Quartic, Ruled, Sweep};
+use super::surface::{Surface, turn};
+use super::toric::Toric;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::scalar::Scalar;
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::TAU;
+
+/// A straight line; the parameter is the length from the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// A point on it.
+    pub origin: Point3<f64>,
+    /// The unit direction.
+    pub direction: Vector3<f64>,
+}
+
+/// A circle in its frame's xy plane; the parameter is the angle from x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle {
+    /// Origin at the centre.
+    pub frame: Frame,
+    /// The radius.
+    pub radius: f64,
+}
+
+/// An ellipse, (a cos t, b sin t) in its frame, a >= b.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse {
+    /// Origin at the centre, x along the major axis.
+    pub frame: Frame,
+    /// The semi-major axis.
+    pub a: f64,
+    /// The semi-minor axis.
+    pub b: f64,
+}
+
+/// A parabola, (t^2/(4 f), t) in its frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parabola {
+    /// Origin at the vertex, x along the axis into the curve.
+    pub frame: Frame,
+    /// The focal length f.
+    pub focal: f64,
+}
+
+/// One branch of a hyperbola, (a cosh t, b sinh t) in its frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hyperbola {
+    /// Origin at the centre, x towards the branch.
+    pub frame: Frame,
+    /// The semi-axis along x.
+    pub a: f64,
+    /// The semi-axis along y.
+    pub b: f64,
+}
+
+/// A curve in space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Curve {
+    /// A straight line.
+    Line(Line),
+    /// A circle.
+    Circle(Circle),
+    /// An ellipse.
+    Ellipse(Ellipse),
+    /// A parabola.
+    Parabola(Parabola),
+    /// A branch of a hyperbola.
+    Hyperbola(Hyperbola),
+    /// A branch of the intersection of two quadrics.
+    Quartic(Box<Quartic>),
+    /// A curve on a torus.
+    Toric(Box<Toric>),
+}
+
+impl Line {
+    /// The point at t.
+    pub fn at<S: Scalar>(&self, t: S) -> [S; 3] {
+        let d = &self.direction;
+        [0, 1, 2].map(|i| S::constant(self.origin[i]) + t.scale(d[i]))
+    }
+}
+
+impl Curve {
+    /// The name used in outputs.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Line(_) => "line",
+            Self::Circle(_) => "circle",
+            Self::Ellipse(_) => "ellipse",
+            Self::Parabola(_) => "parabola",
+            Self::Hyperbola(_) => "hyperbola",
+            Self::Quartic(_) => "quartic",
+            Self::Toric(_) => "toric",
+        }
+    }
+
+    /// The parameter's period, where the curve is closed.
+    pub fn period(&self) -> Option<f64> {
+        match self {
+            Self::Circle(_) | Self::Ellipse(_) => Some(TAU),
+            Self::Line(_) | Self::Parabola(_) | Self::Hyperbola(_) => None,
+            Self::Quartic(q) => q.period(),
+            Self::Toric(c) => c.closed.then(|| c.length()),
+        }
+    }
+
+    /// The point at t, over any scalar; a toric curve has its own ways.
+    fn closed_form<S: Scalar>(&self, t: S) -> Option<[S; 3]> {
+        Some(match self {
+            Self::Line(c) => c.at(t),
+            Self::Circle(c) => {
+                let (s, k) = t.sin_cos();
+                c.frame
+                    .world_of([k.scale(c.radius), s.scale(c.radius), S::constant(0.0)])
+            }
+            Self::Ellipse(c) => {
+                let (s, k) = t.sin_cos();
+                c.frame
+                    .world_of([k.scale(c.a), s.scale(c.b), S::constant(0.0)])
+            }
+            Self::Parabola(c) => {
+                c.frame
+                    .world_of([t.square().scale(0.25 / c.focal), t, S::constant(0.0)])
+            }
+            Self::Hyperbola(c) => {
+                let (s, k) = t.sinh_cosh();
+                c.frame
+                    .world_of([k.scale(c.a), s.scale(c.b), S::constant(0.0)])
+            }
+            Self::Quartic(q) => q.at(t),
+            Self::Toric(_) => return None,
+        })
+    }
+
+    /// The point at t.
+    pub fn point(&self, t: f64) -> Point3<f64> {
+        match (self, self.closed_form(t)) {
+            (_, Some(p)) => Point3::from(p),
+            (Self::Toric(c), None) => c.point(t),
+            (_, None) => Point3::origin(),
+        }
+    }
+
+    /// The point with two derivatives by t.
+    pub fn jet(&self, t: f64) -> [Jet<f64>; 3] {
+        match self {
+            Self::Toric(c) => c.lift(c.angles(t)),
+            _ => self
+                .closed_form(Jet::variable(t))
+                .unwrap_or([Jet::variable(t); 3]),
+        }
+    }
+
+    /// The certified ranges of the point and two derivatives over an interval of t that lies
+    /// within one smooth piece.
+    pub fn jet_over(&self, t: Interval) -> [Jet<Interval>; 3] {
+        match self {
+            Self::Toric(c) => c.lift(c.angles_over(t)),
+            _ => self
+                .closed_form(Jet::variable(t))
+                .unwrap_or([Jet::variable(t); 3]),
+        }
+    }
+
+    /// The derivative of the point by t.
+    pub fn derivative(&self, t: f64) -> Vector3<f64> {
+        let j = self.jet(t);
+        Vector3::new(j[0].d, j[1].d, j[2].d)
+    }
+
+    /// The unit tangent at t.
+    pub fn tangent(&self, t: f64) -> Vector3<f64> {
+        self.derivative(t).normalize()
+    }
+
+    /// The curvature vector at t: the second derivative by arc length.
+    pub fn curvature(&self, t: f64) -> Vector3<f64> {
+        let j = self.jet(t);
+        let d = Vector3::new(j[0].d, j[1].d, j[2].d);
+        let dd = Vector3::new(j[0].dd, j[1].dd, j[2].dd);
+        let speed2 = d.norm_squared();
+        (dd - d * (d.dot(&dd) / speed2)) / speed2
+    }
+
+    /// Where the smooth pieces of the range [lo, hi] meet, with both ends.
+    pub fn breaks(&self, lo: f64, hi: f64) -> Vec<f64> {
+        let mut breaks = vec![lo];
+        match self {
+            Self::Toric(_) => {
+                let mut k = lo.floor() + 1.0;
+                while k < hi {
+                    breaks.push(k);
+                    k += 1.0;
+                }
+            }
+            // Quarter turns keep the first enclosures narrow.
+            _ if self.period().is_some() => {
+                let n = ((hi - lo) / std::f64::consts::FRAC_PI_2).ceil();
+                let mut k = 1.0;
+                while k < n {
+                    breaks.push(lo + (hi - lo) * (k / n));
+                    k += 1.0;
+                }
+            }
+            _ => {}
+        }
+        breaks.push(hi);
+        breaks
+    }
+
+    /// The parameter of the curve's point next to `p`, which lies on the curve or close by.
+    pub fn parameter(&self, p: &Point3<f64>) -> f64 {
+        match self {
+            Self::Line(c) => (p - c.origin).dot(&c.direction),
+            Self::Circle(c) => {
+                let q = c.frame.coordinates(p);
+                turn(q.y.atan2(q.x))
+            }
+            Self::Ellipse(c) => {
+                let q = c.frame.coordinates(p);
+                self.polish(p, turn((q.y / c.b).atan2(q.x / c.a)))
+            }
+            Self::Parabola(c) => self.polish(p, c.frame.coordinates(p).y),
+            Self::Hyperbola(c) => self.polish(p, (c.frame.coordinates(p).y / c.b).asinh()),
+            Self::Quartic(q) => self.polish(p, self.quartic_parameter(q, p)),
+            Self::Toric(c) => {
+                let [theta, phi] = Surface::Torus(c.torus).parameters(p);
+                self.polish(p, c.parameter(theta, phi))
+            }
+        }
+    }
+
+    fn quartic_parameter(&self, q: &Quartic, p: &Point3<f64>) -> f64 {
+        let frame = match &q.base {
+            Ruled::Cylinder(s) => s.frame,
+            Ruled::Cone(s) => s.frame,
+        };
+        let local = frame.coordinates(p);
+        let u = turn(local.y.atan2(local.x));
+        let candidates: Vec<f64> = match q.sweep {
+            Sweep::Round { turns } => (0..turns.max(1)).map(|k| u + TAU * f64::from(k)).collect(),
+            Sweep::Oval { mid, half } => {
+                let away = (u - mid + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+                let t = (-away / half).clamp(-1.0, 1.0).acos();
+                vec![t, TAU - t]
+            }
+        };
+        let distance = |t: &f64| (self.point(*t) - p).norm();
+        candidates
+            .into_iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or(u)
+    }
+
+    /// Newton's steps on the distance to `p`.
+    fn polish(&self, p: &Point3<f64>, mut t: f64) -> f64 {
+        for _ in 0..3 {
+            let j = self.jet(t);
+            let d = Vector3::new(j[0].d, j[1].d, j[2].d);
+            let away = p - Point3::new(j[0].v, j[1].v, j[2].v);
+            let step = away.dot(&d) / d.norm_squared();
+            if !step.is_finite() {
+                break;
+            }
+            t += step;
+        }
+        match self.period() {
+            Some(period) => t.rem_euclid(period),
+            None => t,
+        }
+    }
+
+    /// The parameters for which the curve can lie within `radius` of `centre`: an open curve's
+    /// range there, or one whole period.
+    pub fn range_within(&self, centre: &Point3<f64>, radius: f64) -> Option<[f64; 2]> {
+        match self {
+            Self::Line(c) => {
+                let t = (centre - c.origin).dot(&c.direction);
+                let away = (c.origin + c.direction * t - centre).norm();
+                let half = (radius * radius - away * away).max(0.0).sqrt();
+                (away <= radius).then_some([t - half, t + half])
+            }
+            Self::Parabola(c) => {
+                // The distance from the vertex grows with |t|, and is at least |t|.
+                let reach = (c.frame.origin - centre).norm() + radius;
+                let t = reach.min((4.0 * c.focal * reach).sqrt());
+                Some([-t, t])
+            }
+            Self::Hyperbola(c) => {
+                let reach = (c.frame.origin - centre).norm() + radius;
+                let t = (reach / c.a).max(1.0).acosh().min((reach / c.b).asinh());
+                (reach >= c.a).then_some([-t, t])
+            }
+            Self::Toric(c) => Some([0.0, c.length()]),
+            Self::Quartic(_) | Self::Circle(_) | Self::Ellipse(_) => {
+                Some([0.0, self.period().unwrap_or(TAU)])
+            }
+        }
+    }
+}

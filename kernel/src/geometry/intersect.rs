@@ -1,0 +1,1 @@
+//! The curves in which two surfaces meet.

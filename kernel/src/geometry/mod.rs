@@ -1,0 +1,10 @@
+//! Surfaces and curves: what hangs on the entities of a boundary.
+
+pub mod bitrig;
+pub mod curve;
+pub mod cut;
+pub mod frame;
+pub mod intersect;
+pub mod quartic;
+pub mod surface;
+pub mod toric;

@@ -1,0 +1,207 @@
+//! The curve in which two quadrics meet, by its parameterisation over the rulings of one of them.
+//!
+//! Notation: a cylinder is r(u) + w z, a cone's nappe (1/w) d(u) from its apex, u the angle. The
+//! other quadric, along a ruling, is k w^2 + 2 B(u) w + C(u) = 0 with constant k, B of degree one
+//! and C of degree two in (cos u, sin u). Hence w = (-B ± √Δ)/k with Δ = B^2 - k C; the real roots
+//! of Δ are where a ruling touches the other quadric, and a double root is a point where the curve
+//! crosses itself. The parameter t is such that √Δ is analytic in it: over an arc between two
+//! simple roots u = mid - half cos t, and √Δ changes sign with sin t; a double root is passed with
+//! a change of sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
+
+use super::surface::{Cone, Cylinder};
+use crate::number::scalar::Scalar;
+
+/// A trigonometric polynomial of degree one: constant, cosine, sine.
+pub type Trig1 = [f64; 3];
+/// A trigonometric polynomial of degree two: constant, cos, sin, cos 2u, sin 2u.
+pub type Trig2 = [f64; 5];
+
+/// The surface whose rulings carry the curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ruled {
+    /// A cylinder; w is the height.
+    Cylinder(Cylinder),
+    /// A cone's nappe; 1/w is the height above the apex.
+    Cone(Cone),
+}
+
+/// How the angle u runs with the parameter t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sweep {
+    /// u = t, closed after so many turns.
+    Round {
+        /// 1, or 2 where the curve closes after going round twice.
+        turns: u8,
+    },
+    /// u = mid - half cos t: there on one branch, back on the other.
+    Oval {
+        /// The middle of the arc of angles.
+        mid: f64,
+        /// Half the arc.
+        half: f64,
+    },
+}
+
+/// The height w over the angle u.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Height {
+    /// (-B ± √Δ)/k with Δ positive everywhere.
+    Whole {
+        /// k.
+        lead: f64,
+        /// B.
+        linear: Trig1,
+        /// Δ.
+        radicand: Trig2,
+        /// +1 or -1.
+        sign: f64,
+    },
+    /// (-B + s √q)/k where s vanishes at the ends of the sweep and at `node`.
+    Deflated {
+        /// k.
+        lead: f64,
+        /// B.
+        linear: Trig1,
+        /// q, positive, of degree one.
+        rest: Trig1,
+        /// Where the curve crosses itself.
+        node: Option<f64>,
+        /// +1 or -1.
+        sign: f64,
+    },
+    /// -C/(2 B): k = 0.
+    Rational {
+        /// B.
+        linear: Trig1,
+        /// C.
+        constant: Trig2,
+    },
+    /// The same with a common ruling divided out: both in half angles.
+    Cubic {
+        /// B / sin((u-u0)/2): cos(u/2), sin(u/2).
+        linear: [f64; 2],
+        /// C / sin((u-u0)/2): cos(u/2), sin(u/2), cos(3u/2), sin(3u/2).
+        constant: [f64; 4],
+    },
+}
+
+/// A branch of the intersection of two quadrics.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quartic {
+    /// The surface whose rulings carry it.
+    pub base: Ruled,
+    /// The run of the angle.
+    pub sweep: Sweep,
+    /// The height over the angle.
+    pub height: Height,
+}
+
+/// The value of a trigonometric polynomial of degree one.
+pub fn trig1<S: Scalar>(k: &Trig1, (sin, cos): (S, S)) -> S {
+    S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2])
+}
+
+/// The value of a trigonometric polynomial of degree two.
+pub fn trig2<S: Scalar>(k: &Trig2, (sin, cos): (S, S)) -> S {
+    let cos2 = cos.square().scale(2.0) - S::constant(1.0);
+    let sin2 = (sin * cos).scale(2.0);
+    S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])
+}
+
+impl Quartic {
+    /// The parameter's period, where the branch is closed (all but rational ones are).
+    pub fn period(&self) -> Option<f64> {
+        match (self.height, self.sweep) {
+            (Height::Rational { .. } | Height::Cubic { .. }, _) => None,
+            (_, Sweep::Round { turns }) => Some(std::f64::consts::TAU * f64::from(turns)),
+            (_, Sweep::Oval { .. }) => Some(std::f64::consts::TAU),
+        }
+    }
+
+    /// The angle u at t.
+    pub fn angle<S: Scalar>(&self, t: S) -> S {
+        match self.sweep {
+            Sweep::Round { .. } => t,
+            Sweep::Oval { mid, half } => S::constant(mid) - t.sin_cos().1.scale(half),
+        }
+    }
+
+    /// The height as a quotient: (numerator, denominator) of w.
+    fn quotient<S: Scalar>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
+        match &self.height {
+            Height::Whole {
+                lead,
+                linear,
+                radicand,
+                sign,
+            } => {
+                let root = trig2(radicand, at).sqrt().scale(*sign);
+                (root - trig1(linear, at), S::constant(*lead))
+            }
+            Height::Deflated {
+                lead,
+                linear,
+                rest,
+                node,
+                sign,
+            } => {
+                let mut root = trig1(rest, at).sqrt().scale(*sign);
+                if let Some(node) = node {
+                    root = root * (u - S::constant(*node)).scale(0.5).sin_cos().0;
+                }
+                if let Sweep::Oval { half, .. } = self.sweep {
+                    root = root * oval_factor(t, half);
+                }
+                (root - trig1(linear, at), S::constant(*lead))
+            }
+            Height::Rational { linear, constant } => {
+                (-trig2(constant, at), trig1(linear, at).scale(2.0))
+            }
+            Height::Cubic { linear, constant } => {
+                let (s1, c1) = u.scale(0.5).sin_cos();
+                let (s3, c3) = u.scale(1.5).sin_cos();
+                let numerator = c1.scale(constant[0])
+                    + s1.scale(constant[1])
+                    + c3.scale(constant[2])
+                    + s3.scale(constant[3]);
+                (
+                    -numerator,
+                    (c1.scale(linear[0]) + s1.scale(linear[1])).scale(2.0),
+                )
+            }
+        }
+    }
+
+    /// The height w at t (for a cone, one over the height above the apex).
+    pub fn height_at<S: Scalar>(&self, t: S) -> S {
+        let u = self.angle(t);
+        let (n, d) = self.quotient(t, u, u.sin_cos());
+        n.over(d)
+    }
+
+    /// The point at t.
+    pub fn at<S: Scalar>(&self, t: S) -> [S; 3] {
+        let u = self.angle(t);
+        let (sin, cos) = u.sin_cos();
+        let (n, d) = self.quotient(t, u, (sin, cos));
+        match &self.base {
+            Ruled::Cylinder(s) => {
+                s.frame
+                    .world_of([cos.scale(s.radius), sin.scale(s.radius), n.over(d)])
+            }
+            Ruled::Cone(s) => {
+                let v = d.over(n);
+                let rho = v.scale(s.sin / s.cos);
+                s.frame.world_of([rho * cos, rho * sin, v])
+            }
+        }
+    }
+}
+
+/// √(sin((u-u0)/2) sin((u1-u)/2)) for u = mid - half cos t, analytic, with the sign of sin t.
+fn oval_factor<S: Scalar>(t: S, half: f64) -> S {
+    let (s, c) = t.scale(0.5).sin_cos();
+    let a = s.square().scale(half).sinc();
+    let b = c.square().scale(half).sinc();
+    (s * c).scale(half) * (a * b).sqrt()
+}

@@ -1,0 +1,247 @@
+//! Curves on a torus, through its two angles: where another surface meets it, and its limb.
+//!
+//! Notation: θ is the angle about the axis, φ about the tube; the curve is F(θ, φ) = 0 with F a
+//! [`BiTrig`]. It is kept as a chain of segments, each a graph of one angle over the other inside a
+//! rectangle where the slope is bounded, so that every point is one well-conditioned root.
+
+use super::bitrig::BiTrig;
+use super::surface::Torus;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::scalar::Scalar;
+use nalgebra::Point3;
+use std::f64::consts::{PI, TAU};
+
+/// The angle that a segment runs along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// θ, about the axis.
+    Around,
+    /// φ, about the tube.
+    Tube,
+}
+
+/// A graph of one angle over the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// The angle that runs.
+    pub axis: Axis,
+    /// Where it starts.
+    pub from: f64,
+    /// Where it ends, on either side of `from`.
+    pub to: f64,
+    /// The other angle at both ends.
+    pub ends: [f64; 2],
+    /// The other angle's derivative at both ends.
+    pub slopes: [f64; 2],
+    /// A bound of that derivative's absolute value.
+    pub steep: f64,
+    /// Which ends lie at a point where the curve crosses itself.
+    pub node: [bool; 2],
+}
+
+/// A branch of F(θ, φ) = 0 on a torus; the parameter runs over one unit for each segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Toric {
+    /// The torus.
+    pub torus: Torus,
+    /// F.
+    pub form: BiTrig,
+    /// The chain.
+    pub segments: Vec<Segment>,
+    /// Whether the last segment ends where the first begins.
+    pub closed: bool,
+}
+
+/// How near a node, relative to the segment, the interpolated branch is the better answer.
+const NODE_ZONE: f64 = 1.0 / (1 << 20) as f64;
+
+impl Segment {
+    /// The cubic through both ends with their slopes.
+    fn hermite(&self, x: f64) -> f64 {
+        let length = self.to - self.from;
+        let s = (x - self.from) / length;
+        let [y0, y1] = self.ends;
+        let (m0, m1) = (self.slopes[0] * length, self.slopes[1] * length);
+        let (a, b) = (1.0 - s, s);
+        y0 * a * a * (1.0 + 2.0 * b) + y1 * b * b * (3.0 - 2.0 * b) + m0 * b * a * a
+            - m1 * a * b * b
+    }
+
+    fn near_node(&self, x: f64) -> bool {
+        let zone = (self.to - self.from).abs() * NODE_ZONE;
+        (self.node[0] && (x - self.from).abs() < zone)
+            || (self.node[1] && (x - self.to).abs() < zone)
+    }
+
+    /// (F, F along the running angle, F along the other, and the second derivatives likewise).
+    fn partials<S: Scalar>(&self, form: &BiTrig, x: S, y: S) -> [S; 6] {
+        match self.axis {
+            Axis::Around => {
+                let p = form.partials(x, y);
+                [p.f, p.x, p.y, p.xx, p.xy, p.yy]
+            }
+            Axis::Tube => {
+                let p = form.partials(y, x);
+                [p.f, p.y, p.x, p.yy, p.xy, p.xx]
+            }
+        }
+    }
+
+    /// The other angle over x.
+    fn solve(&self, form: &BiTrig, x: f64) -> f64 {
+        let mut y = self.hermite(x);
+        if self.near_node(x) {
+            return y;
+        }
+        let reach = self.steep.max(1.0) * (self.to - self.from).abs();
+        let start = y;
+        for _ in 0..12 {
+            let p = self.partials(form, x, y);
+            let step = p[0] / p[2];
+            if !step.is_finite() || (y - step - start).abs() > reach {
+                break;
+            }
+            y -= step;
+            if step.abs() <= 2.0 * f64::EPSILON * (1.0 + y.abs()) {
+                break;
+            }
+        }
+        y
+    }
+
+    fn jet(&self, form: &BiTrig, x: f64) -> [f64; 3] {
+        let y = self.solve(form, x);
+        let p = self.partials(form, x, y);
+        if self.near_node(x) {
+            let h = (self.to - self.from).abs() * NODE_ZONE;
+            let (a, b) = (self.hermite(x - h), self.hermite(x + h));
+            return [y, (b - a) / (2.0 * h), (a + b - 2.0 * y) / (h * h)];
+        }
+        let d = -p[1] / p[2];
+        [y, d, -(p[3] + 2.0 * p[4] * d + p[5] * d * d) / p[2]]
+    }
+
+    fn interval_jet(&self, form: &BiTrig, x: Interval) -> [Interval; 3] {
+        let m = x.mid();
+        let ym = self.solve(form, m);
+        let slop = Interval::around(ym, 4.0 * f64::EPSILON * (1.0 + ym.abs()));
+        let run = x - Interval::point(m);
+        let prior = Interval::new(-self.steep, self.steep);
+        let mut y = slop + prior * run;
+        let p = self.partials(form, x, y);
+        if p[2].has_zero() {
+            return [y, prior, Interval::ENTIRE];
+        }
+        let d = (-p[1].over(p[2])).meet(prior);
+        y = y.meet(slop + d * run);
+        let dd = -(p[3] + (p[4] * d).scale(2.0) + p[5] * d.square()).over(p[2]);
+        [y, d, dd]
+    }
+}
+
+impl Toric {
+    /// The number of segments: the parameter's length.
+    pub fn length(&self) -> f64 {
+        self.segments.len() as f64
+    }
+
+    fn locate(&self, t: f64) -> (&Segment, f64) {
+        let n = self.segments.len();
+        let t = if self.closed {
+            t.rem_euclid(n as f64)
+        } else {
+            t.clamp(0.0, n as f64)
+        };
+        let i = (t.floor() as usize).min(n - 1);
+        (&self.segments[i], t - i as f64)
+    }
+
+    /// (θ, φ) at t with two derivatives by t.
+    pub fn angles(&self, t: f64) -> [Jet<f64>; 2] {
+        let (s, tau) = self.locate(t);
+        let length = s.to - s.from;
+        let x = s.from + tau * length;
+        let [y, d, dd] = s.jet(&self.form, x);
+        let run = Jet {
+            v: x,
+            d: length,
+            dd: 0.0,
+        };
+        let other = Jet {
+            v: y,
+            d: d * length,
+            dd: dd * length * length,
+        };
+        arrange(s.axis, run, other)
+    }
+
+    /// (θ, φ) over an interval of t inside one segment, with two derivatives.
+    pub fn angles_over(&self, t: Interval) -> [Jet<Interval>; 2] {
+        let (s, tau) = self.locate(t.mid());
+        let length = s.to - s.from;
+        let base = t.mid() - tau;
+        let offset = t - Interval::point(base);
+        let x = Interval::point(s.from) + offset.scale(length);
+        let [y, d, dd] = s.interval_jet(&self.form, x);
+        let run = Jet {
+            v: x,
+            d: Interval::point(length),
+            dd: Interval::point(0.0),
+        };
+        let other = Jet {
+            v: y,
+            d: d.scale(length),
+            dd: dd.scale(length * length),
+        };
+        arrange(s.axis, run, other)
+    }
+
+    /// The point with the given angles.
+    pub fn lift<S: Scalar>(&self, [theta, phi]: [S; 2]) -> [S; 3] {
+        let t = &self.torus;
+        let (st, ct) = theta.sin_cos();
+        let (sp, cp) = phi.sin_cos();
+        let rho = S::constant(t.major) + cp.scale(t.minor);
+        t.frame.world_of([rho * ct, rho * st, sp.scale(t.minor)])
+    }
+
+    /// The parameter of the curve's point next to the angles (θ, φ).
+    pub fn parameter(&self, theta: f64, phi: f64) -> f64 {
+        let mut best = (f64::INFINITY, 0.0);
+        for (i, s) in self.segments.iter().enumerate() {
+            let (x, y) = match s.axis {
+                Axis::Around => (theta, phi),
+                Axis::Tube => (phi, theta),
+            };
+            let length = s.to - s.from;
+            let middle = 0.5 * (s.from + s.to);
+            let x = middle + wrap(x - middle);
+            let tau = ((x - s.from) / length).clamp(0.0, 1.0);
+            let on = s.from + tau * length;
+            let away = wrap(y - s.solve(&self.form, on)).hypot(x - on);
+            if away < best.0 {
+                best = (away, i as f64 + tau);
+            }
+        }
+        best.1
+    }
+
+    /// A point of the torus by its angles.
+    pub fn point(&self, t: f64) -> Point3<f64> {
+        let [theta, phi] = self.angles(t);
+        Point3::from(self.lift([theta.v, phi.v]))
+    }
+}
+
+fn arrange<T>(axis: Axis, run: T, other: T) -> [T; 2] {
+    match axis {
+        Axis::Around => [run, other],
+        Axis::Tube => [other, run],
+    }
+}
+
+/// The angle brought into [-pi, pi).
+pub fn wrap(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}

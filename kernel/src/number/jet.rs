@@ -1,0 +1,146 @@
+//! A value with its first two derivatives along a curve's parameter.
+
+use super::interval::Interval;
+use super::scalar::{Scalar, sinc_jet};
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A value, its first and its second derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet<S> {
+    /// The value.
+    pub v: S,
+    /// The first derivative.
+    pub d: S,
+    /// The second derivative.
+    pub dd: S,
+}
+
+impl<S: Scalar> Jet<S> {
+    /// The parameter itself at `t`.
+    pub fn variable(t: S) -> Self {
+        Self {
+            v: t,
+            d: S::constant(1.0),
+            dd: S::constant(0.0),
+        }
+    }
+
+    /// The composite h(self) from h, h' and h'' at the value.
+    fn chain(self, h: S, dh: S, ddh: S) -> Self {
+        Self {
+            v: h,
+            d: dh * self.d,
+            dd: ddh * self.d.square() + dh * self.dd,
+        }
+    }
+}
+
+impl<S: Scalar> Add for Jet<S> {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self {
+            v: self.v + o.v,
+            d: self.d + o.d,
+            dd: self.dd + o.dd,
+        }
+    }
+}
+
+impl<S: Scalar> Sub for Jet<S> {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        Self {
+            v: self.v - o.v,
+            d: self.d - o.d,
+            dd: self.dd - o.dd,
+        }
+    }
+}
+
+impl<S: Scalar> Neg for Jet<S> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self {
+            v: -self.v,
+            d: -self.d,
+            dd: -self.dd,
+        }
+    }
+}
+
+impl<S: Scalar> Mul for Jet<S> {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        Self {
+            v: self.v * o.v,
+            d: self.d * o.v + self.v * o.d,
+            dd: self.dd * o.v + (self.d * o.d).scale(2.0) + self.v * o.dd,
+        }
+    }
+}
+
+/// The scalars that jets are taken over.
+pub trait Base: Scalar {
+    /// sin x / x with two derivatives, for 0 <= x <= pi.
+    fn sinc_with_derivatives(self) -> [Self; 3];
+}
+
+impl Base for f64 {
+    fn sinc_with_derivatives(self) -> [Self; 3] {
+        sinc_jet(self)
+    }
+}
+
+impl Base for Interval {
+    fn sinc_with_derivatives(self) -> [Self; 3] {
+        self.sinc_jet()
+    }
+}
+
+impl<S: Base> Scalar for Jet<S> {
+    fn constant(x: f64) -> Self {
+        Self {
+            v: S::constant(x),
+            d: S::constant(0.0),
+            dd: S::constant(0.0),
+        }
+    }
+    fn scale(self, k: f64) -> Self {
+        Self {
+            v: self.v.scale(k),
+            d: self.d.scale(k),
+            dd: self.dd.scale(k),
+        }
+    }
+    fn square(self) -> Self {
+        Self {
+            v: self.v.square(),
+            d: (self.v * self.d).scale(2.0),
+            dd: (self.d.square() + self.v * self.dd).scale(2.0),
+        }
+    }
+    fn over(self, o: Self) -> Self {
+        let v = self.v.over(o.v);
+        let d = (self.d - v * o.d).over(o.v);
+        let dd = (self.dd - (d * o.d).scale(2.0) - v * o.dd).over(o.v);
+        Self { v, d, dd }
+    }
+    fn sqrt(self) -> Self {
+        let root = self.v.sqrt();
+        let dh = S::constant(0.5).over(root);
+        let ddh = -dh.over(self.v).scale(0.5);
+        self.chain(root, dh, ddh)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = self.v.sin_cos();
+        (self.chain(s, c, -s), self.chain(c, -s, -c))
+    }
+    fn sinh_cosh(self) -> (Self, Self) {
+        let (s, c) = self.v.sinh_cosh();
+        (self.chain(s, c, s), self.chain(c, s, c))
+    }
+    fn sinc(self) -> Self {
+        let [h, dh, ddh] = self.v.sinc_with_derivatives();
+        self.chain(h, dh, ddh)
+    }
+}

@@ -1,0 +1,8 @@
+//! Numbers: exact rationals, intervals, jets, isolated roots, and the one place that decides signs.
+
+pub mod interval;
+pub mod jet;
+pub mod rational;
+pub mod roots;
+pub mod scalar;
+pub mod sign;

@@ -1,0 +1,4 @@
+//! Exact rationals.
+
+/// An exact rational number.
+pub type Rational = dashu::rational::RBig;

@@ -1,0 +1,408 @@
+//! Real roots of a smooth function on an interval, isolated with their multiplicity.
+//!
+//! The function is given as a jet over an interval: a certified range of its value and of two
+//! derivatives. Where the first derivative keeps its sign there is at most one root; where the
+//! second does, at most two, and the extremum between them tells which: outside the band by its
+//! certified sign, within it a tangency. Everything else is halved. The values are distances, so
+//! the band is the part's resolution.
+
+use super::interval::Interval;
+use super::jet::Jet;
+
+/// How a function meets zero at a root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contact {
+    /// A simple root.
+    Simple,
+    /// An even number of roots within the band: the function touches zero.
+    Touching,
+    /// An odd number, more than one, within the band.
+    Inflected,
+}
+
+/// An isolated root, or a cluster of roots within the band.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Root {
+    /// The best parameter.
+    pub t: f64,
+    /// Where the cluster begins.
+    pub lo: f64,
+    /// Where the cluster ends.
+    pub hi: f64,
+    /// How zero is met.
+    pub contact: Contact,
+    /// The least absolute value met next to the root where the answer was not plain.
+    pub margin: Option<f64>,
+}
+
+/// The zeros of a function on an interval.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Zeros {
+    /// The function is within the band throughout.
+    Everywhere,
+    /// The roots in order, and the nearest miss: the parameter and value of the least extremum
+    /// that was found to be apart.
+    At {
+        /// In increasing order.
+        roots: Vec<Root>,
+        /// Extremum apart from zero: (parameter, value).
+        misses: Vec<(f64, f64)>,
+    },
+}
+
+#[derive(Clone, Copy)]
+struct Cluster {
+    lo: f64,
+    hi: f64,
+    t: f64,
+    simple: bool,
+    margin: Option<f64>,
+}
+
+struct Search<'a, F> {
+    f: &'a F,
+    band: f64,
+    floor: f64,
+    clusters: Vec<Cluster>,
+    misses: Vec<(f64, f64)>,
+}
+
+/// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
+/// resolution. A closed curve passes its whole period and is wrapped by the caller.
+pub fn isolate<F: Fn(Interval) -> Jet<Interval>>(f: &F, breaks: &[f64], band: f64) -> Zeros {
+    let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
+        return Zeros::At {
+            roots: Vec::new(),
+            misses: Vec::new(),
+        };
+    };
+    let floor = (last - first).abs().max(first.abs()).max(last.abs()) * f64::EPSILON * 64.0;
+    let mut search = Search {
+        f,
+        band,
+        floor,
+        clusters: Vec::new(),
+        misses: Vec::new(),
+    };
+    for pair in breaks.windows(2) {
+        search.piece(pair[0], pair[1]);
+    }
+    search.finish(first, last)
+}
+
+impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
+    fn value(&self, t: f64) -> f64 {
+        (self.f)(Interval::point(t)).v.mid()
+    }
+
+    fn slope(&self, t: f64) -> f64 {
+        (self.f)(Interval::point(t)).d.mid()
+    }
+
+    fn cluster(&mut self, lo: f64, hi: f64, t: f64, simple: bool, margin: Option<f64>) {
+        self.clusters.push(Cluster {
+            lo,
+            hi,
+            t,
+            simple,
+            margin,
+        });
+    }
+
+    /// Works through [a, b] in order, by halving with a stack of its own.
+    fn piece(&mut self, a: f64, b: f64) {
+        let mut stack = vec![(a, b)];
+        while let Some((a, b)) = stack.pop() {
+            let m = 0.5 * (a + b);
+            let x = Interval { lo: a, hi: b };
+            let jet = (self.f)(x);
+            let mut v = jet.v;
+            if v.has_zero() && jet.d.width().is_finite() {
+                let centre = (self.f)(Interval::point(m));
+                v = v.meet(centre.v + jet.d * (x - Interval::point(m)));
+            }
+            if v.lo > self.band || v.hi < -self.band {
+                continue;
+            }
+            if v.magnitude() <= self.band {
+                self.cluster(a, b, m, false, Some(0.0));
+            } else if !jet.d.has_zero() {
+                self.monotone(a, b);
+            } else if !jet.dd.has_zero() {
+                self.convex(a, b);
+            } else if b - a <= self.floor {
+                self.cluster(a, b, m, false, Some(v.magnitude()));
+            } else {
+                stack.push((m, b));
+                stack.push((a, m));
+            }
+        }
+    }
+
+    /// -1, 0 (within the band) or 1.
+    fn sign(&self, value: f64) -> i8 {
+        if value.abs() <= self.band {
+            0
+        } else if value < 0.0 {
+            -1
+        } else {
+            1
+        }
+    }
+
+    fn monotone(&mut self, a: f64, b: f64) {
+        let (fa, fb) = (self.value(a), self.value(b));
+        match (self.sign(fa), self.sign(fb)) {
+            (0, 0) => self.cluster(a, b, 0.5 * (a + b), false, Some(0.0)),
+            (0, _) => {
+                let (t, simple) = if fa * fb <= 0.0 {
+                    (self.refine(a, b, fa), true)
+                } else {
+                    (a, false)
+                };
+                self.cluster(a, t, t, simple, None);
+            }
+            (_, 0) => {
+                let (t, simple) = if fa * fb <= 0.0 {
+                    (self.refine(a, b, fa), true)
+                } else {
+                    (b, false)
+                };
+                self.cluster(t, b, t, simple, None);
+            }
+            (p, q) if p != q => {
+                let t = self.refine(a, b, fa);
+                self.cluster(t, t, t, true, None);
+            }
+            _ => {}
+        }
+    }
+
+    fn convex(&mut self, a: f64, b: f64) {
+        let (da, db) = (self.slope(a), self.slope(b));
+        if da * db >= 0.0 {
+            return self.monotone(a, b);
+        }
+        let t = bisect(a, b, da, |t| self.slope(t));
+        let extremum = self.value(t);
+        if self.sign(extremum) == 0 {
+            let lo = if self.sign(self.value(a)) == 0 { a } else { t };
+            let hi = if self.sign(self.value(b)) == 0 { b } else { t };
+            return self.cluster(lo, hi, t, false, Some(extremum.abs()));
+        }
+        self.misses.push((t, extremum));
+        self.monotone(a, t);
+        self.monotone(t, b);
+    }
+
+    /// The root in [a, b], where the function is monotone with opposite signs at the ends.
+    fn refine(&self, a: f64, b: f64, fa: f64) -> f64 {
+        bisect_newton(a, b, fa, |t| {
+            let j = (self.f)(Interval::point(t));
+            (j.v.mid(), j.d.mid())
+        })
+    }
+
+    fn finish(self, first: f64, last: f64) -> Zeros {
+        let mut merged: Vec<Vec<Cluster>> = Vec::new();
+        for c in &self.clusters {
+            match merged.last_mut() {
+                Some(group) if group.last().is_some_and(|p| p.hi >= c.lo) => group.push(*c),
+                _ => merged.push(vec![*c]),
+            }
+        }
+        if let [only] = merged.as_slice() {
+            if only[0].lo <= first && only[only.len() - 1].hi >= last && last > first {
+                return Zeros::Everywhere;
+            }
+        }
+        let ends: Vec<(f64, f64)> = merged
+            .iter()
+            .map(|g| (g[0].lo, g[g.len() - 1].hi))
+            .collect();
+        let sign_between = |i: usize| {
+            let left = if i == 0 { first } else { ends[i - 1].1 };
+            let right = ends.get(i).map_or(last, |e| e.0);
+            self.value(0.5 * (left + right)).signum()
+        };
+        let roots = merged.iter().enumerate().map(|(i, group)| {
+            let at_end = ends[i].0 <= first || ends[i].1 >= last;
+            let crosses = at_end || sign_between(i) != sign_between(i + 1);
+            self.root(group, crosses)
+        });
+        Zeros::At {
+            roots: roots.collect(),
+            misses: self.misses,
+        }
+    }
+
+    /// One root from the clusters that touch one another.
+    fn root(&self, group: &[Cluster], crosses: bool) -> Root {
+        let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
+        let margin = group.iter().filter_map(|c| c.margin).reduce(f64::min);
+        let mut simple = group.iter().filter(|c| c.simple);
+        if let (Some(c), None) = (simple.next(), simple.next()) {
+            if crosses {
+                return Root {
+                    t: c.t,
+                    lo,
+                    hi,
+                    contact: Contact::Simple,
+                    margin,
+                };
+            }
+        }
+        if !crosses {
+            let t = match group {
+                [c] => c.t,
+                _ => self.balance(lo, hi, |j| j.d),
+            };
+            return Root {
+                t,
+                lo,
+                hi,
+                contact: Contact::Touching,
+                margin,
+            };
+        }
+        let t = self.balance(lo, hi, |j| j.dd);
+        Root {
+            t,
+            lo,
+            hi,
+            contact: Contact::Inflected,
+            margin,
+        }
+    }
+
+    /// The zero of a derivative within a cluster, or its middle.
+    fn balance(&self, lo: f64, hi: f64, part: impl Fn(Jet<Interval>) -> Interval) -> f64 {
+        let g = |t: f64| part((self.f)(Interval::point(t))).mid();
+        let (ga, gb) = (g(lo), g(hi));
+        if ga * gb < 0.0 {
+            bisect(lo, hi, ga, g)
+        } else {
+            0.5 * (lo + hi)
+        }
+    }
+}
+
+/// The zero of `g` in [a, b] with opposite signs at the ends, to the last double.
+pub fn bisect(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..200 {
+        let m = 0.5 * (a + b);
+        if m <= a || m >= b {
+            break;
+        }
+        let gm = g(m);
+        if gm == 0.0 {
+            return m;
+        }
+        if (gm < 0.0) == (ga < 0.0) {
+            a = m
+        } else {
+            b = m
+        }
+    }
+    0.5 * (a + b)
+}
+
+/// The zero of `g` in [a, b] by Newton's steps kept inside a shrinking bracket.
+pub fn bisect_newton(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut t = 0.5 * (a + b);
+    let mut last = b - a;
+    for _ in 0..200 {
+        let (v, d) = g(t);
+        if v == 0.0 {
+            return t;
+        }
+        if (v < 0.0) == (ga < 0.0) {
+            a = t
+        } else {
+            b = t
+        }
+        let step = v / d;
+        let newton = t - step;
+        let next = if newton > a && newton < b && step.abs() < 0.75 * last {
+            last = step.abs();
+            newton
+        } else {
+            last = 0.5 * (b - a);
+            0.5 * (a + b)
+        };
+        if next == t || !(next > a && next < b) || last <= t.abs() * f64::EPSILON {
+            return next;
+        }
+        t = next;
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scalar::Scalar;
+    use super::*;
+
+    fn roots(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<Root> {
+        match isolate(&|t| f(Jet::variable(t)), breaks, 1e-11) {
+            Zeros::At { roots, .. } => roots,
+            Zeros::Everywhere => panic!("everywhere"),
+        }
+    }
+
+    fn k(x: f64) -> Jet<Interval> {
+        Jet::constant(x)
+    }
+
+    #[test]
+    fn simple_roots_are_found_in_order() {
+        let r = roots(
+            |t| (t - k(0.25)) * (t - k(0.5)) * (t + k(2.0)),
+            &[-3.0, 1.0],
+        );
+        let t: Vec<f64> = r.iter().map(|r| r.t).collect();
+        assert_eq!(t.len(), 3);
+        for (a, b) in t.iter().zip([-2.0, 0.25, 0.5]) {
+            assert!((a - b).abs() < 1e-14);
+        }
+        assert!(r.iter().all(|r| r.contact == Contact::Simple));
+    }
+
+    #[test]
+    fn a_double_root_touches_and_a_triple_one_crosses() {
+        let r = roots(|t| (t - k(0.3)).square() * (t + k(1.0)), &[0.0, 1.0]);
+        assert_eq!(r.len(), 1);
+        assert_eq!(r[0].contact, Contact::Touching);
+        assert!((r[0].t - 0.3).abs() < 1e-12);
+        let r = roots(|t| (t - k(0.3)).square() * (t - k(0.3)), &[0.0, 1.0]);
+        assert_eq!(r.len(), 1);
+        assert_eq!(r[0].contact, Contact::Inflected);
+        assert!((r[0].t - 0.3).abs() < 1e-8);
+    }
+
+    #[test]
+    fn roots_apart_by_more_than_the_band_stay_apart() {
+        // The extremum is -1e-10, ten times the band.
+        let r = roots(|t| (t - k(0.3)).square() - k(1e-10), &[0.0, 1.0]);
+        assert_eq!(r.len(), 2);
+        // The extremum is 1e-10: no root.
+        let r = roots(|t| (t - k(0.3)).square() + k(1e-10), &[0.0, 1.0]);
+        assert!(r.is_empty());
+    }
+
+    #[test]
+    fn trigonometric_roots_and_a_zero_function() {
+        let r = roots(|t| t.sin_cos().0, &[0.5, 7.0]);
+        assert_eq!(r.len(), 2);
+        assert!((r[0].t - std::f64::consts::PI).abs() < 1e-15);
+        let z = isolate(&|t| Jet::variable(t).scale(0.0), &[0.0, 1.0], 1e-11);
+        assert_eq!(z, Zeros::Everywhere);
+    }
+
+    #[test]
+    fn a_root_at_the_very_end_is_kept() {
+        let r = roots(|t| t - k(1.0), &[0.0, 1.0]);
+        assert_eq!(r.len(), 1);
+        assert!((r[0].t - 1.0).abs() < 1e-11);
+    }
+}

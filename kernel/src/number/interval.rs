@@ -99,7 +99,7 @@ impl Interval {
     }
 
     fn cos(self) -> Self {
-        if !(self.width() < TAU) {
+        if self.width() >= TAU || self.width().is_nan() {
             return Self { lo: -1.0, hi: 1.0 };
         }
         // Turns are counted with a slack that only ever widens the answer.

@@ -211,10 +211,12 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
                 _ => merged.push(vec![*c]),
             }
         }
-        if let [only] = merged.as_slice() {
-            if only[0].lo <= first && only[only.len() - 1].hi >= last && last > first {
-                return Zeros::Everywhere;
-            }
+        if let [only] = merged.as_slice()
+            && only[0].lo <= first
+            && only[only.len() - 1].hi >= last
+            && last > first
+        {
+            return Zeros::Everywhere;
         }
         let ends: Vec<(f64, f64)> = merged
             .iter()
@@ -241,16 +243,14 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
         let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
         let margin = group.iter().filter_map(|c| c.margin).reduce(f64::min);
         let mut simple = group.iter().filter(|c| c.simple);
-        if let (Some(c), None) = (simple.next(), simple.next()) {
-            if crosses {
-                return Root {
-                    t: c.t,
-                    lo,
-                    hi,
-                    contact: Contact::Simple,
-                    margin,
-                };
-            }
+        if let (Some(c), None, true) = (simple.next(), simple.next(), crosses) {
+            return Root {
+                t: c.t,
+                lo,
+                hi,
+                contact: Contact::Simple,
+                margin,
+            };
         }
         if !crosses {
             let t = match group {

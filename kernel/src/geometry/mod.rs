@@ -8,3 +8,4 @@ pub mod intersect;
 pub mod quartic;
 pub mod surface;
 pub mod toric;
+pub mod trace;

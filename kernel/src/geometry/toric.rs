@@ -8,6 +8,7 @@ use super::bitrig::BiTrig;
 use super::surface::Torus;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::roots::bisect;
 use crate::number::scalar::Scalar;
 use nalgebra::Point3;
 use std::f64::consts::{PI, TAU};
@@ -36,6 +37,8 @@ pub struct Segment {
     pub slopes: [f64; 2],
     /// A bound of that derivative's absolute value.
     pub steep: f64,
+    /// The range of the other angle in which the graph is the only one.
+    pub bracket: [f64; 2],
     /// Which ends lie at a point where the curve crosses itself.
     pub node: [bool; 2],
 }
@@ -88,24 +91,45 @@ impl Segment {
         }
     }
 
+    /// The same graph, run the other way.
+    pub fn reversed(&self) -> Self {
+        let flip = |[a, b]: [f64; 2]| [b, a];
+        Self {
+            from: self.to,
+            to: self.from,
+            ends: flip(self.ends),
+            slopes: flip(self.slopes),
+            node: [self.node[1], self.node[0]],
+            ..*self
+        }
+    }
+
     /// The other angle over x.
     fn solve(&self, form: &BiTrig, x: f64) -> f64 {
-        let mut y = self.hermite(x);
+        let start = self.hermite(x);
         if self.near_node(x) {
-            return y;
+            return start;
         }
+        let [lo, hi] = self.bracket;
         let reach = self.steep.max(1.0) * (self.to - self.from).abs();
-        let start = y;
+        let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
+        let mut y = start;
         for _ in 0..12 {
             let p = self.partials(form, x, y);
             let step = p[0] / p[2];
-            if !step.is_finite() || (y - step - start).abs() > reach {
+            if !(y - step >= lo && y - step <= hi) {
                 break;
             }
             y -= step;
             if step.abs() <= 2.0 * f64::EPSILON * (1.0 + y.abs()) {
-                break;
+                return y;
             }
+        }
+        // Newton left the cell: F is monotone across it, so halving finds the root.
+        let value = |y: f64| self.partials(form, x, y)[0];
+        let (flo, fhi) = (value(self.bracket[0]), value(self.bracket[1]));
+        if self.bracket[0].is_finite() && flo * fhi < 0.0 {
+            return bisect(self.bracket[0], self.bracket[1], flo, value);
         }
         y
     }

@@ -1,0 +1,719 @@
+//! The branches of F(θ, φ) = 0 on the parameter torus, all of them, with their singular points.
+//!
+//! The square of both angles is divided until in every cell F has no zero, or one of its partial
+//! derivatives dominates the other, so that the curve in the cell is a graph of bounded slope
+//! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor's with a global bound of the
+//! third derivatives. Cells are joined through the roots on their sides. Singular points, where F
+//! and its gradient vanish within the band, are found first and stand in cells of their own.
+
+use super::bitrig::{BiTrig, Partials};
+use super::surface::Torus;
+use super::toric::{Axis, Segment, Toric, wrap};
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Contact, Zeros, isolate};
+use std::collections::{BTreeMap, HashMap};
+use std::f64::consts::TAU;
+
+/// A point where the curve crosses or touches itself, by its angles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Singular {
+    /// (θ, φ).
+    pub angles: [f64; 2],
+    /// Where the branches pass: (index of the branch, parameter). Empty for an isolated point.
+    pub on: Vec<(usize, f64)>,
+}
+
+/// The zero set of F.
+#[derive(Clone, Debug, Default)]
+pub struct Traced {
+    /// The branches, all closed.
+    pub branches: Vec<Toric>,
+    /// The singular points.
+    pub singular: Vec<Singular>,
+}
+
+/// The curve has a singular point worse than a crossing, or one that cannot be told from it.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a curve on a torus could not be resolved near the angles ({:.6}, {:.6})", angles[0], angles[1])]
+pub struct Unresolved {
+    /// (θ, φ).
+    pub angles: [f64; 2],
+}
+
+/// A rectangle of angles.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    lo: [f64; 2],
+    hi: [f64; 2],
+}
+
+impl Cell {
+    fn centre(&self) -> [f64; 2] {
+        [
+            0.5 * (self.lo[0] + self.hi[0]),
+            0.5 * (self.lo[1] + self.hi[1]),
+        ]
+    }
+    fn half(&self) -> [f64; 2] {
+        [
+            0.5 * (self.hi[0] - self.lo[0]),
+            0.5 * (self.hi[1] - self.lo[1]),
+        ]
+    }
+    fn quarters(&self) -> [Cell; 4] {
+        let c = self.centre();
+        let part = |i: usize, j: usize| {
+            let x = if i == 0 {
+                [self.lo[0], c[0]]
+            } else {
+                [c[0], self.hi[0]]
+            };
+            let y = if j == 0 {
+                [self.lo[1], c[1]]
+            } else {
+                [c[1], self.hi[1]]
+            };
+            Cell {
+                lo: [x[0], y[0]],
+                hi: [x[1], y[1]],
+            }
+        };
+        [part(0, 0), part(1, 0), part(0, 1), part(1, 1)]
+    }
+}
+
+/// Taylor's bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
+struct Bounds {
+    clear: bool,
+    x: [f64; 2],
+    y: [f64; 2],
+    at: Partials<f64>,
+}
+
+struct Tracer<'a> {
+    form: &'a BiTrig,
+    third: f64,
+    slop: f64,
+    band: f64,
+}
+
+/// The depth at which a cell that is still undecided is given up: sides of 1e-7 radians.
+const DEPTH: u32 = 24;
+/// The cells of the first grid along each angle.
+const GRID: usize = 10;
+/// Where the first grid starts, so that symmetric curves do not meet its lines in special points.
+const START: f64 = 0.061_803_4;
+/// A graph's slope is at most this in an accepted cell.
+const STEEP: f64 = 2.0;
+
+impl Tracer<'_> {
+    fn bounds(&self, cell: &Cell) -> Bounds {
+        let [cx, cy] = cell.centre();
+        let [hx, hy] = cell.half();
+        let p = self.form.partials(cx, cy);
+        let h = hx.max(hy);
+        let cubic = self.third * h * h;
+        let spread = p.x.abs() * hx
+            + p.y.abs() * hy
+            + 0.5 * (p.xx.abs() * hx * hx + 2.0 * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy)
+            + cubic * h / 6.0
+            + self.slop;
+        let rx = p.xx.abs() * hx + p.xy.abs() * hy + 0.5 * cubic + self.slop;
+        let ry = p.xy.abs() * hx + p.yy.abs() * hy + 0.5 * cubic + self.slop;
+        Bounds {
+            clear: p.f.abs() > spread,
+            x: [p.x.abs() - rx, p.x.abs() + rx],
+            y: [p.y.abs() - ry, p.y.abs() + ry],
+            at: p,
+        }
+    }
+
+    /// The critical points of F at which F is within the band.
+    fn singular_points(&self) -> Result<Vec<[f64; 2]>, Unresolved> {
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        let mut stack: Vec<(Cell, u32)> = grid(&lines(&[]), &lines(&[]))
+            .into_iter()
+            .map(|c| (c, 0))
+            .collect();
+        while let Some((cell, depth)) = stack.pop() {
+            let b = self.bounds(&cell);
+            if b.clear || b.x[0] > 0.0 || b.y[0] > 0.0 {
+                continue;
+            }
+            if let Some(point) = self.only_critical(&cell, &b.at) {
+                let Some(point) = point else { continue };
+                if self.form.value(point[0], point[1]).abs() <= self.band
+                    && !found
+                        .iter()
+                        .any(|q| near(q, &point, 1e3 * self.slop.sqrt()))
+                {
+                    found.push(point);
+                }
+                continue;
+            }
+            if depth >= DEPTH {
+                return Err(Unresolved {
+                    angles: cell.centre(),
+                });
+            }
+            stack.extend(cell.quarters().map(|c| (c, depth + 1)));
+        }
+        found.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        Ok(found)
+    }
+
+    /// Where the Hessian cannot vanish over the cell's surroundings: the one critical point there,
+    /// if it lies in the cell. None where that is not known.
+    fn only_critical(&self, cell: &Cell, at: &Partials<f64>) -> Option<Option<[f64; 2]>> {
+        let det = at.xx * at.yy - at.xy * at.xy;
+        let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
+        let [hx, hy] = cell.half();
+        let reach = 2.0 * hx.max(hy);
+        // ‖H⁻¹‖ times the change of H over the surroundings stays below one.
+        if norm * self.third * reach >= 0.25 * det.abs() {
+            return None;
+        }
+        let mut p = cell.centre();
+        for _ in 0..30 {
+            let g = self.form.partials(p[0], p[1]);
+            let det = g.xx * g.yy - g.xy * g.xy;
+            let step = [
+                (g.x * g.yy - g.y * g.xy) / det,
+                (g.y * g.xx - g.x * g.xy) / det,
+            ];
+            p = [p[0] - step[0], p[1] - step[1]];
+            if step[0].abs().max(step[1].abs()) <= 4.0 * f64::EPSILON {
+                break;
+            }
+        }
+        let c = cell.centre();
+        let inside = (p[0] - c[0]).abs() <= 1.01 * hx && (p[1] - c[1]).abs() <= 1.01 * hy;
+        Some(inside.then_some(p))
+    }
+
+    /// How far from a singular point the curve is known to be two crossing branches.
+    fn zone(&self, p: &[f64; 2]) -> f64 {
+        let at = self.form.partials(p[0], p[1]);
+        let det = (at.xx * at.yy - at.xy * at.xy).abs();
+        let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
+        (0.1 * det / (norm * self.third)).min(0.05)
+    }
+
+    /// The cells that hold a piece of the curve, each with the angle its graph runs over.
+    fn leaves(&self, cells: Vec<Cell>) -> Result<Vec<(Cell, Axis)>, Unresolved> {
+        let mut leaves = Vec::new();
+        let mut stack: Vec<(Cell, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
+        while let Some((cell, depth)) = stack.pop() {
+            let b = self.bounds(&cell);
+            if b.clear {
+                continue;
+            }
+            if b.y[0] > 0.0 && b.x[1] <= STEEP * b.y[0] {
+                leaves.push((cell, Axis::Around));
+            } else if b.x[0] > 0.0 && b.y[1] <= STEEP * b.x[0] {
+                leaves.push((cell, Axis::Tube));
+            } else if depth >= DEPTH {
+                return Err(Unresolved {
+                    angles: cell.centre(),
+                });
+            } else {
+                stack.extend(cell.quarters().map(|c| (c, depth + 1)));
+            }
+        }
+        Ok(leaves)
+    }
+
+    /// The roots of F on a side of a cell: the angle that is `fixed` on it, and its ends.
+    fn roots_on(&self, fixed: usize, at: f64, lo: f64, hi: f64) -> Option<Vec<f64>> {
+        let f = |t: Interval| {
+            let c = Interval::point(at);
+            if fixed == 0 {
+                let p = self.form.partials(c, t);
+                Jet {
+                    v: p.f,
+                    d: p.y,
+                    dd: p.yy,
+                }
+            } else {
+                let p = self.form.partials(t, c);
+                Jet {
+                    v: p.f,
+                    d: p.x,
+                    dd: p.xx,
+                }
+            }
+        };
+        match isolate(&f, &[lo, hi], self.slop) {
+            Zeros::At { roots, .. } if roots.iter().all(|r| r.contact == Contact::Simple) => {
+                Some(roots.into_iter().map(|r| r.t).collect())
+            }
+            _ => None,
+        }
+    }
+}
+
+fn near(a: &[f64; 2], b: &[f64; 2], reach: f64) -> bool {
+    wrap(a[0] - b[0]).abs() <= reach && wrap(a[1] - b[1]).abs() <= reach
+}
+
+/// The lines of the first grid along one angle: even ones, but none through a zone, and the sides
+/// of the zones.
+fn lines(zones: &[(f64, f64)]) -> Vec<f64> {
+    let mut all: Vec<f64> = (0..GRID)
+        .map(|i| START + TAU * i as f64 / GRID as f64)
+        .collect();
+    all.retain(|x| zones.iter().all(|(c, d)| wrap(x - c).abs() > *d));
+    for (c, d) in zones {
+        for side in [c - d, c + d] {
+            let side = START + (side - START).rem_euclid(TAU);
+            let same = all.iter().any(|x| wrap(x - side).abs() < d * 1e-6);
+            if !same && zones.iter().all(|(c, d)| wrap(side - c).abs() > d * 0.999) {
+                all.push(side);
+            }
+        }
+    }
+    all.sort_by(f64::total_cmp);
+    let first = all[0];
+    all.push(first + TAU);
+    all
+}
+
+fn grid(xs: &[f64], ys: &[f64]) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for x in xs.windows(2) {
+        for y in ys.windows(2) {
+            cells.push(Cell {
+                lo: [x[0], y[0]],
+                hi: [x[1], y[1]],
+            });
+        }
+    }
+    cells
+}
+
+/// A root on a side, by the angles there.
+type RootId = usize;
+
+/// The roots on all sides, shared by the cells on both sides of them.
+#[derive(Default)]
+struct Sides {
+    roots: Vec<[f64; 2]>,
+    known: HashMap<(usize, u64, u64, u64), Vec<RootId>>,
+}
+
+/// A line's name: lines a period apart are the same.
+fn key(x: f64, first: f64) -> u64 {
+    let y = if x >= first + TAU { first } else { x };
+    y.to_bits()
+}
+
+/// A piece of the curve in one cell: the roots or the singular point it joins.
+struct Piece {
+    ends: [End; 2],
+    segment: Segment,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum End {
+    Root(RootId),
+    /// A pass through a singular point: (point, which of its two branches).
+    Pass(usize, usize),
+}
+
+/// All branches of `form` = 0 on the torus, where `form` is a distance to first order and `band`
+/// the resolution.
+pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolved> {
+    let slop = form.bound() * f64::EPSILON * 64.0;
+    let tracer = Tracer {
+        form,
+        third: form.third(),
+        slop,
+        band: band.max(slop),
+    };
+    let points = tracer.singular_points()?;
+    let mut shrink = 1.0;
+    loop {
+        match tracer.assemble(torus, &points, shrink) {
+            Ok(traced) => return Ok(traced),
+            Err(e) if shrink < 1.0 / 200.0 => return Err(e),
+            Err(_) => shrink *= 0.37,
+        }
+    }
+}
+
+impl Tracer<'_> {
+    fn assemble(
+        &self,
+        torus: &Torus,
+        points: &[[f64; 2]],
+        shrink: f64,
+    ) -> Result<Traced, Unresolved> {
+        let size = points.iter().map(|p| self.zone(p)).fold(0.05, f64::min) * shrink;
+        let zones = |k: usize| points.iter().map(|p| (p[k], size)).collect::<Vec<_>>();
+        let (xs, ys) = (lines(&zones(0)), lines(&zones(1)));
+        let cells = grid(&xs, &ys);
+        let home = |c: &Cell| points.iter().position(|p| near(&c.centre(), p, 0.9 * size));
+        let (own, free): (Vec<Cell>, Vec<Cell>) =
+            cells.into_iter().partition(|c| home(c).is_some());
+        if own.len() != points.len() {
+            return Err(Unresolved {
+                angles: points.first().copied().unwrap_or([0.0; 2]),
+            });
+        }
+        let leaves = self.leaves(free)?;
+        let mut sides = Sides::default();
+        let corners = corners(leaves.iter().map(|l| &l.0).chain(&own), xs[0], ys[0]);
+        let mut pieces = Vec::new();
+        let origin = [xs[0], ys[0]];
+        for (cell, axis) in &leaves {
+            let roots = self.around(cell, &corners, origin, &mut sides)?;
+            self.join(cell, *axis, roots, &mut pieces)?;
+        }
+        let mut isolated = Vec::new();
+        for cell in &own {
+            let Some(i) = home(cell) else { continue };
+            let roots = self.around(cell, &corners, origin, &mut sides)?;
+            let at = self.form.partials(points[i][0], points[i][1]);
+            match (roots.len(), at.xx * at.yy - at.xy * at.xy < 0.0) {
+                (0, false) => isolated.push(i),
+                (4, true) => self.cross(i, &points[i], &at, &roots, &mut pieces)?,
+                _ => return Err(Unresolved { angles: points[i] }),
+            }
+        }
+        chain(torus, self.form, points, pieces)
+    }
+
+    /// The roots around a cell: (id, angles next to the cell).
+    fn around(
+        &self,
+        cell: &Cell,
+        corners: &Corners,
+        origin: [f64; 2],
+        sides: &mut Sides,
+    ) -> Result<Vec<(RootId, [f64; 2])>, Unresolved> {
+        let mut all = Vec::new();
+        for fixed in [0, 1] {
+            let other = 1 - fixed;
+            for at in [cell.lo[fixed], cell.hi[fixed]] {
+                let name = key(at, origin[fixed]);
+                let marks = corners.between(fixed, name, cell.lo[other], cell.hi[other]);
+                for pair in marks.windows(2) {
+                    let id = (fixed, name, pair[0].to_bits(), pair[1].to_bits());
+                    if !sides.known.contains_key(&id) {
+                        let roots =
+                            self.roots_on(fixed, at, pair[0], pair[1])
+                                .ok_or(Unresolved {
+                                    angles: cell.centre(),
+                                })?;
+                        let ids = roots.into_iter().map(|t| {
+                            sides.roots.push(if fixed == 0 { [at, t] } else { [t, at] });
+                            sides.roots.len() - 1
+                        });
+                        let ids = ids.collect();
+                        sides.known.insert(id, ids);
+                    }
+                    for &root in &sides.known[&id] {
+                        let mut p = sides.roots[root];
+                        p[fixed] = at;
+                        all.push((root, p));
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// Joins the roots around a cell in which the curve is a graph.
+    fn join(
+        &self,
+        cell: &Cell,
+        axis: Axis,
+        mut roots: Vec<(RootId, [f64; 2])>,
+        pieces: &mut Vec<Piece>,
+    ) -> Result<(), Unresolved> {
+        let k = if axis == Axis::Around { 0 } else { 1 };
+        roots.sort_by(|a, b| a.1[k].total_cmp(&b.1[k]));
+        if roots.len() % 2 == 1 {
+            return Err(Unresolved {
+                angles: cell.centre(),
+            });
+        }
+        for pair in roots.chunks(2) {
+            let (p, q) = (pair[0].1, pair[1].1);
+            let slope = |p: [f64; 2]| {
+                let g = self.form.partials(p[0], p[1]);
+                if k == 0 { -g.x / g.y } else { -g.y / g.x }
+            };
+            let segment = Segment {
+                axis,
+                from: p[k],
+                to: q[k],
+                ends: [p[1 - k], q[1 - k]],
+                slopes: [slope(p), slope(q)],
+                steep: STEEP,
+                bracket: [cell.lo[1 - k], cell.hi[1 - k]],
+                node: [false; 2],
+            };
+            pieces.push(Piece {
+                ends: [End::Root(pair[0].0), End::Root(pair[1].0)],
+                segment,
+            });
+        }
+        Ok(())
+    }
+
+    /// Joins the four roots around a crossing to its two branches.
+    fn cross(
+        &self,
+        index: usize,
+        point: &[f64; 2],
+        at: &Partials<f64>,
+        roots: &[(RootId, [f64; 2])],
+        pieces: &mut Vec<Piece>,
+    ) -> Result<(), Unresolved> {
+        let directions = tangents(at);
+        let mut used = [[false; 2]; 2];
+        for (root, p) in roots {
+            let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
+            let length = away[0].hypot(away[1]);
+            let along = |d: &[f64; 2]| (away[0] * d[0] + away[1] * d[1]) / length;
+            let b = usize::from(along(&directions[1]).abs() > along(&directions[0]).abs());
+            let d = directions[b];
+            let forward = usize::from(along(&d) > 0.0);
+            if used[b][forward] {
+                return Err(Unresolved { angles: *point });
+            }
+            used[b][forward] = true;
+            let k = usize::from(d[1].abs() > d[0].abs());
+            let g = self.form.partials(p[0], p[1]);
+            let slope = if k == 0 { -g.x / g.y } else { -g.y / g.x };
+            let segment = Segment {
+                axis: if k == 0 { Axis::Around } else { Axis::Tube },
+                from: point[k],
+                to: point[k] + away[k],
+                ends: [point[1 - k], point[1 - k] + away[1 - k]],
+                slopes: [d[1 - k] / d[k], slope],
+                steep: 2.0 * STEEP,
+                bracket: [f64::NEG_INFINITY, f64::INFINITY],
+                node: [true, false],
+            };
+            pieces.push(Piece {
+                ends: [End::Pass(index, b), End::Root(*root)],
+                segment,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The directions in which an indefinite quadratic form vanishes.
+fn tangents(at: &Partials<f64>) -> [[f64; 2]; 2] {
+    let root = (at.xy * at.xy - at.xx * at.yy).max(0.0).sqrt();
+    let unit = |x: f64, y: f64| {
+        let n = x.hypot(y);
+        [x / n, y / n]
+    };
+    // a x² + 2 b x y + c y² = 0, in the form that does not cancel.
+    let q = if at.xy >= 0.0 {
+        -at.xy - root
+    } else {
+        -at.xy + root
+    };
+    if q == 0.0 {
+        return [[1.0, 0.0], [0.0, 1.0]];
+    }
+    [unit(q, at.xx), unit(at.yy, q)]
+}
+
+/// The corners of cells on every line of the grid.
+struct Corners {
+    on: [HashMap<u64, Vec<f64>>; 2],
+}
+
+fn corners<'a>(cells: impl Iterator<Item = &'a Cell>, x0: f64, y0: f64) -> Corners {
+    let mut on: [HashMap<u64, Vec<f64>>; 2] = Default::default();
+    for c in cells {
+        for fixed in [0, 1] {
+            let first = if fixed == 0 { x0 } else { y0 };
+            for at in [c.lo[fixed], c.hi[fixed]] {
+                let list = on[fixed].entry(key(at, first)).or_default();
+                list.push(c.lo[1 - fixed]);
+                list.push(c.hi[1 - fixed]);
+            }
+        }
+    }
+    for list in on.iter_mut().flat_map(|m| m.values_mut()) {
+        list.sort_by(f64::total_cmp);
+        list.dedup();
+    }
+    Corners { on }
+}
+
+impl Corners {
+    fn between(&self, fixed: usize, name: u64, lo: f64, hi: f64) -> Vec<f64> {
+        let list = self.on[fixed].get(&name).map_or(&[][..], Vec::as_slice);
+        list.iter()
+            .copied()
+            .filter(|v| *v >= lo && *v <= hi)
+            .collect()
+    }
+}
+
+/// Pieces joined to closed branches.
+fn chain(
+    torus: &Torus,
+    form: &BiTrig,
+    points: &[[f64; 2]],
+    pieces: Vec<Piece>,
+) -> Result<Traced, Unresolved> {
+    let mut at: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
+    let name = |e: &End| match *e {
+        End::Root(r) => (0, r, 0),
+        End::Pass(p, b) => (1, p, b),
+    };
+    for (i, p) in pieces.iter().enumerate() {
+        for e in &p.ends {
+            at.entry(name(e)).or_default().push(i);
+        }
+    }
+    if let Some((_, list)) = at.iter().find(|(_, l)| l.len() != 2) {
+        let s = &pieces[list[0]].segment;
+        return Err(Unresolved {
+            angles: [s.from, s.ends[0]],
+        });
+    }
+    let mut singular: Vec<Singular> = points
+        .iter()
+        .map(|p| Singular {
+            angles: *p,
+            on: Vec::new(),
+        })
+        .collect();
+    let mut used = vec![false; pieces.len()];
+    let mut branches = Vec::new();
+    for start in 0..pieces.len() {
+        if used[start] {
+            continue;
+        }
+        let mut segments = Vec::new();
+        let (mut here, mut entry) = (start, pieces[start].ends[0]);
+        while !used[here] {
+            used[here] = true;
+            let p = &pieces[here];
+            let forward = p.ends[0] == entry;
+            if let End::Pass(s, _) = entry {
+                singular[s].on.push((branches.len(), segments.len() as f64));
+            }
+            segments.push(if forward {
+                p.segment
+            } else {
+                p.segment.reversed()
+            });
+            entry = if forward { p.ends[1] } else { p.ends[0] };
+            let pair = &at[&name(&entry)];
+            here = if pair[0] == here { pair[1] } else { pair[0] };
+        }
+        branches.push(Toric {
+            torus: *torus,
+            form: form.clone(),
+            segments,
+            closed: true,
+        });
+    }
+    Ok(Traced { branches, singular })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::frame::Frame;
+    use crate::geometry::surface::{Cylinder, Plane, Surface};
+    use nalgebra::{Point3, Vector3};
+
+    fn traced(surface: &Surface, major: f64, minor: f64) -> Traced {
+        let torus = Torus {
+            frame: Frame::world(),
+            major,
+            minor,
+        };
+        let form = BiTrig::interpolate(|x, y| {
+            let p = Surface::Torus(torus).point(x, y);
+            surface.level([p.x, p.y, p.z])
+        });
+        let traced = trace(&torus, &form, 1e-11).unwrap();
+        for b in &traced.branches {
+            for i in 0..(10 * b.segments.len()) {
+                let p = b.point(i as f64 / 10.0);
+                assert!(
+                    surface.distance(&p).abs() < 1e-12,
+                    "{}",
+                    surface.distance(&p)
+                );
+            }
+            for i in 0..b.segments.len() {
+                let t = i as f64;
+                let gap = (b.point(t + 1e-12) - b.point(t - 1e-12)).norm();
+                assert!(gap < 1e-9, "gap {gap} at {t}");
+            }
+        }
+        traced
+    }
+
+    fn plane(n: Vector3<f64>, d: f64) -> Surface {
+        let n = n.normalize();
+        Surface::Plane(Plane {
+            frame: Frame::about(Point3::from(n * d), n),
+        })
+    }
+
+    #[test]
+    fn a_spiric_section_has_one_or_two_ovals_or_a_node() {
+        // x = d across a torus (3, 1): two ovals for d < 2, a lemniscate at 2, one oval above.
+        for (d, branches, singular) in [(0.7, 2, 0), (2.0, 1, 1), (2.5, 1, 0), (3.999, 1, 0)] {
+            let t = traced(&plane(Vector3::x(), d), 3.0, 1.0);
+            assert_eq!(
+                (t.branches.len(), t.singular.len()),
+                (branches, singular),
+                "d = {d}"
+            );
+        }
+        assert_eq!(
+            traced(&plane(Vector3::x(), 4.0), 3.0, 1.0).singular.len(),
+            1
+        );
+        assert!(
+            traced(&plane(Vector3::x(), 4.001), 3.0, 1.0)
+                .branches
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn a_near_node_splits_on_either_side() {
+        assert_eq!(
+            traced(&plane(Vector3::x(), 2.0 - 1e-9), 3.0, 1.0)
+                .branches
+                .len(),
+            2
+        );
+        assert_eq!(
+            traced(&plane(Vector3::x(), 2.0 + 1e-9), 3.0, 1.0)
+                .branches
+                .len(),
+            1
+        );
+    }
+
+    #[test]
+    fn a_cylinder_through_the_ring() {
+        // Along x through the whole ring: into and out of the tube twice.
+        let frame = Frame::about(Point3::origin(), Vector3::x());
+        let c = Surface::Cylinder(Cylinder { frame, radius: 0.5 });
+        assert_eq!(traced(&c, 3.0, 1.0).branches.len(), 4);
+        // Parallel to the axis, as wide as the tube and centred on the spine: nodes on both equators.
+        let frame = Frame::about(Point3::new(5.0, 0.0, 0.0), Vector3::z());
+        let c = Surface::Cylinder(Cylinder { frame, radius: 1.5 });
+        assert_eq!(traced(&c, 5.0, 1.5).singular.len(), 2);
+    }
+}

@@ -117,3 +117,92 @@ impl BiTrig {
         total
     }
 }
+
+/// A [`BiTrig`] about one of its singular points, where its value and gradient vanish: written in
+/// functions of the offsets that keep their relative accuracy, with the vanishing terms left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Local {
+    /// The singular point.
+    pub origin: [f64; 2],
+    k: [[f64; 5]; 5],
+}
+
+/// 1, sin d, 1 - cos d, 1 - cos 2d, sin d sin²(d/2) with two derivatives.
+fn local_basis<S: Scalar>(d: S) -> [[S; 5]; 3] {
+    let (s, c) = d.sin_cos();
+    let h2 = d.scale(0.5).sin_cos().0.square();
+    let s2 = s.square();
+    let (one, zero) = (S::constant(1.0), S::constant(0.0));
+    [
+        [one, s, h2.scale(2.0), s2.scale(2.0), s * h2],
+        [zero, c, s, (s * c).scale(4.0), c * h2 + s2.scale(0.5)],
+        [
+            zero,
+            -s,
+            c,
+            (c.square() - s2).scale(4.0),
+            (s * c).scale(1.5) - s * h2,
+        ],
+    ]
+}
+
+/// The five functions of x0 + d in the functions of d: rows by function.
+fn shift(x0: f64) -> [[f64; 5]; 5] {
+    let (s, c) = x0.sin_cos();
+    let (s2, c2) = (2.0 * x0).sin_cos();
+    [
+        [1.0, 0.0, 0.0, 0.0, 0.0],
+        [c, -s, -c, 0.0, 0.0],
+        [s, c, -s, 0.0, 0.0],
+        [c2, -2.0 * s2, 0.0, -c2, 4.0 * s2],
+        [s2, 2.0 * c2, 0.0, -s2, -4.0 * c2],
+    ]
+}
+
+impl Local {
+    /// The form about its singular point `origin`.
+    pub fn about(form: &BiTrig, origin: [f64; 2]) -> Self {
+        let (a, b) = (shift(origin[0]), shift(origin[1]));
+        let mut k = [[0.0; 5]; 5];
+        for (i, row) in form.0.iter().enumerate() {
+            for (j, c) in row.iter().enumerate() {
+                for (m, line) in k.iter_mut().enumerate() {
+                    for (n, sum) in line.iter_mut().enumerate() {
+                        *sum += c * a[i][m] * b[j][n];
+                    }
+                }
+            }
+        }
+        k[0][0] = 0.0;
+        k[1][0] = 0.0;
+        k[0][1] = 0.0;
+        Self { origin, k }
+    }
+
+    /// The value with its partial derivatives at the angles (x, y).
+    pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
+        let bx = local_basis(x - S::constant(self.origin[0]));
+        let by = local_basis(y - S::constant(self.origin[1]));
+        let sum = |a: &[S; 5], b: &[S; 5]| {
+            let mut total = S::constant(0.0);
+            for (row, f) in self.k.iter().zip(a) {
+                let mut inner = S::constant(0.0);
+                for (&c, &g) in row.iter().zip(b) {
+                    if c != 0.0 {
+                        inner = inner + g.scale(c);
+                    }
+                }
+                total = total + inner * *f;
+            }
+            total
+        };
+        Partials {
+            f: sum(&bx[0], &by[0]),
+            x: sum(&bx[1], &by[0]),
+            y: sum(&bx[0], &by[1]),
+            xx: sum(&bx[2], &by[0]),
+            xy: sum(&bx[1], &by[1]),
+            yy: sum(&bx[0], &by[2]),
+        }
+    }
+}

@@ -4,7 +4,7 @@
 //! [`BiTrig`]. It is kept as a chain of segments, each a graph of one angle over the other inside a
 //! rectangle where the slope is bounded, so that every point is one well-conditioned root.
 
-use super::bitrig::BiTrig;
+use super::bitrig::{BiTrig, Local};
 use super::surface::Torus;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
@@ -39,8 +39,9 @@ pub struct Segment {
     pub steep: f64,
     /// The range of the other angle in which the graph is the only one.
     pub bracket: [f64; 2],
-    /// Which ends lie at a point where the curve crosses itself.
-    pub node: [bool; 2],
+    /// The point where the curve crosses itself that the segment starts or ends at: an index
+    /// into the curve's nodes.
+    pub node: Option<usize>,
 }
 
 /// A branch of F(θ, φ) = 0 on a torus; the parameter runs over one unit for each segment.
@@ -50,14 +51,19 @@ pub struct Toric {
     pub torus: Torus,
     /// F.
     pub form: BiTrig,
+    /// F about each point where it crosses itself.
+    pub nodes: Vec<Local>,
     /// The chain.
     pub segments: Vec<Segment>,
     /// Whether the last segment ends where the first begins.
     pub closed: bool,
 }
 
-/// How near a node, relative to the segment, the interpolated branch is the better answer.
-const NODE_ZONE: f64 = 1.0 / (1 << 20) as f64;
+/// What a segment is solved by.
+struct Forms<'a> {
+    form: &'a BiTrig,
+    nodes: &'a [Local],
+}
 
 impl Segment {
     /// The cubic through both ends with their slopes.
@@ -71,23 +77,30 @@ impl Segment {
             - m1 * a * b * b
     }
 
-    fn near_node(&self, x: f64) -> bool {
-        let zone = (self.to - self.from).abs() * NODE_ZONE;
-        (self.node[0] && (x - self.from).abs() < zone)
-            || (self.node[1] && (x - self.to).abs() < zone)
-    }
-
     /// (F, F along the running angle, F along the other, and the second derivatives likewise).
-    fn partials<S: Scalar>(&self, form: &BiTrig, x: S, y: S) -> [S; 6] {
+    fn partials<S: Scalar>(&self, forms: &Forms<'_>, x: S, y: S) -> [S; 6] {
+        let at = |a: S, b: S| match self.node.and_then(|n| forms.nodes.get(n)) {
+            Some(local) => local.partials(a, b),
+            None => forms.form.partials(a, b),
+        };
         match self.axis {
             Axis::Around => {
-                let p = form.partials(x, y);
+                let p = at(x, y);
                 [p.f, p.x, p.y, p.xx, p.xy, p.yy]
             }
             Axis::Tube => {
-                let p = form.partials(y, x);
+                let p = at(y, x);
                 [p.f, p.y, p.x, p.yy, p.xy, p.xx]
             }
+        }
+    }
+
+    /// The slope at an end that lies at a node, where the partial derivatives vanish.
+    fn end_slope(&self, x: f64) -> f64 {
+        if (x - self.from).abs() < (x - self.to).abs() {
+            self.slopes[0]
+        } else {
+            self.slopes[1]
         }
     }
 
@@ -99,23 +112,19 @@ impl Segment {
             to: self.from,
             ends: flip(self.ends),
             slopes: flip(self.slopes),
-            node: [self.node[1], self.node[0]],
             ..*self
         }
     }
 
     /// The other angle over x.
-    fn solve(&self, form: &BiTrig, x: f64) -> f64 {
+    fn solve(&self, forms: &Forms<'_>, x: f64) -> f64 {
         let start = self.hermite(x);
-        if self.near_node(x) {
-            return start;
-        }
         let [lo, hi] = self.bracket;
         let reach = self.steep.max(1.0) * (self.to - self.from).abs();
         let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
         let mut y = start;
         for _ in 0..12 {
-            let p = self.partials(form, x, y);
+            let p = self.partials(forms, x, y);
             let step = p[0] / p[2];
             if !(y - step >= lo && y - step <= hi) {
                 break;
@@ -126,7 +135,7 @@ impl Segment {
             }
         }
         // Newton left the cell: F is monotone across it, so halving finds the root.
-        let value = |y: f64| self.partials(form, x, y)[0];
+        let value = |y: f64| self.partials(forms, x, y)[0];
         let (flo, fhi) = (value(self.bracket[0]), value(self.bracket[1]));
         if self.bracket[0].is_finite() && flo * fhi < 0.0 {
             return bisect(self.bracket[0], self.bracket[1], flo, value);
@@ -134,26 +143,24 @@ impl Segment {
         y
     }
 
-    fn jet(&self, form: &BiTrig, x: f64) -> [f64; 3] {
-        let y = self.solve(form, x);
-        let p = self.partials(form, x, y);
-        if self.near_node(x) {
-            let h = (self.to - self.from).abs() * NODE_ZONE;
-            let (a, b) = (self.hermite(x - h), self.hermite(x + h));
-            return [y, (b - a) / (2.0 * h), (a + b - 2.0 * y) / (h * h)];
+    fn jet(&self, forms: &Forms<'_>, x: f64) -> [f64; 3] {
+        let y = self.solve(forms, x);
+        let p = self.partials(forms, x, y);
+        if p[2] == 0.0 {
+            return [y, self.end_slope(x), 0.0];
         }
         let d = -p[1] / p[2];
         [y, d, -(p[3] + 2.0 * p[4] * d + p[5] * d * d) / p[2]]
     }
 
-    fn interval_jet(&self, form: &BiTrig, x: Interval) -> [Interval; 3] {
+    fn interval_jet(&self, forms: &Forms<'_>, x: Interval) -> [Interval; 3] {
         let m = x.mid();
-        let ym = self.solve(form, m);
+        let ym = self.solve(forms, m);
         let slop = Interval::around(ym, 4.0 * f64::EPSILON * (1.0 + ym.abs()));
         let run = x - Interval::point(m);
         let prior = Interval::new(-self.steep, self.steep);
         let mut y = slop + prior * run;
-        let p = self.partials(form, x, y);
+        let p = self.partials(forms, x, y);
         if p[2].has_zero() {
             return [y, prior, Interval::ENTIRE];
         }
@@ -165,6 +172,13 @@ impl Segment {
 }
 
 impl Toric {
+    fn forms(&self) -> Forms<'_> {
+        Forms {
+            form: &self.form,
+            nodes: &self.nodes,
+        }
+    }
+
     /// The number of segments: the parameter's length.
     pub fn length(&self) -> f64 {
         self.segments.len() as f64
@@ -186,7 +200,7 @@ impl Toric {
         let (s, tau) = self.locate(t);
         let length = s.to - s.from;
         let x = s.from + tau * length;
-        let [y, d, dd] = s.jet(&self.form, x);
+        let [y, d, dd] = s.jet(&self.forms(), x);
         let run = Jet {
             v: x,
             d: length,
@@ -207,7 +221,7 @@ impl Toric {
         let base = t.mid() - tau;
         let offset = t - Interval::point(base);
         let x = Interval::point(s.from) + offset.scale(length);
-        let [y, d, dd] = s.interval_jet(&self.form, x);
+        let [y, d, dd] = s.interval_jet(&self.forms(), x);
         let run = Jet {
             v: x,
             d: Interval::point(length),
@@ -243,7 +257,7 @@ impl Toric {
             let x = middle + wrap(x - middle);
             let tau = ((x - s.from) / length).clamp(0.0, 1.0);
             let on = s.from + tau * length;
-            let away = wrap(y - s.solve(&self.form, on)).hypot(x - on);
+            let away = wrap(y - s.solve(&self.forms(), on)).hypot(x - on);
             if away < best.0 {
                 best = (away, i as f64 + tau);
             }

@@ -6,7 +6,7 @@
 //! third derivatives. Cells are joined through the roots on their sides. Singular points, where F
 //! and its gradient vanish within the band, are found first and stand in cells of their own.
 
-use super::bitrig::{BiTrig, Partials};
+use super::bitrig::{BiTrig, Local, Partials};
 use super::surface::Torus;
 use super::toric::{Axis, Segment, Toric, wrap};
 use crate::number::interval::Interval;
@@ -453,7 +453,7 @@ impl Tracer<'_> {
                 slopes: [slope(p), slope(q)],
                 steep: STEEP,
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
-                node: [false; 2],
+                node: None,
             };
             pieces.push(Piece {
                 ends: [End::Root(pair[0].0), End::Root(pair[1].0)],
@@ -496,7 +496,7 @@ impl Tracer<'_> {
                 slopes: [d[1 - k] / d[k], slope],
                 steep: 2.0 * STEEP,
                 bracket: [f64::NEG_INFINITY, f64::INFINITY],
-                node: [true, false],
+                node: Some(index),
             };
             pieces.push(Piece {
                 ends: [End::Pass(index, b), End::Root(*root)],
@@ -590,6 +590,7 @@ fn chain(
             on: Vec::new(),
         })
         .collect();
+    let locals: Vec<Local> = points.iter().map(|p| Local::about(form, *p)).collect();
     let mut used = vec![false; pieces.len()];
     let mut branches = Vec::new();
     for start in 0..pieces.len() {
@@ -617,6 +618,7 @@ fn chain(
         branches.push(Toric {
             torus: *torus,
             form: form.clone(),
+            nodes: locals.clone(),
             segments,
             closed: true,
         });

@@ -1,1 +1,260 @@
-//! The curves in which two surfaces meet.
+//! The curves in which two surfaces meet: all components, with their singular points.
+//!
+//! Whether two surfaces are parallel, coaxial, tangent or equal in radius is asked as a distance
+//! over the part's extent and decided by the [`Judge`]; the constructions then take the answer.
+
+mod plane;
+mod quadric;
+mod sphere;
+mod torus;
+
+use super::curve::Curve;
+use super::frame::Frame;
+use super::surface::Surface;
+use super::trace::Unresolved;
+use crate::brep::topology::Sense;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Zeros, isolate};
+use crate::number::sign::{Judge, ROUNDING};
+use nalgebra::{Point3, Vector3};
+
+/// A ball that holds the part: what lies outside is not asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// The centre.
+    pub centre: Point3<f64>,
+    /// The radius.
+    pub radius: f64,
+}
+
+/// One component of an intersection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branch {
+    /// The curve.
+    pub curve: Curve,
+    /// The range of its parameter.
+    pub range: [f64; 2],
+    /// Whether the range is one whole period of a closed curve.
+    pub closed: bool,
+    /// Whether the surfaces are tangent all along it.
+    pub tangent: bool,
+}
+
+/// A singular point of an intersection: where it crosses or ends on itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// The place.
+    pub point: Point3<f64>,
+    /// Where the branches pass: (index of the branch, parameter); empty for an isolated point.
+    pub on: Vec<(usize, f64)>,
+}
+
+/// Where two surfaces meet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Meeting {
+    /// The curves.
+    pub branches: Vec<Branch>,
+    /// The singular points.
+    pub nodes: Vec<Node>,
+}
+
+/// Why an intersection is refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum IntersectionError {
+    /// The curve has a singular point that is no plain crossing.
+    #[error("two surfaces meet in a curve with a singular point beyond a plain crossing, {0}")]
+    Toric(#[from] Unresolved),
+    /// Two quadrics meet in a curve with a cusp.
+    #[error("two quadrics meet in a curve with a cusp near ({:.6}, {:.6}, {:.6})", place[0], place[1], place[2])]
+    Cusp {
+        /// Near where.
+        place: [f64; 3],
+    },
+}
+
+impl Meeting {
+    fn nothing() -> Self {
+        Self::default()
+    }
+
+    fn touch(point: Point3<f64>) -> Self {
+        Self {
+            branches: Vec::new(),
+            nodes: vec![Node {
+                point,
+                on: Vec::new(),
+            }],
+        }
+    }
+
+    /// Adds the whole of a curve, as far as it lies within the extent.
+    fn add(&mut self, curve: Curve, tangent: bool, extent: &Extent) {
+        if let Some(range) = curve.range_within(&extent.centre, extent.radius) {
+            let closed = curve.period().is_some();
+            self.branches.push(Branch {
+                curve,
+                range,
+                closed,
+                tangent,
+            });
+        }
+    }
+
+    /// Adds a node at a point of known branches, with its parameter on each.
+    fn cross_at(&mut self, point: Point3<f64>) {
+        let on = (0..self.branches.len())
+            .map(|i| (i, self.branches[i].curve.parameter(&point)))
+            .collect();
+        self.nodes.push(Node { point, on });
+    }
+}
+
+/// The curves in which two distinct surfaces meet within the extent.
+pub fn meet(
+    a: &Surface,
+    b: &Surface,
+    extent: &Extent,
+    judge: &Judge,
+) -> Result<Meeting, IntersectionError> {
+    use Surface as S;
+    Ok(match (a, b) {
+        (S::Plane(p), S::Plane(q)) => plane::plane_plane(p, q, extent, judge),
+        (S::Plane(p), S::Sphere(s)) | (S::Sphere(s), S::Plane(p)) => {
+            plane::plane_sphere(p, s, extent, judge)
+        }
+        (S::Plane(p), S::Cylinder(c)) | (S::Cylinder(c), S::Plane(p)) => {
+            plane::plane_cylinder(p, c, extent, judge)
+        }
+        (S::Plane(p), S::Cone(c)) | (S::Cone(c), S::Plane(p)) => {
+            plane::plane_cone(p, c, extent, judge)
+        }
+        (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, extent, judge),
+        (S::Torus(t), S::Torus(o)) => torus::torus_with(t, &S::Torus(*o), extent, judge)?,
+        (S::Torus(t), other) | (other, S::Torus(t)) => torus::torus_with(t, other, extent, judge)?,
+        (x, y) => quadric::quadric_quadric(x, y, extent, judge)?,
+    })
+}
+
+/// How far two directions drift apart over the extent.
+fn drift(a: &Vector3<f64>, b: &Vector3<f64>, extent: &Extent) -> f64 {
+    a.cross(b).norm() * extent.radius
+}
+
+/// Whether two lines, each a point and a unit direction, are the same within the band.
+fn same_line(f: &Frame, g: &Frame, extent: &Extent, judge: &Judge) -> bool {
+    let away = g.origin - f.origin;
+    let across = (away - f.z * f.z.dot(&away)).norm();
+    // Seen from the extent's centre, so that a far-off origin does not magnify the drift.
+    let to_centre = extent.centre - f.origin;
+    let along = (to_centre.dot(&f.z) - away.dot(&f.z)).abs();
+    let tilt = f.z.cross(&g.z).norm();
+    judge.within(tilt * extent.radius) && judge.within(across - tilt * along)
+}
+
+/// Whether two surfaces coincide over the extent: `Along` with the same side inside, `Against`
+/// with opposite sides, which only planes can be.
+pub fn coincidence(a: &Surface, b: &Surface, extent: &Extent, judge: &Judge) -> Option<Sense> {
+    use Surface as S;
+    let axis = |f: &Frame, g: &Frame| {
+        let tilt = f.z.cross(&g.z).norm() * extent.radius;
+        let away = extent.centre - f.origin;
+        let foot = f.origin + f.z * f.z.dot(&away);
+        let off = foot - g.origin;
+        tilt + (off - g.z * g.z.dot(&off)).norm()
+    };
+    let apart = match (a, b) {
+        (S::Plane(p), S::Plane(q)) => {
+            let foot = extent.centre - p.frame.z * (extent.centre - p.frame.origin).dot(&p.frame.z);
+            let off = (foot - q.frame.origin).dot(&q.frame.z).abs();
+            off + drift(&p.frame.z, &q.frame.z, extent)
+        }
+        (S::Sphere(s), S::Sphere(t)) => {
+            (s.frame.origin - t.frame.origin).norm() + (s.radius - t.radius).abs()
+        }
+        (S::Cylinder(c), S::Cylinder(d)) => axis(&c.frame, &d.frame) + (c.radius - d.radius).abs(),
+        (S::Cone(c), S::Cone(d)) => {
+            if c.frame.z.dot(&d.frame.z) < 0.0 {
+                return None;
+            }
+            (c.frame.origin - d.frame.origin).norm()
+                + drift(&c.frame.z, &d.frame.z, extent)
+                + (c.sin * d.cos - c.cos * d.sin).abs() * extent.radius
+        }
+        (S::Torus(t), S::Torus(u)) => {
+            (t.frame.origin - u.frame.origin).norm()
+                + t.frame.z.cross(&u.frame.z).norm() * t.major
+                + (t.major - u.major).abs()
+                + (t.minor - u.minor).abs()
+        }
+        _ => return None,
+    };
+    let f = a.frame();
+    // Most pairs are far apart: only what could matter is put to the judge.
+    if apart > extent.radius {
+        return None;
+    }
+    if !judge.coincide(
+        "surface on surface",
+        apart,
+        [f.origin.x, f.origin.y, f.origin.z],
+    ) {
+        return None;
+    }
+    let against = matches!((a, b), (S::Plane(p), S::Plane(q)) if p.frame.z.dot(&q.frame.z) < 0.0);
+    Some(if against {
+        Sense::Against
+    } else {
+        Sense::Along
+    })
+}
+
+/// The parts of a range on which a function along the curve is positive.
+fn positive_parts(
+    curve: &Curve,
+    range: [f64; 2],
+    f: &impl Fn(Interval) -> Jet<Interval>,
+    band: f64,
+) -> Vec<[f64; 2]> {
+    let roots = match isolate(f, &curve.breaks(range[0], range[1]), band) {
+        Zeros::Everywhere => return Vec::new(),
+        Zeros::At { roots, .. } => roots,
+    };
+    let value = |t: f64| f(Interval::point(t)).v.mid();
+    if roots.is_empty() {
+        let middle = range[0] + (range[1] - range[0]) * 0.618;
+        return if value(middle) > 0.0 {
+            vec![range]
+        } else {
+            Vec::new()
+        };
+    }
+    let mut marks: Vec<f64> = roots.iter().map(|r| r.t).collect();
+    if curve.period() == Some(range[1] - range[0]) {
+        // A closed curve is opened at a root.
+        let (first, period) = (marks[0], range[1] - range[0]);
+        marks.push(first + period);
+    } else {
+        marks.insert(0, range[0]);
+        marks.push(range[1]);
+    }
+    let short = (range[1] - range[0]) * ROUNDING;
+    marks
+        .windows(2)
+        .filter(|m| m[1] - m[0] > short && value(0.5 * (m[0] + m[1])) > 0.0)
+        .map(|m| [m[0], m[1]])
+        .collect()
+}
+
+/// The parts of a curve that lie on a surface's own nappe, where it is a cone.
+fn nappe_parts(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Vec<[f64; 2]> {
+    let Surface::Cone(c) = surface else {
+        return vec![range];
+    };
+    let above = |t: Interval| c.frame.local(curve.jet_over(t))[2];
+    positive_parts(curve, range, &above, band)
+}
+
+fn place(p: &Point3<f64>) -> [f64; 3] {
+    [p.x, p.y, p.z]
+}

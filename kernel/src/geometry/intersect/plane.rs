@@ -1,0 +1,221 @@
+//! A plane and another surface: lines and conics in closed form.
+
+use super::{Branch, Extent, Meeting, Node, drift, place};
+use crate::geometry::curve::{Circle, Curve, Ellipse, Hyperbola, Line, Parabola};
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere};
+use crate::number::sign::{Judge, Side};
+use nalgebra::{Point3, Vector3};
+
+/// The signed height of a point over a plane.
+fn height(p: &Plane, x: &Point3<f64>) -> f64 {
+    (x - p.frame.origin).dot(&p.frame.z)
+}
+
+pub(super) fn plane_plane(p: &Plane, q: &Plane, extent: &Extent, judge: &Judge) -> Meeting {
+    let mut meeting = Meeting::nothing();
+    let across = p.frame.z.cross(&q.frame.z);
+    if judge.within(drift(&p.frame.z, &q.frame.z, extent)) {
+        return meeting;
+    }
+    let direction = across.normalize();
+    // The point of both planes next to the extent's centre.
+    let c = extent.centre;
+    let (hp, hq) = (height(p, &c), height(q, &c));
+    let cos = p.frame.z.dot(&q.frame.z);
+    let sin2 = across.norm_squared();
+    let origin = c + p.frame.z * ((hq * cos - hp) / sin2) + q.frame.z * ((hp * cos - hq) / sin2);
+    // Once more from there: the first step loses digits where the planes are nearly parallel.
+    let (hp, hq) = (height(p, &origin), height(q, &origin));
+    let origin =
+        origin + p.frame.z * ((hq * cos - hp) / sin2) + q.frame.z * ((hp * cos - hq) / sin2);
+    meeting.add(Curve::Line(Line { origin, direction }), false, extent);
+    meeting
+}
+
+pub(super) fn plane_sphere(p: &Plane, s: &Sphere, extent: &Extent, judge: &Judge) -> Meeting {
+    let h = height(p, &s.frame.origin);
+    let foot = s.frame.origin - p.frame.z * h;
+    match judge.side("plane on sphere", h.abs() - s.radius, place(&foot)) {
+        Side::Outside => Meeting::nothing(),
+        Side::On => Meeting::touch(foot),
+        Side::Inside => {
+            let radius = ((s.radius - h.abs()) * (s.radius + h.abs())).sqrt();
+            let mut meeting = Meeting::nothing();
+            let frame = p.frame.at(foot);
+            meeting.add(Curve::Circle(Circle { frame, radius }), false, extent);
+            meeting
+        }
+    }
+}
+
+pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, extent: &Extent, judge: &Judge) -> Meeting {
+    let (n, z) = (p.frame.z, c.frame.z);
+    let cos = n.dot(&z);
+    let mut meeting = Meeting::nothing();
+    if judge.within(cos.abs() * extent.radius) {
+        // The axis is parallel to the plane.
+        let along = (extent.centre - c.frame.origin).dot(&z);
+        let middle = c.frame.origin + z * along;
+        let h = height(p, &middle);
+        let normal = (n - z * cos).normalize();
+        let foot = middle - normal * h;
+        let line = |origin| {
+            Curve::Line(Line {
+                origin,
+                direction: z,
+            })
+        };
+        match judge.side("plane on cylinder", h.abs() - c.radius, place(&foot)) {
+            Side::Outside => {}
+            Side::On => meeting.add(line(foot), true, extent),
+            Side::Inside => {
+                let half = ((c.radius - h.abs()) * (c.radius + h.abs())).sqrt();
+                let side = z.cross(&normal) * half;
+                meeting.add(line(foot - side), false, extent);
+                meeting.add(line(foot + side), false, extent);
+            }
+        }
+        return meeting;
+    }
+    let centre = c.frame.origin - z * (height(p, &c.frame.origin) / cos);
+    if judge.within(drift(&n, &z, extent).min(n.cross(&z).norm() * c.radius)) {
+        let frame = c.frame.at(centre);
+        meeting.add(
+            Curve::Circle(Circle {
+                frame,
+                radius: c.radius,
+            }),
+            false,
+            extent,
+        );
+    } else {
+        let frame = Frame::toward(centre, n, z);
+        let (a, b) = (c.radius / cos.abs(), c.radius);
+        meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, extent);
+    }
+    meeting
+}
+
+pub(super) fn plane_cone(p: &Plane, c: &Cone, extent: &Extent, judge: &Judge) -> Meeting {
+    let apex = c.frame.origin;
+    let h = height(p, &apex);
+    match judge.side("apex on plane", h, place(&apex)) {
+        Side::On => plane_through_apex(p, c, extent, judge),
+        _ => plane_beside_apex(p, c, h, extent, judge),
+    }
+}
+
+fn plane_through_apex(p: &Plane, c: &Cone, extent: &Extent, judge: &Judge) -> Meeting {
+    let apex = c.frame.origin;
+    let n = c.frame.components(&p.frame.z);
+    let across = n.x.hypot(n.y);
+    // The rulings (sin cos u, sin sin u, cos) in the plane: across cos(u - u0) = -n_z cot.
+    let lean = (n.z.abs() * c.cos - across * c.sin) * extent.radius;
+    let u0 = n.y.atan2(n.x);
+    let ruling = |u: f64| {
+        let local = Vector3::new(c.sin * u.cos(), c.sin * u.sin(), c.cos);
+        Line {
+            origin: apex,
+            direction: c.frame.vector(&local),
+        }
+    };
+    let mut meeting = Meeting::nothing();
+    let mut add = |u: f64, tangent: bool| {
+        let curve = Curve::Line(ruling(u));
+        if let Some([_, end]) = curve.range_within(&extent.centre, extent.radius)
+            && end > 0.0
+        {
+            let on = (meeting.branches.len(), 0.0);
+            meeting.branches.push(Branch {
+                curve,
+                range: [0.0, end],
+                closed: false,
+                tangent,
+            });
+            match meeting.nodes.first_mut() {
+                Some(node) => node.on.push(on),
+                None => meeting.nodes.push(Node {
+                    point: apex,
+                    on: vec![on],
+                }),
+            }
+        }
+    };
+    match judge.side("plane along a cone's ruling", lean, place(&apex)) {
+        Side::Outside => return Meeting::touch(apex),
+        Side::On => add(
+            if n.z > 0.0 {
+                u0 + std::f64::consts::PI
+            } else {
+                u0
+            },
+            true,
+        ),
+        Side::Inside => {
+            let half = (-n.z * c.cos / (across * c.sin)).clamp(-1.0, 1.0).acos();
+            add(u0 - half, false);
+            add(u0 + half, false);
+        }
+    }
+    meeting
+}
+
+fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, extent: &Extent, judge: &Judge) -> Meeting {
+    let (n, z) = (p.frame.z, c.frame.z);
+    let cos = n.dot(&z);
+    let mut meeting = Meeting::nothing();
+    let tan = c.sin / c.cos;
+    // The semi-latus rectum of every section is the apex's distance times tan.
+    let rectum = h.abs() * tan;
+    if judge.within(drift(&n, &z, extent)) {
+        let up = -h / cos;
+        if up > 0.0 {
+            let frame = c.frame.at(c.frame.origin + z * up);
+            meeting.add(
+                Curve::Circle(Circle {
+                    frame,
+                    radius: up * tan,
+                }),
+                false,
+                extent,
+            );
+        }
+        return meeting;
+    }
+    // The two rulings in the plane of symmetry, and how fast they approach the plane.
+    let w = (n - z * cos).normalize();
+    let rulings = [z * c.cos + w * c.sin, z * c.cos - w * c.sin];
+    let rates = rulings.map(|r| n.dot(&r));
+    let vertex = |i: usize| c.frame.origin - rulings[i] * (h / rates[i]);
+    let parallel = rates.map(|r| judge.within(r * extent.radius));
+    if let Some(i) = parallel.iter().position(|&p| p) {
+        if -h / rates[1 - i] > 0.0 {
+            let frame = Frame::toward(vertex(1 - i), n, rulings[i]);
+            meeting.add(
+                Curve::Parabola(Parabola {
+                    frame,
+                    focal: 0.5 * rectum,
+                }),
+                false,
+                extent,
+            );
+        }
+        return meeting;
+    }
+    let ahead = rates.map(|r| -h / r > 0.0);
+    let (v, o) = match ahead {
+        [true, _] => (vertex(0), vertex(1)),
+        [false, true] => (vertex(1), vertex(0)),
+        [false, false] => return meeting,
+    };
+    let a = 0.5 * (v - o).norm();
+    let b = (rectum * a).sqrt();
+    let frame = Frame::toward(o + (v - o) * 0.5, n, v - o);
+    if ahead == [true, true] {
+        meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, extent);
+    } else {
+        meeting.add(Curve::Hyperbola(Hyperbola { frame, a, b }), false, extent);
+    }
+    meeting
+}

@@ -1,0 +1,385 @@
+//! A torus and another surface: circles where they are coaxial, along a meridian, or Villarceau's;
+//! otherwise the curve through the torus's angles.
+
+use super::{Branch, Extent, IntersectionError, Meeting, Node, nappe_parts, place, same_line};
+use crate::geometry::bitrig::BiTrig;
+use crate::geometry::curve::{Circle, Curve};
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Plane, Surface, Torus};
+use crate::geometry::trace::trace;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Zeros, isolate};
+use crate::number::sign::{Judge, ROUNDING, Side};
+use nalgebra::{Point3, Vector2, Vector3};
+use std::f64::consts::TAU;
+
+pub(super) fn torus_with(
+    t: &Torus,
+    other: &Surface,
+    extent: &Extent,
+    judge: &Judge,
+) -> Result<Meeting, IntersectionError> {
+    if let Some(meeting) = coaxial(t, other, extent, judge) {
+        return Ok(meeting);
+    }
+    if let Surface::Plane(p) = other
+        && let Some(meeting) = central_plane(t, p, extent, judge)
+    {
+        return Ok(meeting);
+    }
+    let form = form(t, other);
+    let Some(contact) = contact_meridian(t, other, extent, judge) else {
+        return traced(t, other, &form, judge);
+    };
+    let mut meeting = traced(t, other, &without_meridian(&form, contact), judge)?;
+    // What else lies on the contact circle is a singular point of the whole.
+    let circle = meridian(t, contact);
+    let rest = without_meridian(&form, contact);
+    let along = |phi: Interval| {
+        let p = rest.partials(Interval::point(contact), phi);
+        Jet {
+            v: p.f,
+            d: p.y,
+            dd: p.yy,
+        }
+    };
+    let breaks: Vec<f64> = (0..=8).map(|i| 0.1 + TAU * f64::from(i) / 8.0).collect();
+    if let Zeros::At { roots, .. } = isolate(&along, &breaks, rest.bound() * ROUNDING) {
+        for r in roots.iter().filter(|r| r.t < 0.1 + TAU * (1.0 - ROUNDING)) {
+            let point = Surface::Torus(*t).point(contact, r.t);
+            meeting.nodes.push(Node {
+                point,
+                on: Vec::new(),
+            });
+        }
+    }
+    meeting.add(Curve::Circle(circle), true, extent);
+    Ok(meeting)
+}
+
+/// The other surface as a function of the torus's angles: a distance to first order.
+pub(super) fn form(t: &Torus, other: &Surface) -> BiTrig {
+    let surface = Surface::Torus(*t);
+    BiTrig::interpolate(|theta, phi| {
+        let p = surface.point(theta, phi);
+        polynomial_level(other, &p, t)
+    })
+}
+
+/// The polynomial that vanishes on a surface, scaled to be the distance near to it.
+fn polynomial_level(s: &Surface, p: &Point3<f64>, t: &Torus) -> f64 {
+    let q = s.frame().coordinates(p);
+    let rho2 = q.x * q.x + q.y * q.y;
+    match s {
+        Surface::Plane(_) => q.z,
+        Surface::Cylinder(c) => (rho2 - c.radius * c.radius) / (2.0 * c.radius),
+        Surface::Sphere(c) => (rho2 + q.z * q.z - c.radius * c.radius) / (2.0 * c.radius),
+        Surface::Cone(c) => {
+            let away = (t.frame.origin - c.frame.origin).norm().max(t.minor);
+            (rho2 * c.cos * c.cos - q.z * q.z * c.sin * c.sin) / (2.0 * c.sin * away)
+        }
+        Surface::Torus(c) => {
+            let sum = rho2 + q.z * q.z + c.major * c.major - c.minor * c.minor;
+            (sum * sum - 4.0 * c.major * c.major * rho2) / (8.0 * c.major * c.major * c.minor)
+        }
+    }
+}
+
+fn traced(
+    t: &Torus,
+    other: &Surface,
+    form: &BiTrig,
+    judge: &Judge,
+) -> Result<Meeting, IntersectionError> {
+    let traced = trace(t, form, judge.band())?;
+    let mut meeting = Meeting::nothing();
+    // The form knows both nappes of a cone: each branch is cut to the one that is meant.
+    let mut parts: Vec<Vec<(usize, [f64; 2])>> = Vec::new();
+    for branch in traced.branches {
+        let whole = [0.0, branch.length()];
+        let curve = Curve::Toric(Box::new(branch));
+        let mut kept = Vec::new();
+        for range in nappe_parts(&curve, whole, other, judge.band()) {
+            kept.push((meeting.branches.len(), range));
+            let (curve, closed) = (curve.clone(), range == whole);
+            meeting.branches.push(Branch {
+                curve,
+                range,
+                closed,
+                tangent: false,
+            });
+        }
+        parts.push(kept);
+    }
+    for s in traced.singular {
+        let point = Surface::Torus(*t).point(s.angles[0], s.angles[1]);
+        if matches!(other, Surface::Cone(_)) && other.distance(&point) > t.minor {
+            continue;
+        }
+        let on = s.on.iter().flat_map(|&(b, at)| {
+            let kept = parts[b]
+                .iter()
+                .filter(move |(_, r)| at >= r[0] && at <= r[1]);
+            kept.map(move |&(i, _)| (i, at))
+        });
+        meeting.nodes.push(Node {
+            point,
+            on: on.collect(),
+        });
+    }
+    if let Surface::Cone(c) = other
+        && judge.within(Surface::Torus(*t).distance(&c.frame.origin))
+    {
+        meeting.nodes.push(Node {
+            point: c.frame.origin,
+            on: Vec::new(),
+        });
+    }
+    Ok(meeting)
+}
+
+/// The circle around the axis, `up` along it, with the given radius.
+fn parallel(t: &Torus, up: f64, radius: f64) -> Curve {
+    let frame = t.frame.at(t.frame.origin + t.frame.z * up);
+    Curve::Circle(Circle { frame, radius })
+}
+
+/// The circle of the tube at the angle θ.
+fn meridian(t: &Torus, theta: f64) -> Circle {
+    let out = t.frame.x * theta.cos() + t.frame.y * theta.sin();
+    let centre = t.frame.origin + out * t.major;
+    let frame = Frame {
+        origin: centre,
+        x: out,
+        y: t.frame.z,
+        z: out.cross(&t.frame.z),
+    };
+    Circle {
+        frame,
+        radius: t.minor,
+    }
+}
+
+/// What is coaxial meets in parallel circles: points of the two profiles in a half plane.
+fn coaxial(t: &Torus, other: &Surface, extent: &Extent, judge: &Judge) -> Option<Meeting> {
+    let f = other.frame();
+    let is_coaxial = match other {
+        Surface::Plane(_) => judge.within(t.frame.z.cross(&f.z).norm() * (t.major + t.minor)),
+        Surface::Sphere(_) => {
+            let away = f.origin - t.frame.origin;
+            judge.within((away - t.frame.z * t.frame.z.dot(&away)).norm())
+        }
+        _ => same_line(&t.frame, f, extent, judge),
+    };
+    if !is_coaxial {
+        return None;
+    }
+    let up = (f.origin - t.frame.origin).dot(&t.frame.z);
+    let tube = Vector2::new(t.major, 0.0);
+    let sign = t.frame.z.dot(&f.z).signum();
+    let points = match other {
+        Surface::Plane(_) => {
+            line_circle(&Vector2::new(0.0, up), &Vector2::x(), &tube, t.minor, judge)
+        }
+        Surface::Cylinder(c) => line_circle(
+            &Vector2::new(c.radius, 0.0),
+            &Vector2::y(),
+            &tube,
+            t.minor,
+            judge,
+        ),
+        Surface::Cone(c) => {
+            let apex = Vector2::new(0.0, up);
+            let d = Vector2::new(c.sin, sign * c.cos);
+            let mut points = line_circle(&apex, &d, &tube, t.minor, judge);
+            points.retain(|(p, _)| (p - apex).dot(&d) > 0.0);
+            points
+        }
+        Surface::Sphere(s) => {
+            circle_circle(&Vector2::new(0.0, up), s.radius, &tube, t.minor, judge)
+        }
+        Surface::Torus(s) => {
+            circle_circle(&Vector2::new(s.major, up), s.minor, &tube, t.minor, judge)
+        }
+    };
+    let mut meeting = Meeting::nothing();
+    for (p, tangent) in points {
+        if p.x > 0.0 {
+            meeting.add(parallel(t, p.y, p.x), tangent, extent);
+        }
+    }
+    Some(meeting)
+}
+
+/// Where a line of the profile plane meets a circle, and whether it touches.
+fn line_circle(
+    o: &Vector2<f64>,
+    d: &Vector2<f64>,
+    c: &Vector2<f64>,
+    r: f64,
+    judge: &Judge,
+) -> Vec<(Vector2<f64>, bool)> {
+    let foot = o + d * (c - o).dot(d);
+    let h = (c - foot).norm();
+    match judge.side("line on circle of a profile", h - r, [foot.x, 0.0, foot.y]) {
+        Side::Outside => Vec::new(),
+        Side::On => vec![(foot, true)],
+        Side::Inside => {
+            let half = ((r - h) * (r + h)).sqrt();
+            vec![(foot - d * half, false), (foot + d * half, false)]
+        }
+    }
+}
+
+/// Where two circles of the profile plane meet, and whether they touch.
+fn circle_circle(
+    a: &Vector2<f64>,
+    r: f64,
+    b: &Vector2<f64>,
+    q: f64,
+    judge: &Judge,
+) -> Vec<(Vector2<f64>, bool)> {
+    let away = b - a;
+    let d = away.norm();
+    if judge.within(d) {
+        return Vec::new();
+    }
+    let axis = away / d;
+    let foot = a + axis * (0.5 * (d + (r - q) * (r + q) / d));
+    let side = |gap: f64| judge.side("circle on circle of a profile", gap, [foot.x, 0.0, foot.y]);
+    match (side(d - (r + q)), side((r - q).abs() - d)) {
+        (Side::On, _) => vec![(a + axis * r, true)],
+        (_, Side::On) => vec![(a + axis * r.copysign(r - q), true)],
+        (Side::Inside, Side::Inside) => {
+            let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
+            let half = Vector2::new(-axis.y, axis.x) * (area.max(0.0).sqrt() / (2.0 * d));
+            vec![(foot - half, false), (foot + half, false)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// A plane through the centre that holds the axis, or touches the tube twice (Villarceau).
+fn central_plane(t: &Torus, p: &Plane, extent: &Extent, judge: &Judge) -> Option<Meeting> {
+    let n = p.frame.z;
+    if !judge.within((t.frame.origin - p.frame.origin).dot(&n)) {
+        return None;
+    }
+    let mut meeting = Meeting::nothing();
+    let lean = n.dot(&t.frame.z).abs();
+    if judge.within(lean * (t.major + t.minor)) {
+        let q = t.frame.components(&n);
+        let theta = q.y.atan2(q.x) + TAU / 4.0;
+        for theta in [theta, theta + TAU / 2.0] {
+            meeting.add(Curve::Circle(meridian(t, theta)), false, extent);
+        }
+        return Some(meeting);
+    }
+    let across = n.cross(&t.frame.z);
+    let slope = across.norm();
+    let gap = t.major * slope - t.minor;
+    if !judge.coincide("plane touching a torus twice", gap, place(&t.frame.origin)) {
+        return None;
+    }
+    let axis = across / slope;
+    for side in [-1.0, 1.0] {
+        let frame = p.frame.at(t.frame.origin + axis * (side * t.minor));
+        meeting.add(
+            Curve::Circle(Circle {
+                frame,
+                radius: t.major,
+            }),
+            false,
+            extent,
+        );
+    }
+    let reach = ((t.major - t.minor) * (t.major + t.minor)).sqrt();
+    let up = n.cross(&axis);
+    for side in [-1.0, 1.0] {
+        meeting.cross_at(t.frame.origin + up * (side * reach));
+    }
+    Some(meeting)
+}
+
+/// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
+/// the tube, a straight pipe or another bend that continues it.
+fn contact_meridian(t: &Torus, other: &Surface, extent: &Extent, judge: &Judge) -> Option<f64> {
+    let f = other.frame();
+    let centre = match other {
+        Surface::Sphere(s) if judge.within(s.radius - t.minor) => f.origin,
+        Surface::Cylinder(c) if judge.within(c.radius - t.minor) => {
+            f.origin + f.z * (t.frame.origin - f.origin).dot(&f.z)
+        }
+        Surface::Torus(u) if judge.within(u.minor - t.minor) => {
+            let away = t.frame.origin - f.origin;
+            common_spine_point(t, u, &away, judge)?
+        }
+        _ => return None,
+    };
+    let q = t.frame.coordinates(&centre);
+    let theta = q.y.atan2(q.x);
+    let spine = Surface::Torus(Torus { minor: 0.0, ..*t });
+    if !judge.within(spine.distance(&centre)) {
+        return None;
+    }
+    let tangent = t.frame.y * theta.cos() - t.frame.x * theta.sin();
+    let along = match other {
+        Surface::Sphere(_) => tangent,
+        Surface::Cylinder(_) => f.z,
+        _ => {
+            let out = (centre - f.origin).normalize();
+            f.z.cross(&out)
+        }
+    };
+    judge
+        .within(tangent.cross(&along).norm() * extent.radius)
+        .then_some(theta)
+}
+
+/// A point of both spines, where two tori's spine circles touch.
+fn common_spine_point(
+    t: &Torus,
+    u: &Torus,
+    away: &Vector3<f64>,
+    judge: &Judge,
+) -> Option<Point3<f64>> {
+    // Touching circles: the common tangent is perpendicular to both radii, so the point lies on
+    // the line through both centres' feet; try the points of t's spine in u's plane and back.
+    let normal = t.frame.z.cross(&u.frame.z);
+    let candidates: Vec<Point3<f64>> = if judge.within(normal.norm() * t.major) {
+        let d = away - t.frame.z * t.frame.z.dot(away);
+        let dir = d.try_normalize(0.0)?;
+        [1.0, -1.0]
+            .iter()
+            .map(|s| t.frame.origin + dir * (s * t.major))
+            .collect()
+    } else {
+        // The tangent lies in both planes: along their common line; the radii are across it.
+        let line = normal.normalize();
+        let out = t.frame.z.cross(&line);
+        [1.0, -1.0]
+            .iter()
+            .map(|s| t.frame.origin + out * (s * t.major))
+            .collect()
+    };
+    let spine = Surface::Torus(Torus { minor: 0.0, ..*u });
+    candidates
+        .into_iter()
+        .find(|p| judge.within(spine.distance(p)))
+}
+
+/// The form with its double zero along θ = `theta` divided out.
+fn without_meridian(form: &BiTrig, theta: f64) -> BiTrig {
+    let (sin, cos) = theta.sin_cos();
+    let factor = [1.0, -cos, -sin];
+    let mut rest = BiTrig::zero();
+    for j in 0..5 {
+        let column = [0, 1, 2, 3, 4].map(|i| form.0[i][j]);
+        let q = super::quadric::divide(&column, &factor);
+        for (i, c) in q.into_iter().enumerate() {
+            rest.0[i][j] = c;
+        }
+    }
+    rest
+}

@@ -1,0 +1,208 @@
+//! All fifteen pairs: every branch lies on both surfaces, and none is missing.
+
+use nalgebra::{Point3, Rotation3, Unit, Vector3};
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::intersect::{Extent, coincidence, meet};
+use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
+use premio_kernel::number::sign::Judge;
+
+/// A small generator, so that a failure names its seed.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
+    }
+    fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+    fn unit(&mut self) -> f64 {
+        self.below(1 << 30) as f64 / (1u64 << 30) as f64
+    }
+    /// On a half-unit grid, or anywhere.
+    fn length(&mut self, grid: bool, lo: f64, hi: f64) -> f64 {
+        let x = lo + (hi - lo) * self.unit();
+        if grid { (2.0 * x).round() / 2.0 } else { x }
+    }
+    fn frame(&mut self, grid: bool) -> Frame {
+        let mut c = || self.length(grid, -2.0, 2.0);
+        let origin = Point3::new(c(), c(), c());
+        let mut turn = Rotation3::identity();
+        for _ in 0..2 {
+            let axis =
+                [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()][self.below(3) as usize];
+            let angle = if grid {
+                [0.0, 90.0f64, 45.0, 30.0, 17.0, 180.0][self.below(6) as usize].to_radians()
+            } else {
+                self.unit() * 6.0
+            };
+            turn =
+                Rotation3::from_axis_angle(&Unit::new_normalize(axis.into_inner()), angle) * turn;
+        }
+        let m = turn.matrix();
+        Frame {
+            origin,
+            x: m.column(0).into(),
+            y: m.column(1).into(),
+            z: m.column(2).into(),
+        }
+    }
+    fn surface(&mut self, kind: u64, grid: bool) -> Surface {
+        let frame = self.frame(grid);
+        let mut r = |lo, hi| self.length(grid, lo, hi);
+        match kind {
+            0 => Surface::Plane(Plane { frame }),
+            1 => Surface::Cylinder(Cylinder {
+                frame,
+                radius: r(0.5, 2.0),
+            }),
+            2 => {
+                let (a, b) = (r(0.5, 2.0), r(0.5, 2.0));
+                let l = f64::hypot(a, b);
+                Surface::Cone(Cone {
+                    frame,
+                    sin: a / l,
+                    cos: b / l,
+                })
+            }
+            3 => Surface::Sphere(Sphere {
+                frame,
+                radius: r(0.5, 2.5),
+            }),
+            _ => {
+                let minor = r(0.5, 1.0);
+                Surface::Torus(Torus {
+                    frame,
+                    major: minor + r(0.5, 2.0),
+                    minor,
+                })
+            }
+        }
+    }
+}
+
+/// Points where `b` changes sign along parameter lines of `a`.
+fn crossings(a: &Surface, b: &Surface, rng: &mut Random) -> Vec<Point3<f64>> {
+    let mut found = Vec::new();
+    for k in 0..24 {
+        let fixed = rng.unit();
+        let at = |s: f64| {
+            let (i, j) = if k % 2 == 0 { (fixed, s) } else { (s, fixed) };
+            match a {
+                Surface::Plane(_) => a.point(8.0 * i - 4.0, 8.0 * j - 4.0),
+                Surface::Cylinder(_) => a.point(6.3 * i, 8.0 * j - 4.0),
+                Surface::Cone(_) => a.point(6.3 * i, 4.0 * j),
+                Surface::Sphere(_) => a.point(6.3 * i, 3.1 * j - 1.55),
+                Surface::Torus(_) => a.point(6.3 * i, 6.3 * j),
+            }
+        };
+        let n = 300;
+        let value = |s: f64| b.distance(&at(s));
+        for i in 0..n {
+            let (mut lo, mut hi) = (f64::from(i) / f64::from(n), f64::from(i + 1) / f64::from(n));
+            let sign = value(lo) < 0.0;
+            if sign == (value(hi) < 0.0) {
+                continue;
+            }
+            for _ in 0..60 {
+                let m = 0.5 * (lo + hi);
+                if (value(m) < 0.0) == sign {
+                    lo = m
+                } else {
+                    hi = m
+                }
+            }
+            found.push(at(lo));
+        }
+    }
+    found
+}
+
+/// Grid pairs that are refused today: contact of a higher order at a point. One that starts to
+/// work fails the run until it is taken off.
+const REFUSED: &[u64] = &[1033];
+
+fn check(seed: u64, grid: bool) {
+    let mut rng = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+    for _ in 0..5 {
+        rng.next();
+    }
+    let (i, j) = (rng.below(5), rng.below(5));
+    let (a, b) = (rng.surface(i, grid), rng.surface(j, grid));
+    let extent = Extent {
+        centre: Point3::origin(),
+        radius: 12.0,
+    };
+    let judge = Judge::new(1e-10);
+    if coincidence(&a, &b, &extent, &judge).is_some() {
+        return;
+    }
+    let meeting = match meet(&a, &b, &extent, &judge) {
+        Ok(m) => m,
+        Err(e) if grid && REFUSED.contains(&seed) => {
+            let _ = e;
+            return;
+        }
+        Err(e) => panic!("seed {seed} grid {grid}: {e}\n{a:?}\n{b:?}"),
+    };
+    assert!(
+        !grid || !REFUSED.contains(&seed),
+        "seed {seed} is no longer refused"
+    );
+    for branch in &meeting.branches {
+        for k in 0..=200 {
+            let t = branch.range[0] + (branch.range[1] - branch.range[0]) * f64::from(k) / 200.0;
+            let p = branch.curve.point(t);
+            let off = a.distance(&p).abs().max(b.distance(&p).abs());
+            let far = (p - extent.centre).norm().max(1.0);
+            assert!(
+                off < 2e-9 * far,
+                "seed {seed} grid {grid}: off {off} at t = {t}\n{a:?}\n{b:?}\n{branch:?}"
+            );
+            if far < 20.0 && k > 0 && k < 200 {
+                let back = branch.curve.point(branch.curve.parameter(&p));
+                assert!(
+                    (back - p).norm() < 1e-6,
+                    "seed {seed}: parameter at {t}\n{branch:?}"
+                );
+            }
+        }
+    }
+    for p in crossings(&a, &b, &mut rng) {
+        if (p - extent.centre).norm() > 8.0 {
+            continue;
+        }
+        let nearest = meeting.branches.iter().map(|br| {
+            let t = br.curve.parameter(&p);
+            let q = br.curve.point(t);
+            (p - q).norm()
+        });
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        let node = meeting
+            .nodes
+            .iter()
+            .map(|n| (n.point - p).norm())
+            .fold(f64::INFINITY, f64::min);
+        assert!(
+            nearest.min(node) < 1e-5,
+            "seed {seed} grid {grid}: a crossing at {p:?} is missing, {nearest}\n{a:?}\n{b:?}\n{meeting:?}"
+        );
+    }
+}
+
+#[test]
+fn random_pairs_meet_in_all_their_curves() {
+    for seed in 0..3000 {
+        check(seed, false);
+    }
+}
+
+#[test]
+fn pairs_on_a_grid_meet_in_all_their_curves() {
+    for seed in 0..6000 {
+        check(seed, true);
+    }
+}

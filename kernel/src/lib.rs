@@ -1,1 +1,3 @@
-//! placeholder
+//! Numbers, motions, surfaces, curves and the boundary representation of PREMIO.
+pub mod motion;
+pub mod number;

@@ -1,0 +1,2 @@
+//! Exact numbers and what is computed from them.
+pub mod rational;

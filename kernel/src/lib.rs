@@ -3,4 +3,5 @@
 
 pub mod brep;
 pub mod geometry;
+pub mod motion;
 pub mod number;

@@ -1,4 +1,182 @@
-//! Exact rationals.
+//! Exact rational numbers, from decimal text and from doubles, and back to doubles.
 
-/// An exact rational number.
+use dashu::base::BitTest;
+use dashu::integer::{IBig, UBig};
+
+/// An exact rational number, always in lowest terms.
 pub type Rational = dashu::rational::RBig;
+
+/// The largest decimal exponent that is read: a larger one would only eat memory.
+pub const MAX_EXPONENT: i64 = 400;
+
+/// The largest number of digits that is read in one decimal literal.
+pub const MAX_DIGITS: usize = 1000;
+
+/// Why a text is not an exact number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum DecimalError {
+    /// The text is not a decimal literal.
+    #[error("not a decimal number")]
+    Malformed,
+    /// The exponent, after the decimal point is moved to the end, is beyond [`MAX_EXPONENT`].
+    #[error("the exponent is beyond {MAX_EXPONENT}")]
+    ExponentTooLarge,
+    /// There are more than [`MAX_DIGITS`] digits.
+    #[error("more than {MAX_DIGITS} digits")]
+    TooManyDigits,
+}
+
+/// The exact value of a decimal literal: sign, digits, point, digits, exponent,
+/// of which the sign, the point, one of the runs of digits and the exponent may be absent.
+pub fn from_decimal(text: &str) -> Result<Rational, DecimalError> {
+    let (negative, rest) = split_sign(text);
+    let (mantissa, exponent) = match rest.find(['e', 'E']) {
+        Some(at) => (&rest[..at], parse_exponent(&rest[at + 1..])?),
+        None => (rest, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let all_digits = |part: &str| part.bytes().all(|b| b.is_ascii_digit());
+    if (whole.is_empty() && fraction.is_empty()) || !all_digits(whole) || !all_digits(fraction) {
+        return Err(DecimalError::Malformed);
+    }
+    if whole.len() + fraction.len() > MAX_DIGITS {
+        return Err(DecimalError::TooManyDigits);
+    }
+    if exponent.abs() > MAX_EXPONENT {
+        return Err(DecimalError::ExponentTooLarge);
+    }
+    let digits: UBig = [whole, fraction]
+        .concat()
+        .parse()
+        .map_err(|_| DecimalError::Malformed)?;
+    let scale = exponent - fraction.len() as i64;
+    let power = UBig::from(10u8).pow(scale.unsigned_abs() as usize);
+    let magnitude = if scale >= 0 {
+        Rational::from(digits * power)
+    } else {
+        Rational::from_parts(IBig::from(digits), power)
+    };
+    Ok(if negative { -magnitude } else { magnitude })
+}
+
+fn split_sign(text: &str) -> (bool, &str) {
+    match text.strip_prefix('-') {
+        Some(rest) => (true, rest),
+        None => (false, text.strip_prefix('+').unwrap_or(text)),
+    }
+}
+
+fn parse_exponent(text: &str) -> Result<i64, DecimalError> {
+    let (negative, digits) = split_sign(text);
+    if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
+        return Err(DecimalError::Malformed);
+    }
+    // Digits only: what does not fit is too large, not malformed.
+    let value: i64 = digits.parse().unwrap_or(i64::MAX);
+    Ok(if negative { -value } else { value })
+}
+
+/// The exact value of a double; `None` for an infinity or a NaN.
+pub fn from_f64(value: f64) -> Option<Rational> {
+    Rational::try_from(value).ok()
+}
+
+/// The nearest double, ties to even; an infinity beyond the range of doubles.
+pub fn to_f64(value: &Rational) -> f64 {
+    value.to_f64().value()
+}
+
+/// The length of the numerator and the denominator together, in bits: what a number costs.
+pub fn bits(value: &Rational) -> usize {
+    value.numerator().bit_len() + value.denominator().bit_len()
+}
+
+/// The exact square root, where it is rational.
+pub fn exact_sqrt(value: &Rational) -> Option<Rational> {
+    if value.sign() == dashu::base::Sign::Negative {
+        return None;
+    }
+    let (numerator, denominator) = value.clone().into_parts();
+    let numerator = exact_integer_sqrt(&UBig::try_from(numerator).ok()?)?;
+    Some(Rational::from_parts(
+        IBig::from(numerator),
+        exact_integer_sqrt(&denominator)?,
+    ))
+}
+
+fn exact_integer_sqrt(value: &UBig) -> Option<UBig> {
+    use dashu::base::SquareRoot;
+    let root = value.sqrt();
+    (&root * &root == *value).then_some(root)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn ratio(n: i64, d: u64) -> Rational {
+        Rational::from_parts(n.into(), d.into())
+    }
+
+    #[test]
+    fn decimals_are_exact() {
+        assert_eq!(from_decimal("-1.5e-3"), Ok(ratio(-15, 10_000)));
+        assert_eq!(from_decimal("0.1"), Ok(ratio(1, 10)));
+        assert_eq!(from_decimal(".5"), Ok(ratio(1, 2)));
+        assert_eq!(from_decimal("5."), Ok(ratio(5, 1)));
+        assert_eq!(from_decimal("+2E+2"), Ok(ratio(200, 1)));
+        assert_eq!(from_decimal("0e400"), Ok(ratio(0, 1)));
+        assert_eq!(from_decimal("-0"), Ok(ratio(0, 1)));
+    }
+
+    #[test]
+    fn what_is_no_decimal_is_refused() {
+        for text in [
+            "", ".", "-", "1e", "e5", "1.2.3", "0x10", "1_0", "--1", "1e+-2", "nan", "½",
+        ] {
+            assert_eq!(from_decimal(text), Err(DecimalError::Malformed), "{text}");
+        }
+        for text in ["1e401", "1e-401", "0e99999999999999999999"] {
+            assert_eq!(from_decimal(text), Err(DecimalError::ExponentTooLarge));
+        }
+        let long = "9".repeat(MAX_DIGITS + 1);
+        assert_eq!(from_decimal(&long), Err(DecimalError::TooManyDigits));
+    }
+
+    #[test]
+    fn doubles_out_of_range() {
+        assert_eq!(from_f64(f64::NAN), None);
+        assert_eq!(from_f64(f64::INFINITY), None);
+        assert_eq!(to_f64(&from_decimal("1e399").unwrap()), f64::INFINITY);
+        assert_eq!(to_f64(&from_decimal("-1e-399").unwrap()), 0.0);
+    }
+
+    #[test]
+    fn square_roots() {
+        assert_eq!(exact_sqrt(&ratio(9, 16)), Some(ratio(3, 4)));
+        assert_eq!(exact_sqrt(&ratio(2, 1)), None);
+        assert_eq!(exact_sqrt(&ratio(-4, 1)), None);
+        assert_eq!(exact_sqrt(&ratio(0, 1)), Some(ratio(0, 1)));
+    }
+
+    proptest! {
+        #[test]
+        fn a_double_survives(value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
+            prop_assert_eq!(to_f64(&from_f64(value).unwrap()), value);
+        }
+
+        #[test]
+        fn text_rounds_as_the_standard_library_rounds(value in proptest::num::f64::NORMAL, digits in 0usize..20) {
+            let text = format!("{value:.digits$e}");
+            prop_assert_eq!(to_f64(&from_decimal(&text).unwrap()), text.parse::<f64>().unwrap());
+        }
+
+        #[test]
+        fn any_text_gives_an_answer(text in "[-+0-9.eE]{0,12}") {
+            if let Ok(value) = from_decimal(&text) {
+                prop_assert_eq!(to_f64(&value), text.parse::<f64>().unwrap());
+            }
+        }
+    }
+}

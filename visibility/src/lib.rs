@@ -1,1 +1,6 @@
-//! placeholder
+//! What a camera sees of a part: limbs, cusps, contours, junctions, quantitative invisibility and
+//! drawings.
+
+pub mod camera;
+pub mod limb;
+pub mod projection;

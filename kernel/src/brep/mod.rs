@@ -4,7 +4,9 @@
 //! three faces, two closed edges and no vertex. An edge that bounds more than two face corners, and
 //! a vertex where several fans of faces meet, are represented as they are.
 
+pub mod locate;
 pub mod topology;
+pub mod walk;
 
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;

@@ -1,6 +1,7 @@
 //! Surfaces and curves: what hangs on the entities of a boundary.
 
 pub mod bitrig;
+pub mod bounds;
 pub mod curve;
 pub mod cut;
 pub mod frame;

@@ -1,0 +1,514 @@
+//! Whether a point of a surface lies in a face of it, in the surface's own periodic parameters.
+//!
+//! From the point a walk is taken along the surface; the nearest arc of the face's boundary that
+//! it crosses decides by its orientation. Faces are bounded, so a walk without end that meets
+//! nothing lies outside. An unclear meeting is never decided: another walk is taken.
+
+use super::Brep;
+use super::topology::{FaceId, Sense};
+use super::walk::{DirectedArc, Passage, Walk};
+use crate::geometry::bounds::{Box3, bounds};
+use crate::geometry::surface::Surface;
+use nalgebra::Point3;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
+use std::f64::consts::TAU;
+use std::sync::OnceLock;
+
+/// Where a point of a surface lies with respect to a face of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// Within the face.
+    Inside,
+    /// On the face's boundary, within the resolution.
+    On,
+    /// On the surface, but not in the face.
+    Outside,
+}
+
+type ArcBox = GeomWithData<Rectangle<[f64; 3]>, usize>;
+
+/// More arcs than this get a tree of boxes.
+const FEW: usize = 12;
+/// How many walks are tried before a point counts as being on the boundary.
+const WALKS: usize = 48;
+/// The golden section: multiples of it spread over the unit without ever repeating.
+const SPREAD: f64 = 0.618_033_988_749_894_9;
+
+/// Answers for one face where points lie.
+#[derive(Debug)]
+pub struct FaceLocator<'a> {
+    surface: &'a Surface,
+    side: Sense,
+    arcs: Vec<DirectedArc<'a>>,
+    boxes: Vec<Box3>,
+    tree: Option<RTree<ArcBox>>,
+    band: f64,
+}
+
+struct Along<'w> {
+    walk: &'w Walk,
+    band: f64,
+}
+
+impl SelectionFunction<ArcBox> for Along<'_> {
+    fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
+        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
+    }
+    fn should_unpack_leaf(&self, leaf: &ArcBox) -> bool {
+        let e = leaf.envelope();
+        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
+    }
+}
+
+/// The outcome of one walk.
+enum Outcome {
+    Found(Place),
+    Nothing,
+    Unclear,
+}
+
+impl<'a> FaceLocator<'a> {
+    /// A locator for the region of `surface` that `arcs` bound; `side` tells whether the outward
+    /// normal of the face is the surface's own, `band` is the resolution.
+    pub fn new(surface: &'a Surface, side: Sense, arcs: Vec<DirectedArc<'a>>, band: f64) -> Self {
+        let boxes: Vec<Box3> = arcs
+            .iter()
+            .map(|a| bounds(a.curve, a.range).grown(band))
+            .collect();
+        let tree = (arcs.len() > FEW).then(|| {
+            let leaf = |(i, b): (usize, &Box3)| {
+                GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
+            };
+            RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect())
+        });
+        Self {
+            surface,
+            side,
+            arcs,
+            boxes,
+            tree,
+            band,
+        }
+    }
+
+    /// The locator of a face of a boundary representation.
+    pub fn of(brep: &'a Brep, face: FaceId, band: f64) -> Self {
+        let topology = &brep.topology;
+        let coedges = topology
+            .face(face)
+            .loops
+            .iter()
+            .flat_map(|&l| topology.ring(l).coedges.iter().copied());
+        let arcs = coedges.map(|c| {
+            let c = topology.coedge(c);
+            DirectedArc {
+                curve: brep.curve(c.edge),
+                range: brep.range(c.edge),
+                sense: c.sense,
+            }
+        });
+        Self::new(brep.surface(face), brep.sense(face), arcs.collect(), band)
+    }
+
+    /// The directed arcs of the boundary.
+    pub fn arcs(&self) -> &[DirectedArc<'a>] {
+        &self.arcs
+    }
+
+    /// The boxes of the arcs, in the same order, grown by the resolution.
+    pub fn boxes(&self) -> &[Box3] {
+        &self.boxes
+    }
+
+    /// Where `p`, a point of the surface, lies.
+    pub fn place(&self, p: &Point3<f64>) -> Place {
+        if self.arcs.is_empty() {
+            return Place::Inside;
+        }
+        if self.on_boundary(p) {
+            return Place::On;
+        }
+        self.place_off_boundary(p)
+    }
+
+    /// Where `p` lies, which is known not to be on the boundary.
+    pub fn place_off_boundary(&self, p: &Point3<f64>) -> Place {
+        if self.arcs.is_empty() {
+            return Place::Inside;
+        }
+        for k in 0..WALKS {
+            match self.attempt(p, k) {
+                Outcome::Found(place) => return place,
+                // Only walks without end, and closed ones through an arc, end up here.
+                Outcome::Nothing => return Place::Outside,
+                Outcome::Unclear => {}
+            }
+        }
+        Place::On
+    }
+
+    fn on_boundary(&self, p: &Point3<f64>) -> bool {
+        match &self.tree {
+            Some(tree) => tree
+                .locate_in_envelope_intersecting(AABB::from_point([p.x, p.y, p.z]))
+                .any(|leaf| self.on_arc(p, leaf.data)),
+            None => (0..self.arcs.len()).any(|i| self.boxes[i].holds(p) && self.on_arc(p, i)),
+        }
+    }
+
+    fn on_arc(&self, p: &Point3<f64>, i: usize) -> bool {
+        let DirectedArc { curve, range, .. } = self.arcs[i];
+        let [lo, hi] = range;
+        let near = |t: f64| (curve.point(t) - p).norm() <= self.band;
+        let mut t = curve.parameter(p);
+        if let Some(period) = curve.period() {
+            t = lo + (t - lo).rem_euclid(period);
+        }
+        ((lo..=hi).contains(&t) && near(t)) || near(lo) || near(hi)
+    }
+
+    /// The k-th walk from `p`, in one or two legs.
+    fn attempt(&self, p: &Point3<f64>, k: usize) -> Outcome {
+        let turn = TAU * (0.123 + SPREAD * k as f64).fract();
+        match self.surface {
+            Surface::Plane(s) => {
+                let (sin, cos) = turn.sin_cos();
+                let direction = s.frame.x * cos + s.frame.y * sin;
+                self.take(&Walk::straight(s, p, direction))
+            }
+            Surface::Cylinder(_) | Surface::Cone(_) => self.ruled(p, k, turn),
+            Surface::Sphere(s) => match Walk::great_circle(&s.frame.origin, p, &self.target(k)) {
+                Some(walk) => self.take(&walk),
+                None => Outcome::Unclear,
+            },
+            Surface::Torus(_) => self.toric(p, k),
+        }
+    }
+
+    /// A ruling, after the first attempts from another point of the parallel.
+    fn ruled(&self, p: &Point3<f64>, k: usize, turn: f64) -> Outcome {
+        let sense = if k.is_multiple_of(2) {
+            Sense::Along
+        } else {
+            Sense::Against
+        };
+        let [u, _] = self.surface.parameters(p);
+        let direct = |start: &Point3<f64>, u: f64| match Walk::ruling(self.surface, start, u, sense)
+        {
+            Some(walk) => self.take(&walk),
+            None => Outcome::Unclear,
+        };
+        if k < 2 {
+            return direct(p, u);
+        }
+        // At the apex the parallel is a point and any ruling starts there.
+        let Some(walk) = Walk::parallel(self.surface, p, sense, self.band) else {
+            return direct(p, turn);
+        };
+        let radius = self.surface.frame().coordinates(p).xy().norm();
+        let leg = walk.upto(turn * radius);
+        match self.take(&leg) {
+            Outcome::Nothing => {
+                let corner = leg.point(turn * radius);
+                let [u, _] = self.surface.parameters(&corner);
+                direct(&corner, u)
+            }
+            decided => decided,
+        }
+    }
+
+    /// Along the two circles of a torus to a point of the boundary.
+    fn toric(&self, p: &Point3<f64>, k: usize) -> Outcome {
+        let Surface::Torus(torus) = self.surface else {
+            return Outcome::Unclear;
+        };
+        if k == 0 {
+            match self.take(&Walk::tube(torus, p, Sense::Along)) {
+                Outcome::Nothing => {}
+                decided => return decided,
+            }
+        }
+        let target = self.target(k);
+        let tube_first = k % 2 == 1;
+        let (first, second) = if tube_first {
+            let walk = Walk::tube(torus, p, Sense::Along);
+            let corner = self.same_tube_angle(p, &target);
+            let leg = walk.upto(walk.at(&corner));
+            (
+                leg,
+                Walk::parallel(self.surface, &corner, Sense::Along, self.band),
+            )
+        } else {
+            let Some(walk) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
+                return Outcome::Unclear;
+            };
+            let corner = self.same_tube_angle(&target, p);
+            let leg = walk.upto(walk.at(&corner));
+            (leg, Some(Walk::tube(torus, &corner, Sense::Along)))
+        };
+        match (self.take(&first), second) {
+            (Outcome::Nothing, Some(walk)) => match self.take(&walk) {
+                // The second leg passes the target: nothing there means that it was not seen.
+                Outcome::Nothing => Outcome::Unclear,
+                decided => decided,
+            },
+            (Outcome::Nothing, None) => Outcome::Unclear,
+            (decided, _) => decided,
+        }
+    }
+
+    /// The point with the first angle of `a` and the second of `b`.
+    fn same_tube_angle(&self, a: &Point3<f64>, b: &Point3<f64>) -> Point3<f64> {
+        let [theta, _] = self.surface.parameters(a);
+        let [_, phi] = self.surface.parameters(b);
+        self.surface.point(theta, phi)
+    }
+
+    /// A point inside some arc of the boundary.
+    fn target(&self, k: usize) -> Point3<f64> {
+        let arc = &self.arcs[k % self.arcs.len()];
+        let part = (0.5 + SPREAD * (k / self.arcs.len()) as f64).fract();
+        let [lo, hi] = arc.range;
+        arc.curve.point(lo + (hi - lo) * (0.1 + 0.8 * part))
+    }
+
+    fn take(&self, walk: &Walk) -> Outcome {
+        let mut nearest = (f64::INFINITY, Passage::Unclear);
+        let mut second = f64::INFINITY;
+        let mut meet = |i: usize| {
+            let arc = &self.arcs[i];
+            walk.meet(
+                self.surface,
+                self.side,
+                arc,
+                self.band,
+                &mut |s, _, passage| {
+                    if s < nearest.0 {
+                        second = nearest.0;
+                        nearest = (s, passage);
+                    } else {
+                        second = second.min(s);
+                    }
+                },
+            );
+        };
+        match &self.tree {
+            Some(tree) => tree
+                .locate_with_selection_function(Along {
+                    walk,
+                    band: self.band,
+                })
+                .for_each(|leaf| meet(leaf.data)),
+            None => (0..self.arcs.len())
+                .filter(|&i| walk.may_meet_box(&self.boxes[i], self.band))
+                .for_each(meet),
+        }
+        match nearest {
+            (s, _) if s == f64::INFINITY => Outcome::Nothing,
+            (s, _) if second - s <= self.band => Outcome::Unclear,
+            (_, Passage::Entering) => Outcome::Found(Place::Outside),
+            (_, Passage::Leaving) => Outcome::Found(Place::Inside),
+            (_, Passage::Unclear) => Outcome::Unclear,
+        }
+    }
+}
+
+/// Answers for all faces of a boundary representation; each face's index is built when it is first
+/// asked for.
+#[derive(Debug)]
+pub struct Locator<'a> {
+    brep: &'a Brep,
+    faces: Vec<OnceLock<FaceLocator<'a>>>,
+    band: f64,
+}
+
+impl<'a> Locator<'a> {
+    /// A locator for all faces of `brep`; `band` is the resolution.
+    pub fn new(brep: &'a Brep, band: f64) -> Self {
+        let faces = brep.topology.faces.iter().map(|_| OnceLock::new());
+        Self {
+            brep,
+            faces: faces.collect(),
+            band,
+        }
+    }
+
+    /// The locator of one face.
+    pub fn face(&self, face: FaceId) -> &FaceLocator<'a> {
+        self.faces[face.index()].get_or_init(|| FaceLocator::of(self.brep, face, self.band))
+    }
+
+    /// Where `p`, a point of the face's surface, lies with respect to the face.
+    pub fn place(&self, face: FaceId, p: &Point3<f64>) -> Place {
+        self.face(face).place(p)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::curve::{Circle, Curve, Line};
+    use crate::geometry::frame::Frame;
+    use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere, Torus};
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    const BAND: f64 = 1e-10;
+
+    fn tilted() -> Frame {
+        let z = Vector3::new(0.3, -0.4, 0.7).normalize();
+        Frame::toward(Point3::new(1.0, -2.0, 0.5), z, Vector3::new(1.0, 0.2, 0.0))
+    }
+
+    fn circle_at(f: &Frame, z: f64, radius: f64) -> Curve {
+        let frame = f.at(f.point(0.0, 0.0, z));
+        Curve::Circle(Circle { frame, radius })
+    }
+
+    /// The circle about the tube of a torus at the angle theta, its parameter the tube's angle.
+    fn tube(s: &Torus, theta: f64) -> Curve {
+        let radial = s.frame.x * theta.cos() + s.frame.y * theta.sin();
+        let frame = Frame {
+            origin: s.frame.origin + radial * s.major,
+            x: radial,
+            y: s.frame.z,
+            z: radial.cross(&s.frame.z),
+        };
+        Curve::Circle(Circle {
+            frame,
+            radius: s.minor,
+        })
+    }
+
+    fn arc(curve: &Curve, range: [f64; 2], sense: Sense) -> DirectedArc<'_> {
+        DirectedArc {
+            curve,
+            range,
+            sense,
+        }
+    }
+
+    fn expect(inside: bool) -> Place {
+        if inside {
+            Place::Inside
+        } else {
+            Place::Outside
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn plane_with_holes(x in -6.0..6.0, y in -6.0..6.0) {
+            let f = tilted();
+            let surface = Surface::Plane(Plane { frame: f });
+            let outer = circle_at(&f, 0.0, 5.0);
+            let holes: Vec<Curve> = (0..16).map(|k| {
+                let at = f.point(-3.0 + 2.0 * f64::from(k % 4), -3.0 + 2.0 * f64::from(k / 4), 0.0);
+                Curve::Circle(Circle { frame: f.at(at), radius: 0.5 })
+            }).collect();
+            let mut arcs = vec![arc(&outer, [0.0, TAU], Sense::Along)];
+            arcs.extend(holes.iter().map(|h| arc(h, [0.0, TAU], Sense::Against)));
+            let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
+            let in_hole = (0..16).any(|k| {
+                let (a, b) = (-3.0 + 2.0 * f64::from(k % 4), -3.0 + 2.0 * f64::from(k / 4));
+                f64::hypot(x - a, y - b) < 0.5
+            });
+            let truth = f64::hypot(x, y) < 5.0 && !in_hole;
+            prop_assert_eq!(locator.place(&f.point(x, y, 0.0)), expect(truth));
+        }
+
+        #[test]
+        fn cylinder_patch_and_band(u in 0.0..TAU, v in -1.0..3.0) {
+            let f = tilted();
+            let surface = Surface::Cylinder(Cylinder { frame: f, radius: 1.5 });
+            let (low, high) = (circle_at(&f, 0.0, 1.5), circle_at(&f, 2.0, 1.5));
+            let ruling = |u: f64| Curve::Line(Line {
+                origin: f.point(1.5 * u.cos(), 1.5 * u.sin(), 0.0), direction: f.z });
+            let whole = vec![
+                arc(&low, [0.0, TAU], Sense::Along),
+                arc(&high, [0.0, TAU], Sense::Against),
+            ];
+            let p = surface.point(u, v);
+            let locator = FaceLocator::new(&surface, Sense::Along, whole.clone(), BAND);
+            prop_assert_eq!(locator.place(&p), expect(v > 0.0 && v < 2.0));
+            // The inside of a bore: the normal and all senses turned over.
+            let bore = whole.iter().map(|a| DirectedArc { sense: a.sense.reversed(), ..*a });
+            let locator = FaceLocator::new(&surface, Sense::Against, bore.collect(), BAND);
+            prop_assert_eq!(locator.place(&p), expect(v > 0.0 && v < 2.0));
+            let (a, b) = (ruling(5.0), ruling(7.5));
+            let patch = vec![
+                arc(&low, [5.0, 7.5], Sense::Along),
+                arc(&b, [0.0, 2.0], Sense::Along),
+                arc(&high, [5.0, 7.5], Sense::Against),
+                arc(&a, [0.0, 2.0], Sense::Against),
+            ];
+            let locator = FaceLocator::new(&surface, Sense::Along, patch, BAND);
+            let within = !(7.5 - TAU..=5.0).contains(&u);
+            prop_assert_eq!(locator.place(&p), expect(within && v > 0.0 && v < 2.0));
+        }
+
+        #[test]
+        fn cone_with_apex(u in 0.0..TAU, v in 0.0..3.0) {
+            let f = tilted();
+            let surface = Surface::Cone(Cone { frame: f, sin: 0.6, cos: 0.8 });
+            let base = circle_at(&f, 2.0, 1.5);
+            let arcs = vec![arc(&base, [0.0, TAU], Sense::Against)];
+            let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
+            prop_assert_eq!(locator.place(&surface.point(u, v)), expect(v < 2.0));
+            prop_assert_eq!(locator.place(&f.origin), Place::Inside);
+        }
+
+        #[test]
+        fn sphere_cap(u in 0.0..TAU, v in -1.5..1.5) {
+            let f = tilted();
+            let surface = Surface::Sphere(Sphere { frame: f, radius: 2.0 });
+            let rim = circle_at(&f, 1.0, 3f64.sqrt());
+            let arcs = vec![arc(&rim, [0.0, TAU], Sense::Along)];
+            let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
+            let p = surface.point(u, v);
+            prop_assert_eq!(locator.place(&p), expect(2.0 * v.sin() > 1.0));
+            let whole = FaceLocator::new(&surface, Sense::Along, vec![], BAND);
+            prop_assert_eq!(whole.place(&p), Place::Inside);
+        }
+
+        #[test]
+        fn torus_patch_and_bands(u in 0.0..TAU, v in 0.0..TAU) {
+            let f = tilted();
+            let torus = Torus { frame: f, major: 2.0, minor: 0.75 };
+            let surface = Surface::Torus(torus);
+            let parallel = |phi: f64| {
+                circle_at(&f, 0.75 * phi.sin(), 2.0 + 0.75 * phi.cos())
+            };
+            let p = surface.point(u, v);
+            let (low, high) = (parallel(0.5), parallel(2.5));
+            let (a, b) = (tube(&torus, 1.0), tube(&torus, 4.0));
+            let band = vec![arc(&low, [0.0, TAU], Sense::Along), arc(&high, [0.0, TAU], Sense::Against)];
+            let locator = FaceLocator::new(&surface, Sense::Along, band, BAND);
+            prop_assert_eq!(locator.place(&p), expect(v > 0.5 && v < 2.5));
+            // The tube's circle runs with phi; theta increases to its right.
+            let bend = vec![arc(&a, [0.0, TAU], Sense::Against), arc(&b, [0.0, TAU], Sense::Along)];
+            let locator = FaceLocator::new(&surface, Sense::Along, bend, BAND);
+            prop_assert_eq!(locator.place(&p), expect(u > 1.0 && u < 4.0));
+            let patch = vec![
+                arc(&low, [1.0, 4.0], Sense::Along),
+                arc(&b, [0.5, 2.5], Sense::Along),
+                arc(&high, [1.0, 4.0], Sense::Against),
+                arc(&a, [0.5, 2.5], Sense::Against),
+            ];
+            let locator = FaceLocator::new(&surface, Sense::Along, patch, BAND);
+            prop_assert_eq!(locator.place(&p), expect(u > 1.0 && u < 4.0 && v > 0.5 && v < 2.5));
+        }
+    }
+
+    #[test]
+    fn points_on_the_boundary_are_on() {
+        let f = tilted();
+        let surface = Surface::Plane(Plane { frame: f });
+        let outer = circle_at(&f, 0.0, 5.0);
+        let arcs = vec![arc(&outer, [0.0, TAU], Sense::Along)];
+        let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
+        assert_eq!(locator.place(&f.point(3.0, 4.0, 0.0)), Place::On);
+        assert_eq!(locator.place(&f.point(3.0, 4.0 - 1e-8, 0.0)), Place::Inside);
+    }
+}

@@ -1,0 +1,434 @@
+//! Walks on a surface along plane sections of it, and the arcs they cross.
+//!
+//! A walk is a straight line of a plane, a ruling or a parallel of a cylinder or a cone, a great
+//! circle or a parallel of a sphere, or either circle of a torus. Each lies in a plane, so its
+//! crossings with an arc are the roots of that plane's distance along the arc. Notation: s is the
+//! length along the walk, D its direction, N the outward normal of the face, T the direction of an
+//! arc; the face lies to the left, towards N × T, so the walk enters the face where D·(N × T) > 0.
+
+use super::topology::Sense;
+use crate::geometry::bounds::Box3;
+use crate::geometry::curve::Curve;
+use crate::geometry::cut::cut;
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Plane, Surface, Torus};
+use crate::number::roots::{Contact, Zeros};
+use crate::number::sign::ROUNDING;
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::TAU;
+
+/// A piece of a face's boundary: the face lies to the left of its sense, seen from the side the
+/// face's outward normal points to.
+#[derive(Clone, Copy, Debug)]
+pub struct DirectedArc<'a> {
+    /// The curve.
+    pub curve: &'a Curve,
+    /// The range of its parameter, increasing.
+    pub range: [f64; 2],
+    /// Whether it is run along the curve's direction.
+    pub sense: Sense,
+}
+
+/// What a walk does where it meets an arc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Passage {
+    /// It goes into the face, from the arc's right to its left.
+    Entering,
+    /// It goes out of the face, from the arc's left to its right.
+    Leaving,
+    /// It touches the arc, runs along it, or passes an end of it within the resolution: take
+    /// another walk.
+    Unclear,
+}
+
+/// A meeting of a walk with an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// The length along the walk from its start, in the part's unit.
+    pub at: f64,
+    /// The index of the arc.
+    pub arc: usize,
+    /// The parameter on the arc's curve.
+    pub t: f64,
+    /// What the walk does there.
+    pub passage: Passage,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Track {
+    Line(Vector3<f64>),
+    /// About the frame's z axis, from its x axis, with the radius.
+    Circle(Frame, f64),
+}
+
+/// Which part of the plane section the walk is.
+#[derive(Clone, Copy, Debug)]
+enum Branch {
+    Whole,
+    /// On this side of the plane through the point.
+    Half(Point3<f64>, Vector3<f64>),
+    /// The outer (+1) or inner (-1) of a torus's two circles at one height.
+    Parallel(Torus, f64),
+}
+
+/// A walk on a surface from a point of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk {
+    plane: Plane,
+    start: Point3<f64>,
+    track: Track,
+    branch: Branch,
+    length: f64,
+}
+
+impl Walk {
+    fn new(
+        start: &Point3<f64>,
+        normal: Vector3<f64>,
+        track: Track,
+        branch: Branch,
+        length: f64,
+    ) -> Self {
+        Self {
+            plane: Plane {
+                frame: Frame::about(*start, normal),
+            },
+            start: *start,
+            track,
+            branch,
+            length,
+        }
+    }
+
+    /// A straight line without end in a plane, along the unit vector `direction`.
+    pub fn straight(plane: &Plane, start: &Point3<f64>, direction: Vector3<f64>) -> Self {
+        let normal = direction.cross(&plane.frame.z).normalize();
+        let track = Track::Line(direction);
+        Self::new(start, normal, track, Branch::Whole, f64::INFINITY)
+    }
+
+    /// The great circle of a sphere from `start` towards `target`, once round; none where they
+    /// lie on one diameter.
+    pub fn great_circle(
+        centre: &Point3<f64>,
+        start: &Point3<f64>,
+        target: &Point3<f64>,
+    ) -> Option<Self> {
+        let arm = start - centre;
+        let normal = arm.cross(&(target - centre));
+        let size = normal.norm();
+        let clear = size > arm.norm_squared() * ROUNDING.sqrt();
+        clear.then(|| Self::circle(start, *centre, normal / size, Branch::Whole))
+    }
+
+    fn circle(
+        start: &Point3<f64>,
+        centre: Point3<f64>,
+        axis: Vector3<f64>,
+        branch: Branch,
+    ) -> Self {
+        let arm = start - centre;
+        let frame = Frame::toward(centre, axis, arm);
+        let radius = arm.norm();
+        let track = Track::Circle(frame, radius);
+        Self::new(start, axis, track, branch, TAU * radius)
+    }
+
+    /// The parallel circle of a cylinder, a cone, a sphere or a torus through `start`, once round
+    /// in the given sense about the axis. None on the axis, near the top of a torus, where one
+    /// height holds two circles too close to tell, and on a plane.
+    pub fn parallel(
+        surface: &Surface,
+        start: &Point3<f64>,
+        sense: Sense,
+        band: f64,
+    ) -> Option<Self> {
+        let f = surface.frame();
+        let q = f.coordinates(start);
+        let rho = q.x.hypot(q.y);
+        let branch = match surface {
+            Surface::Plane(_) => return None,
+            Surface::Torus(t) => {
+                let away = rho - t.major;
+                // The plane meets the torus under an angle of about away/minor.
+                if away.abs() <= 8.0 * (2.0 * t.minor * band).sqrt() {
+                    return None;
+                }
+                Branch::Parallel(*t, away.signum())
+            }
+            _ => Branch::Whole,
+        };
+        let centre = f.origin + f.z * q.z;
+        let away = rho > band.max(ROUNDING * q.norm());
+        away.then(|| Self::circle(start, centre, f.z * sense.sign(), branch))
+    }
+
+    /// The ruling of a cylinder or a cone through `start`, or at the angle `u` from a cone's apex,
+    /// without end; along the axis or, on a cylinder, against it.
+    pub fn ruling(surface: &Surface, start: &Point3<f64>, u: f64, sense: Sense) -> Option<Self> {
+        let f = surface.frame();
+        let radial = f.x * u.cos() + f.y * u.sin();
+        let direction = match surface {
+            Surface::Cylinder(_) => f.z * sense.sign(),
+            Surface::Cone(c) => f.z * c.cos + radial * c.sin,
+            _ => return None,
+        };
+        let branch = Branch::Half(f.origin, radial);
+        let track = Track::Line(direction);
+        Some(Self::new(
+            start,
+            f.z.cross(&radial),
+            track,
+            branch,
+            f64::INFINITY,
+        ))
+    }
+
+    /// The circle about the tube of a torus through `start`, once round with the angle about the
+    /// tube rising or falling.
+    pub fn tube(torus: &Torus, start: &Point3<f64>, sense: Sense) -> Self {
+        let f = &torus.frame;
+        let q = f.coordinates(start);
+        let radial = (f.x * q.x + f.y * q.y).normalize();
+        let axis = radial.cross(&f.z) * sense.sign();
+        let centre = f.origin + radial * torus.major;
+        Self::circle(start, centre, axis, Branch::Half(f.origin, radial))
+    }
+
+    /// The same walk, no longer than `length`.
+    pub fn upto(self, length: f64) -> Self {
+        Self {
+            length: self.length.min(length),
+            ..self
+        }
+    }
+
+    /// The point at the length s.
+    pub fn point(&self, s: f64) -> Point3<f64> {
+        match &self.track {
+            Track::Line(d) => self.start + d * s,
+            Track::Circle(f, r) => {
+                let (sin, cos) = (s / r).sin_cos();
+                f.point(r * cos, r * sin, 0.0)
+            }
+        }
+    }
+
+    /// The length at which the walk passes a point of it.
+    pub fn at(&self, p: &Point3<f64>) -> f64 {
+        match &self.track {
+            Track::Line(d) => (p - self.start).dot(d),
+            Track::Circle(f, r) => {
+                let q = f.coordinates(p);
+                q.y.atan2(q.x).rem_euclid(TAU) * r
+            }
+        }
+    }
+
+    fn direction(&self, p: &Point3<f64>) -> Vector3<f64> {
+        match &self.track {
+            Track::Line(d) => *d,
+            Track::Circle(f, _) => f.z.cross(&(p - f.origin)).normalize(),
+        }
+    }
+
+    fn passes(&self, p: &Point3<f64>, band: f64) -> bool {
+        let on_branch = match &self.branch {
+            Branch::Whole => true,
+            Branch::Half(o, side) => (p - o).dot(side) > -band,
+            Branch::Parallel(t, side) => {
+                let q = t.frame.coordinates(p);
+                (q.x.hypot(q.y) - t.major) * side > -band
+            }
+        };
+        let s = self.at(p);
+        on_branch && s > -band && s < self.length + band
+    }
+
+    /// Whether the walk may pass through a box.
+    pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: f64) -> bool {
+        let above = |o: &Point3<f64>, n: &Vector3<f64>| {
+            let mid: f64 = (0..3).map(|i| n[i] * (0.5 * (lo[i] + hi[i]) - o[i])).sum();
+            let half: f64 = (0..3).map(|i| n[i].abs() * 0.5 * (hi[i] - lo[i])).sum();
+            (mid, half + band)
+        };
+        let (mid, half) = above(&self.start, &self.plane.frame.z);
+        if mid.abs() > half {
+            return false;
+        }
+        if let Branch::Half(o, side) = &self.branch {
+            let (mid, half) = above(o, side);
+            if mid < -half {
+                return false;
+            }
+        }
+        match &self.track {
+            Track::Line(d) => {
+                let (mid, half) = above(&self.start, d);
+                mid >= -half && mid - half <= self.length
+            }
+            Track::Circle(..) => true,
+        }
+    }
+
+    /// [`Self::may_meet`] of a box.
+    pub fn may_meet_box(&self, b: &Box3, band: f64) -> bool {
+        self.may_meet(&b.min, &b.max, band)
+    }
+
+    /// The crossings with `arcs` on `surface`, in order; `side` tells whether the outward normal
+    /// of the face is the surface's own, `band` is the resolution.
+    pub fn crossings(
+        &self,
+        surface: &Surface,
+        side: Sense,
+        arcs: &[DirectedArc<'_>],
+        band: f64,
+    ) -> Vec<Crossing> {
+        let mut found = Vec::new();
+        for (i, arc) in arcs.iter().enumerate() {
+            self.meet(surface, side, arc, band, &mut |at, t, passage| {
+                found.push(Crossing {
+                    at,
+                    arc: i,
+                    t,
+                    passage,
+                });
+            });
+        }
+        found.sort_by(|a, b| a.at.total_cmp(&b.at));
+        found
+    }
+
+    /// Reports the crossings with one arc: (length along the walk, parameter, passage).
+    pub(super) fn meet(
+        &self,
+        surface: &Surface,
+        side: Sense,
+        arc: &DirectedArc<'_>,
+        band: f64,
+        found: &mut impl FnMut(f64, f64, Passage),
+    ) {
+        let [lo, hi] = arc.range;
+        let n = self.plane.frame.z;
+        if !closes(arc) {
+            for t in [lo, hi] {
+                let p = arc.curve.point(t);
+                let near = (p - self.start).dot(&n).abs() <= band;
+                if near && self.passes(&p, band) {
+                    found(self.at(&p).max(0.0), t, Passage::Unclear);
+                }
+            }
+        }
+        let sign = arc.sense.sign() * side.sign();
+        let mut root = |t: f64, plain: bool| {
+            let p = arc.curve.point(t);
+            if !self.passes(&p, band) {
+                return;
+            }
+            let s = self.at(&p);
+            let across = self.direction(&p).cross(&surface.normal(&p));
+            let turn = sign * across.dot(&arc.curve.tangent(t));
+            let at_end = s <= band || s >= self.length - band;
+            let passage = if !plain || at_end || turn.is_nan() || turn.abs() < ROUNDING.sqrt() {
+                Passage::Unclear
+            } else if turn > 0.0 {
+                Passage::Entering
+            } else {
+                Passage::Leaving
+            };
+            found(s.max(0.0), t, passage);
+        };
+        plane_roots(arc.curve, arc.range, &self.plane, band, &mut root);
+    }
+}
+
+/// Whether the arc runs over its whole closed curve.
+fn closes(arc: &DirectedArc<'_>) -> bool {
+    arc.curve.period().is_some_and(|period| {
+        let [lo, hi] = arc.range;
+        hi - lo >= period * (1.0 - ROUNDING)
+    })
+}
+
+/// Where a curve meets a plane, over a range: reports each parameter and whether the curve plainly
+/// crosses there. Lines and conics with an angle in closed form.
+pub fn plane_roots(
+    curve: &Curve,
+    range: [f64; 2],
+    plane: &Plane,
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) {
+    let n = &plane.frame.z;
+    let o = &plane.frame.origin;
+    match curve {
+        Curve::Line(c) => {
+            let height = (c.origin - o).dot(n);
+            line_roots(height, c.direction.dot(n), range, band, found);
+        }
+        Curve::Circle(c) => {
+            let k = [c.radius * c.frame.x.dot(n), c.radius * c.frame.y.dot(n)];
+            turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
+        }
+        Curve::Ellipse(c) => {
+            let k = [c.a * c.frame.x.dot(n), c.b * c.frame.y.dot(n)];
+            turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
+        }
+        _ => match cut(curve, range, &Surface::Plane(*plane), band) {
+            Zeros::Everywhere => found(0.5 * (range[0] + range[1]), false),
+            Zeros::At { roots, .. } => {
+                for r in roots {
+                    found(r.t, r.contact == Contact::Simple);
+                }
+            }
+        },
+    }
+}
+
+/// Zeros of height + slope t.
+fn line_roots(
+    height: f64,
+    slope: f64,
+    [lo, hi]: [f64; 2],
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) {
+    let (a, b) = (height + slope * lo, height + slope * hi);
+    if a.abs() <= band && b.abs() <= band {
+        found(0.5 * (lo + hi), false);
+    } else if a * b <= 0.0 {
+        found((-height / slope).clamp(lo, hi), true);
+    }
+}
+
+/// Zeros of c + k[0] cos t + k[1] sin t.
+fn turn_roots(
+    c: f64,
+    k: [f64; 2],
+    [lo, hi]: [f64; 2],
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) {
+    let size = k[0].hypot(k[1]);
+    let at = k[1].atan2(k[0]);
+    if size + c.abs() <= band {
+        return found(0.5 * (lo + hi), false);
+    }
+    if c.abs() > size + band {
+        return;
+    }
+    let mut within = |t: f64, plain: bool| {
+        let t = lo + (t - lo).rem_euclid(TAU);
+        if t <= hi {
+            found(t, plain);
+        }
+    };
+    if c.abs() >= size - band {
+        return within(if c > 0.0 { at + TAU / 2.0 } else { at }, false);
+    }
+    // The height that is missed is better known than its arc cosine near the top.
+    let half = ((size - c) * (size + c)).sqrt().atan2(-c);
+    within(at - half, true);
+    within(at + half, true);
+}

@@ -1,0 +1,149 @@
+//! Boxes around curves.
+
+use super::curve::Curve;
+use super::frame::Frame;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use nalgebra::Point3;
+use std::f64::consts::TAU;
+
+/// An axis-parallel box: its least and its greatest corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Box3 {
+    /// The least coordinates.
+    pub min: [f64; 3],
+    /// The greatest coordinates.
+    pub max: [f64; 3],
+}
+
+impl Box3 {
+    /// The box that holds nothing.
+    pub const EMPTY: Self = Self {
+        min: [f64::INFINITY; 3],
+        max: [f64::NEG_INFINITY; 3],
+    };
+
+    /// The box around one point.
+    pub fn of(p: &Point3<f64>) -> Self {
+        let c = [p.x, p.y, p.z];
+        Self { min: c, max: c }
+    }
+
+    /// The smallest box that holds both.
+    pub fn hull(&self, o: &Self) -> Self {
+        Self {
+            min: std::array::from_fn(|i| self.min[i].min(o.min[i])),
+            max: std::array::from_fn(|i| self.max[i].max(o.max[i])),
+        }
+    }
+
+    /// The box grown by `by` on all sides.
+    pub fn grown(&self, by: f64) -> Self {
+        Self {
+            min: self.min.map(|x| x - by),
+            max: self.max.map(|x| x + by),
+        }
+    }
+
+    /// Whether a point lies in it.
+    pub fn holds(&self, p: &Point3<f64>) -> bool {
+        (0..3).all(|i| self.min[i] <= p[i] && p[i] <= self.max[i])
+    }
+
+    /// The length of its diagonal.
+    pub fn diagonal(&self) -> f64 {
+        let d: f64 = (0..3).map(|i| (self.max[i] - self.min[i]).powi(2)).sum();
+        d.sqrt()
+    }
+}
+
+/// The box of the arc of a curve over `range`: tight for lines and conics with an angle, an
+/// enclosure for the rest.
+pub fn bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
+    match curve {
+        Curve::Line(_) => ends(curve, range),
+        Curve::Circle(c) => turn_bounds(&c.frame, c.radius, c.radius, range, ends(curve, range)),
+        Curve::Ellipse(c) => turn_bounds(&c.frame, c.a, c.b, range, ends(curve, range)),
+        _ => enclosure(curve, range),
+    }
+}
+
+fn ends(curve: &Curve, [lo, hi]: [f64; 2]) -> Box3 {
+    Box3::of(&curve.point(lo)).hull(&Box3::of(&curve.point(hi)))
+}
+
+/// Grows the box of the ends by the extrema a x cos t + b y sin t that the range passes.
+fn turn_bounds(f: &Frame, a: f64, b: f64, [lo, hi]: [f64; 2], mut hull: Box3) -> Box3 {
+    for i in 0..3 {
+        let (c, s) = (a * f.x[i], b * f.y[i]);
+        let (size, at) = (c.hypot(s), s.atan2(c));
+        if lo + (at - lo).rem_euclid(TAU) <= hi {
+            hull.max[i] = hull.max[i].max(f.origin[i] + size);
+        }
+        if lo + (at + TAU / 2.0 - lo).rem_euclid(TAU) <= hi {
+            hull.min[i] = hull.min[i].min(f.origin[i] - size);
+        }
+    }
+    hull
+}
+
+/// How many parts an enclosure halves each smooth piece into.
+const PARTS: usize = 4;
+
+fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
+    let mut hull = ends(curve, range);
+    for pair in curve.breaks(range[0], range[1]).windows(2) {
+        for k in 0..PARTS {
+            let at = |k: usize| pair[0] + (pair[1] - pair[0]) * (k as f64 / PARTS as f64);
+            let over = Interval::new(at(k), at(k + 1));
+            hull = hull.hull(&piece_box(curve, over));
+        }
+    }
+    hull
+}
+
+fn piece_box(curve: &Curve, t: Interval) -> Box3 {
+    let wide = curve.jet_over(t);
+    let mid = curve.jet_over(Interval::point(t.mid()));
+    let run = t - Interval::point(t.mid());
+    let range = |w: &Jet<Interval>, m: &Jet<Interval>| w.v.meet(m.v + w.d * run);
+    let r: [Interval; 3] = std::array::from_fn(|i| range(&wide[i], &mid[i]));
+    Box3 {
+        min: r.map(|x| x.lo),
+        max: r.map(|x| x.hi),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::curve::{Circle, Parabola};
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn boxes_hold_their_arcs() {
+        let f = Frame::about(
+            Point3::new(1.0, 2.0, 3.0),
+            Vector3::new(0.3, -0.5, 0.8).normalize(),
+        );
+        let curves = [
+            Curve::Circle(Circle {
+                frame: f,
+                radius: 2.0,
+            }),
+            Curve::Parabola(Parabola {
+                frame: f,
+                focal: 0.7,
+            }),
+        ];
+        for c in &curves {
+            for (lo, hi) in [(0.0, TAU), (0.3, 1.1), (4.0, 9.0)] {
+                let b = bounds(c, [lo, hi]).grown(1e-12);
+                for k in 0..=100 {
+                    let t = lo + (hi - lo) * f64::from(k) / 100.0;
+                    assert!(b.holds(&c.point(t)));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! Limbs: where the line of sight touches a surface.
+//!
+//! Notation, in the surface's own frame: P a point, N its outward normal, E the eye, r = P - E the
+//! line of sight (for parallel lines its constant direction). A limb is N·r = 0 on the surface
+//! (equation 6 of the paper). For a quadric that is the section with the polar plane of the eye:
+//! a circle of a sphere, rulings of a cylinder or a cone. For a torus it is, in its angles,
+//! R cos φ + r - (e_x cos θ + e_y sin θ) cos φ - e_z sin φ = 0. At a cusp the line of sight runs
+//! along the limb: the normal curvature of the surface vanishes along it.
+
+use crate::projection::Sight;
+use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::bitrig::BiTrig;
+use premio_kernel::geometry::curve::{Circle, Curve, Line};
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
+use premio_kernel::geometry::trace::{Unresolved, trace};
+use premio_kernel::number::interval::Interval;
+use premio_kernel::number::jet::Jet;
+use premio_kernel::number::roots::{Zeros, isolate};
+use premio_kernel::number::scalar::Scalar;
+use premio_kernel::number::sign::ROUNDING;
+use std::f64::consts::TAU;
+
+/// A limb of a whole surface, not yet cut by a face's boundary.
+#[derive(Clone, Debug)]
+pub struct Limb {
+    /// The curve.
+    pub curve: Curve,
+    /// Where it starts, if it does: a cone's at the apex.
+    pub from: Option<f64>,
+    /// Where it crosses itself, on a torus.
+    pub nodes: Vec<f64>,
+}
+
+impl Limb {
+    fn of(curve: Curve) -> Self {
+        Self {
+            curve,
+            from: None,
+            nodes: Vec::new(),
+        }
+    }
+}
+
+/// The eye or the direction of sight in a surface's frame.
+#[derive(Clone, Copy, Debug)]
+enum LocalSight {
+    Eye(Vector3<f64>),
+    Direction(Vector3<f64>),
+}
+
+fn local(frame: &Frame, sight: &Sight) -> LocalSight {
+    match sight {
+        Sight::Eye(e) => LocalSight::Eye(frame.coordinates(e)),
+        Sight::Direction(d) => LocalSight::Direction(frame.components(d)),
+    }
+}
+
+/// The limbs of a surface; `band` is the resolution.
+pub fn limbs(surface: &Surface, sight: &Sight, band: f64) -> Result<Vec<Limb>, Unresolved> {
+    Ok(match surface {
+        Surface::Plane(_) => Vec::new(),
+        Surface::Cylinder(s) => cylinder_limbs(s, sight, band),
+        Surface::Cone(s) => cone_limbs(s, sight, band),
+        Surface::Sphere(s) => sphere_limb(s, sight, band).into_iter().collect(),
+        Surface::Torus(s) => torus_limbs(s, sight, band)?,
+    })
+}
+
+/// Half the angle between two directions a cos(u - u0) = c, or none where they do not exist.
+fn half_angle(a: f64, c: f64) -> Option<f64> {
+    (c.abs() < a).then(|| ((a - c) * (a + c)).sqrt().atan2(c))
+}
+
+fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64) -> Vec<Limb> {
+    let (across, level, least) = match local(&s.frame, sight) {
+        LocalSight::Eye(e) => (e, s.radius, band),
+        // Seen along its axis a cylinder is edge-on.
+        LocalSight::Direction(d) => (d, 0.0, ROUNDING.sqrt()),
+    };
+    let reach = across.x.hypot(across.y);
+    if reach - level <= least {
+        return Vec::new();
+    }
+    let Some(half) = half_angle(reach, level) else {
+        return Vec::new();
+    };
+    let middle = across.y.atan2(across.x);
+    [middle - half, middle + half]
+        .map(|u| {
+            let origin = s.frame.point(s.radius * u.cos(), s.radius * u.sin(), 0.0);
+            Limb::of(Curve::Line(Line {
+                origin,
+                direction: s.frame.z,
+            }))
+        })
+        .to_vec()
+}
+
+fn cone_limbs(s: &Cone, sight: &Sight, band: f64) -> Vec<Limb> {
+    // N·r = -N·E on every ruling: cos (e_x cos u + e_y sin u) = sin e_z.
+    let (e, least) = match local(&s.frame, sight) {
+        LocalSight::Eye(e) => (e, band),
+        LocalSight::Direction(d) => (d, ROUNDING.sqrt()),
+    };
+    let reach = s.cos * e.x.hypot(e.y);
+    let level = s.sin * e.z;
+    if reach - level.abs() <= least {
+        return Vec::new();
+    }
+    let Some(half) = half_angle(reach, level) else {
+        return Vec::new();
+    };
+    let middle = e.y.atan2(e.x);
+    [middle - half, middle + half]
+        .map(|u| {
+            let radial = s.frame.x * u.cos() + s.frame.y * u.sin();
+            Limb {
+                from: Some(0.0),
+                ..Limb::of(Curve::Line(Line {
+                    origin: s.frame.origin,
+                    direction: s.frame.z * s.cos + radial * s.sin,
+                }))
+            }
+        })
+        .to_vec()
+}
+
+fn sphere_limb(s: &Sphere, sight: &Sight, band: f64) -> Option<Limb> {
+    let circle = |centre: Point3<f64>, z: Vector3<f64>, radius: f64| {
+        Limb::of(Curve::Circle(Circle {
+            frame: Frame::about(centre, z),
+            radius,
+        }))
+    };
+    match sight {
+        Sight::Direction(d) => Some(circle(s.frame.origin, -d, s.radius)),
+        Sight::Eye(e) => {
+            let arm = e - s.frame.origin;
+            let away = arm.norm();
+            if away - s.radius <= band {
+                return None;
+            }
+            let sin = s.radius / away;
+            let z = arm / away;
+            let radius = s.radius * ((1.0 - sin) * (1.0 + sin)).sqrt();
+            Some(circle(s.frame.origin + z * (s.radius * sin), z, radius))
+        }
+    }
+}
+
+fn torus_limbs(s: &Torus, sight: &Sight, band: f64) -> Result<Vec<Limb>, Unresolved> {
+    let local = local(&s.frame, sight);
+    if let Some(circles) = axial_limbs(s, &local, band) {
+        return Ok(circles);
+    }
+    let form = torus_form(s, &local);
+    let traced = trace(s, &form, band)?;
+    let mut limbs: Vec<Limb> = traced
+        .branches
+        .into_iter()
+        .map(|c| Limb::of(Curve::Toric(Box::new(c))))
+        .collect();
+    for (branch, t) in traced.singular.iter().flat_map(|s| &s.on) {
+        if let Some(limb) = limbs.get_mut(*branch) {
+            limb.nodes.push(*t);
+        }
+    }
+    Ok(limbs)
+}
+
+/// Seen from its axis, a torus has two parallel circles as limbs.
+fn axial_limbs(s: &Torus, sight: &LocalSight, band: f64) -> Option<Vec<Limb>> {
+    let angles = match sight {
+        LocalSight::Direction(d) => (d.x.hypot(d.y) <= ROUNDING).then_some([0.0, TAU / 2.0])?,
+        LocalSight::Eye(e) => {
+            (e.x.hypot(e.y) <= band).then_some(())?;
+            // R cos φ - e_z sin φ = -r
+            let half = half_angle(s.major.hypot(e.z), -s.minor)?;
+            let middle = (-e.z).atan2(s.major);
+            [middle - half, middle + half]
+        }
+    };
+    let circle = |phi: f64| {
+        let centre = s.frame.point(0.0, 0.0, s.minor * phi.sin());
+        Limb::of(Curve::Circle(Circle {
+            frame: s.frame.at(centre),
+            radius: s.major + s.minor * phi.cos(),
+        }))
+    };
+    Some(angles.map(circle).to_vec())
+}
+
+/// N·(P - E), or N·d, over the angles, scaled to a distance to first order.
+fn torus_form(s: &Torus, sight: &LocalSight) -> BiTrig {
+    const ONE: usize = 0;
+    const COS: usize = 1;
+    const SIN: usize = 2;
+    let mut k = BiTrig::zero();
+    let e = match sight {
+        LocalSight::Eye(e) => {
+            k.0[ONE][COS] = s.major;
+            k.0[ONE][ONE] = s.minor;
+            e
+        }
+        LocalSight::Direction(d) => d,
+    };
+    k.0[COS][COS] = -e.x;
+    k.0[SIN][COS] = -e.y;
+    k.0[ONE][SIN] = -e.z;
+    let scale = s.minor / slope(s, sight);
+    for c in k.0.iter_mut().flatten() {
+        *c *= scale;
+    }
+    k
+}
+
+/// About how fast N·r changes with the angle of the normal.
+fn slope(s: &Torus, sight: &LocalSight) -> f64 {
+    match sight {
+        LocalSight::Eye(e) => e.norm() + s.major,
+        LocalSight::Direction(_) => 1.0,
+    }
+}
+
+/// The polar plane of the eye with respect to a quadric: it cuts the limb out of the surface.
+/// None for planes and tori, and where the whole surface is seen edge-on or from inside.
+pub fn polar_plane(surface: &Surface, sight: &Sight) -> Option<Plane> {
+    let f = surface.frame();
+    let plane = |normal: Vector3<f64>, level: f64| {
+        let size = normal.norm();
+        (size > 0.0).then(|| {
+            let n = f.vector(&(normal / size));
+            Plane {
+                frame: Frame::about(f.origin + n * (level / size), n),
+            }
+        })
+    };
+    match (surface, local(f, sight)) {
+        (Surface::Cylinder(s), LocalSight::Eye(e)) => {
+            plane(Vector3::new(e.x, e.y, 0.0), s.radius * s.radius)
+        }
+        (Surface::Cylinder(_), LocalSight::Direction(d)) => plane(Vector3::new(d.x, d.y, 0.0), 0.0),
+        (Surface::Cone(s), LocalSight::Eye(e) | LocalSight::Direction(e)) => {
+            let (c, k) = (s.cos * s.cos, s.sin * s.sin);
+            plane(Vector3::new(c * e.x, c * e.y, -k * e.z), 0.0)
+        }
+        (Surface::Sphere(s), LocalSight::Eye(e)) => plane(e, s.radius * s.radius),
+        (Surface::Sphere(_), LocalSight::Direction(d)) => plane(d, 0.0),
+        (Surface::Plane(_) | Surface::Torus(_), _) => None,
+    }
+}
+
+/// Where a curve on a torus crosses the torus's limb: the parameters over `range`, and whether
+/// the curve runs along it.
+pub fn torus_limb_on(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], band: f64) -> Zeros {
+    let local = local(&s.frame, sight);
+    let scale = 1.0 / slope(s, &local);
+    let f = |t: Interval| {
+        let q = s.frame.local(curve.jet_over(t));
+        let rho = (q[0].square() + q[1].square()).sqrt();
+        // r N = (k x, k y, z) with k = 1 - R/ρ.
+        let k = Jet::constant(1.0) - Jet::constant(s.major).over(rho);
+        let n = [q[0] * k, q[1] * k, q[2]];
+        let r = match local {
+            LocalSight::Eye(e) => std::array::from_fn(|i| q[i] - Jet::constant(e[i])),
+            LocalSight::Direction(d) => std::array::from_fn(|i| Jet::constant(d[i])),
+        };
+        let r: [Jet<Interval>; 3] = r;
+        (n[0] * r[0] + n[1] * r[1] + n[2] * r[2]).scale(scale)
+    };
+    isolate(&f, &curve.breaks(range[0], range[1]), band)
+}
+
+/// The cusps of a limb on a torus: where the line of sight is along it, |r|² = R (r·e_θ)²/ρ.
+pub fn cusps(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
+    let local = local(&s.frame, sight);
+    let scale = s.minor / slope(s, &local).powi(2);
+    let f = |t: Interval| {
+        let q = s.frame.local(curve.jet_over(t));
+        let rho2 = q[0].square() + q[1].square();
+        let rho3 = rho2 * rho2.sqrt();
+        let (r2, e) = match local {
+            LocalSight::Eye(e) => {
+                let r: [Jet<Interval>; 3] = std::array::from_fn(|i| q[i] - Jet::constant(e[i]));
+                (r[0].square() + r[1].square() + r[2].square(), e)
+            }
+            LocalSight::Direction(d) => (Jet::constant(1.0), d),
+        };
+        let along = q[1].scale(e.x) - q[0].scale(e.y);
+        (r2 - along.square().scale(s.major).over(rho3)).scale(scale)
+    };
+    match isolate(&f, &curve.breaks(range[0], range[1]), band) {
+        Zeros::Everywhere => Vec::new(),
+        Zeros::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tilted() -> Frame {
+        let z = Vector3::new(0.3, -0.4, 0.7).normalize();
+        Frame::toward(Point3::new(1.0, -2.0, 0.5), z, Vector3::new(1.0, 0.2, 0.0))
+    }
+
+    fn surfaces() -> [Surface; 4] {
+        let frame = tilted();
+        [
+            Surface::Cylinder(Cylinder { frame, radius: 1.3 }),
+            Surface::Cone(Cone {
+                frame,
+                sin: 0.6,
+                cos: 0.8,
+            }),
+            Surface::Sphere(Sphere { frame, radius: 1.3 }),
+            Surface::Torus(Torus {
+                frame,
+                major: 2.0,
+                minor: 0.6,
+            }),
+        ]
+    }
+
+    #[test]
+    fn the_line_of_sight_touches_the_surface_along_its_limbs() {
+        let sights = [
+            Sight::Eye(Point3::new(7.0, 5.0, 3.0)),
+            Sight::Direction(Vector3::new(0.5, -0.7, 0.2).normalize()),
+        ];
+        for surface in surfaces() {
+            for sight in &sights {
+                let limbs = limbs(&surface, sight, 1e-10).unwrap();
+                assert!(!limbs.is_empty(), "{surface:?}");
+                for limb in &limbs {
+                    for k in 0..50 {
+                        let t = 0.05 + 0.1 * f64::from(k);
+                        let p = limb.curve.point(t);
+                        let r = match sight {
+                            Sight::Eye(e) => (p - e).normalize(),
+                            Sight::Direction(d) => *d,
+                        };
+                        assert!(surface.distance(&p).abs() < 1e-12);
+                        assert!(surface.normal(&p).dot(&r).abs() < 1e-12);
+                        if let Some(plane) = polar_plane(&surface, sight) {
+                            assert!(Surface::Plane(plane).distance(&p).abs() < 1e-12);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn from_inside_there_is_no_limb() {
+        let eye = Sight::Eye(tilted().point(0.1, 0.1, 1.0));
+        for surface in &surfaces()[..3] {
+            assert!(limbs(surface, &eye, 1e-10).unwrap().is_empty());
+        }
+        // The other nappe's solid angle gives none either.
+        let eye = Sight::Eye(tilted().point(0.1, 0.1, -1.0));
+        assert!(limbs(&surfaces()[1], &eye, 1e-10).unwrap().is_empty());
+    }
+
+    #[test]
+    fn an_oblique_torus_has_cusps_where_sight_runs_along_the_limb() {
+        let surface = surfaces()[3];
+        let Surface::Torus(torus) = surface else {
+            unreachable!()
+        };
+        let f = torus.frame;
+        let sight = Sight::Direction(f.vector(&Vector3::new(1.0, 0.0, -0.35)).normalize());
+        let mut count = 0;
+        for limb in limbs(&surface, &sight, 1e-10).unwrap() {
+            let end = limb.curve.period().unwrap();
+            for t in cusps(&torus, &sight, &limb.curve, [0.0, end], 1e-10) {
+                let Sight::Direction(d) = sight else {
+                    unreachable!()
+                };
+                assert!(limb.curve.tangent(t).cross(&d).norm() < 1e-6);
+                count += 1;
+            }
+        }
+        assert_eq!(count, 4);
+    }
+}

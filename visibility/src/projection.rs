@@ -1,0 +1,191 @@
+//! The projection of a camera, ready to be used.
+//!
+//! Notation: a point's image in homogeneous coordinates is h = (x, y, z) in the camera's frame for
+//! perspective, and (x, y, 1) for orthographic; the image point is A (h/h_z) with A affine. The
+//! camera's frame is x right, y up (or down, for pixels), z into the scene.
+
+use crate::camera::{Camera, Model};
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use premio_kernel::geometry::frame::perpendicular;
+use premio_kernel::number::scalar::{Scalar, dot};
+use premio_kernel::number::sign::ROUNDING;
+
+/// Where the lines of sight come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sight {
+    /// From one point.
+    Eye(Point3<f64>),
+    /// From infinity, along this unit direction into the scene.
+    Direction(Vector3<f64>),
+}
+
+/// A camera's projection.
+#[derive(Clone, Debug)]
+pub struct Projection {
+    /// Where the lines of sight come from.
+    pub sight: Sight,
+    /// The least depth that is seen.
+    pub near: f64,
+    origin: Point3<f64>,
+    axes: [Vector3<f64>; 3],
+    affine: Matrix3<f64>,
+    /// Whether y points down in the image.
+    pub y_down: bool,
+    /// The size of the image, where it is given.
+    pub size: Option<[f64; 2]>,
+}
+
+fn look(eye: &Point3<f64>, target: &Point3<f64>, up: &Vector3<f64>) -> [Vector3<f64>; 3] {
+    let z = (target - eye).normalize();
+    let across = z.cross(up);
+    // Along the line of sight, or as good as: another axis takes its place.
+    let x = if across.norm() > up.norm() * ROUNDING.sqrt() {
+        across.normalize()
+    } else {
+        z.cross(&perpendicular(&z)).normalize()
+    };
+    [x, x.cross(&z), z]
+}
+
+impl Projection {
+    /// The projection of `camera` for a part of the given size (the diagonal of its box).
+    pub fn new(camera: &Camera, size: f64) -> Self {
+        // A positive distance, so that no contour reaches the eye's own plane.
+        let least = size * ROUNDING.sqrt();
+        match &camera.model {
+            Model::Perspective {
+                eye,
+                target,
+                up,
+                focal,
+            } => Self {
+                sight: Sight::Eye(*eye),
+                near: camera.near.unwrap_or(least),
+                origin: *eye,
+                axes: look(eye, target, up),
+                affine: Matrix3::from_diagonal(&Vector3::new(*focal, *focal, 1.0)),
+                y_down: false,
+                size: None,
+            },
+            Model::Orthographic { eye, target, up } => {
+                let axes = look(eye, target, up);
+                Self {
+                    sight: Sight::Direction(axes[2]),
+                    near: camera.near.unwrap_or(f64::NEG_INFINITY),
+                    origin: *eye,
+                    axes,
+                    affine: Matrix3::identity(),
+                    y_down: false,
+                    size: None,
+                }
+            }
+            Model::Matrices { k, r, t, size } => {
+                let axis = |i: usize| Vector3::new(r[(i, 0)], r[(i, 1)], r[(i, 2)]);
+                let inverse = r.try_inverse().unwrap_or_else(|| r.transpose());
+                let eye = Point3::from(-(inverse * t));
+                Self {
+                    sight: Sight::Eye(eye),
+                    near: camera.near.unwrap_or(least),
+                    origin: eye,
+                    axes: [axis(0), axis(1), axis(2)],
+                    affine: *k,
+                    y_down: true,
+                    size: *size,
+                }
+            }
+        }
+    }
+
+    /// The homogeneous image of a point.
+    pub fn homogeneous(&self, p: &Point3<f64>) -> Vector3<f64> {
+        let d = p - self.origin;
+        Vector3::new(
+            self.axes[0].dot(&d),
+            self.axes[1].dot(&d),
+            match self.sight {
+                Sight::Eye(_) => self.axes[2].dot(&d),
+                Sight::Direction(_) => 1.0,
+            },
+        )
+    }
+
+    /// The homogeneous image of a displacement.
+    pub fn homogeneous_vector(&self, d: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(
+            self.axes[0].dot(d),
+            self.axes[1].dot(d),
+            match self.sight {
+                Sight::Eye(_) => self.axes[2].dot(d),
+                Sight::Direction(_) => 0.0,
+            },
+        )
+    }
+
+    /// The homogeneous image of a point over any scalar.
+    pub fn homogeneous_over<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
+        let d: [S; 3] = std::array::from_fn(|i| p[i] - S::constant(self.origin[i]));
+        [
+            dot(&self.axes[0], d),
+            dot(&self.axes[1], d),
+            match self.sight {
+                Sight::Eye(_) => dot(&self.axes[2], d),
+                Sight::Direction(_) => S::constant(1.0),
+            },
+        ]
+    }
+
+    /// The depth of a point along the optical axis, from the eye.
+    pub fn depth(&self, p: &Point3<f64>) -> f64 {
+        self.axes[2].dot(&(p - self.origin))
+    }
+
+    /// The image of a point, in the units of the camera.
+    pub fn project(&self, p: &Point3<f64>) -> Point2<f64> {
+        self.image(&self.homogeneous(p))
+    }
+
+    /// The image point with the homogeneous coordinates `h`.
+    pub fn image(&self, h: &Vector3<f64>) -> Point2<f64> {
+        let g = self.affine * (h / h.z);
+        Point2::new(g.x, g.y)
+    }
+
+    /// The unit vector from a point towards the eye, with the distance to it.
+    pub fn towards_eye(&self, p: &Point3<f64>) -> (Vector3<f64>, f64) {
+        match self.sight {
+            Sight::Eye(e) => {
+                let d = e - p;
+                let length = d.norm();
+                (d / length, length)
+            }
+            Sight::Direction(d) => (-d, f64::INFINITY),
+        }
+    }
+
+    /// The unit direction of the optical axis.
+    pub fn axis(&self) -> Vector3<f64> {
+        self.axes[2]
+    }
+
+    /// A point on the optical axis.
+    pub fn origin(&self) -> Point3<f64> {
+        self.origin
+    }
+
+    /// The six coefficients (a, b, c, d, e, f) of a x² + b x y + c y² + d x + e y + f = 0 in image
+    /// coordinates, of largest magnitude one, for the conic hᵀ C h = 0.
+    pub fn conic(&self, c: &Matrix3<f64>) -> [f64; 6] {
+        let inverse = self.affine.try_inverse().unwrap_or_else(Matrix3::identity);
+        let m = inverse.transpose() * c * inverse;
+        let six = [
+            m[(0, 0)],
+            2.0 * m[(0, 1)],
+            m[(1, 1)],
+            2.0 * m[(0, 2)],
+            2.0 * m[(1, 2)],
+            m[(2, 2)],
+        ];
+        let size = six.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        six.map(|x| x / size)
+    }
+}

@@ -1,4 +1,5 @@
 //! Descriptions of solids: primitives, the tree of set operations, and the readers.
+pub mod boundary;
 pub mod builder;
 pub mod primitive;
 pub mod reader;

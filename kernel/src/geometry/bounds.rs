@@ -50,6 +50,11 @@ impl Box3 {
         (0..3).all(|i| self.min[i] <= p[i] && p[i] <= self.max[i])
     }
 
+    /// Its middle.
+    pub fn centre(&self) -> Point3<f64> {
+        Point3::from(std::array::from_fn::<f64, 3, _>(|i| 0.5 * (self.min[i] + self.max[i])))
+    }
+
     /// The length of its diagonal.
     pub fn diagonal(&self) -> f64 {
         let d: f64 = (0..3).map(|i| (self.max[i] - self.min[i]).powi(2)).sum();

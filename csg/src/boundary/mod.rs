@@ -1,0 +1,88 @@
+//! The boundary of a tree: generate and classify (Requicha and Voelcker 1985).
+//!
+//! [`halfspaces`] gives the distinct carriers and every primitive as half spaces of them;
+//! [`arrangement`] the curves in which carriers meet, cut at their common points into pieces;
+//! [`membership`] asks the tree whether a choice of sides is material; [`wings`] decides which
+//! pieces are edges, and where their faces lie. The kernel assembles the rest.
+
+mod arrangement;
+mod halfspaces;
+mod membership;
+mod pieces;
+mod wings;
+
+use crate::tree::Tree;
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::assemble::{AssemblyError, assemble};
+use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::geometry::intersect::{Extent, IntersectionError};
+use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION};
+
+/// How a tree is evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EvaluationOptions {
+    /// The resolution, a distance in the part's unit; by default 1e-11 of the part's size, wider
+    /// for a description with fewer digits.
+    pub resolution: Option<f64>,
+    /// The relative noise of the description's coordinates, where it has any.
+    pub noise: Option<f64>,
+}
+
+/// The boundary of a tree, and how it was decided.
+#[derive(Debug)]
+pub struct Evaluation {
+    /// The boundary.
+    pub brep: Brep,
+    /// How the decisions were made.
+    pub decisions: Decisions,
+    /// The resolution used, in the part's unit.
+    pub resolution: f64,
+    /// A box that holds the part.
+    pub bounds: Box3,
+}
+
+/// Why a tree has no boundary here.
+#[derive(Debug, thiserror::Error)]
+pub enum EvaluationError {
+    /// Two surfaces meet in a way that is beyond the kernel.
+    #[error(transparent)]
+    Intersection(#[from] IntersectionError),
+    /// The sheets around an edge could not be put in order.
+    #[error("the faces around an edge near ({:.6}, {:.6}, {:.6}) cannot be told apart", place[0], place[1], place[2])]
+    Sheets {
+        /// Near where.
+        place: [f64; 3],
+    },
+    /// The pieces do not form a boundary.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// The description's numbers are too large or too small for doubles.
+    #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
+    Size,
+}
+
+/// The boundary of the solid that a tree describes; empty for an empty solid.
+pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
+    let solids = halfspaces::Solids::of(tree);
+    let size = solids.bounds.diagonal();
+    if tree.is_empty() {
+        let decisions = Judge::new(0.0).decisions();
+        let (brep, bounds) = (Brep::default(), Box3::EMPTY);
+        return Ok(Evaluation { brep, decisions, resolution: 0.0, bounds });
+    }
+    if !(size > 1.0 / LARGEST && size < LARGEST) {
+        return Err(EvaluationError::Size);
+    }
+    let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
+    let resolution = options.resolution.unwrap_or(relative * size);
+    let judge = Judge::new(resolution);
+    let extent = Extent { centre: solids.bounds.centre(), radius: 0.75 * size };
+    let arrangement = arrangement::arrange(&solids, &extent, &judge)?;
+    let raw = wings::boundary(tree, &solids, arrangement, &judge)?;
+    let brep = assemble(raw, &judge)?;
+    let decisions = judge.decisions();
+    Ok(Evaluation { brep, decisions, resolution, bounds: solids.bounds })
+}
+
+/// Beyond these lengths squares of doubles lose their range.
+const LARGEST: f64 = 1e100;

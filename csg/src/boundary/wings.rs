@@ -1,0 +1,398 @@
+//! Which pieces are edges, and where their faces lie: neighbourhoods.
+//!
+//! Around a piece its carriers stand like the leaves of an open book: each gives two half sheets.
+//! Between two neighbouring sheets the side of every carrier is known, so the tree says whether
+//! there is material. A piece is an edge where the pattern is neither constant nor one smooth
+//! sheet; a sheet where it changes is a face there. Notation: T is the tangent of the piece, d the
+//! direction of a sheet away from it, l = T × d the direction counterclockwise, n the carrier's
+//! normal.
+
+use super::EvaluationError;
+use super::arrangement::Arrangement;
+use super::halfspaces::Solids;
+use super::membership::Membership;
+use super::pieces::{Piece, pieces};
+use crate::tree::{NodeId, Tree};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::assemble::{RawBoundary, RawEdge, Wing};
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::frame::perpendicular;
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::sign::{Judge, Side};
+use std::collections::HashMap;
+
+/// A half sheet of a carrier at a point of a piece.
+#[derive(Clone, Copy, Debug)]
+struct Sheet {
+    /// The carrier, as its place among the piece's carriers.
+    carrier: usize,
+    /// The direction away from the piece.
+    direction: Vector3<f64>,
+    /// Its angle about the tangent.
+    angle: f64,
+    /// How fast it turns counterclockwise with the distance.
+    bend: f64,
+    /// The side of the carrier just counterclockwise of the sheet.
+    beyond: Sense,
+}
+
+/// A primitive near a piece: what is left to know whether it holds a sector.
+struct Near {
+    leaf: NodeId,
+    /// Carriers of the piece (by place) and the side of each on which the primitive lies.
+    open: Vec<(usize, Sense)>,
+}
+
+struct Classifier<'a> {
+    solids: &'a Solids,
+    arrangement: &'a Arrangement,
+    membership: Membership<'a>,
+    judge: &'a Judge,
+}
+
+/// Where to look at a piece, as fractions of its range; the later ones are for when a surface
+/// passes through the first.
+const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
+
+pub(super) fn boundary(
+    tree: &Tree,
+    solids: &Solids,
+    arrangement: Arrangement,
+    judge: &Judge,
+) -> Result<RawBoundary, EvaluationError> {
+    let membership = Membership::new(tree);
+    let classifier = Classifier { solids, arrangement: &arrangement, membership, judge };
+    let mut edges: Vec<(Piece, Vec<Wing>)> = Vec::new();
+    for piece in pieces(&arrangement, judge) {
+        let wings = classifier.wings(&piece)?;
+        if !wings.is_empty() {
+            edges.push((piece, wings));
+        }
+    }
+    let joined = join(edges, &arrangement);
+    let whole = classifier.whole_surfaces(&joined);
+    let smooth = |e: &(Piece, Vec<Wing>)| classifier.is_smooth(e);
+    let raw = joined
+        .iter()
+        .map(|e| RawEdge {
+            curve: e.0.meeting,
+            range: e.0.range,
+            ends: e.0.ends,
+            smooth: smooth(e),
+            wings: e.1.clone(),
+        })
+        .collect();
+    Ok(RawBoundary {
+        edges: raw,
+        whole,
+        points: arrangement.corners.iter().map(|c| c.point).collect(),
+        curves: arrangement.meetings.into_iter().map(|m| m.curve).collect(),
+        surfaces: arrangement.carriers,
+    })
+}
+
+impl Classifier<'_> {
+    fn surface(&self, carrier: usize) -> &Surface {
+        &self.arrangement.carriers[carrier]
+    }
+
+    /// The faces around a piece, none where it is no edge: pairs enclose material, in order.
+    fn wings(&self, piece: &Piece) -> Result<Vec<Wing>, EvaluationError> {
+        let curve = &self.arrangement.meetings[piece.meeting].curve;
+        let [lo, hi] = piece.range;
+        let mut fallback = None;
+        for look in LOOKS {
+            let t = lo + (hi - lo) * look;
+            let p = curve.point(t);
+            let Some((near, clear)) = self.near(&p, &piece.carriers) else {
+                return Ok(Vec::new());
+            };
+            if clear {
+                return self.wings_at(piece, &p, &curve.tangent(t), &near);
+            }
+            fallback.get_or_insert((t, p, near));
+        }
+        // A surface stays within the band along the whole piece without holding it: its plain
+        // sign decides, and the close call is listed.
+        match fallback {
+            Some((t, p, near)) => self.wings_at(piece, &p, &curve.tangent(t), &near),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// The primitives that hold `p` as far as the piece's own carriers leave it open, and whether
+    /// no other surface passes through `p`. None where no two faces can meet.
+    fn near(&self, p: &Point3<f64>, carriers: &[usize]) -> Option<(Vec<Near>, bool)> {
+        let mut all = Vec::new();
+        let mut clear = true;
+        let place = [p.x, p.y, p.z];
+        for s in self.arrangement.tree.locate_all_at_point(&place) {
+            let solid = &self.solids.all[s.data];
+            let mut open = Vec::new();
+            let mut held = true;
+            for (side, &(c, sense)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
+                if let Ok(at) = carriers.binary_search(&c) {
+                    open.push((at, sense));
+                    continue;
+                }
+                let distance = side.surface.distance(p);
+                held &= distance < 0.0;
+                if distance < self.judge.band() && self.judge.within(distance) {
+                    clear = false;
+                } else if distance > 0.0 {
+                    self.judge.note("point beside surface", distance, place);
+                    break;
+                } else {
+                    self.judge.note("point inside surface", distance, place);
+                }
+            }
+            if held {
+                all.push(Near { leaf: solid.leaf, open });
+            }
+        }
+        all.sort_by_key(|n| n.leaf);
+        all.iter().any(|n| !n.open.is_empty()).then_some((all, clear))
+    }
+
+    fn wings_at(
+        &self,
+        piece: &Piece,
+        p: &Point3<f64>,
+        tangent: &Vector3<f64>,
+        near: &[Near],
+    ) -> Result<Vec<Wing>, EvaluationError> {
+        let sheets = self.sheets(piece, p, tangent)?;
+        let n = sheets.len();
+        // The sides before the first sheet: opposite to what lies beyond a carrier's first one.
+        let mut sides = vec![Sense::Along; piece.carriers.len()];
+        for s in sheets.iter().rev() {
+            sides[s.carrier] = s.beyond.reversed();
+        }
+        let inside = |sides: &[Sense]| {
+            let held: Vec<NodeId> = near
+                .iter()
+                .filter(|s| s.open.iter().all(|&(c, sense)| sides[c] == sense))
+                .map(|s| s.leaf)
+                .collect();
+            !held.is_empty() && self.membership.holds(&held)
+        };
+        let mut before = inside(&sides);
+        let mut changes: Vec<(usize, bool)> = Vec::new();
+        for (i, s) in sheets.iter().enumerate() {
+            sides[s.carrier] = s.beyond;
+            let after = inside(&sides);
+            if after != before {
+                changes.push((i, after));
+            }
+            before = after;
+        }
+        if let [(i, _), (j, _)] = changes[..]
+            && sheets[i].carrier == sheets[j].carrier
+        {
+            return Ok(Vec::new());
+        }
+        let first = changes.iter().position(|c| c.1).unwrap_or(0);
+        changes.rotate_left(first);
+        debug_assert!(n >= changes.len());
+        let wing = |&(i, after): &(usize, bool)| {
+            let s = &sheets[i];
+            // Material beyond: the outward normal is -l, the face lies to the right of T.
+            let outward = if (s.beyond == Sense::Along) == after { Sense::Along } else { Sense::Against };
+            let sense = if after { Sense::Against } else { Sense::Along };
+            Wing { surface: piece.carriers[s.carrier], outward, sense }
+        };
+        Ok(changes.iter().map(wing).collect())
+    }
+
+    /// The half sheets around a piece, counterclockwise about its tangent.
+    fn sheets(
+        &self,
+        piece: &Piece,
+        p: &Point3<f64>,
+        tangent: &Vector3<f64>,
+    ) -> Result<Vec<Sheet>, EvaluationError> {
+        let e1 = perpendicular(tangent);
+        let e2 = tangent.cross(&e1);
+        let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
+        // A carrier tangent to an earlier one takes its angle: only the bend tells them apart.
+        let mut axes: Vec<(usize, Vector3<f64>)> = Vec::new();
+        for (at, &c) in piece.carriers.iter().enumerate() {
+            let surface = self.surface(c);
+            let normal = surface.normal(p);
+            let mut direction = normal.cross(tangent).normalize();
+            let twin = axes.iter().find(|(other, d)| {
+                let told = piece.tangent.iter().any(|t| *t == [*other, c] || *t == [c, *other]);
+                let sine = d.cross(&direction).norm();
+                told || self.judge.within(sine * self.reach(piece))
+            });
+            match twin {
+                Some((_, d)) => direction = d * d.dot(&direction).signum(),
+                None => axes.push((c, direction)),
+            }
+            let bend = surface.normal_curvature(p, &direction);
+            for d in [direction, -direction] {
+                let l = tangent.cross(&d);
+                let up = normal.dot(&l);
+                sheets.push(Sheet {
+                    carrier: at,
+                    direction: d,
+                    angle: d.dot(&e2).atan2(d.dot(&e1)),
+                    bend: -bend * up.signum(),
+                    beyond: if up > 0.0 { Sense::Against } else { Sense::Along },
+                });
+            }
+        }
+        sheets.sort_by(|a, b| a.angle.total_cmp(&b.angle).then(a.bend.total_cmp(&b.bend)));
+        for pair in sheets.windows(2) {
+            let tied = pair[0].angle == pair[1].angle;
+            let gap = (pair[1].bend - pair[0].bend).abs() * self.reach(piece) * self.reach(piece);
+            if tied && self.judge.side("sheets that touch", gap, (*p).into()) == Side::On {
+                return Err(EvaluationError::Sheets { place: (*p).into() });
+            }
+        }
+        Ok(sheets)
+    }
+
+    /// The length over which directions are compared: the extent of the piece's curve.
+    fn reach(&self, piece: &Piece) -> f64 {
+        self.arrangement.meetings[piece.meeting].bounds.diagonal()
+    }
+
+    /// Whether the two faces of an edge continue one another smoothly.
+    fn is_smooth(&self, (piece, wings): &(Piece, Vec<Wing>)) -> bool {
+        let [a, b] = wings[..] else { return false };
+        let told = piece
+            .tangent
+            .iter()
+            .any(|t| *t == [a.surface, b.surface] || *t == [b.surface, a.surface]);
+        let curve = &self.arrangement.meetings[piece.meeting].curve;
+        let p = curve.point(0.5 * (piece.range[0] + piece.range[1]));
+        let normal = |w: &Wing| self.surface(w.surface).normal(&p) * w.outward.sign();
+        let (m, n) = (normal(&a), normal(&b));
+        let tangent = told || self.judge.within(m.cross(&n).norm() * self.reach(piece));
+        tangent && m.dot(&n) > 0.0
+    }
+
+    /// The closed carriers without any edge that are faces as a whole.
+    fn whole_surfaces(&self, edges: &[(Piece, Vec<Wing>)]) -> Vec<(usize, Sense)> {
+        let mut bounded = vec![false; self.arrangement.carriers.len()];
+        for wing in edges.iter().flat_map(|e| &e.1) {
+            bounded[wing.surface] = true;
+        }
+        let mut whole = Vec::new();
+        for (c, surface) in self.arrangement.carriers.iter().enumerate() {
+            if bounded[c] || !matches!(surface, Surface::Sphere(_) | Surface::Torus(_)) {
+                continue;
+            }
+            if let Some(sense) = self.whole(c, surface) {
+                whole.push((c, sense));
+            }
+        }
+        whole
+    }
+
+    /// Whether material changes across a closed surface at a point of it where nothing else is.
+    fn whole(&self, carrier: usize, surface: &Surface) -> Option<Sense> {
+        for i in 1..40 {
+            // Steps of the golden section spread over the surface.
+            let u = f64::from(i) * 2.399_963_229_728_653;
+            let v = 1.3 * (f64::from(i) * 0.7).sin();
+            let (near, clear) = self.near(&surface.point(u, v), &[carrier])?;
+            if !clear {
+                continue;
+            }
+            let held = |side: Sense| {
+                let held: Vec<NodeId> = near
+                    .iter()
+                    .filter(|s| s.open.iter().all(|o| o.1 == side))
+                    .map(|s| s.leaf)
+                    .collect();
+                !held.is_empty() && self.membership.holds(&held)
+            };
+            return match (held(Sense::Along), held(Sense::Against)) {
+                (true, false) => Some(Sense::Along),
+                (false, true) => Some(Sense::Against),
+                _ => None,
+            };
+        }
+        None
+    }
+}
+
+/// Joins the pieces of one curve at corners where nothing else ends and the faces stay the same.
+fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<(Piece, Vec<Wing>)> {
+    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (i, (piece, _)) in edges.iter().enumerate() {
+        for v in piece.ends.iter().flatten() {
+            at.entry(*v).or_default().push(i);
+        }
+    }
+    // The next piece along the curve, where the corner between is none.
+    let mut next: Vec<Option<usize>> = vec![None; edges.len()];
+    let mut has_previous = vec![false; edges.len()];
+    for (i, (piece, wings)) in edges.iter().enumerate() {
+        let Some([_, end]) = piece.ends else { continue };
+        let list = &at[&end];
+        let [a, b] = list[..] else { continue };
+        let j = if a == i { b } else { a };
+        let (other, same) = &edges[j];
+        let curve = &arrangement.meetings[piece.meeting].curve;
+        let follows = other.meeting == piece.meeting
+            && other.ends.is_some_and(|e| e[0] == end)
+            && meets_at(curve.period(), piece.range[1], other.range[0])
+            && same_wings(wings, same);
+        if follows {
+            next[i] = Some(j);
+            has_previous[j] = true;
+        }
+    }
+    let mut done = vec![false; edges.len()];
+    let mut joined = Vec::new();
+    let starts = (0..edges.len()).filter(|&i| !has_previous[i]).chain(0..edges.len());
+    for start in starts {
+        if done[start] {
+            continue;
+        }
+        done[start] = true;
+        let (mut piece, wings) = edges[start].clone();
+        let mut last = start;
+        while let Some(j) = next[last] {
+            if j == start {
+                piece.ends = None;
+                break;
+            }
+            done[j] = true;
+            piece.range[1] += edges[j].0.range[1] - edges[j].0.range[0];
+            if let (Some(ends), Some(e)) = (piece.ends.as_mut(), edges[j].0.ends) {
+                ends[1] = e[1];
+            }
+            last = j;
+        }
+        if piece.ends.is_none()
+            && let Some(period) = arrangement.meetings[piece.meeting].curve.period()
+        {
+            piece.range[1] = piece.range[0] + period;
+        }
+        joined.push((piece, wings));
+    }
+    joined
+}
+
+/// Whether two parameters are the same point of a curve.
+fn meets_at(period: Option<f64>, a: f64, b: f64) -> bool {
+    let scale = 1.0 / f64::from(1 << 24);
+    let away = match period {
+        Some(p) => {
+            let d = (a - b).rem_euclid(p);
+            d.min(p - d)
+        }
+        None => (a - b).abs(),
+    };
+    away <= scale * (1.0 + a.abs())
+}
+
+/// Whether two pieces have the same faces around them, wherever the count starts.
+fn same_wings(a: &[Wing], b: &[Wing]) -> bool {
+    a.len() == b.len()
+        && (0..a.len()).any(|k| (0..a.len()).all(|i| a[i] == b[(i + k) % b.len()]))
+}

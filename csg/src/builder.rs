@@ -1,0 +1,448 @@
+//! Building a tree from parts that may be moved, mirrored and used many times.
+//!
+//! Parts are simplified as they are made; motions are pushed down to the leaves, and parts used
+//! many times are copied, when the tree is finished. Nothing here recurses.
+
+use std::rc::Rc;
+
+use premio_kernel::motion::Motion;
+
+use crate::primitive::Primitive;
+use crate::tree::{Node, NodeId, Operation, Placed, Tree};
+
+/// The largest number of leaves a tree may have.
+pub const MAX_LEAVES: u64 = 1_000_000;
+
+/// The largest length in bits of a number in a leaf's motion.
+pub const MAX_MOTION_BITS: usize = 1 << 15;
+
+/// A tree beyond a stated limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum TreeError {
+    /// Parts used many times are copied, and there are too many copies.
+    #[error("{leaves} primitives, with every use of a part counted; the limit is {MAX_LEAVES}")]
+    TooManyLeaves {
+        /// How many leaves the tree would have.
+        leaves: u64,
+    },
+    /// Rotations inside rotations have made the exact numbers too long.
+    #[error(
+        "rotations so deeply nested that their exact numbers take {bits} bits; the limit is {MAX_MOTION_BITS}"
+    )]
+    NumbersTooLong {
+        /// The length of the longest number.
+        bits: usize,
+    },
+}
+
+/// A part of a [`Builder`]; possibly empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part(Option<usize>);
+
+impl Part {
+    /// The part without any points.
+    pub const EMPTY: Self = Self(None);
+
+    /// Whether the part has no points by its construction.
+    pub fn is_empty(self) -> bool {
+        self.0.is_none()
+    }
+}
+
+/// What a part is made of. Children come before their parents.
+#[derive(Debug)]
+enum Draft {
+    Leaf(Primitive),
+    Operation { op: Operation, children: Vec<usize> },
+    Moved { child: usize, placement: Placement },
+}
+
+/// `p -> M S p`, with `M` a motion and `S` the mirror `y -> -y` or the identity.
+#[derive(Debug, Clone)]
+struct Placement {
+    motion: Motion,
+    mirrored: bool,
+}
+
+impl Placement {
+    fn then(&self, outer: &Self) -> Self {
+        let inner = if outer.mirrored {
+            self.motion.mirrored_y()
+        } else {
+            self.motion.clone()
+        };
+        Self {
+            motion: inner.then(&outer.motion),
+            mirrored: self.mirrored != outer.mirrored,
+        }
+    }
+}
+
+/// Collects the parts of a description; [`finish`](Builder::finish) makes the tree.
+#[derive(Debug, Default)]
+pub struct Builder {
+    drafts: Vec<Draft>,
+    /// The number of leaves of each draft, with every use counted.
+    leaves: Vec<u64>,
+}
+
+impl Builder {
+    /// A builder without parts.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    fn add(&mut self, draft: Draft, leaves: u64) -> Part {
+        self.drafts.push(draft);
+        self.leaves.push(leaves);
+        Part(Some(self.drafts.len() - 1))
+    }
+
+    /// A primitive in its own frame.
+    pub fn primitive(&mut self, primitive: Primitive) -> Part {
+        self.add(Draft::Leaf(primitive), 1)
+    }
+
+    /// An operation on parts. Of no parts at all, and where the outcome is empty by its
+    /// construction, the empty part.
+    pub fn operation(&mut self, op: Operation, parts: &[Part]) -> Part {
+        let emptied = match op {
+            Operation::Union => false,
+            Operation::Intersection => parts.iter().any(|part| part.is_empty()),
+            Operation::Difference => parts.first().is_none_or(|part| part.is_empty()),
+        };
+        if emptied {
+            return Part::EMPTY;
+        }
+        let children: Vec<usize> = parts.iter().filter_map(|part| part.0).collect();
+        match children.as_slice() {
+            [] => Part::EMPTY,
+            &[only] => Part(Some(only)),
+            _ => {
+                let leaves = children
+                    .iter()
+                    .fold(0u64, |sum, &child| sum.saturating_add(self.leaves[child]));
+                self.add(Draft::Operation { op, children }, leaves)
+            }
+        }
+    }
+
+    /// A part, moved.
+    pub fn moved(&mut self, part: Part, motion: Motion) -> Part {
+        self.place(
+            part,
+            Placement {
+                motion,
+                mirrored: false,
+            },
+        )
+    }
+
+    /// The image of a part in the mirror `y -> -y`.
+    pub fn mirrored_y(&mut self, part: Part) -> Part {
+        let motion = Motion::identity();
+        self.place(
+            part,
+            Placement {
+                motion,
+                mirrored: true,
+            },
+        )
+    }
+
+    fn place(&mut self, part: Part, placement: Placement) -> Part {
+        let Some(child) = part.0 else {
+            return Part::EMPTY;
+        };
+        // Placements in a row become one, so that the cost of a use is that of its leaves.
+        let (child, placement) = match &self.drafts[child] {
+            // Beyond the limit for good: finishing it is an error, wherever it is put.
+            Draft::Moved { placement, .. } if placement.motion.bits() > MAX_MOTION_BITS => {
+                return part;
+            }
+            Draft::Moved {
+                child,
+                placement: inner,
+            } => (*child, inner.then(&placement)),
+            Draft::Leaf(_) | Draft::Operation { .. } => (child, placement),
+        };
+        let leaves = self.leaves[child];
+        self.add(Draft::Moved { child, placement }, leaves)
+    }
+
+    /// The tree of one part.
+    pub fn finish(&self, part: Part) -> Result<Tree, TreeError> {
+        let Some(top) = part.0 else {
+            return Ok(Tree::default());
+        };
+        let leaves = self.leaves[top];
+        if leaves > MAX_LEAVES {
+            return Err(TreeError::TooManyLeaves { leaves });
+        }
+        let mut expansion = Expansion::new(self);
+        expansion.run(top)?;
+        Ok(expansion.tree)
+    }
+}
+
+/// A draft still to be expanded.
+struct Task {
+    draft: usize,
+    placement: Rc<Placement>,
+    parent: Option<NodeId>,
+    /// Whether this is the first child of a difference, from which the others are taken.
+    minuend: bool,
+}
+
+struct Expansion<'a> {
+    builder: &'a Builder,
+    tree: Tree,
+    tasks: Vec<Task>,
+}
+
+impl<'a> Expansion<'a> {
+    fn new(builder: &'a Builder) -> Self {
+        Self {
+            builder,
+            tree: Tree::default(),
+            tasks: Vec::new(),
+        }
+    }
+
+    fn run(&mut self, top: usize) -> Result<(), TreeError> {
+        let motion = Motion::identity();
+        self.tasks.push(Task {
+            draft: top,
+            placement: Rc::new(Placement {
+                motion,
+                mirrored: false,
+            }),
+            parent: None,
+            minuend: false,
+        });
+        while let Some(task) = self.tasks.pop() {
+            self.expand(task)?;
+        }
+        Ok(())
+    }
+
+    fn expand(&mut self, task: Task) -> Result<(), TreeError> {
+        match &self.builder.drafts[task.draft] {
+            Draft::Leaf(primitive) => self.expand_leaf(primitive, &task),
+            Draft::Operation { op, children } => self.expand_operation(*op, children, &task),
+            Draft::Moved { child, placement } => {
+                let outer = placement.then(&task.placement);
+                let bits = outer.motion.bits().max(placement.motion.bits());
+                if bits > MAX_MOTION_BITS {
+                    return Err(TreeError::NumbersTooLong { bits });
+                }
+                self.tasks.push(Task {
+                    draft: *child,
+                    placement: Rc::new(outer),
+                    ..task
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn expand_leaf(&mut self, primitive: &Primitive, task: &Task) {
+        let Placement { motion, mirrored } = &*task.placement;
+        let motion = if *mirrored {
+            primitive.mirror_y().then(motion)
+        } else {
+            motion.clone()
+        };
+        let primitive = primitive.clone();
+        self.attach(Node::Leaf(Placed { primitive, motion }), task.parent);
+    }
+
+    fn expand_operation(&mut self, op: Operation, children: &[usize], task: &Task) {
+        let parent = match task.parent {
+            Some(parent) if self.merges(op, parent, task.minuend) => parent,
+            other => self.attach(
+                Node::Operation {
+                    op,
+                    children: Vec::new(),
+                },
+                other,
+            ),
+        };
+        for (index, &draft) in children.iter().enumerate().rev() {
+            self.tasks.push(Task {
+                draft,
+                placement: Rc::clone(&task.placement),
+                parent: Some(parent),
+                minuend: op == Operation::Difference && index == 0,
+            });
+        }
+    }
+
+    /// Whether the children of an operation may stand in its place below its parent:
+    /// (A + B) + C = A + B + C, the same for intersection, (A - B) - C = A - B - C,
+    /// A - (B + C) = A - B - C.
+    fn merges(&self, op: Operation, parent: NodeId, minuend: bool) -> bool {
+        let Node::Operation { op: above, .. } = &self.tree.nodes[parent.0] else {
+            return false;
+        };
+        match above {
+            Operation::Union | Operation::Intersection => op == *above,
+            Operation::Difference if minuend => op == Operation::Difference,
+            Operation::Difference => op == Operation::Union,
+        }
+    }
+
+    fn attach(&mut self, node: Node, parent: Option<NodeId>) -> NodeId {
+        let id = NodeId(self.tree.nodes.len());
+        self.tree.nodes.push(node);
+        match parent {
+            None => self.tree.root = Some(id),
+            Some(parent) => {
+                if let Node::Operation { children, .. } = &mut self.tree.nodes[parent.0] {
+                    children.push(id);
+                }
+            }
+        }
+        id
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use premio_kernel::number::rational::Rational;
+
+    fn shift(x: i32, y: i32, z: i32) -> Motion {
+        Motion::translation([x, y, z].map(Rational::from))
+    }
+
+    fn ball(b: &mut Builder) -> Part {
+        b.primitive(Primitive::sphere(Rational::ONE).unwrap())
+    }
+
+    /// The tree in brackets, each leaf by the x of its place.
+    fn text(tree: &Tree) -> String {
+        let show = |id: NodeId, below: &[String]| match &tree[id] {
+            Node::Leaf(placed) => placed.motion.offset()[0].to_string(),
+            Node::Operation { op, children } => {
+                let sign = match op {
+                    Operation::Union => '+',
+                    Operation::Intersection => '*',
+                    Operation::Difference => '-',
+                };
+                let parts: Vec<_> = children.iter().map(|c| below[c.index()].as_str()).collect();
+                format!("{sign}({})", parts.join(" "))
+            }
+        };
+        let mut texts = vec![String::new(); tree.nodes().len()];
+        for index in (0..texts.len()).rev() {
+            texts[index] = show(NodeId(index), &texts);
+        }
+        texts.first().cloned().unwrap_or_default()
+    }
+
+    fn balls<const N: usize>(b: &mut Builder) -> [Part; N] {
+        std::array::from_fn(|i| {
+            let part = ball(b);
+            b.moved(part, shift(i as i32, 0, 0))
+        })
+    }
+
+    #[test]
+    fn empty_children_drop_out() {
+        use Operation::*;
+        let mut b = Builder::new();
+        let [a, c] = balls(&mut b);
+        let none = Part::EMPTY;
+        assert_eq!(b.operation(Union, &[none, a, none]), a);
+        assert_eq!(b.operation(Intersection, &[a, none]), none);
+        assert_eq!(b.operation(Difference, &[none, a]), none);
+        assert_eq!(b.operation(Difference, &[a, none]), a);
+        assert_eq!(b.operation(Difference, &[]), none);
+        assert_eq!(b.operation(Intersection, &[]), none);
+        let part = b.operation(Difference, &[a, none, c]);
+        assert_eq!(text(&b.finish(part).unwrap()), "-(0 1)");
+        assert!(b.finish(none).unwrap().is_empty());
+    }
+
+    #[test]
+    fn chains_are_flattened() {
+        use Operation::*;
+        let mut b = Builder::new();
+        let [p, q, r, s] = balls(&mut b);
+        for (op, sign) in [(Union, '+'), (Intersection, '*'), (Difference, '-')] {
+            let inner = b.operation(op, &[p, q]);
+            let inner = b.moved(inner, shift(10, 0, 0));
+            let outer = b.operation(op, &[inner, r]);
+            assert_eq!(text(&b.finish(outer).unwrap()), format!("{sign}(10 11 2)"));
+        }
+        let rest = b.operation(Union, &[q, r, s]);
+        let part = b.operation(Difference, &[p, rest]);
+        assert_eq!(text(&b.finish(part).unwrap()), "-(0 1 2 3)");
+        let inner = b.operation(Difference, &[q, r]);
+        let part = b.operation(Difference, &[p, inner]);
+        assert_eq!(text(&b.finish(part).unwrap()), "-(0 -(1 2))");
+    }
+
+    #[test]
+    fn mirrors_reach_the_leaves() {
+        let mut b = Builder::new();
+        let size = [2, 3, 4].map(Rational::from);
+        let block = b.primitive(Primitive::block(size).unwrap());
+        let at = b.moved(block, shift(1, 10, 1));
+        let mirrored = b.mirrored_y(at);
+        let tree = b.finish(mirrored).unwrap();
+        let (_, placed) = tree.leaves().next().unwrap();
+        assert_eq!(placed.motion, shift(1, -13, 1));
+        let twice = b.mirrored_y(mirrored);
+        let tree = b.finish(twice).unwrap();
+        assert_eq!(tree.leaves().next().unwrap().1.motion, shift(1, 10, 1));
+    }
+
+    #[test]
+    fn deep_trees_need_no_stack() {
+        let mut b = Builder::new();
+        let mut part = ball(&mut b);
+        for i in 0..100_000 {
+            let next = ball(&mut b);
+            let op = if i % 2 == 0 {
+                Operation::Union
+            } else {
+                Operation::Intersection
+            };
+            part = b.operation(op, &[next, part]);
+            part = b.moved(part, shift(1, 0, 0));
+        }
+        let tree = b.finish(part).unwrap();
+        assert_eq!(tree.leaves().count(), 100_001);
+        assert_eq!(tree.nodes().len(), 200_001);
+    }
+
+    #[test]
+    fn copies_have_a_limit() {
+        let mut b = Builder::new();
+        let mut part = ball(&mut b);
+        for _ in 0..200 {
+            part = b.operation(Operation::Union, &[part, part]);
+        }
+        assert_eq!(
+            b.finish(part),
+            Err(TreeError::TooManyLeaves { leaves: u64::MAX })
+        );
+    }
+
+    #[test]
+    fn numbers_have_a_limit() {
+        let mut b = Builder::new();
+        let mut part = ball(&mut b);
+        let axis = [0, 0, 1].map(Rational::from);
+        let turn = Motion::rotation(axis, &Rational::from(7)).unwrap();
+        for _ in 0..2000 {
+            part = b.moved(part, turn.clone());
+        }
+        assert!(matches!(
+            b.finish(part),
+            Err(TreeError::NumbersTooLong { .. })
+        ));
+    }
+}

@@ -1,0 +1,380 @@
+//! `.json`: the tree as it is.
+
+mod value;
+
+use std::ops::Range;
+
+use premio_kernel::motion::Motion;
+use premio_kernel::number::rational::Rational;
+
+use self::value::{Content, Document, Member, Value, ValueId, parse};
+use super::error::{Fault, quote};
+use super::number::{bad_length, literal};
+use super::{Description, finish};
+use crate::builder::{Builder, MAX_MOTION_BITS, Part};
+use crate::primitive::{Dimension, Primitive, PrimitiveError};
+use crate::tree::Operation;
+
+pub(super) fn read(source: &str) -> Result<Description, Fault> {
+    let document = parse(source)?;
+    let mut builder = Builder::new();
+    let part = Reader {
+        document: &document,
+        builder: &mut builder,
+    }
+    .solid(document.root)?;
+    let span = document.value(document.root).span.clone();
+    let tree = finish(&builder, part, span)?;
+    Ok(Description {
+        tree,
+        digits: None,
+        notes: Vec::new(),
+    })
+}
+
+const OPERATIONS: [(&str, Operation); 3] = [
+    ("union", Operation::Union),
+    ("intersection", Operation::Intersection),
+    ("difference", Operation::Difference),
+];
+
+/// The primitives, and the keys of each besides `prim` and `transform`.
+const PRIMITIVES: [(&str, &[&str]); 7] = [
+    ("block", &["size"]),
+    ("wedge", &["size"]),
+    ("cylinder", &["r", "h"]),
+    ("cone", &["r", "h"]),
+    ("frustum", &["r1", "r2", "h"]),
+    ("sphere", &["r"]),
+    ("torus", &["R", "r"]),
+];
+
+/// What is left to do; the solids made so far wait on a stack.
+enum Step {
+    Enter(ValueId),
+    Combine {
+        op: Operation,
+        count: usize,
+        motion: Motion,
+    },
+}
+
+struct Reader<'a> {
+    document: &'a Document,
+    builder: &'a mut Builder,
+}
+
+impl<'a> Reader<'a> {
+    fn solid(&mut self, root: ValueId) -> Result<Part, Fault> {
+        let mut steps = vec![Step::Enter(root)];
+        let mut parts: Vec<Part> = Vec::new();
+        while let Some(step) = steps.pop() {
+            match step {
+                Step::Enter(id) => {
+                    if let Some(part) = self.enter(id, &mut steps)? {
+                        parts.push(part);
+                    }
+                }
+                Step::Combine { op, count, motion } => {
+                    let children = parts.split_off(parts.len().saturating_sub(count));
+                    let part = self.builder.operation(op, &children);
+                    parts.push(self.moved(part, motion));
+                }
+            }
+        }
+        Ok(parts.pop().unwrap_or(Part::EMPTY))
+    }
+
+    fn moved(&mut self, part: Part, motion: Motion) -> Part {
+        if motion.is_identity() {
+            part
+        } else {
+            self.builder.moved(part, motion)
+        }
+    }
+
+    /// Makes a primitive, or plans the children of an operation.
+    fn enter(&mut self, id: ValueId, steps: &mut Vec<Step>) -> Result<Option<Part>, Fault> {
+        let value = self.document.value(id);
+        let Content::Object(members) = &value.content else {
+            let expected = "a solid: an object with `op` or `prim`";
+            return Err(Fault::input(
+                value.span.clone(),
+                value.content.describe(),
+                expected,
+            ));
+        };
+        let fields = Fields {
+            document: self.document,
+            members,
+            span: value.span.clone(),
+        };
+        fields.check_unique()?;
+        match (fields.find("op"), fields.find("prim")) {
+            (Some(op), None) => {
+                self.operation(&fields, op, steps)?;
+                Ok(None)
+            }
+            (None, Some(name)) => self.primitive(&fields, name).map(Some),
+            (Some(_), Some(second)) => {
+                let expected = "either `op` or `prim`, not both";
+                Err(Fault::input(
+                    second.key_span.clone(),
+                    quote(&second.key),
+                    expected,
+                ))
+            }
+            (None, None) => Err(fields.neither()),
+        }
+    }
+
+    fn operation(
+        &mut self,
+        fields: &Fields<'a>,
+        name: &Member,
+        steps: &mut Vec<Step>,
+    ) -> Result<(), Fault> {
+        fields.check_known(&["op", "children", "transform"])?;
+        let op = choice(self.document.value(name.value), &OPERATIONS)?;
+        let children = fields.array(fields.require("children")?, "an array of solids")?;
+        let motion = fields.motion()?;
+        steps.push(Step::Combine {
+            op,
+            count: children.len(),
+            motion,
+        });
+        steps.extend(children.iter().rev().map(|&child| Step::Enter(child)));
+        Ok(())
+    }
+
+    fn primitive(&mut self, fields: &Fields<'a>, name: &Member) -> Result<Part, Fault> {
+        let keys = choice(self.document.value(name.value), &PRIMITIVES)?;
+        let known: Vec<&str> = ["prim", "transform"].iter().chain(keys).copied().collect();
+        fields.check_known(&known)?;
+        let Content::Text(name) = &self.document.value(name.value).content else {
+            return Err(fields.neither());
+        };
+        let lengths = fields.lengths(keys)?;
+        let motion = fields.motion()?;
+        let primitive = make(name, &lengths).map_err(|error| {
+            let length = &lengths[length_index(error.dimension(), lengths.len())];
+            bad_length(error, Some(&length.value), length.span.clone())
+        })?;
+        let part = self.builder.primitive(primitive);
+        Ok(self.moved(part, motion))
+    }
+}
+
+/// A number and its place.
+struct Length {
+    value: Rational,
+    span: Range<usize>,
+}
+
+/// The primitive of a name, from its numbers in the order of its keys.
+fn make(name: &str, lengths: &[Length]) -> Result<Primitive, PrimitiveError> {
+    let n = |index: usize| {
+        lengths
+            .get(index)
+            .map_or(Rational::ZERO, |length| length.value.clone())
+    };
+    match name {
+        "block" => Primitive::block([n(0), n(1), n(2)]),
+        "wedge" => Primitive::wedge([n(0), n(1), n(2)]),
+        "cylinder" => Primitive::cylinder(n(0), n(1)),
+        "cone" => Primitive::cone(n(0), n(1)),
+        "frustum" => Primitive::frustum(n(0), n(1), n(2)),
+        "sphere" => Primitive::sphere(n(0)),
+        _ => Primitive::torus(n(0), n(1)),
+    }
+}
+
+/// Which of a primitive's numbers a length is.
+fn length_index(dimension: Dimension, count: usize) -> usize {
+    let last = count.saturating_sub(1);
+    match dimension {
+        Dimension::X | Dimension::Radius | Dimension::Base | Dimension::Major => 0,
+        Dimension::Y | Dimension::Top | Dimension::Minor => last.min(1),
+        Dimension::Z | Dimension::Height => last,
+    }
+}
+
+/// The meaning of a text that is one of a few.
+fn choice<T: Copy>(value: &Value, known: &[(&'static str, T)]) -> Result<T, Fault> {
+    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    let expected = format!("one of \"{}\"", names.join("\", \""));
+    let fault = Fault::input(value.span.clone(), value.content.describe(), expected);
+    let Content::Text(text) = &value.content else {
+        return Err(fault);
+    };
+    match known.iter().find(|(name, _)| name == text) {
+        Some((_, meaning)) => Ok(*meaning),
+        None => Err(fault.suggest(text, names)),
+    }
+}
+
+/// The members of an object.
+struct Fields<'a> {
+    document: &'a Document,
+    members: &'a [Member],
+    span: Range<usize>,
+}
+
+impl<'a> Fields<'a> {
+    fn find(&self, key: &str) -> Option<&'a Member> {
+        self.members.iter().find(|member| member.key == key)
+    }
+
+    fn require(&self, key: &str) -> Result<&'a Member, Fault> {
+        self.find(key).ok_or_else(|| {
+            let end = self.span.end;
+            let found = format!("an object without `{key}`");
+            Fault::input(
+                end.saturating_sub(1)..end,
+                found,
+                format!("the key `{key}`"),
+            )
+        })
+    }
+
+    fn neither(&self) -> Fault {
+        let found = "an object without `op` or `prim`";
+        Fault::input(self.span.clone(), found, "`op` or `prim`")
+    }
+
+    fn check_unique(&self) -> Result<(), Fault> {
+        let mut seen = std::collections::HashSet::new();
+        for member in self.members {
+            if !seen.insert(member.key.as_str()) {
+                let found = format!("the key {} a second time", quote(&member.key));
+                return Err(Fault::input(
+                    member.key_span.clone(),
+                    found,
+                    "each key once",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_known(&self, known: &[&str]) -> Result<(), Fault> {
+        for member in self.members {
+            if !known.contains(&member.key.as_str()) {
+                let found = format!("the unknown key {}", quote(&member.key));
+                let expected = format!("one of `{}`", known.join("`, `"));
+                let fault = Fault::input(member.key_span.clone(), found, expected);
+                return Err(fault.suggest(&member.key, known.iter().copied()));
+            }
+        }
+        Ok(())
+    }
+
+    fn array(&self, member: &Member, expected: &str) -> Result<&'a [ValueId], Fault> {
+        items(self.document, member.value, expected)
+    }
+
+    /// The numbers of a primitive, in the order of its keys.
+    fn lengths(&self, keys: &[&str]) -> Result<Vec<Length>, Fault> {
+        if keys == ["size"] {
+            let member = self.require("size")?;
+            return Ok(triple(self.document, member.value)?.into());
+        }
+        keys.iter()
+            .map(|key| number(self.document, self.require(key)?.value))
+            .collect()
+    }
+
+    /// The optional transform, as one motion.
+    fn motion(&self) -> Result<Motion, Fault> {
+        let Some(member) = self.find("transform") else {
+            return Ok(Motion::identity());
+        };
+        let mut motion = Motion::identity();
+        for &step in self.array(member, "an array of steps")? {
+            motion = motion.then(&self.step(step)?);
+            let bits = motion.bits();
+            if bits > MAX_MOTION_BITS {
+                let found = format!("a transform whose exact numbers take {bits} bits");
+                let span = self.document.value(step).span.clone();
+                return Err(Fault::limit(
+                    span,
+                    found,
+                    format!("at most {MAX_MOTION_BITS} bits"),
+                ));
+            }
+        }
+        Ok(motion)
+    }
+
+    fn step(&self, id: ValueId) -> Result<Motion, Fault> {
+        let value = self.document.value(id);
+        let expected = "a step: {\"translate\":[x,y,z]} or {\"rotate\":[[x,y,z],degrees]}";
+        let wrong = || Fault::input(value.span.clone(), value.content.describe(), expected);
+        let Content::Object(members) = &value.content else {
+            return Err(wrong());
+        };
+        let step = Fields {
+            document: self.document,
+            members,
+            span: value.span.clone(),
+        };
+        step.check_known(&["translate", "rotate"])?;
+        match members.as_slice() {
+            [member] if member.key == "translate" => {
+                let offset = triple(self.document, member.value)?;
+                Ok(Motion::translation(offset.map(|length| length.value)))
+            }
+            [member] => self.rotation(member.value),
+            _ => Err(wrong()),
+        }
+    }
+
+    fn rotation(&self, id: ValueId) -> Result<Motion, Fault> {
+        let expected = "an axis and an angle: [[x,y,z],degrees]";
+        let &[axis_id, degrees] = items(self.document, id, expected)? else {
+            let span = self.document.value(id).span.clone();
+            return Err(Fault::input(span, "an array of another length", expected));
+        };
+        let axis = triple(self.document, axis_id)?.map(|length| length.value);
+        let degrees = number(self.document, degrees)?.value;
+        Motion::rotation(axis, &degrees).map_err(|error| {
+            let span = self.document.value(axis_id).span.clone();
+            Fault::input(span, error.to_string(), "an axis with a direction")
+        })
+    }
+}
+
+fn items<'a>(document: &'a Document, id: ValueId, expected: &str) -> Result<&'a [ValueId], Fault> {
+    let value = document.value(id);
+    match &value.content {
+        Content::Array(items) => Ok(items),
+        other => Err(Fault::input(value.span.clone(), other.describe(), expected)),
+    }
+}
+
+fn number(document: &Document, id: ValueId) -> Result<Length, Fault> {
+    let Value { content, span } = document.value(id);
+    match content {
+        Content::Number(text) => {
+            let value = literal(text, span.clone())?;
+            Ok(Length {
+                value,
+                span: span.clone(),
+            })
+        }
+        other => Err(Fault::input(span.clone(), other.describe(), "a number")),
+    }
+}
+
+fn triple(document: &Document, id: ValueId) -> Result<[Length; 3], Fault> {
+    let expected = "an array of three numbers";
+    let &[x, y, z] = items(document, id, expected)? else {
+        let span = document.value(id).span.clone();
+        return Err(Fault::input(span, "an array of another length", expected));
+    };
+    Ok([
+        number(document, x)?,
+        number(document, y)?,
+        number(document, z)?,
+    ])
+}

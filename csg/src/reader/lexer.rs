@@ -1,0 +1,237 @@
+//! The words of the three languages, each with its place in the text.
+
+use std::ops::Range;
+
+use winnow::ascii::{digit0, digit1};
+use winnow::combinator::{alt, opt, preceded, repeat};
+use winnow::error::ContextError;
+use winnow::prelude::*;
+use winnow::token::{any, none_of, one_of, take_till, take_until, take_while};
+
+use super::error::{Fault, quote};
+
+/// What sets the languages apart before grammar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Dialect {
+    /// `#` comments; the end of a line counts.
+    Padl,
+    /// `//` and `/* */` comments.
+    Scad,
+    /// No comments.
+    Json,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Token {
+    Name,
+    /// Without a sign.
+    Number,
+    /// With its quotes.
+    Text,
+    Symbol(char),
+    Newline,
+    End,
+}
+
+/// A word and its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Lexeme {
+    pub(super) token: Token,
+    start: usize,
+    end: usize,
+}
+
+impl Lexeme {
+    pub(super) fn span(self) -> Range<usize> {
+        self.start..self.end
+    }
+
+    pub(super) fn is(self, symbol: char) -> bool {
+        self.token == Token::Symbol(symbol)
+    }
+}
+
+type Plain<T> = Result<T, ContextError>;
+
+fn exponent<'a>(input: &mut &'a str) -> Plain<&'a str> {
+    (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1)
+        .take()
+        .parse_next(input)
+}
+
+fn number<'a>(input: &mut &'a str) -> Plain<&'a str> {
+    let whole = (digit1, opt(('.', digit0))).void();
+    let fraction = ('.', digit1).void();
+    (alt((whole, fraction)), opt(exponent))
+        .take()
+        .parse_next(input)
+}
+
+fn name<'a>(input: &mut &'a str) -> Plain<&'a str> {
+    let first = |c: char| c.is_alphabetic() || c == '_' || c == '$';
+    let later = |c: char| c.is_alphanumeric() || c == '_';
+    (one_of(first), take_while(0.., later))
+        .take()
+        .parse_next(input)
+}
+
+fn quoted<'a>(input: &mut &'a str) -> Plain<&'a str> {
+    let plain = none_of(['"', '\\', '\n']).void();
+    let escaped = ('\\', any).void();
+    let inside = repeat::<_, _, (), _, _>(0.., alt((plain, escaped)));
+    ('"', inside, '"').take().parse_next(input)
+}
+
+fn comment<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<()> {
+    move |input| match dialect {
+        Dialect::Padl => preceded('#', take_till(0.., ['\n']))
+            .void()
+            .parse_next(input),
+        Dialect::Scad => alt((
+            preceded("//", take_till(0.., ['\n'])).void(),
+            ("/*", take_until(0.., "*/"), "*/").void(),
+        ))
+        .parse_next(input),
+        Dialect::Json => winnow::combinator::fail.parse_next(input),
+    }
+}
+
+fn skipped<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<()> {
+    let white = move |c: char| c.is_whitespace() && !(dialect == Dialect::Padl && c == '\n');
+    move |input| {
+        repeat::<_, _, (), _, _>(0.., alt((take_while(1.., white).void(), comment(dialect))))
+            .parse_next(input)
+    }
+}
+
+fn word(input: &mut &str) -> Plain<Token> {
+    alt((
+        number.value(Token::Number),
+        name.value(Token::Name),
+        quoted.value(Token::Text),
+        '\n'.value(Token::Newline),
+        one_of([
+            '(', ')', '[', ']', '{', '}', '=', ',', ';', ':', '+', '-', '*', '/', '%', '#', '!',
+        ])
+        .map(Token::Symbol),
+    ))
+    .parse_next(input)
+}
+
+/// All words of a text, the last of them [`Token::End`].
+fn lex(source: &str, dialect: Dialect) -> Result<Vec<Lexeme>, Fault> {
+    let mut rest = source.strip_prefix('\u{feff}').unwrap_or(source);
+    let mut lexemes = Vec::new();
+    loop {
+        // Skipping cannot fail: it may skip nothing.
+        let _ = skipped(dialect).parse_next(&mut rest);
+        let start = source.len() - rest.len();
+        if rest.is_empty() {
+            lexemes.push(Lexeme {
+                token: Token::End,
+                start,
+                end: start,
+            });
+            return Ok(lexemes);
+        }
+        match word.parse_next(&mut rest) {
+            Ok(token) => {
+                let end = source.len() - rest.len();
+                lexemes.push(Lexeme { token, start, end });
+            }
+            Err(_) => return Err(unreadable(source, start)),
+        }
+    }
+}
+
+fn unreadable(source: &str, start: usize) -> Fault {
+    let rest = &source[start..];
+    if rest.starts_with('"') {
+        return Fault::input(start..start + 1, "a text without an end", "a closing `\"`");
+    }
+    if rest.starts_with("/*") {
+        return Fault::input(
+            start..start + 2,
+            "a comment without an end",
+            "a closing `*/`",
+        );
+    }
+    let first: String = rest.chars().take(1).collect();
+    let span = start..start + first.len();
+    Fault::input(
+        span,
+        quote(&first),
+        "a name, a number or a symbol of the language",
+    )
+}
+
+/// A place among the words of a text.
+pub(super) struct Cursor<'a> {
+    source: &'a str,
+    lexemes: Vec<Lexeme>,
+    at: usize,
+}
+
+impl<'a> Cursor<'a> {
+    pub(super) fn new(source: &'a str, dialect: Dialect) -> Result<Self, Fault> {
+        Ok(Self {
+            source,
+            lexemes: lex(source, dialect)?,
+            at: 0,
+        })
+    }
+
+    pub(super) fn peek(&self) -> Lexeme {
+        let end = self.source.len();
+        let last = Lexeme {
+            token: Token::End,
+            start: end,
+            end,
+        };
+        self.lexemes.get(self.at).copied().unwrap_or(last)
+    }
+
+    pub(super) fn next(&mut self) -> Lexeme {
+        let lexeme = self.peek();
+        self.at += 1;
+        lexeme
+    }
+
+    pub(super) fn skip_newlines(&mut self) {
+        while self.peek().token == Token::Newline {
+            self.at += 1;
+        }
+    }
+
+    pub(super) fn contains(&self, symbol: char) -> bool {
+        self.lexemes.iter().any(|lexeme| lexeme.is(symbol))
+    }
+
+    pub(super) fn source(&self) -> &'a str {
+        self.source
+    }
+
+    pub(super) fn text(&self, lexeme: Lexeme) -> &'a str {
+        self.source.get(lexeme.span()).unwrap_or_default()
+    }
+
+    /// The error that something else should stand in a word's place.
+    pub(super) fn unexpected(&self, lexeme: Lexeme, expected: impl Into<String>) -> Fault {
+        let found = match lexeme.token {
+            Token::End => "the end of the file".to_owned(),
+            Token::Newline => "the end of the line".to_owned(),
+            _ => quote(self.text(lexeme)),
+        };
+        Fault::input(lexeme.span(), found, expected)
+    }
+
+    /// Takes a symbol, or says what it was expected for.
+    pub(super) fn expect(&mut self, symbol: char, what_for: &str) -> Result<Lexeme, Fault> {
+        let lexeme = self.next();
+        if lexeme.is(symbol) {
+            Ok(lexeme)
+        } else {
+            Err(self.unexpected(lexeme, format!("`{symbol}` {what_for}")))
+        }
+    }
+}

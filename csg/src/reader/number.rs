@@ -1,0 +1,66 @@
+//! Numbers in texts: exact, and of bounded length.
+
+use std::ops::Range;
+
+use premio_kernel::number::rational::{
+    DecimalError, MAX_DIGITS, MAX_EXPONENT, Rational, bits, from_decimal, to_f64,
+};
+
+use super::error::{Fault, quote};
+use crate::primitive::PrimitiveError;
+
+/// The longest number that arithmetic in a description may make, in bits.
+pub(super) const MAX_BITS: usize = 1 << 13;
+
+/// The exact value of a decimal literal.
+pub(super) fn literal(text: &str, span: Range<usize>) -> Result<Rational, Fault> {
+    from_decimal(text).map_err(|error| match error {
+        DecimalError::Malformed => Fault::input(span, quote(text), "a number"),
+        DecimalError::ExponentTooLarge => {
+            let limit = format!("an exponent from -{MAX_EXPONENT} to {MAX_EXPONENT}");
+            Fault::limit(span, quote(text), limit)
+        }
+        DecimalError::TooManyDigits => {
+            Fault::limit(span, quote(text), format!("at most {MAX_DIGITS} digits"))
+        }
+    })
+}
+
+/// Refuses a number that has grown too long.
+pub(super) fn check_length(value: Rational, span: Range<usize>) -> Result<Rational, Fault> {
+    let length = bits(&value);
+    if length > MAX_BITS {
+        let found = format!("a number of {length} bits");
+        return Err(Fault::limit(
+            span,
+            found,
+            format!("at most {MAX_BITS} bits"),
+        ));
+    }
+    Ok(value)
+}
+
+/// A number for a message.
+pub(super) fn show(value: &Rational) -> String {
+    if value.is_int() && bits(value) <= 64 {
+        format!("the value {value}")
+    } else {
+        format!("the value {}", to_f64(value))
+    }
+}
+
+/// The error that a length makes no primitive.
+pub(super) fn bad_length(
+    error: PrimitiveError,
+    value: Option<&Rational>,
+    span: Range<usize>,
+) -> Fault {
+    let found = value.map_or_else(|| "a wrong length".to_owned(), show);
+    let expected = match error {
+        PrimitiveError::NotPositive(what) => format!("a {what} greater than zero"),
+        PrimitiveError::Negative(what) => format!("a {what} of zero or more"),
+        PrimitiveError::NoRadius => "one radius greater than zero".to_owned(),
+        PrimitiveError::NotARing => "a minor radius less than the major radius".to_owned(),
+    };
+    Fault::input(span, found, expected)
+}

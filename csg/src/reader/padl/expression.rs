@@ -1,0 +1,190 @@
+//! Values and operators of `.padl`, and what an operator does with its operands.
+
+use std::ops::Range;
+
+use premio_kernel::number::rational::Rational;
+
+use super::super::error::Fault;
+use super::super::number::{check_length, show};
+use crate::builder::{Builder, Part};
+use crate::tree::Operation;
+
+/// A number or a solid.
+#[derive(Debug, Clone)]
+pub(super) enum Value {
+    Number(Rational),
+    Solid(Part),
+}
+
+impl Value {
+    pub(super) fn describe(&self) -> String {
+        match self {
+            Self::Number(number) => show(number).replacen("the value", "the number", 1),
+            Self::Solid(_) => "a solid".to_owned(),
+        }
+    }
+}
+
+/// A value and where it stands.
+#[derive(Debug, Clone)]
+pub(super) struct Operand {
+    pub(super) value: Value,
+    pub(super) span: Range<usize>,
+}
+
+impl Operand {
+    pub(super) fn number(self, what_for: &str) -> Result<Rational, Fault> {
+        match self.value {
+            Value::Number(number) => Ok(number),
+            other => Err(Fault::input(
+                self.span,
+                other.describe(),
+                format!("a number {what_for}"),
+            )),
+        }
+    }
+
+    pub(super) fn solid(self, what_for: &str) -> Result<Part, Fault> {
+        match self.value {
+            Value::Solid(part) => Ok(part),
+            other => Err(Fault::input(
+                self.span,
+                other.describe(),
+                format!("a solid {what_for}"),
+            )),
+        }
+    }
+}
+
+/// An operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Operator {
+    Set(Operation),
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Negate,
+}
+
+impl Operator {
+    /// Which operators go first; those of equal rank go from left to right.
+    fn rank(self) -> u8 {
+        match self {
+            Self::Set(_) => 0,
+            Self::Add | Self::Subtract => 1,
+            Self::Multiply | Self::Divide => 2,
+            Self::Negate => 3,
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Set(Operation::Union) => "UN",
+            Self::Set(Operation::Intersection) => "INT",
+            Self::Set(Operation::Difference) => "DIF",
+            Self::Add => "+",
+            Self::Subtract | Self::Negate => "-",
+            Self::Multiply => "*",
+            Self::Divide => "/",
+        }
+    }
+}
+
+/// An expression between two brackets, as far as it has been read.
+#[derive(Debug, Default)]
+pub(super) struct Expression {
+    operands: Vec<Operand>,
+    operators: Vec<Operator>,
+    /// Whether the last thing read is a whole operand.
+    pub(super) complete: bool,
+}
+
+impl Expression {
+    pub(super) fn operand(&mut self, operand: Operand) {
+        self.operands.push(operand);
+        self.complete = true;
+    }
+
+    /// Takes the last operand back, to put something else in its place.
+    pub(super) fn take_operand(&mut self) -> Option<Operand> {
+        self.complete = false;
+        self.operands.pop()
+    }
+
+    pub(super) fn prefix(&mut self, operator: Operator) {
+        self.operators.push(operator);
+    }
+
+    pub(super) fn infix(&mut self, operator: Operator, builder: &mut Builder) -> Result<(), Fault> {
+        self.reduce(operator.rank(), builder)?;
+        self.operators.push(operator);
+        self.complete = false;
+        Ok(())
+    }
+
+    /// The value of the whole expression; `None` if nothing was read.
+    pub(super) fn close(mut self, builder: &mut Builder) -> Result<Option<Operand>, Fault> {
+        self.reduce(0, builder)?;
+        Ok(self.operands.pop())
+    }
+
+    /// Applies the operators that go before one of the given rank.
+    fn reduce(&mut self, rank: u8, builder: &mut Builder) -> Result<(), Fault> {
+        while let Some(operator) = self.operators.pop_if(|last| last.rank() >= rank) {
+            let Some(right) = self.operands.pop() else {
+                return Ok(());
+            };
+            let result = if operator == Operator::Negate {
+                negate(right)?
+            } else {
+                let Some(left) = self.operands.pop() else {
+                    return Ok(());
+                };
+                apply(operator, left, right, builder)?
+            };
+            self.operands.push(result);
+        }
+        Ok(())
+    }
+}
+
+fn negate(operand: Operand) -> Result<Operand, Fault> {
+    let span = operand.span.clone();
+    let value = Value::Number(-operand.number("after `-`")?);
+    Ok(Operand { value, span })
+}
+
+fn apply(
+    operator: Operator,
+    left: Operand,
+    right: Operand,
+    builder: &mut Builder,
+) -> Result<Operand, Fault> {
+    let span = left.span.start..right.span.end;
+    let side = |side: &str| format!("{side} `{}`", operator.text());
+    let (before, after) = (side("before"), side("after"));
+    if let Operator::Set(op) = operator {
+        let parts = [left.solid(&before)?, right.solid(&after)?];
+        let value = Value::Solid(builder.operation(op, &parts));
+        return Ok(Operand { value, span });
+    }
+    let place = right.span.clone();
+    let (a, b) = (left.number(&before)?, right.number(&after)?);
+    let value = match operator {
+        Operator::Add => a + b,
+        Operator::Subtract => a - b,
+        Operator::Multiply => a * b,
+        Operator::Divide if b.is_zero() => {
+            return Err(Fault::input(
+                place,
+                "a division by zero",
+                "a number other than zero",
+            ));
+        }
+        Operator::Divide => a / b,
+        Operator::Set(_) | Operator::Negate => a,
+    };
+    let value = Value::Number(check_length(value, span.clone())?);
+    Ok(Operand { value, span })
+}

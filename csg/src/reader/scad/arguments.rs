@@ -1,0 +1,264 @@
+//! The arguments of an OpenSCAD node.
+
+use std::ops::Range;
+
+use premio_kernel::number::rational::Rational;
+
+use super::super::error::{Fault, quote};
+use super::super::lexer::{Cursor, Lexeme, Token};
+use super::super::number::{literal, show};
+
+/// Nothing in a flattened file is nested deeper: a matrix is a list of lists.
+const MAX_DEPTH: usize = 4;
+
+/// What an argument is.
+#[derive(Debug, Clone)]
+pub(super) enum Value {
+    Number(Rational),
+    List(Vec<Argument>),
+    Text,
+    Bool(bool),
+    Undefined,
+    NotFinite,
+}
+
+/// A value, its place, and its name if it has one.
+#[derive(Debug, Clone)]
+pub(super) struct Argument {
+    name: Option<Name>,
+    pub(super) value: Value,
+    pub(super) span: Range<usize>,
+}
+
+#[derive(Debug, Clone)]
+struct Name {
+    text: String,
+    span: Range<usize>,
+}
+
+impl Argument {
+    fn describe(&self) -> String {
+        match &self.value {
+            Value::Number(number) => show(number),
+            Value::List(_) => "a list".to_owned(),
+            Value::Text => "a text".to_owned(),
+            Value::Bool(value) => format!("`{value}`"),
+            Value::Undefined => "`undef`".to_owned(),
+            Value::NotFinite => "a number that is not finite".to_owned(),
+        }
+    }
+
+    /// The error that something else should stand here.
+    pub(super) fn wrong(&self, expected: impl Into<String>) -> Fault {
+        Fault::input(self.span.clone(), self.describe(), expected)
+    }
+
+    pub(super) fn number(&self) -> Result<&Rational, Fault> {
+        match &self.value {
+            Value::Number(number) => Ok(number),
+            _ => Err(self.wrong("a number")),
+        }
+    }
+
+    pub(super) fn bool(&self) -> Result<bool, Fault> {
+        match self.value {
+            Value::Bool(value) => Ok(value),
+            _ => Err(self.wrong("`true` or `false`")),
+        }
+    }
+
+    /// The items of a list of `N`.
+    pub(super) fn list<const N: usize>(&self, expected: &str) -> Result<&[Argument; N], Fault> {
+        match &self.value {
+            Value::List(items) => {
+                let count = items.len();
+                items.as_slice().try_into().map_err(|_| {
+                    Fault::input(self.span.clone(), format!("a list of {count}"), expected)
+                })
+            }
+            _ => Err(self.wrong(expected)),
+        }
+    }
+
+    pub(super) fn items(&self, expected: &str) -> Result<&[Argument], Fault> {
+        match &self.value {
+            Value::List(items) => Ok(items),
+            _ => Err(self.wrong(expected)),
+        }
+    }
+}
+
+/// All arguments of a node.
+#[derive(Debug)]
+pub(super) struct Arguments {
+    arguments: Vec<Argument>,
+    /// From the node's name to the closing bracket.
+    pub(super) span: Range<usize>,
+    node: String,
+}
+
+impl Arguments {
+    /// Reads the arguments in brackets after a node's name.
+    pub(super) fn parse(cursor: &mut Cursor<'_>, node: Lexeme) -> Result<Self, Fault> {
+        let name = cursor.text(node).to_owned();
+        cursor.expect('(', &format!("after `{name}`"))?;
+        let mut arguments = Vec::new();
+        loop {
+            if cursor.peek().is(')') {
+                break;
+            }
+            arguments.push(argument(cursor)?);
+            if !cursor.peek().is(',') {
+                break;
+            }
+            cursor.next();
+        }
+        let close = cursor.expect(')', "or `,` after an argument")?;
+        let span = node.span().start..close.span().end;
+        Ok(Self {
+            arguments,
+            span,
+            node: name,
+        })
+    }
+
+    /// Gives the arguments without a name their names, in order; refuses names that are not
+    /// known and names given twice. What only tells how finely to approximate is passed over.
+    pub(super) fn bind(&mut self, known: &[&str]) -> Result<(), Fault> {
+        const PASSED_OVER: [&str; 8] = [
+            "$fn",
+            "$fa",
+            "$fs",
+            "convexity",
+            "slices",
+            "segments",
+            "timestamp",
+            "$children",
+        ];
+        let mut seen = std::collections::HashSet::new();
+        for (index, argument) in self.arguments.iter_mut().enumerate() {
+            if argument.name.is_none() {
+                let Some(text) = known.get(index) else {
+                    return Err(argument.wrong(format!("fewer arguments of `{}`", self.node)));
+                };
+                let (text, span) = ((*text).to_owned(), argument.span.clone());
+                argument.name = Some(Name { text, span });
+            }
+            let Some(name) = &argument.name else { continue };
+            let text = name.text.as_str();
+            if !known.contains(&text) && !PASSED_OVER.contains(&text) {
+                let found = format!("the unknown argument {} of `{}`", quote(text), self.node);
+                let expected = format!("one of `{}`", known.join("`, `"));
+                let fault = Fault::input(name.span.clone(), found, expected);
+                return Err(fault.suggest(text, known.iter().copied()));
+            }
+            if !seen.insert(text) {
+                let found = format!("{} a second time", quote(text));
+                return Err(Fault::input(name.span.clone(), found, "each argument once"));
+            }
+        }
+        Ok(())
+    }
+
+    /// An argument by its name; `undef` is the same as none.
+    pub(super) fn find(&self, name: &str) -> Option<&Argument> {
+        self.arguments.iter().find(|argument| {
+            let named = argument.name.as_ref().is_some_and(|n| n.text == name);
+            named && !matches!(argument.value, Value::Undefined)
+        })
+    }
+
+    pub(super) fn require(&self, name: &str) -> Result<&Argument, Fault> {
+        let undefined = self.arguments.iter().find(|argument| {
+            let named = argument.name.as_ref().is_some_and(|n| n.text == name);
+            named && matches!(argument.value, Value::Undefined)
+        });
+        self.find(name).ok_or_else(|| match undefined {
+            Some(argument) => argument.wrong(format!("a value for `{name}`")),
+            None => {
+                let found = format!("`{}` without `{name}`", self.node);
+                Fault::input(self.span.clone(), found, format!("the argument `{name}`"))
+            }
+        })
+    }
+
+    pub(super) fn flag(&self, name: &str) -> Result<bool, Fault> {
+        self.find(name).map_or(Ok(false), Argument::bool)
+    }
+}
+
+fn argument(cursor: &mut Cursor<'_>) -> Result<Argument, Fault> {
+    let first = cursor.next();
+    if first.token == Token::Name && cursor.peek().is('=') {
+        cursor.next();
+        let name = Name {
+            text: cursor.text(first).to_owned(),
+            span: first.span(),
+        };
+        let start = cursor.next();
+        let value = value(cursor, start, 0)?;
+        return Ok(Argument {
+            name: Some(name),
+            ..value
+        });
+    }
+    value(cursor, first, 0)
+}
+
+/// A value. The depth of lists is bounded, and with it the depth of this recursion.
+fn value(cursor: &mut Cursor<'_>, first: Lexeme, depth: usize) -> Result<Argument, Fault> {
+    let mut span = first.span();
+    let value = match (first.token, cursor.text(first)) {
+        (Token::Symbol('['), _) => {
+            if depth == MAX_DEPTH {
+                return Err(cursor.unexpected(first, format!("lists at most {MAX_DEPTH} deep")));
+            }
+            let (items, end) = list(cursor, depth + 1)?;
+            span.end = end;
+            Value::List(items)
+        }
+        (Token::Symbol(sign @ ('-' | '+')), _) => {
+            let next = cursor.next();
+            span.end = next.span().end;
+            signed(cursor, sign == '-', next)?
+        }
+        (Token::Text, _) => Value::Text,
+        (Token::Name, "true") => Value::Bool(true),
+        (Token::Name, "false") => Value::Bool(false),
+        (Token::Name, "undef") => Value::Undefined,
+        _ => signed(cursor, false, first)?,
+    };
+    Ok(Argument {
+        name: None,
+        value,
+        span,
+    })
+}
+
+fn signed(cursor: &Cursor<'_>, negative: bool, lexeme: Lexeme) -> Result<Value, Fault> {
+    match (lexeme.token, cursor.text(lexeme)) {
+        (Token::Number, text) => {
+            let number = literal(text, lexeme.span())?;
+            Ok(Value::Number(if negative { -number } else { number }))
+        }
+        (Token::Name, "nan" | "inf") => Ok(Value::NotFinite),
+        _ => Err(cursor.unexpected(
+            lexeme,
+            "a number, a list, a text, `true`, `false` or `undef`",
+        )),
+    }
+}
+
+fn list(cursor: &mut Cursor<'_>, depth: usize) -> Result<(Vec<Argument>, usize), Fault> {
+    let mut items = Vec::new();
+    while !cursor.peek().is(']') {
+        let first = cursor.next();
+        items.push(value(cursor, first, depth)?);
+        if !cursor.peek().is(',') {
+            break;
+        }
+        cursor.next();
+    }
+    let close = cursor.expect(']', "or `,` after an item of a list")?;
+    Ok((items, close.span().end))
+}

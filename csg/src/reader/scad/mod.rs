@@ -1,0 +1,297 @@
+//! `.csg`: OpenSCAD's flattened output.
+//!
+//! Blocks are frames on one explicit stack. A plane figure becomes a solid where it stands, by
+//! the extrusion around it, so that there are only solids to combine.
+
+mod arguments;
+mod extrusion;
+mod nodes;
+mod placement;
+mod shapes;
+
+use self::arguments::Arguments;
+use self::nodes::{Around, Kind, Node};
+use super::error::Fault;
+use super::lexer::{Cursor, Dialect, Lexeme, Token};
+use super::{Description, Note, Options, finish};
+use crate::builder::{Builder, Part};
+
+pub(super) fn read(source: &str, options: &Options) -> Result<Description, Fault> {
+    let cursor = Cursor::new(source, Dialect::Scad)?;
+    let mut reader = Reader::new(cursor, options.smooth);
+    let part = reader.file()?;
+    let tree = finish(&reader.builder, part, 0..source.len())?;
+    let (digits, notes) = reader.notes.finish();
+    Ok(Description {
+        tree,
+        digits,
+        notes,
+    })
+}
+
+/// A block that is not closed yet.
+struct Frame {
+    kind: Kind,
+    around: Around,
+    children: Vec<Part>,
+    open: Lexeme,
+    /// The child is one statement, without braces.
+    single: bool,
+    /// Whether the block is part of the solid at all.
+    live: bool,
+    /// Whether this is the subtree marked with `!`.
+    root: bool,
+}
+
+/// The marks before a node.
+#[derive(Clone, Copy, Default)]
+struct Marks {
+    /// `*` or `%`: not part of the solid.
+    dropped: bool,
+    /// `!`: the only part of the solid.
+    root: bool,
+}
+
+struct Reader<'a> {
+    cursor: Cursor<'a>,
+    builder: Builder,
+    smooth: bool,
+    frames: Vec<Frame>,
+    notes: Notes,
+    marked_root: Option<Part>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(cursor: Cursor<'a>, smooth: bool) -> Self {
+        Self {
+            cursor,
+            builder: Builder::new(),
+            smooth,
+            frames: Vec::new(),
+            notes: Notes::default(),
+            marked_root: None,
+        }
+    }
+
+    fn file(&mut self) -> Result<Part, Fault> {
+        // With a subtree marked `!` all that is outside it counts for nothing.
+        let live = !self.cursor.contains('!');
+        let open = self.cursor.peek();
+        self.frames.push(Frame {
+            kind: Kind::Union,
+            around: Around::Nothing,
+            children: Vec::new(),
+            open,
+            single: false,
+            live,
+            root: false,
+        });
+        loop {
+            let lexeme = self.cursor.next();
+            match lexeme.token {
+                Token::End => return self.end_of_file(lexeme),
+                Token::Symbol('}') => self.close_block(lexeme)?,
+                Token::Symbol(';') => self.stray_semicolon(),
+                _ => self.statement(lexeme)?,
+            }
+        }
+    }
+
+    fn end_of_file(&mut self, end: Lexeme) -> Result<Part, Fault> {
+        match (self.frames.pop(), self.frames.is_empty()) {
+            (Some(file), true) => {
+                let part = file.kind.combine(&mut self.builder, &file.children);
+                Ok(self.marked_root.unwrap_or(part))
+            }
+            (Some(block), false) => {
+                let expected = if block.single { "a node or `;`" } else { "`}`" };
+                let start = block.open.span().start;
+                let source = self.cursor.source().as_bytes();
+                let line = super::error::line_and_column(source, start).0;
+                Err(self
+                    .cursor
+                    .unexpected(end, expected)
+                    .help(format!("the block opened on line {line} is not closed")))
+            }
+            (None, _) => Ok(Part::EMPTY),
+        }
+    }
+
+    fn close_block(&mut self, brace: Lexeme) -> Result<(), Fault> {
+        let closes = self.frames.len() > 1 && self.frames.last().is_some_and(|f| !f.single);
+        if !closes {
+            return Err(self.cursor.unexpected(brace, "a node"));
+        }
+        self.close_frame();
+        self.close_singles();
+        Ok(())
+    }
+
+    /// `;` alone: an empty statement, which is also the whole of a block without braces.
+    fn stray_semicolon(&mut self) {
+        self.close_singles();
+    }
+
+    fn close_singles(&mut self) {
+        while self.frames.len() > 1 && self.frames.last().is_some_and(|f| f.single) {
+            self.close_frame();
+        }
+    }
+
+    fn close_frame(&mut self) {
+        let Some(frame) = self.frames.pop() else {
+            return;
+        };
+        if !frame.live {
+            return;
+        }
+        let part = frame.kind.combine(&mut self.builder, &frame.children);
+        self.give(part, frame.root);
+    }
+
+    /// Adds a finished part to the block around it.
+    fn give(&mut self, part: Part, root: bool) {
+        if root {
+            self.marked_root.get_or_insert(part);
+        } else if let Some(frame) = self.frames.last_mut() {
+            frame.children.push(part);
+        }
+    }
+
+    fn marks(&mut self, mut lexeme: Lexeme) -> (Marks, Lexeme) {
+        let mut marks = Marks::default();
+        loop {
+            match lexeme.token {
+                Token::Symbol('*' | '%') => marks.dropped = true,
+                Token::Symbol('!') => marks.root = true,
+                Token::Symbol('#') => {}
+                _ => return (marks, lexeme),
+            }
+            lexeme = self.cursor.next();
+        }
+    }
+
+    /// Reads one node, up to the beginning of its block.
+    fn statement(&mut self, first: Lexeme) -> Result<(), Fault> {
+        let (marks, name) = self.marks(first);
+        if name.token != Token::Name {
+            return Err(self
+                .cursor
+                .unexpected(name, "a node such as `cube` or `union`"));
+        }
+        let mut arguments = Arguments::parse(&mut self.cursor, name)?;
+        let outer = self.frames.last();
+        let inside_live = outer.is_some_and(|frame| frame.live);
+        let live = (inside_live || marks.root) && !marks.dropped;
+        let root = marks.root && live;
+        let around = match outer {
+            Some(frame) if !root => frame.around.clone(),
+            _ => Around::Nothing,
+        };
+        let node = if live {
+            let text = self.cursor.text(name);
+            nodes::node(
+                text,
+                name,
+                &mut arguments,
+                &around,
+                self.smooth,
+                &mut self.notes,
+            )?
+        } else {
+            Node::Block {
+                kind: Kind::Union,
+                around,
+            }
+        };
+        match node {
+            Node::Shape(shape) => {
+                let part = self.place(*shape);
+                self.cursor.expect(';', "after a primitive")?;
+                self.give(part, root);
+                self.close_singles();
+            }
+            Node::Block { kind, around } => self.open_block(kind, around, name, live, root)?,
+        }
+        Ok(())
+    }
+
+    fn place(&mut self, shape: shapes::Shape) -> Part {
+        let Some((primitive, motion)) = shape else {
+            return Part::EMPTY;
+        };
+        let part = self.builder.primitive(primitive);
+        if motion.is_identity() {
+            part
+        } else {
+            self.builder.moved(part, motion)
+        }
+    }
+
+    fn open_block(
+        &mut self,
+        kind: Kind,
+        around: Around,
+        open: Lexeme,
+        live: bool,
+        root: bool,
+    ) -> Result<(), Fault> {
+        let next = self.cursor.peek();
+        let single = match next.token {
+            Token::Symbol('{') => false,
+            Token::Symbol(';' | '*' | '%' | '#' | '!') | Token::Name => true,
+            _ => return Err(self.cursor.unexpected(next, "`{`, `;` or a node")),
+        };
+        if !single {
+            self.cursor.next();
+        }
+        let children = Vec::new();
+        self.frames.push(Frame {
+            kind,
+            around,
+            children,
+            open,
+            single,
+            live,
+            root,
+        });
+        Ok(())
+    }
+}
+
+/// What the author may want to know, and how much the file's numbers had to be changed.
+#[derive(Default)]
+struct Notes {
+    notes: Vec<Note>,
+    passed_over: usize,
+    digits: Option<f64>,
+}
+
+impl Notes {
+    /// More than this many notes of one kind nobody reads.
+    const MOST: usize = 100;
+
+    /// A matrix was replaced by an exact one, entries changing by up to `residual`.
+    fn snapped(&mut self, residual: f64, span: std::ops::Range<usize>) {
+        // The six digits that OpenSCAD writes.
+        const SIX_DIGITS: f64 = 1e-6;
+        let digits = self.digits.unwrap_or(SIX_DIGITS);
+        self.digits = Some(digits.max(residual));
+        if self.notes.len() == Self::MOST {
+            self.passed_over += 1;
+            return;
+        }
+        let text =
+            format!("read as the nearest exact rotation; entries change by up to {residual:.1e}");
+        self.notes.push(Note { text, span });
+    }
+
+    fn finish(mut self) -> (Option<f64>, Vec<Note>) {
+        if let (Some(last), 1..) = (self.notes.last(), self.passed_over) {
+            let text = format!("{} more matrices were read so", self.passed_over);
+            let span = last.span.clone();
+            self.notes.push(Note { text, span });
+        }
+        (self.digits, self.notes)
+    }
+}

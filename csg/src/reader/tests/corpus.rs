@@ -1,0 +1,88 @@
+//! Files with known answers, from the folder that `PREMIO_CORPUS` names.
+
+use super::*;
+use std::path::PathBuf;
+
+fn corpus() -> Option<PathBuf> {
+    let folder = std::env::var_os("PREMIO_CORPUS").map(PathBuf::from);
+    if folder.is_none() {
+        // To the test's own output, which is shown on demand only.
+        #[expect(clippy::print_stderr, reason = "says why a test tests nothing")]
+        {
+            eprintln!("PREMIO_CORPUS is not set: the corpus is not read");
+        }
+    }
+    folder
+}
+
+fn file(name: &str, options: &Options) -> Option<Result<Description, ReadError>> {
+    let path = corpus()?.join("openscad").join(name);
+    let bytes = std::fs::read(path).unwrap();
+    Some(read(name, &bytes, Format::Csg, options))
+}
+
+#[test]
+fn flattened_files_are_read() {
+    let counts = [
+        ("CSG.csg", 6),
+        ("cube-tests.csg", 3),
+        ("example001.csg", 4),
+        ("example002.csg", 6),
+        ("example003.csg", 7),
+        ("example005.csg", 10),
+        ("example014.csg", 4),
+        ("nullspace-difference.csg", 2),
+    ];
+    for (name, count) in counts {
+        let Some(read) = file(name, &Options::default()) else {
+            return;
+        };
+        let description = read.unwrap();
+        assert_eq!(description.tree.leaves().count(), count, "{name}");
+        assert_eq!(
+            description.digits.is_some(),
+            name == "example014.csg",
+            "{name}"
+        );
+    }
+    for name in ["example019.csg", "example022.csg", "for-nested-tests.csg"] {
+        let Some(read) = file(name, &Options::default()) else {
+            return;
+        };
+        assert!(read.unwrap().tree.leaves().count() > 20, "{name}");
+    }
+}
+
+#[test]
+fn polygons_and_scales_are_refused() {
+    let Some(polygons) = file("sphere-tests.csg", &Options::default()) else {
+        return;
+    };
+    assert!(polygons.unwrap_err().found.contains("$fn"));
+    let options = Options {
+        smooth: true,
+        part: None,
+    };
+    let Some(smooth) = file("sphere-tests.csg", &options) else {
+        return;
+    };
+    assert!(smooth.is_ok());
+    let Some(scaled) = file("transform-tests.csg", &Options::default()) else {
+        return;
+    };
+    let error = scaled.unwrap_err();
+    assert_eq!((error.line, error.column), (2, 13));
+}
+
+#[test]
+fn the_cases_are_read() {
+    let Some(folder) = corpus() else { return };
+    let text = std::fs::read_to_string(folder.join("cases.json")).unwrap();
+    let cases: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for case in cases.as_array().unwrap() {
+        let read = read_text(&case["tree"].to_string(), Format::Json);
+        // A torus that touches its own axis is refused: the language asks for RMIN < RMAJ.
+        let refused = case["id"] == "oscad-4001";
+        assert_eq!(read.is_err(), refused, "{}: {read:?}", case["id"]);
+    }
+}

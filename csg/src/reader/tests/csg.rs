@@ -1,0 +1,143 @@
+use super::*;
+
+fn csg(text: &str) -> Tree {
+    tree(text, Format::Csg)
+}
+
+#[test]
+fn primitives_are_placed_as_openscad_places_them() {
+    assert_same_points(
+        &csg("cube(size = [2, 3, 4], center = true);"),
+        |[x, y, z]| x.abs() <= 1.0 && y.abs() <= 1.5 && z.abs() <= 2.0,
+    );
+    assert_same_points(
+        &csg("cylinder($fn = 0, $fa = 12, $fs = 2, h = 4, r1 = 1, r2 = 3, center = true);"),
+        |[x, y, z]| z.abs() <= 2.0 && x.hypot(y) <= 2.0 + z / 2.0,
+    );
+    assert_same_points(&csg("sphere(d = 6);"), |[x, y, z]| {
+        x.hypot(y).hypot(z) <= 3.0
+    });
+    assert_same_points(&csg("cube(3);"), |p| {
+        p.iter().all(|x| (0.0..=3.0).contains(x))
+    });
+}
+
+#[test]
+fn extrusions_make_tori_and_wedges() {
+    let moved =
+        "multmatrix([[1,0,0,-3],[0,1,0,1],[0,0,1,0],[0,0,0,1]]) { circle($fn = 0, r = 1); }";
+    let torus = csg(&format!(
+        "rotate_extrude(angle = 360, convexity = 2, $fn = 0) {{ {moved} }}"
+    ));
+    assert_same_points(&torus, |[x, y, z]| (x.hypot(y) - 3.0).hypot(z - 1.0) <= 1.0);
+    for (u, v) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+        for order in ["[[0,1,2]]", "[[2,1,0]]", "[[1,2,0]]", "undef"] {
+            let text = format!(
+                "linear_extrude(height = 4, center = true, scale = [1, 1]) {{
+                   polygon(points = [[{u}, 1], [{}, 1], [{u}, {}]], paths = {order}, convexity = 1); }}",
+                u + 3.0 * u,
+                1.0 + 2.0 * v,
+            );
+            assert_same_points(&csg(&text), |[x, y, z]| {
+                let (a, b) = ((x - u) * u / 3.0, (y - 1.0) * v / 2.0);
+                a >= 0.0 && b >= 0.0 && a + b <= 1.0 && z.abs() <= 2.0
+            });
+        }
+    }
+    let plate = csg("linear_extrude(height = 1) difference() { square([4, 2]); circle(r = 1); }");
+    assert_same_points(&plate, |[x, y, z]| {
+        (0.0..=4.0).contains(&x)
+            && (0.0..=2.0).contains(&y)
+            && (0.0..=1.0).contains(&z)
+            && x.hypot(y) > 1.0
+    });
+}
+
+#[test]
+fn mirrors_become_motions() {
+    let wedge = "linear_extrude(height = 2) { polygon(points = [[0, 0], [3, 0], [0, 2]]); }";
+    let inner = format!(
+        "multmatrix([[0,-1,0,1],[1,0,0,0],[0,0,1,0.5],[0,0,0,1]]) {{ {wedge} cube(size = [1, 2, 3]); }}"
+    );
+    let plain = csg(&inner);
+    for mirror in [
+        [-1.0, 1.0, 1.0],
+        [1.0, -1.0, 1.0],
+        [1.0, 1.0, -1.0],
+        [-1.0, -1.0, -1.0],
+    ] {
+        let [a, b, c] = mirror;
+        let text =
+            format!("multmatrix([[{a},0,0,0.5],[0,{b},0,0],[0,0,{c},0],[0,0,0,1]]) {{ {inner} }}");
+        assert_same_points(&csg(&text), |[x, y, z]| {
+            inside(&plain, [a * (x - 0.5), b * y, c * z])
+        });
+    }
+}
+
+#[test]
+fn six_digits_become_an_exact_rotation() {
+    let text = "multmatrix([[0.866025, -0.5, 0, 0], [0.5, 0.866025, 0, 1], [0, 0, 1, 0], [0, 0, 0, 1]]) { sphere(r = 1); }";
+    let description = read_text(text, Format::Csg).unwrap();
+    assert_eq!(description.digits, Some(1e-6));
+    assert_eq!(description.notes.len(), 1);
+    let turn = description
+        .tree
+        .leaves()
+        .next()
+        .unwrap()
+        .1
+        .motion
+        .rotation_f64();
+    assert!((turn[(0, 0)] - 0.75f64.sqrt()).abs() < 1e-15);
+    let exact = read_text("sphere(r = 1);", Format::Csg).unwrap();
+    assert_eq!((exact.digits, exact.notes.len()), (None, 0));
+}
+
+#[test]
+fn modifiers() {
+    let count = |text: &str| csg(text).leaves().count();
+    assert_eq!(
+        count("cube(1); %cube(2); *group() { hull() { cube(3); } } #cube(4);"),
+        2
+    );
+    assert_eq!(count("difference() { %cube(1); cube(2); }"), 1);
+    assert_eq!(
+        count("hull(); multmatrix([[2]]) { cube(1); !union() { cube(1); sphere(r = 1); } }"),
+        2
+    );
+}
+
+#[test]
+fn what_has_no_size_adds_nothing() {
+    assert!(
+        csg("cube(size = [0, 1, 1]); sphere(r = 0); cylinder(h = 0, r1 = 1, r2 = 1);").is_empty()
+    );
+    assert!(csg("intersection() { cube(1); group(); }").is_empty());
+    assert!(csg("difference() { group() { } cube(1); }").is_empty());
+    assert!(csg("").is_empty());
+}
+
+#[test]
+fn small_numbers_of_sides_are_polygons_unless_told() {
+    for sides in ["0.1", "3", "16"] {
+        let text = format!("sphere($fn = {sides}, r = 5);");
+        assert!(read_text(&text, Format::Csg).is_err());
+        let options = Options {
+            smooth: true,
+            part: None,
+        };
+        assert!(read("part", text.as_bytes(), Format::Csg, &options).is_ok());
+    }
+    for sides in ["0", "17", "16.5", "-3"] {
+        csg(&format!("sphere($fn = {sides}, r = 5);"));
+    }
+}
+
+#[test]
+fn comments_texts_and_blocks_without_braces() {
+    let tree = csg(
+        "// one\n/* two */ color([1, 0, 0, 1]) group() cube(size = 1); color(\"red\") { cube(2); };",
+    );
+    assert_eq!(tree.leaves().count(), 2);
+}

@@ -1,0 +1,46 @@
+use super::*;
+
+fn json(text: &str) -> Tree {
+    tree(text, Format::Json)
+}
+
+#[test]
+fn operations_and_primitives() {
+    let tree = json(
+        r#"{"op":"difference","children":[
+            {"prim":"block","size":[1,2,3]},
+            {"op":"union","children":[{"prim":"cone","r":1,"h":2},{"prim":"frustum","r1":0,"r2":1,"h":1}]},
+            {"op":"intersection","children":[{"prim":"torus","R":3,"r":1},{"prim":"sphere","r":1},
+             {"prim":"cylinder","r":1,"h":0.1e1},{"prim":"wedge","size":[1,1,1]}]}
+        ],"transform":[{"translate":[1,0,0]}]}"#,
+    );
+    assert_eq!(tree.leaves().count(), 7);
+    assert_eq!(
+        tree.leaves().next().unwrap().1.motion.translation_f64(),
+        nalgebra::Vector3::new(1.0, 0.0, 0.0)
+    );
+}
+
+#[test]
+fn numbers_are_exact() {
+    let tree = json(r#"{"prim":"sphere","r":0.1}"#);
+    let tenth = Rational::from_parts(1.into(), 10u8.into());
+    assert_eq!(
+        tree.leaves().next().unwrap().1.primitive,
+        Primitive::sphere(tenth).unwrap()
+    );
+}
+
+#[test]
+fn a_transform_goes_in_the_order_written() {
+    let tree = json(
+        r#"{"prim":"sphere","r":1,"transform":[{"translate":[2,0,0]},{"rotate":[[0,0,2],90]}]}"#,
+    );
+    assert!(inside(&tree, [0.0, 2.0, 0.0]));
+}
+
+#[test]
+fn no_children_are_the_empty_solid() {
+    assert!(json(r#"{"op":"union","children":[]}"#).is_empty());
+    assert!(json(r#"{"op":"difference","children":[]}"#).is_empty());
+}

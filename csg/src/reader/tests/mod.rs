@@ -1,0 +1,82 @@
+//! Tests of the readers.
+
+mod corpus;
+mod csg;
+mod json;
+mod messages;
+mod padl;
+mod robustness;
+
+use super::*;
+use crate::primitive::Primitive;
+use crate::tree::{Node, NodeId, Operation, Placed};
+use premio_kernel::number::rational::{Rational, to_f64};
+
+fn read_text(text: &str, format: Format) -> Result<Description, ReadError> {
+    read("part", text.as_bytes(), format, &Options::default())
+}
+
+fn tree(text: &str, format: Format) -> Tree {
+    match read_text(text, format) {
+        Ok(description) => description.tree,
+        Err(error) => panic!("{error}\n{text}"),
+    }
+}
+
+fn message(text: &str, format: Format) -> String {
+    read_text(text, format).unwrap_err().to_string()
+}
+
+/// Whether a primitive, in its own frame, holds a point.
+fn holds(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
+    let f = to_f64;
+    let within = |value: f64, size: &Rational| (0.0..=f(size)).contains(&value);
+    let radial = x.hypot(y);
+    match primitive {
+        Primitive::Block { size: [a, b, c] } => within(x, a) && within(y, b) && within(z, c),
+        Primitive::Wedge { size: [a, b, c] } => {
+            within(x, a) && within(y, b) && within(z, c) && x / f(a) + z / f(c) <= 1.0
+        }
+        Primitive::Cylinder { radius, height } => radial <= f(radius) && within(z, height),
+        Primitive::Frustum { base, top, height } => {
+            within(z, height) && radial <= f(base) + (f(top) - f(base)) * z / f(height)
+        }
+        Primitive::Sphere { radius } => radial.hypot(z) <= f(radius),
+        Primitive::Torus { major, minor } => (radial - f(major)).hypot(z) <= f(minor),
+    }
+}
+
+/// Whether a tree holds a point, by classifying it with every primitive.
+fn inside(tree: &Tree, point: [f64; 3]) -> bool {
+    let mut held = vec![false; tree.nodes().len()];
+    for (index, node) in tree.nodes().iter().enumerate().rev() {
+        held[index] = match node {
+            Node::Leaf(Placed { primitive, motion }) => {
+                let back = motion.inverse();
+                let exact = point.map(|x| premio_kernel::number::rational::from_f64(x).unwrap());
+                holds(primitive, back.apply_point(&exact).map(|x| to_f64(&x)))
+            }
+            Node::Operation { op, children } => {
+                let mut below = children.iter().map(|child: &NodeId| held[child.index()]);
+                match op {
+                    Operation::Union => below.any(|h| h),
+                    Operation::Intersection => below.all(|h| h),
+                    Operation::Difference => below.next().unwrap() && !below.any(|h| h),
+                }
+            }
+        };
+    }
+    held.first().copied().unwrap_or(false)
+}
+
+/// Asserts that two trees hold the same points of a grid that avoids round numbers.
+fn assert_same_points(a: &Tree, b: impl Fn([f64; 3]) -> bool) {
+    let steps = || (-9..=9).map(|i| f64::from(i) * 0.61 + 0.0137);
+    for x in steps() {
+        for y in steps() {
+            for z in steps() {
+                assert_eq!(inside(a, [x, y, z]), b([x, y, z]), "at {x} {y} {z}");
+            }
+        }
+    }
+}

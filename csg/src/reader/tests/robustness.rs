@@ -1,0 +1,137 @@
+//! No text makes a reader panic, overflow the stack or take for ever.
+
+use super::*;
+use proptest::prelude::*;
+
+const SEEDS: [(&str, Format); 3] = [
+    (
+        "L = 6\nA = BLO(X=L, Y=4*2, Z=2e0) # c\nP = (A DIF CYL(R=1, H=3) AT (MOVX=L/2, ROTZ=-30)) UN A\n",
+        Format::Padl,
+    ),
+    (
+        "difference() { cube(size = [1, 2, 3], center = true); multmatrix([[0.866025, -0.5, 0, 1], [0.5, 0.866025, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { cylinder($fn = 0, h = 4, r1 = 2, r2 = 1); } rotate_extrude() { multmatrix([[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { circle(r = 1); } } linear_extrude(height = 2) { polygon(points = [[0,0],[1,0],[0,1]], paths = undef); } }",
+        Format::Csg,
+    ),
+    (
+        r#"{"op":"union","children":[{"prim":"block","size":[1,2,3],"transform":[{"translate":[1,2,3]},{"rotate":[[0,0,1],30]}]},{"prim":"torus","R":3,"r":1}]}"#,
+        Format::Json,
+    ),
+];
+
+const FORMATS: [Format; 3] = [Format::Padl, Format::Csg, Format::Json];
+
+/// Reads, and checks that an error's place is in the text.
+fn check(bytes: &[u8], format: Format) {
+    if let Err(error) = read("part", bytes, format, &Options::default()) {
+        assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());
+        assert!(error.line >= 1 && error.column >= 1);
+        assert!(!error.to_string().is_empty());
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        for format in FORMATS {
+            check(&bytes, format);
+        }
+    }
+
+    #[test]
+    fn words_in_any_order(words in prop::collection::vec(prop::sample::select(vec![
+        "A", "=", "BLO", "SPH", "AT", "UN", "DIF", "(", ")", ",", "X", "R", "ROTX", "1", "-", "*", "/", "\n",
+        "cube", "group", "{", "}", ";", "[", "]", "multmatrix", "%", "!", "$fn", "circle", "undef", "nan",
+        "\"op\"", "\"prim\"", "\"union\"", ":", "null", "\"", "#", "0", "1e400", "1e999999999999",
+    ]), 0..60)) {
+        let text = words.concat();
+        for format in FORMATS {
+            check(text.as_bytes(), format);
+        }
+    }
+
+    #[test]
+    fn changed_files(
+        seed in 0usize..3,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0u8..3, any::<u8>()), 1..8),
+    ) {
+        let (text, format) = SEEDS[seed];
+        let mut bytes = text.as_bytes().to_vec();
+        for (place, kind, byte) in changes {
+            let at = place.index(bytes.len());
+            match kind {
+                0 => bytes[at] = byte,
+                1 => bytes.insert(at, byte % 128),
+                _ => {
+                    bytes.remove(at);
+                }
+            }
+        }
+        check(&bytes, format);
+    }
+}
+
+#[test]
+fn the_seeds_are_good() {
+    for (text, format) in SEEDS {
+        tree(text, format);
+    }
+}
+
+const DEEP: usize = 1_000_000;
+
+fn nested(open: &str, middle: &str, close: &str) -> String {
+    [open.repeat(DEEP).as_str(), middle, &close.repeat(DEEP)].concat()
+}
+
+#[test]
+fn deep_padl() {
+    let text = format!("A = {}", nested("(", "SPH(R=1)", ")"));
+    assert_eq!(tree(&text, Format::Padl).leaves().count(), 1);
+    let text = format!("A = SPH(R={})", nested("-(", "1", ")"));
+    assert_eq!(tree(&text, Format::Padl).leaves().count(), 1);
+    let text = format!("A = {}", nested("(", "SPH(R=1)", ") AT (MOVX=1)"));
+    assert_eq!(tree(&text, Format::Padl).leaves().count(), 1);
+    let text = format!("A = {}", "(".repeat(DEEP));
+    assert!(read_text(&text, Format::Padl).is_err());
+}
+
+#[test]
+fn deep_csg() {
+    assert_eq!(
+        tree(&nested("group(){", "cube(1);", "}"), Format::Csg)
+            .leaves()
+            .count(),
+        1
+    );
+    assert_eq!(
+        tree(&nested("group()", "cube(1);", ""), Format::Csg)
+            .leaves()
+            .count(),
+        1
+    );
+    assert!(read_text(&nested("group(){", "", ""), Format::Csg).is_err());
+    assert!(read_text(&nested("cube([", "", ""), Format::Csg).is_err());
+    assert!(read_text(&format!("cube({}", "[".repeat(DEEP)), Format::Csg).is_err());
+}
+
+#[test]
+fn deep_json() {
+    let open = r#"{"op":"union","children":["#;
+    let text = nested(open, r#"{"prim":"sphere","r":1}"#, "]}");
+    assert_eq!(tree(&text, Format::Json).leaves().count(), 1);
+    assert!(read_text(&nested("[", "", "]"), Format::Json).is_err());
+    assert!(read_text(&"[".repeat(DEEP), Format::Json).is_err());
+}
+
+#[test]
+fn deep_trees_of_alternating_operations() {
+    const LEVELS: usize = 100_000;
+    let open = "union(){cube(1);intersection(){cube(2);multmatrix([[1,0,0,1],[0,1,0,0],[0,0,1,0],[0,0,0,1]]){";
+    let text = [
+        open.repeat(LEVELS).as_str(),
+        "cube(3);",
+        &"}}}".repeat(LEVELS),
+    ]
+    .concat();
+    assert_eq!(tree(&text, Format::Csg).leaves().count(), 2 * LEVELS + 1);
+}

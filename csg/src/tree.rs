@@ -1,0 +1,103 @@
+//! The tree of set operations, with every motion at its leaves.
+
+use std::ops::Index;
+
+use premio_kernel::motion::Motion;
+
+use crate::primitive::Primitive;
+
+/// The place of a node in its tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeId(pub(crate) usize);
+
+impl NodeId {
+    /// The node's index among [`Tree::nodes`].
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// A regularised set operation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Operation {
+    /// What is in any child.
+    Union,
+    /// What is in every child.
+    Intersection,
+    /// What is in the first child and in no later one.
+    Difference,
+}
+
+/// A primitive at its place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Placed {
+    /// The solid in its own frame.
+    pub primitive: Primitive,
+    /// Where it is put.
+    pub motion: Motion,
+}
+
+/// A node of a tree.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "more than half of all nodes are leaves"
+)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Node {
+    /// A primitive at its place.
+    Leaf(Placed),
+    /// An operation on two children or more.
+    Operation {
+        /// What is done with the children.
+        op: Operation,
+        /// The children, in the order written.
+        children: Vec<NodeId>,
+    },
+}
+
+/// A solid as a tree of operations on placed primitives; made by a
+/// [`Builder`](crate::builder::Builder).
+///
+/// The nodes lie in one arena, a parent before its children, so that trees of any depth can be
+/// walked, and dropped, without recursion. No child is empty, and no operation stands directly
+/// below one that it could be merged into.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Tree {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) root: Option<NodeId>,
+}
+
+impl Tree {
+    /// The topmost node; `None` for the empty solid.
+    pub fn root(&self) -> Option<NodeId> {
+        self.root
+    }
+
+    /// All nodes, a parent before its children.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Whether this is the empty solid.
+    pub fn is_empty(&self) -> bool {
+        self.root.is_none()
+    }
+
+    /// The placed primitives, in the order written.
+    pub fn leaves(&self) -> impl Iterator<Item = (NodeId, &Placed)> {
+        let nodes = self.nodes.iter().enumerate();
+        nodes.filter_map(|(index, node)| match node {
+            Node::Leaf(placed) => Some((NodeId(index), placed)),
+            Node::Operation { .. } => None,
+        })
+    }
+}
+
+impl Index<NodeId> for Tree {
+    type Output = Node;
+
+    /// The node of an id of this tree. An id of another tree may panic.
+    fn index(&self, id: NodeId) -> &Node {
+        &self.nodes[id.0]
+    }
+}

@@ -156,11 +156,15 @@ impl Builder {
         };
         // Placements in a row become one, so that the cost of a use is that of its leaves.
         let (child, placement) = match &self.drafts[child] {
+            // Beyond the limit for good: finishing it is an error, wherever it is put.
+            Draft::Moved { placement, .. } if placement.motion.bits() > MAX_MOTION_BITS => {
+                return part;
+            }
             Draft::Moved {
                 child,
                 placement: inner,
-            } if inner.motion.bits() <= MAX_MOTION_BITS => (*child, inner.then(&placement)),
-            _ => (child, placement),
+            } => (*child, inner.then(&placement)),
+            Draft::Leaf(_) | Draft::Operation { .. } => (child, placement),
         };
         let leaves = self.leaves[child];
         self.add(Draft::Moved { child, placement }, leaves)
@@ -227,14 +231,14 @@ impl<'a> Expansion<'a> {
             Draft::Leaf(primitive) => self.expand_leaf(primitive, &task),
             Draft::Operation { op, children } => self.expand_operation(*op, children, &task),
             Draft::Moved { child, placement } => {
-                let placement = placement.then(&task.placement);
-                let bits = placement.motion.bits();
+                let outer = placement.then(&task.placement);
+                let bits = outer.motion.bits().max(placement.motion.bits());
                 if bits > MAX_MOTION_BITS {
                     return Err(TreeError::NumbersTooLong { bits });
                 }
                 self.tasks.push(Task {
                     draft: *child,
-                    placement: Rc::new(placement),
+                    placement: Rc::new(outer),
                     ..task
                 });
             }

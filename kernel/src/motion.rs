@@ -26,10 +26,10 @@ pub struct Motion {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MotionError {
     /// An axis of length zero has no direction.
-    #[error("the axis of a rotation has length zero")]
+    #[error("an axis of length zero")]
     ZeroAxis,
     /// A number lies beyond the range of doubles, in which the half angle's tangent is taken.
-    #[error("the axis of a rotation is beyond the range of doubles")]
+    #[error("an axis beyond the range of doubles")]
     OutOfRange,
 }
 

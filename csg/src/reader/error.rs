@@ -143,11 +143,11 @@ pub(super) fn line_and_column(text: &[u8], at: usize) -> (u32, u32) {
 /// A piece of the text for a message: short, on one line.
 pub(super) fn quote(text: &str) -> String {
     const LONGEST: usize = 40;
-    let mut shown: String = text
+    let shown = text
         .chars()
         .take(LONGEST)
-        .flat_map(char::escape_debug)
-        .collect();
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c });
+    let mut shown: String = shown.collect();
     if text.chars().nth(LONGEST).is_some() {
         shown.push('…');
     }
@@ -160,7 +160,11 @@ fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&
         return None;
     }
     let word = word.to_lowercase();
-    let allowed = if word.chars().count() < 4 { 1 } else { 2 };
+    let allowed = match word.chars().count() {
+        0 | 1 => return None,
+        2 | 3 => 1,
+        _ => 2,
+    };
     known
         .into_iter()
         .filter(|candidate| candidate.len() <= LONGEST)

@@ -118,7 +118,7 @@ pub(super) fn node(
                 around,
             })
         }
-        "rotate_extrude" => revolve(arguments),
+        "rotate_extrude" => revolve(arguments, smooth),
         "cube" => shapes::cube(arguments).map(solid),
         "sphere" => shapes::sphere(arguments, smooth).map(solid),
         "cylinder" => shapes::cylinder(arguments, smooth).map(solid),
@@ -179,8 +179,9 @@ fn unknown(name: &str, place: Lexeme) -> Fault {
     Fault::input(place.span(), found, "a node that can be read").help(reason)
 }
 
-fn revolve(arguments: &mut Arguments) -> Result<Node, Fault> {
+fn revolve(arguments: &mut Arguments, smooth: bool) -> Result<Node, Fault> {
     arguments.bind(&["angle", "start"])?;
+    shapes::check_smooth(arguments, smooth)?;
     if let Some(angle) = arguments.find("angle") {
         let turn = Rational::from(360);
         let value = angle.number()?;

@@ -80,8 +80,9 @@ fn the_cases_are_read() {
     let text = std::fs::read_to_string(folder.join("cases.json")).unwrap();
     let cases: serde_json::Value = serde_json::from_str(&text).unwrap();
     for case in cases.as_array().unwrap() {
-        let tree = case["tree"].to_string();
-        let read = read_text(&tree, Format::Json);
-        assert!(read.is_ok(), "{}: {}", case["id"], read.unwrap_err());
+        let read = read_text(&case["tree"].to_string(), Format::Json);
+        // A torus that touches its own axis is refused: the language asks for RMIN < RMAJ.
+        let refused = case["id"] == "oscad-4001";
+        assert_eq!(read.is_err(), refused, "{}: {read:?}", case["id"]);
     }
 }

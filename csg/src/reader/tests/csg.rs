@@ -129,6 +129,9 @@ fn small_numbers_of_sides_are_polygons_unless_told() {
         };
         assert!(read("part", text.as_bytes(), Format::Csg, &options).is_ok());
     }
+    let ring = "multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { circle(r = 1); }";
+    let polygonal = format!("rotate_extrude($fn = 8) {{ {ring} }}");
+    assert!(read_text(&polygonal, Format::Csg).is_err());
     for sides in ["0", "17", "16.5", "-3"] {
         csg(&format!("sphere($fn = {sides}, r = 5);"));
     }

@@ -17,7 +17,7 @@ fn operations_and_primitives() {
     assert_eq!(tree.leaves().count(), 7);
     assert_eq!(
         tree.leaves().next().unwrap().1.motion.translation_f64(),
-        [1.0, 0.0, 0.0].into()
+        nalgebra::Vector3::new(1.0, 0.0, 0.0)
     );
 }
 

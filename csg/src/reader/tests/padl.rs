@@ -42,7 +42,7 @@ PART  = (BASE DIF BORE) AT (ROTZ=30, MOVX=5)
         .leaves()
         .map(|(_, placed)| placed.motion.translation_f64())
         .collect();
-    assert_eq!(places[0], [5.0, 0.0, 0.0].into());
+    assert_eq!(places[0], nalgebra::Vector3::new(5.0, 0.0, 0.0));
     let (x, y) = (
         30.0 * 0.75f64.sqrt() - 10.0 + 5.0,
         15.0 + 20.0 * 0.75f64.sqrt(),

@@ -85,7 +85,13 @@ pub(super) fn arrange(
         GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
     });
     let tree = RTree::bulk_load(boxes.collect());
-    let mut found = Arrangement { carriers, sides, meetings: Vec::new(), corners: Vec::new(), tree };
+    let mut found = Arrangement {
+        carriers,
+        sides,
+        meetings: Vec::new(),
+        corners: Vec::new(),
+        tree,
+    };
     let mut corners = Corners::new(band);
     for ((a, b), supports) in found.pairs(solids, band) {
         found.add_pair(a, b, &supports, extent, judge, &mut corners)?;
@@ -97,7 +103,8 @@ pub(super) fn arrange(
     found.share_corners(judge);
     for m in &mut found.meetings {
         m.cuts.sort_by(|a, b| a.t.total_cmp(&b.t));
-        m.cuts.dedup_by(|a, b| a.vertex == b.vertex && (a.t - b.t).abs() < CLOSE_PASS);
+        m.cuts
+            .dedup_by(|a, b| a.vertex == b.vertex && (a.t - b.t).abs() < CLOSE_PASS);
     }
     Ok(found)
 }
@@ -130,8 +137,11 @@ fn merge(
     }
     list.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let window = 4.0 * judge.band() + ROUNDING * extent.radius;
-    let mut sides: Vec<Vec<(usize, Sense)>> =
-        solids.all.iter().map(|s| vec![(usize::MAX, Sense::Along); s.sides.len()]).collect();
+    let mut sides: Vec<Vec<(usize, Sense)>> = solids
+        .all
+        .iter()
+        .map(|s| vec![(usize::MAX, Sense::Along); s.sides.len()])
+        .collect();
     let mut carriers: Vec<Surface> = Vec::new();
     // The carriers that may still be met, by the place of their foot.
     let mut recent: Vec<(f64, usize)> = Vec::new();
@@ -157,7 +167,7 @@ impl Arrangement {
         let mut pairs = Pairs::new();
         for (i, s) in solids.all.iter().enumerate() {
             let around = AABB::from_corners(s.bounds.min, s.bounds.max);
-            for near in self.tree.locate_in_envelope_intersecting(&around) {
+            for near in self.tree.locate_in_envelope_intersecting(around) {
                 let j = near.data;
                 if j >= i {
                     self.add_pairs_of(solids, i, j, band, &mut pairs);
@@ -231,7 +241,10 @@ impl Arrangement {
         let mut kept = Vec::new();
         for range in ranges {
             let b3 = bounds(&branch.curve, range);
-            if !supports.iter().any(|s| common(s, &b3.grown(judge.band())).is_some()) {
+            if !supports
+                .iter()
+                .any(|s| common(s, &b3.grown(judge.band())).is_some())
+            {
                 continue;
             }
             kept.push(self.meetings.len());
@@ -254,11 +267,10 @@ impl Arrangement {
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
         let mut near: Vec<usize> = Vec::new();
-        for s in self.tree.locate_in_envelope_intersecting(&around) {
+        for s in self.tree.locate_in_envelope_intersecting(around) {
             for (k, side) in solids.all[s.data].sides.iter().enumerate() {
                 let c = self.sides[s.data][k].0;
-                if !m.carriers.contains(&c)
-                    && common(&side.bounds.grown(band), &m.bounds).is_some()
+                if !m.carriers.contains(&c) && common(&side.bounds.grown(band), &m.bounds).is_some()
                 {
                     near.push(c);
                 }
@@ -280,10 +292,17 @@ impl Arrangement {
                         if let Some(margin) = r.margin {
                             judge.note("curve on surface", margin, p.coords.into());
                         }
-                        cuts.push(Cut { t: r.t, vertex: corners.at(&p, &all, judge) });
+                        cuts.push(Cut {
+                            t: r.t,
+                            vertex: corners.at(&p, &all, judge),
+                        });
                     }
                     for (t, value) in misses {
-                        judge.note("curve beside surface", value, m.curve.point(t).coords.into());
+                        judge.note(
+                            "curve beside surface",
+                            value,
+                            m.curve.point(t).coords.into(),
+                        );
                     }
                 }
             }
@@ -357,7 +376,9 @@ impl Arrangement {
 fn common(a: &Box3, b: &Box3) -> Option<Box3> {
     let min: [f64; 3] = std::array::from_fn(|i| a.min[i].max(b.min[i]));
     let max: [f64; 3] = std::array::from_fn(|i| a.max[i].min(b.max[i]));
-    (0..3).all(|i| min[i] <= max[i]).then_some(Box3 { min, max })
+    (0..3)
+        .all(|i| min[i] <= max[i])
+        .then_some(Box3 { min, max })
 }
 
 /// The parts of a line within the boxes, overlapping ones joined.
@@ -402,7 +423,11 @@ struct Corners {
 
 impl Corners {
     fn new(band: f64) -> Self {
-        Self { all: Vec::new(), grid: HashMap::new(), cell: 256.0 * band }
+        Self {
+            all: Vec::new(),
+            grid: HashMap::new(),
+            cell: 256.0 * band,
+        }
     }
 
     fn key(&self, p: &Point3<f64>) -> [i64; 3] {
@@ -441,7 +466,10 @@ impl Corners {
         let v = self.all.len();
         let mut carriers = carriers.to_vec();
         carriers.sort_unstable();
-        self.all.push(Corner { point: *p, carriers });
+        self.all.push(Corner {
+            point: *p,
+            carriers,
+        });
         self.grid.entry(self.key(p)).or_default().push(v);
         v
     }

@@ -3,7 +3,6 @@
 use crate::primitive::Primitive;
 use crate::tree::{NodeId, Placed, Tree};
 use nalgebra::{Matrix3, Point3, Vector3};
-use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
@@ -12,12 +11,8 @@ use premio_kernel::number::rational::{Rational, to_f64};
 /// A half space: one side of a surface, and the box of the face it gives its primitive.
 #[derive(Clone, Debug)]
 pub(super) struct HalfSpace {
-    /// The surface; its negative side is the half space where the sense is `Along`.
+    /// The surface, with the half space on its negative side.
     pub surface: Surface,
-    /// The carrier that the surface was merged to, with the sense relative to it.
-    pub carrier: usize,
-    /// Whether the half space is the carrier's negative side.
-    pub sense: Sense,
     /// The box of the face.
     pub bounds: Box3,
 }
@@ -61,12 +56,19 @@ impl Pose<'_> {
 
     /// The primitive's frame moved to an exact point of it.
     fn frame(&self, p: [Rational; 3]) -> Frame {
-        Frame { origin: self.point(p), x: self.axis(0), y: self.axis(1), z: self.axis(2) }
+        Frame {
+            origin: self.point(p),
+            x: self.axis(0),
+            y: self.axis(1),
+            z: self.axis(2),
+        }
     }
 
     fn plane(&self, through: [Rational; 3], normal: Vector3<f64>) -> Surface {
         let origin = self.point(through);
-        Surface::Plane(Plane { frame: Frame::about(origin, self.turn * normal) })
+        Surface::Plane(Plane {
+            frame: Frame::about(origin, self.turn * normal),
+        })
     }
 
     /// The box of a box of the primitive's frame.
@@ -76,7 +78,10 @@ impl Pose<'_> {
         let half = Vector3::from_fn(|i, _| 0.5 * (hi[i] - lo[i]));
         let centre = self.turn * mid + offset;
         let reach = self.turn.abs() * half;
-        Box3 { min: (centre - reach).into(), max: (centre + reach).into() }
+        Box3 {
+            min: (centre - reach).into(),
+            max: (centre + reach).into(),
+        }
     }
 }
 
@@ -91,18 +96,24 @@ fn up(z: &Rational) -> [Rational; 3] {
 impl Solids {
     /// The primitives of a tree, not yet merged.
     pub fn of(tree: &Tree) -> Self {
-        let all: Vec<Solid> = tree.leaves().map(|(leaf, placed)| solid(leaf, placed)).collect();
+        let all: Vec<Solid> = tree
+            .leaves()
+            .map(|(leaf, placed)| solid(leaf, placed))
+            .collect();
         let bounds = all.iter().fold(Box3::EMPTY, |b, s| b.hull(&s.bounds));
         Self { all, bounds }
     }
 }
 
 fn solid(leaf: NodeId, placed: &Placed) -> Solid {
-    let pose = Pose { placed, turn: placed.motion.rotation_f64() };
+    let pose = Pose {
+        placed,
+        turn: placed.motion.rotation_f64(),
+    };
     let mut sides = Vec::new();
     let mut add = |surface: Surface, lo: [f64; 3], hi: [f64; 3]| {
         let bounds = pose.boxed(lo, hi);
-        sides.push(HalfSpace { surface, carrier: usize::MAX, sense: Sense::Along, bounds });
+        sides.push(HalfSpace { surface, bounds });
     };
     match &placed.primitive {
         Primitive::Block { size } => {
@@ -124,7 +135,10 @@ fn solid(leaf: NodeId, placed: &Placed) -> Solid {
         }
         Primitive::Cylinder { radius, height } => {
             let (r, h) = (to_f64(radius), to_f64(height));
-            let wall = Cylinder { frame: pose.frame(zero()), radius: r };
+            let wall = Cylinder {
+                frame: pose.frame(zero()),
+                radius: r,
+            };
             add(Surface::Cylinder(wall), [-r, -r, 0.0], [r, r, h]);
             add_disc(&pose, &Rational::ZERO, 0.0, r, -1.0, &mut add);
             add_disc(&pose, height, h, r, 1.0, &mut add);
@@ -134,12 +148,19 @@ fn solid(leaf: NodeId, placed: &Placed) -> Solid {
         }
         Primitive::Sphere { radius } => {
             let r = to_f64(radius);
-            let s = Sphere { frame: pose.frame(zero()), radius: r };
+            let s = Sphere {
+                frame: pose.frame(zero()),
+                radius: r,
+            };
             add(Surface::Sphere(s), [-r; 3], [r; 3]);
         }
         Primitive::Torus { major, minor } => {
             let (a, b) = (to_f64(major), to_f64(minor));
-            let t = Torus { frame: pose.frame(zero()), major: a, minor: b };
+            let t = Torus {
+                frame: pose.frame(zero()),
+                major: a,
+                minor: b,
+            };
             let w = to_f64(&(major + minor));
             add(Surface::Torus(t), [-w, -w, -b], [w, w, b]);
         }
@@ -151,7 +172,11 @@ fn solid(leaf: NodeId, placed: &Placed) -> Solid {
         }
         _ => sides[0].bounds,
     };
-    Solid { leaf, sides, bounds }
+    Solid {
+        leaf,
+        sides,
+        bounds,
+    }
 }
 
 type Add<'a> = dyn FnMut(Surface, [f64; 3], [f64; 3]) + 'a;
@@ -179,7 +204,11 @@ fn add_block_side(
 }
 
 fn add_disc(pose: &Pose<'_>, at: &Rational, z: f64, r: f64, sign: f64, add: &mut Add<'_>) {
-    add(pose.plane(up(at), Vector3::z() * sign), [-r, -r, z], [r, r, z]);
+    add(
+        pose.plane(up(at), Vector3::z() * sign),
+        [-r, -r, z],
+        [r, r, z],
+    );
 }
 
 fn add_frustum(
@@ -195,8 +224,21 @@ fn add_frustum(
     let slope = to_f64(&(base.clone() - top.clone()));
     let length = slope.hypot(h);
     let f = pose.frame(up(&apex));
-    let frame = if slope > 0.0 { Frame { x: f.x, y: -f.y, z: -f.z, ..f } } else { f };
-    let cone = Cone { frame, sin: slope.abs() / length, cos: h / length };
+    let frame = if slope > 0.0 {
+        Frame {
+            x: f.x,
+            y: -f.y,
+            z: -f.z,
+            ..f
+        }
+    } else {
+        f
+    };
+    let cone = Cone {
+        frame,
+        sin: slope.abs() / length,
+        cos: h / length,
+    };
     let r = b.max(t);
     add(Surface::Cone(cone), [-r, -r, 0.0], [r, r, h]);
     if b > 0.0 {

@@ -45,7 +45,11 @@ impl<'a> Membership<'a> {
                 let count = match known {
                     Some(count) => count,
                     None => {
-                        waiting.push(Count { node: parent, first: false, others: 0 });
+                        waiting.push(Count {
+                            node: parent,
+                            first: false,
+                            others: 0,
+                        });
                         let last = waiting.len() - 1;
                         &mut waiting[last]
                     }
@@ -56,7 +60,11 @@ impl<'a> Membership<'a> {
                     count.others += 1;
                 }
             }
-            let next = waiting.iter().enumerate().max_by_key(|(_, c)| c.node).map(|(i, _)| i);
+            let next = waiting
+                .iter()
+                .enumerate()
+                .max_by_key(|(_, c)| c.node)
+                .map(|(i, _)| i);
             let Some(i) = next else { return false };
             let count = waiting.swap_remove(i);
             if self.decide(&count) {
@@ -68,11 +76,18 @@ impl<'a> Membership<'a> {
     fn decide(&self, count: &Count) -> bool {
         match &self.tree[count.node] {
             Node::Leaf(_) => true,
-            Node::Operation { op: Operation::Union, .. } => true,
-            Node::Operation { op: Operation::Intersection, children } => {
-                count.first && count.others + 1 == children.len()
-            }
-            Node::Operation { op: Operation::Difference, .. } => count.first && count.others == 0,
+            Node::Operation {
+                op: Operation::Union,
+                ..
+            } => true,
+            Node::Operation {
+                op: Operation::Intersection,
+                children,
+            } => count.first && count.others + 1 == children.len(),
+            Node::Operation {
+                op: Operation::Difference,
+                ..
+            } => count.first && count.others == 0,
         }
     }
 }

@@ -68,7 +68,12 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     if tree.is_empty() {
         let decisions = Judge::new(0.0).decisions();
         let (brep, bounds) = (Brep::default(), Box3::EMPTY);
-        return Ok(Evaluation { brep, decisions, resolution: 0.0, bounds });
+        return Ok(Evaluation {
+            brep,
+            decisions,
+            resolution: 0.0,
+            bounds,
+        });
     }
     if !(size > 1.0 / LARGEST && size < LARGEST) {
         return Err(EvaluationError::Size);
@@ -76,12 +81,20 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
     let resolution = options.resolution.unwrap_or(relative * size);
     let judge = Judge::new(resolution);
-    let extent = Extent { centre: solids.bounds.centre(), radius: 0.75 * size };
+    let extent = Extent {
+        centre: solids.bounds.centre(),
+        radius: 0.75 * size,
+    };
     let arrangement = arrangement::arrange(&solids, &extent, &judge)?;
     let raw = wings::boundary(tree, &solids, arrangement, &judge)?;
     let brep = assemble(raw, &judge)?;
     let decisions = judge.decisions();
-    Ok(Evaluation { brep, decisions, resolution, bounds: solids.bounds })
+    Ok(Evaluation {
+        brep,
+        decisions,
+        resolution,
+        bounds: solids.bounds,
+    })
 }
 
 /// Beyond these lengths squares of doubles lose their range.

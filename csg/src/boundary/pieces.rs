@@ -36,7 +36,12 @@ pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
             if many {
                 let list = known.entry((name, m.carriers.clone())).or_default();
                 let same = list.iter().copied().find(|&i| {
-                    passes(&arrangement.meetings[all[i].meeting].curve, all[i].range, &middle, judge)
+                    passes(
+                        &arrangement.meetings[all[i].meeting].curve,
+                        all[i].range,
+                        &middle,
+                        judge,
+                    )
                 });
                 if let Some(i) = same {
                     all[i].tangent.extend(m.tangent);
@@ -45,7 +50,13 @@ pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
                 list.push(all.len());
             }
             let (carriers, tangent) = (m.carriers.clone(), m.tangent.into_iter().collect());
-            all.push(Piece { meeting: index, range, ends, carriers, tangent });
+            all.push(Piece {
+                meeting: index,
+                range,
+                ends,
+                carriers,
+                tangent,
+            });
         }
     }
     reparameterise(arrangement, &mut all, judge);
@@ -56,7 +67,11 @@ pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
 /// and after the last cut of an open curve is outside one of the faces' boxes.
 fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
     if m.cuts.is_empty() {
-        return if m.closed { vec![(m.range, None)] } else { Vec::new() };
+        return if m.closed {
+            vec![(m.range, None)]
+        } else {
+            Vec::new()
+        };
     }
     let mut spans: Vec<_> = m
         .cuts
@@ -66,7 +81,10 @@ fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
     if m.closed {
         let (first, last) = (m.cuts[0], m.cuts[m.cuts.len() - 1]);
         let period = m.range[1] - m.range[0];
-        spans.push(([last.t, first.t + period], Some([last.vertex, first.vertex])));
+        spans.push((
+            [last.t, first.t + period],
+            Some([last.vertex, first.vertex]),
+        ));
     }
     let short = (m.range[1] - m.range[0]) * ROUNDING;
     spans.retain(|(r, _)| r[1] - r[0] > short);
@@ -103,8 +121,11 @@ fn reparameterise(arrangement: &Arrangement, all: &mut [Piece], judge: &Judge) {
                 let curve = &arrangement.meetings[h].curve;
                 let at = |v: usize| curve.parameter(&arrangement.corners[v].point);
                 let (mut lo, mut hi, t) = (at(a), at(b), curve.parameter(&middle));
-                let forward = m.curve.tangent(0.5 * (piece.range[0] + piece.range[1]))
-                    .dot(&curve.tangent(t)) > 0.0;
+                let forward = m
+                    .curve
+                    .tangent(0.5 * (piece.range[0] + piece.range[1]))
+                    .dot(&curve.tangent(t))
+                    > 0.0;
                 if !forward {
                     (lo, hi) = (hi, lo);
                     piece.ends = Some([b, a]);

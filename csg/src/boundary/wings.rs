@@ -26,8 +26,6 @@ use std::collections::HashMap;
 struct Sheet {
     /// The carrier, as its place among the piece's carriers.
     carrier: usize,
-    /// The direction away from the piece.
-    direction: Vector3<f64>,
     /// Its angle about the tangent.
     angle: f64,
     /// How fast it turns counterclockwise with the distance.
@@ -61,7 +59,12 @@ pub(super) fn boundary(
     judge: &Judge,
 ) -> Result<RawBoundary, EvaluationError> {
     let membership = Membership::new(tree);
-    let classifier = Classifier { solids, arrangement: &arrangement, membership, judge };
+    let classifier = Classifier {
+        solids,
+        arrangement: &arrangement,
+        membership,
+        judge,
+    };
     let mut edges: Vec<(Piece, Vec<Wing>)> = Vec::new();
     for piece in pieces(&arrangement, judge) {
         let wings = classifier.wings(&piece)?;
@@ -126,7 +129,7 @@ impl Classifier<'_> {
         let mut all = Vec::new();
         let mut clear = true;
         let place = [p.x, p.y, p.z];
-        for s in self.arrangement.tree.locate_all_at_point(&place) {
+        for s in self.arrangement.tree.locate_all_at_point(place) {
             let solid = &self.solids.all[s.data];
             let mut open = Vec::new();
             let mut held = true;
@@ -147,11 +150,16 @@ impl Classifier<'_> {
                 }
             }
             if held {
-                all.push(Near { leaf: solid.leaf, open });
+                all.push(Near {
+                    leaf: solid.leaf,
+                    open,
+                });
             }
         }
         all.sort_by_key(|n| n.leaf);
-        all.iter().any(|n| !n.open.is_empty()).then_some((all, clear))
+        all.iter()
+            .any(|n| !n.open.is_empty())
+            .then_some((all, clear))
     }
 
     fn wings_at(
@@ -197,9 +205,17 @@ impl Classifier<'_> {
         let wing = |&(i, after): &(usize, bool)| {
             let s = &sheets[i];
             // Material beyond: the outward normal is -l, the face lies to the right of T.
-            let outward = if (s.beyond == Sense::Along) == after { Sense::Along } else { Sense::Against };
+            let outward = if (s.beyond == Sense::Along) == after {
+                Sense::Along
+            } else {
+                Sense::Against
+            };
             let sense = if after { Sense::Against } else { Sense::Along };
-            Wing { surface: piece.carriers[s.carrier], outward, sense }
+            Wing {
+                surface: piece.carriers[s.carrier],
+                outward,
+                sense,
+            }
         };
         Ok(changes.iter().map(wing).collect())
     }
@@ -221,7 +237,10 @@ impl Classifier<'_> {
             let normal = surface.normal(p);
             let mut direction = normal.cross(tangent).normalize();
             let twin = axes.iter().find(|(other, d)| {
-                let told = piece.tangent.iter().any(|t| *t == [*other, c] || *t == [c, *other]);
+                let told = piece
+                    .tangent
+                    .iter()
+                    .any(|t| *t == [*other, c] || *t == [c, *other]);
                 let sine = d.cross(&direction).norm();
                 told || self.judge.within(sine * self.reach(piece))
             });
@@ -235,10 +254,13 @@ impl Classifier<'_> {
                 let up = normal.dot(&l);
                 sheets.push(Sheet {
                     carrier: at,
-                    direction: d,
                     angle: d.dot(&e2).atan2(d.dot(&e1)),
                     bend: -bend * up.signum(),
-                    beyond: if up > 0.0 { Sense::Against } else { Sense::Along },
+                    beyond: if up > 0.0 {
+                        Sense::Against
+                    } else {
+                        Sense::Along
+                    },
                 });
             }
         }
@@ -348,7 +370,9 @@ fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<(Piece
     }
     let mut done = vec![false; edges.len()];
     let mut joined = Vec::new();
-    let starts = (0..edges.len()).filter(|&i| !has_previous[i]).chain(0..edges.len());
+    let starts = (0..edges.len())
+        .filter(|&i| !has_previous[i])
+        .chain(0..edges.len());
     for start in starts {
         if done[start] {
             continue;
@@ -393,6 +417,5 @@ fn meets_at(period: Option<f64>, a: f64, b: f64) -> bool {
 
 /// Whether two pieces have the same faces around them, wherever the count starts.
 fn same_wings(a: &[Wing], b: &[Wing]) -> bool {
-    a.len() == b.len()
-        && (0..a.len()).any(|k| (0..a.len()).all(|i| a[i] == b[(i + k) % b.len()]))
+    a.len() == b.len() && (0..a.len()).any(|k| (0..a.len()).all(|i| a[i] == b[(i + k) % b.len()]))
 }

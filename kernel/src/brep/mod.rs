@@ -4,7 +4,11 @@
 //! three faces, two closed edges and no vertex. An edge that bounds more than two face corners, and
 //! a vertex where several fans of faces meet, are represented as they are.
 
+pub mod assemble;
+mod inside;
 pub mod locate;
+pub mod mass;
+mod region;
 pub mod topology;
 pub mod walk;
 

@@ -225,7 +225,8 @@ impl Walk {
         }
     }
 
-    fn direction(&self, p: &Point3<f64>) -> Vector3<f64> {
+    /// The unit direction at a point of the walk.
+    pub(super) fn direction(&self, p: &Point3<f64>) -> Vector3<f64> {
         match &self.track {
             Track::Line(d) => *d,
             Track::Circle(f, _) => f.z.cross(&(p - f.origin)).normalize(),

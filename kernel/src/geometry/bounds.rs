@@ -52,7 +52,9 @@ impl Box3 {
 
     /// Its middle.
     pub fn centre(&self) -> Point3<f64> {
-        Point3::from(std::array::from_fn::<f64, 3, _>(|i| 0.5 * (self.min[i] + self.max[i])))
+        Point3::from(std::array::from_fn::<f64, 3, _>(|i| {
+            0.5 * (self.min[i] + self.max[i])
+        }))
     }
 
     /// The length of its diagonal.

@@ -2,6 +2,7 @@
 
 pub mod interval;
 pub mod jet;
+pub mod quadrature;
 pub mod rational;
 pub mod roots;
 pub mod scalar;

@@ -1,0 +1,589 @@
+//! From edges with the faces around them to loops, faces, shells and solids.
+//!
+//! Loops: at a vertex a coedge is followed by the next one clockwise, seen from outside, so that
+//! the face stays to the left. Faces: loops of one surface that bound one region ([`region`]).
+//! Shells: faces that enclose material together along an edge. Solids: shells around shells.
+//!
+//! [`region`]: super::region
+
+use super::inside::shell_holds;
+use super::mass::shell_volume;
+use super::region::{RegionError, regions};
+use super::topology::{
+    Coedge, CoedgeId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Sense, Shell, ShellId, Solid,
+    SolidId, Topology, VertexId,
+};
+use super::walk::DirectedArc;
+use super::{Arc, Brep, Geometry, Patch};
+use crate::geometry::curve::Curve;
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::Surface;
+use crate::number::roots::bisect;
+use crate::number::sign::{Judge, ROUNDING};
+use nalgebra::{Point3, Vector3};
+use std::collections::{BTreeMap, HashMap};
+use std::f64::consts::TAU;
+
+/// A face at an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wing {
+    /// The index of the surface.
+    pub surface: usize,
+    /// Whether the outward normal is the surface's own.
+    pub outward: Sense,
+    /// Whether the face's loop runs along the edge.
+    pub sense: Sense,
+}
+
+/// An edge with the faces around it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RawEdge {
+    /// The index of the curve.
+    pub curve: usize,
+    /// The range of the parameter, increasing.
+    pub range: [f64; 2],
+    /// The points (by index) at both ends; none for a closed edge.
+    pub ends: Option<[usize; 2]>,
+    /// Counterclockwise about the curve's direction; pairs enclose material.
+    pub wings: Vec<Wing>,
+    /// Whether two faces meet smoothly.
+    pub smooth: bool,
+}
+
+/// All edges of a boundary, and the closed surfaces that are faces without an edge.
+#[derive(Clone, Debug, Default)]
+pub struct RawBoundary {
+    /// The surfaces.
+    pub surfaces: Vec<Surface>,
+    /// The curves.
+    pub curves: Vec<Curve>,
+    /// The points.
+    pub points: Vec<Point3<f64>>,
+    /// The edges.
+    pub edges: Vec<RawEdge>,
+    /// Whole surfaces, with the sense of their outward normal.
+    pub whole: Vec<(usize, Sense)>,
+}
+
+/// Why edges do not form a boundary. Each is a failure of this program on the part.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AssemblyError {
+    /// The coedges of a face do not close at a vertex.
+    #[error("the boundary of a face is open at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
+    Open {
+        /// The vertex.
+        place: [f64; 3],
+    },
+    /// The edges of a face around a vertex cannot be put in order.
+    #[error("the edges around ({:.9}, {:.9}, {:.9}) cannot be told apart", place[0], place[1], place[2])]
+    Order {
+        /// The vertex.
+        place: [f64; 3],
+    },
+    /// The loops of a surface cannot be sorted into faces.
+    #[error(transparent)]
+    Region(#[from] RegionError),
+    /// A shell encloses no volume.
+    #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume", place[0], place[1], place[2])]
+    Flat {
+        /// A point of it.
+        place: [f64; 3],
+    },
+}
+
+/// A coedge before it has an owner.
+#[derive(Clone, Copy, Debug)]
+struct Half {
+    edge: usize,
+    wing: Wing,
+}
+
+type Group = (usize, Sense);
+
+struct Assembler<'a> {
+    raw: &'a RawBoundary,
+    judge: &'a Judge,
+    halves: Vec<Half>,
+    /// Where the halves of each edge begin.
+    first: Vec<usize>,
+    next: Vec<usize>,
+}
+
+/// The boundary representation with the given edges.
+pub fn assemble(raw: RawBoundary, judge: &Judge) -> Result<Brep, AssemblyError> {
+    let mut assembler = Assembler::new(&raw, judge);
+    assembler.link()?;
+    let rings = assembler.rings();
+    let faces = assembler.faces(&rings)?;
+    let (mut brep, halves) = assembler.brep(&rings, &faces);
+    let fans = fans(&brep.topology, &halves);
+    bind_shells(&mut brep, &fans, judge)?;
+    Ok(brep)
+}
+
+/// A face: its group and its loops.
+struct Region {
+    group: Group,
+    rings: Vec<usize>,
+    euler: i32,
+}
+
+impl<'a> Assembler<'a> {
+    fn new(raw: &'a RawBoundary, judge: &'a Judge) -> Self {
+        let mut halves = Vec::new();
+        let mut first = Vec::new();
+        for (edge, e) in raw.edges.iter().enumerate() {
+            first.push(halves.len());
+            halves.extend(e.wings.iter().map(|&wing| Half { edge, wing }));
+        }
+        let next = vec![usize::MAX; halves.len()];
+        Self {
+            raw,
+            judge,
+            halves,
+            first,
+            next,
+        }
+    }
+
+    /// The vertex that a half starts at (`false`) or ends at (`true`).
+    fn end(&self, half: usize, at_end: bool) -> Option<usize> {
+        let h = &self.halves[half];
+        let ends = self.raw.edges[h.edge].ends?;
+        Some(ends[usize::from(at_end == (h.wing.sense == Sense::Along))])
+    }
+
+    /// Finds the follower of every half.
+    fn link(&mut self) -> Result<(), AssemblyError> {
+        // Per vertex and group: the halves that come in and those that go out.
+        let mut meeting: BTreeMap<(usize, Group), [Vec<usize>; 2]> = BTreeMap::new();
+        for i in 0..self.halves.len() {
+            let w = self.halves[i].wing;
+            match (self.end(i, false), self.end(i, true)) {
+                (Some(start), Some(end)) => {
+                    let group = (w.surface, w.outward);
+                    meeting.entry((end, group)).or_default()[0].push(i);
+                    meeting.entry((start, group)).or_default()[1].push(i);
+                }
+                _ => self.next[i] = i,
+            }
+        }
+        for ((vertex, group), [into, out]) in meeting {
+            if into.len() != out.len() {
+                return Err(AssemblyError::Open {
+                    place: self.raw.points[vertex].into(),
+                });
+            }
+            match (&into[..], &out[..]) {
+                ([i], [o]) => self.next[*i] = *o,
+                _ => self.link_by_angle(vertex, group, &into, &out)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn link_by_angle(
+        &mut self,
+        vertex: usize,
+        group: Group,
+        into: &[usize],
+        out: &[usize],
+    ) -> Result<(), AssemblyError> {
+        let angles = self.angles(vertex, group, into, out)?;
+        for &i in into {
+            let back = angles[&(self.halves[i].edge, self.at_first_end(i, true))];
+            let clockwise = |o: usize| {
+                let a = angles[&(self.halves[o].edge, self.at_first_end(o, false))];
+                let turn = (back - a).rem_euclid(TAU);
+                if turn == 0.0 { TAU } else { turn }
+            };
+            let follower = out
+                .iter()
+                .copied()
+                .min_by(|&a, &b| clockwise(a).total_cmp(&clockwise(b)));
+            self.next[i] = follower.unwrap_or(i);
+        }
+        let mut followers: Vec<usize> = into.iter().map(|&i| self.next[i]).collect();
+        followers.sort_unstable();
+        followers.dedup();
+        if followers.len() != into.len() {
+            return Err(AssemblyError::Order {
+                place: self.raw.points[vertex].into(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Whether a half's end (`at_end`) or start is the first end of its edge.
+    fn at_first_end(&self, half: usize, at_end: bool) -> bool {
+        at_end != (self.halves[half].wing.sense == Sense::Along)
+    }
+
+    /// The angles at which edge ends leave a vertex, counterclockwise seen from outside: of the
+    /// points in which a small sphere around the vertex meets them. The sphere is widened until
+    /// all are apart.
+    fn angles(
+        &self,
+        vertex: usize,
+        group: Group,
+        into: &[usize],
+        out: &[usize],
+    ) -> Result<HashMap<(usize, bool), f64>, AssemblyError> {
+        let v = self.raw.points[vertex];
+        let mut ends: Vec<(usize, bool)> = into
+            .iter()
+            .map(|&i| (self.halves[i].edge, self.at_first_end(i, true)))
+            .chain(
+                out.iter()
+                    .map(|&o| (self.halves[o].edge, self.at_first_end(o, false))),
+            )
+            .collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let frame = self.tangent_frame(group, &v);
+        let middle = |e: usize| {
+            let edge = &self.raw.edges[e];
+            self.raw.curves[edge.curve].point(0.5 * (edge.range[0] + edge.range[1]))
+        };
+        let reach = ends
+            .iter()
+            .map(|e| (middle(e.0) - v).norm())
+            .fold(f64::INFINITY, f64::min);
+        for part in [1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0, 1.0 / 256.0, 0.5] {
+            let radius = reach * part;
+            let angle = |&(e, first): &(usize, bool)| {
+                let d = frame.components(&(self.point_at(e, first, &v, radius) - v));
+                ((e, first), d.y.atan2(d.x))
+            };
+            let angles: HashMap<_, _> = ends.iter().map(angle).collect();
+            let mut sorted: Vec<f64> = angles.values().copied().collect();
+            sorted.sort_by(f64::total_cmp);
+            sorted.push(sorted[0] + TAU);
+            // A gap must be seen well above the vertex's own uncertainty.
+            let least = self.judge.band() / radius * 16.0 + ROUNDING;
+            if sorted.windows(2).all(|w| w[1] - w[0] > least) {
+                return Ok(angles);
+            }
+        }
+        Err(AssemblyError::Order { place: v.into() })
+    }
+
+    fn tangent_frame(&self, (surface, outward): Group, v: &Point3<f64>) -> Frame {
+        let s = &self.raw.surfaces[surface];
+        let normal = match s {
+            // At the apex the rulings are ordered around the axis.
+            Surface::Cone(c) if self.judge.within((v - c.frame.origin).norm()) => -c.frame.z,
+            _ => s.normal(v),
+        };
+        Frame::about(*v, normal * outward.sign())
+    }
+
+    /// The point of an edge at a distance from the vertex at one of its ends.
+    fn point_at(&self, edge: usize, first: bool, v: &Point3<f64>, radius: f64) -> Point3<f64> {
+        let e = &self.raw.edges[edge];
+        let curve = &self.raw.curves[e.curve];
+        let start = if first { e.range[0] } else { e.range[1] };
+        let middle = 0.5 * (e.range[0] + e.range[1]);
+        let gap = |t: f64| (curve.point(t) - v).norm() - radius;
+        curve.point(bisect(start, middle, -radius, gap))
+    }
+
+    /// The closed runs of halves.
+    fn rings(&self) -> Vec<Vec<usize>> {
+        let mut seen = vec![false; self.halves.len()];
+        let mut rings = Vec::new();
+        for start in 0..self.halves.len() {
+            let mut ring = Vec::new();
+            let mut i = start;
+            while !seen[i] {
+                seen[i] = true;
+                ring.push(i);
+                i = self.next[i];
+            }
+            if !ring.is_empty() {
+                rings.push(ring);
+            }
+        }
+        rings
+    }
+
+    fn arc(&self, half: usize) -> DirectedArc<'_> {
+        let h = &self.halves[half];
+        let e = &self.raw.edges[h.edge];
+        DirectedArc {
+            curve: &self.raw.curves[e.curve],
+            range: e.range,
+            sense: h.wing.sense,
+        }
+    }
+
+    /// The loops of each surface sorted into faces.
+    fn faces(&self, rings: &[Vec<usize>]) -> Result<Vec<Region>, AssemblyError> {
+        let mut groups: BTreeMap<Group, Vec<usize>> = BTreeMap::new();
+        for (i, ring) in rings.iter().enumerate() {
+            let w = self.halves[ring[0]].wing;
+            groups.entry((w.surface, w.outward)).or_default().push(i);
+        }
+        let mut faces = Vec::new();
+        for (group, list) in groups {
+            let arcs: Vec<Vec<DirectedArc<'_>>> = list
+                .iter()
+                .map(|&r| rings[r].iter().map(|&h| self.arc(h)).collect())
+                .collect();
+            let surface = &self.raw.surfaces[group.0];
+            for region in regions(surface, group.1, &arcs, self.judge.band())? {
+                let rings = region.loops.iter().map(|&k| list[k]).collect();
+                faces.push(Region {
+                    group,
+                    rings,
+                    euler: region.euler,
+                });
+            }
+        }
+        for &(surface, outward) in &self.raw.whole {
+            let euler = if matches!(self.raw.surfaces[surface], Surface::Torus(_)) {
+                0
+            } else {
+                2
+            };
+            faces.push(Region {
+                group: (surface, outward),
+                rings: Vec::new(),
+                euler,
+            });
+        }
+        Ok(faces)
+    }
+
+    /// The entities but for shells and solids, and the partner of each coedge across its edge's
+    /// material.
+    fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep, Vec<CoedgeId>) {
+        let raw = self.raw;
+        let mut topology = Topology::default();
+        let mut geometry = Geometry::default();
+        let mut vertex_of: HashMap<usize, VertexId> = HashMap::new();
+        let mut curve_of: HashMap<usize, usize> = HashMap::new();
+        let mut surface_of: HashMap<usize, usize> = HashMap::new();
+        for e in &raw.edges {
+            let mut vertex = |v: usize| {
+                *vertex_of.entry(v).or_insert_with(|| {
+                    geometry.points.push(raw.points[v]);
+                    VertexId(geometry.points.len() as u32 - 1)
+                })
+            };
+            let ends = e.ends.map(|[a, b]| [vertex(a), vertex(b)]);
+            let curve = *curve_of.entry(e.curve).or_insert_with(|| {
+                geometry.curves.push(raw.curves[e.curve].clone());
+                geometry.curves.len() - 1
+            });
+            geometry.arcs.push(Arc {
+                curve,
+                range: e.range,
+            });
+            topology.edges.push(Edge {
+                ends,
+                coedges: Vec::new(),
+                smooth: e.smooth,
+            });
+        }
+        topology.vertices = geometry.points.len() as u32;
+        let unowned = LoopId(u32::MAX);
+        for (i, h) in self.halves.iter().enumerate() {
+            topology.edges[h.edge].coedges.push(CoedgeId(i as u32));
+            let edge = EdgeId(h.edge as u32);
+            topology.coedges.push(Coedge {
+                edge,
+                sense: h.wing.sense,
+                owner: unowned,
+            });
+        }
+        for region in faces {
+            let surface = *surface_of.entry(region.group.0).or_insert_with(|| {
+                geometry.surfaces.push(raw.surfaces[region.group.0]);
+                geometry.surfaces.len() - 1
+            });
+            geometry.patches.push(Patch {
+                surface,
+                sense: region.group.1,
+            });
+            let face = FaceId(topology.faces.len() as u32);
+            let mut loops = Vec::new();
+            for &r in &region.rings {
+                let id = LoopId(topology.loops.len() as u32);
+                loops.push(id);
+                for &h in &rings[r] {
+                    topology.coedges[h].owner = id;
+                }
+                let coedges = rings[r].iter().map(|&h| CoedgeId(h as u32)).collect();
+                topology.loops.push(Loop { coedges, face });
+            }
+            let shell = ShellId(u32::MAX);
+            topology.faces.push(Face {
+                loops,
+                shell,
+                euler: region.euler,
+            });
+        }
+        let partner = (0..self.halves.len()).map(|i| {
+            let place = i - self.first[self.halves[i].edge];
+            CoedgeId((self.first[self.halves[i].edge] + (place ^ 1)) as u32)
+        });
+        (Brep { topology, geometry }, partner.collect())
+    }
+}
+
+/// Sets joined by pairs.
+struct Union(Vec<usize>);
+
+impl Union {
+    fn new(n: usize) -> Self {
+        Self((0..n).collect())
+    }
+    fn find(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        let (lo, hi) = (a.min(b), a.max(b));
+        self.0[hi] = lo;
+    }
+}
+
+/// Who is connected: the shell number of each face, and the Euler characteristic of each shell.
+struct Fans {
+    shell_of: Vec<usize>,
+    euler: Vec<i32>,
+}
+
+fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
+    let mut faces = Union::new(topology.faces.len());
+    for (i, p) in partner.iter().enumerate() {
+        let (a, b) = (topology.face_of(CoedgeId(i as u32)), topology.face_of(*p));
+        faces.join(a.index(), b.index());
+    }
+    let mut number: HashMap<usize, usize> = HashMap::new();
+    let mut shell_of = Vec::new();
+    for f in 0..topology.faces.len() {
+        let n = number.len();
+        shell_of.push(*number.entry(faces.find(f)).or_insert(n));
+    }
+    let mut euler = vec![0; number.len()];
+    for (f, face) in topology.faces.iter().enumerate() {
+        euler[shell_of[f]] += face.euler;
+    }
+    // A corner is where a coedge ends and the next begins; corners that share an edge end are one
+    // fan around the vertex. Named by the coedge that ends there.
+    let mut corners = Union::new(topology.coedges.len());
+    let mut ends_before = vec![usize::MAX; topology.coedges.len()];
+    for ring in &topology.loops {
+        for (k, c) in ring.coedges.iter().enumerate() {
+            let previous = ring.coedges[(k + ring.coedges.len() - 1) % ring.coedges.len()];
+            ends_before[c.index()] = previous.index();
+        }
+    }
+    for (i, p) in partner.iter().enumerate() {
+        let open = topology
+            .edge(topology.coedge(CoedgeId(i as u32)).edge)
+            .ends
+            .is_some();
+        if open {
+            // Partners run oppositely: the end of one is the start of the other.
+            corners.join(i, ends_before[p.index()]);
+            if i < p.index() {
+                let shell = shell_of[topology.face_of(CoedgeId(i as u32)).index()];
+                euler[shell] -= 1;
+            }
+        }
+    }
+    for i in 0..topology.coedges.len() {
+        let id = CoedgeId(i as u32);
+        let open = topology.edge(topology.coedge(id).edge).ends.is_some();
+        if open && corners.find(i) == i {
+            euler[shell_of[topology.face_of(id).index()]] += 1;
+        }
+    }
+    Fans { shell_of, euler }
+}
+
+/// Names the shells, tells voids from outer shells, and gives every void to its solid.
+fn bind_shells(brep: &mut Brep, fans: &Fans, judge: &Judge) -> Result<(), AssemblyError> {
+    for (f, &s) in fans.shell_of.iter().enumerate() {
+        brep.topology.faces[f].shell = ShellId(s as u32);
+    }
+    let mut members: Vec<Vec<FaceId>> = vec![Vec::new(); fans.euler.len()];
+    for (f, &s) in fans.shell_of.iter().enumerate() {
+        members[s].push(FaceId(f as u32));
+    }
+    for (s, faces) in members.iter().enumerate() {
+        let volume = shell_volume(brep, faces);
+        if volume == 0.0 || !volume.is_finite() {
+            return Err(AssemblyError::Flat {
+                place: point_of(brep, faces[0]).into(),
+            });
+        }
+        brep.topology.shells.push(Shell {
+            faces: faces.clone(),
+            solid: SolidId(u32::MAX),
+            void: volume < 0.0,
+            genus: (2 - fans.euler[s]) / 2,
+        });
+    }
+    let shells = brep.topology.shells.len();
+    let outer: Vec<usize> = (0..shells)
+        .filter(|&s| !brep.topology.shells[s].void)
+        .collect();
+    for &s in &outer {
+        let id = SolidId(brep.topology.solids.len() as u32);
+        brep.topology.solids.push(Solid {
+            shells: vec![ShellId(s as u32)],
+        });
+        brep.topology.shells[s].solid = id;
+    }
+    for s in 0..shells {
+        if brep.topology.shells[s].void {
+            let home = home_of(brep, s, &outer, judge);
+            let solid = brep.topology.shells[home].solid;
+            brep.topology.shells[s].solid = solid;
+            brep.topology.solids[solid.index()]
+                .shells
+                .push(ShellId(s as u32));
+        }
+    }
+    Ok(())
+}
+
+/// The smallest outer shell around a void.
+fn home_of(brep: &Brep, void: usize, outer: &[usize], judge: &Judge) -> usize {
+    if let [only] = outer {
+        return *only;
+    }
+    let faces = &brep.topology.shells[void].faces;
+    let p = point_of(brep, faces[0]);
+    let around = outer
+        .iter()
+        .copied()
+        .filter(|&s| shell_holds(brep, &brep.topology.shells[s].faces, &p, judge.band()));
+    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces);
+    let home = around.min_by(|a, b| volume(a).total_cmp(&volume(b)));
+    home.or(outer.first().copied()).unwrap_or(void)
+}
+
+/// A point of a face's boundary, or of the face where it has none.
+pub(super) fn point_of(brep: &Brep, face: FaceId) -> Point3<f64> {
+    let topology = &brep.topology;
+    match topology.face(face).loops.first() {
+        Some(&l) => {
+            let edge = topology.coedge(topology.ring(l).coedges[0]).edge;
+            let [lo, hi] = brep.range(edge);
+            brep.curve(edge).point(lo + 0.37 * (hi - lo))
+        }
+        None => {
+            let s = brep.surface(face);
+            s.point(0.3, 0.4) + Vector3::zeros()
+        }
+    }
+}

@@ -1,0 +1,359 @@
+//! Volume, area, centroid and bounds of the exact boundary.
+//!
+//! By the divergence theorem each is a sum over faces of ∫ g dA, and by Green's in the surface's
+//! parameters (u, v) a sum over edges: with G(u, v) = ∫ g |P_u × P_v| dv from a fixed v, the face
+//! gives −∮ G du. What a period or a pole adds is told by the area, which lies between nothing and
+//! the whole surface. Notation: P relative to a reference point, N the surface's normal, h = P·N.
+
+use super::Brep;
+use super::topology::{CoedgeId, FaceId};
+use super::walk::plane_roots;
+use crate::geometry::bounds::{self, Box3};
+use crate::geometry::curve::Curve;
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
+use crate::number::quadrature::{Rule, TWENTY, TWO, adaptive, integral};
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::{PI, TAU};
+
+/// The mass properties of a body of density one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mass {
+    /// The volume, in cubic units.
+    pub volume: f64,
+    /// The area of the boundary, in square units.
+    pub area: f64,
+    /// The centroid; the reference point where the volume is zero.
+    pub centroid: Point3<f64>,
+}
+
+/// ∫ dA, ∫ h dA and ∫ h P dA over a face.
+type Moments = [f64; 5];
+
+/// The mass properties of the solid that a boundary encloses.
+pub fn mass(brep: &Brep) -> Mass {
+    let reference = reference(brep);
+    let mut total = [0.0; 5];
+    for face in brep.topology.face_ids() {
+        let m = moments(brep, face, &reference);
+        let sign = brep.sense(face).sign();
+        total[0] += m[0];
+        for i in 1..5 {
+            total[i] += sign * m[i];
+        }
+    }
+    let volume = total[1] / 3.0;
+    let offset = Vector3::new(total[2], total[3], total[4]) / (4.0 * volume);
+    let centroid = if volume == 0.0 {
+        reference
+    } else {
+        reference + offset
+    };
+    Mass {
+        volume,
+        area: total[0],
+        centroid,
+    }
+}
+
+/// The signed volume that a shell encloses, negative for a void.
+pub fn shell_volume(brep: &Brep, faces: &[FaceId]) -> f64 {
+    let reference = reference(brep);
+    faces
+        .iter()
+        .map(|&f| brep.sense(f).sign() * moments(brep, f, &reference)[1] / 3.0)
+        .sum()
+}
+
+/// The area of a face.
+pub fn face_area(brep: &Brep, face: FaceId) -> f64 {
+    moments(brep, face, &reference(brep))[0]
+}
+
+/// A point amid the part: sums relative to it do not cancel.
+fn reference(brep: &Brep) -> Point3<f64> {
+    let b = bounds(brep);
+    if b.min[0] > b.max[0] {
+        Point3::origin()
+    } else {
+        b.centre()
+    }
+}
+
+/// The integrand over the parameters of a surface, and its integral along v.
+struct Density<'a> {
+    surface: Surface,
+    reference: &'a Point3<f64>,
+    rule: &'static Rule,
+    /// Where the integral along v starts.
+    base: f64,
+}
+
+impl Density<'_> {
+    fn at(&self, u: f64, v: f64) -> Moments {
+        let p = self.surface.point(u, v) - self.reference;
+        let (sin, cos) = u.sin_cos();
+        let f = self.surface.frame();
+        let radial = f.x * cos + f.y * sin;
+        let (normal, jacobian) = match &self.surface {
+            Surface::Plane(_) => (f.z, 1.0),
+            Surface::Cylinder(c) => (radial, c.radius),
+            Surface::Cone(c) => (
+                radial * c.cos - f.z * c.sin,
+                v.abs() * c.sin / (c.cos * c.cos),
+            ),
+            Surface::Sphere(s) => (
+                radial * v.cos() + f.z * v.sin(),
+                s.radius * s.radius * v.cos(),
+            ),
+            Surface::Torus(t) => {
+                let normal = radial * v.cos() + f.z * v.sin();
+                (normal, t.minor * (t.major + t.minor * v.cos()))
+            }
+        };
+        let h = p.dot(&normal) * jacobian;
+        [jacobian, h, h * p.x, h * p.y, h * p.z]
+    }
+
+    /// G(u, v).
+    fn along(&self, u: f64, v: f64) -> Moments {
+        integral(self.rule, self.base, v, |w| self.at(u, w))
+    }
+}
+
+/// The moments of a face.
+fn moments(brep: &Brep, face: FaceId, reference: &Point3<f64>) -> Moments {
+    let loops = &brep.topology.face(face).loops;
+    let coedges: Vec<CoedgeId> = loops
+        .iter()
+        .flat_map(|&l| brep.topology.ring(l).coedges.iter().copied())
+        .collect();
+    let surface = *brep.surface(face);
+    let density = |surface: Surface, rule: &'static Rule, base: f64| Density {
+        surface,
+        reference,
+        rule,
+        base,
+    };
+    match surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
+            let d = density(surface, &TWO, 0.0);
+            boundary_sum(brep, face, &coedges, &d, &|_| Vec::new())
+        }
+        Surface::Sphere(s) => {
+            let s = Sphere {
+                frame: clear_axis(brep, &s, &coedges),
+                ..s
+            };
+            let d = density(Surface::Sphere(s), &TWENTY, -PI / 2.0);
+            let sum = boundary_sum(brep, face, &coedges, &d, &|_| Vec::new());
+            let whole = around(&d, PI / 2.0, 0.0, TAU);
+            // Below zero, or nothing at all: the face holds the pole opposite to the base.
+            if sum[0] > 0.5 * FEW * whole[0] {
+                sum
+            } else {
+                add(sum, whole)
+            }
+        }
+        Surface::Torus(t) => {
+            torus_moments(brep, face, &coedges, &t, &density(surface, &TWENTY, BASE))
+        }
+    }
+}
+
+/// Areas below this part of the whole surface count as none.
+const FEW: f64 = 1.0 / (1u64 << 44) as f64;
+/// The angle about the tube at which a torus is cut open.
+const BASE: f64 = 2.0;
+
+fn add(a: Moments, b: Moments) -> Moments {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// ∫ G(u, v) du at one v.
+fn around(d: &Density<'_>, v: f64, from: f64, to: f64) -> Moments {
+    adaptive(from, to, &mut |u| d.along(u, v))
+}
+
+/// −∮ G du over the boundary of a face, each edge broken where `marks` says.
+fn boundary_sum(
+    brep: &Brep,
+    face: FaceId,
+    coedges: &[CoedgeId],
+    density: &Density<'_>,
+    marks: &dyn Fn(CoedgeId) -> Vec<f64>,
+) -> Moments {
+    let side = brep.sense(face).sign();
+    let mut total = [0.0; 5];
+    for &c in coedges {
+        let coedge = brep.topology.coedge(c);
+        let curve = brep.curve(coedge.edge);
+        let [lo, hi] = brep.range(coedge.edge);
+        let mut breaks = curve.breaks(lo, hi);
+        breaks.extend(marks(c));
+        breaks.sort_by(f64::total_cmp);
+        let sign = -side * coedge.sense.sign();
+        for pair in breaks.windows(2) {
+            // The middle tells on which side of a cut the piece lies.
+            let [_, near] = density
+                .surface
+                .parameters(&curve.point(0.5 * (pair[0] + pair[1])));
+            let part = adaptive(pair[0], pair[1], &mut |t| {
+                edge_density(curve, t, density, near)
+            });
+            for (s, v) in total.iter_mut().zip(part) {
+                *s += sign * v;
+            }
+        }
+    }
+    total
+}
+
+/// G du/dt on an edge.
+fn edge_density(curve: &Curve, t: f64, density: &Density<'_>, near: f64) -> Moments {
+    let j = curve.jet(t);
+    let p = Point3::new(j[0].v, j[1].v, j[2].v);
+    let f = density.surface.frame();
+    let q = f.coordinates(&p);
+    let d = f.components(&Vector3::new(j[0].d, j[1].d, j[2].d));
+    let [u, mut v] = density.surface.parameters(&p);
+    let rate = match &density.surface {
+        Surface::Plane(_) => d.x,
+        _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
+    };
+    if let Surface::Torus(_) = density.surface {
+        let near = density.base + (near - density.base).rem_euclid(TAU);
+        v = near + (v - near + PI).rem_euclid(TAU) - PI;
+    }
+    if rate == 0.0 || !rate.is_finite() {
+        return [0.0; 5];
+    }
+    density.along(u, v).map(|g| g * rate)
+}
+
+/// A frame of a sphere whose poles keep clear of the edges.
+fn clear_axis(brep: &Brep, s: &Sphere, coedges: &[CoedgeId]) -> Frame {
+    let o = s.frame.origin;
+    let mut best = (-1.0, s.frame);
+    for k in 0..12 {
+        let (z, a) = (
+            1.0 - (2.0 * f64::from(k) + 1.0) / 24.0,
+            2.4 * f64::from(k) + 0.3,
+        );
+        let across = (1.0 - z * z).sqrt();
+        let axis = Vector3::new(across * a.cos(), across * a.sin(), z);
+        let mut clear: f64 = 1.0;
+        for &c in coedges {
+            let e = brep.topology.coedge(c).edge;
+            let [lo, hi] = brep.range(e);
+            for i in 0..=16 {
+                let p = brep.curve(e).point(lo + (hi - lo) * f64::from(i) / 16.0);
+                let d = (p - o).normalize();
+                clear = clear.min(d.cross(&axis).norm());
+            }
+        }
+        if clear > best.0 {
+            best = (clear, Frame::about(o, axis));
+        }
+    }
+    best.1
+}
+
+/// A torus is cut open along the parallel v = BASE: what of it lies in the face is part of the
+/// boundary of the opened face.
+fn torus_moments(
+    brep: &Brep,
+    face: FaceId,
+    coedges: &[CoedgeId],
+    t: &Torus,
+    d: &Density<'_>,
+) -> Moments {
+    let side = brep.sense(face).sign();
+    let height = t.minor * BASE.sin();
+    let frame = t.frame.at(t.frame.origin + t.frame.z * height);
+    let plane = Plane { frame };
+    // (u, whether the face lies behind it, towards smaller u).
+    let mut passes: Vec<(f64, bool)> = Vec::new();
+    let roots_of = |c: CoedgeId| {
+        let coedge = brep.topology.coedge(c);
+        let curve = brep.curve(coedge.edge);
+        let mut roots = Vec::new();
+        plane_roots(curve, brep.range(coedge.edge), &plane, 0.0, &mut |s, _| {
+            let q = t.frame.coordinates(&curve.point(s));
+            if (q.x.hypot(q.y) - t.major) * BASE.cos() > 0.0 {
+                roots.push(s);
+            }
+        });
+        roots
+    };
+    for &c in coedges {
+        let coedge = brep.topology.coedge(c);
+        let curve = brep.curve(coedge.edge);
+        for s in roots_of(c) {
+            let [u, _] = d.surface.parameters(&curve.point(s));
+            let rise = curve.derivative(s).dot(&t.frame.z) * BASE.cos();
+            let up = rise * side * coedge.sense.sign() > 0.0;
+            passes.push((u, up));
+        }
+    }
+    let mut sum = boundary_sum(brep, face, coedges, d, &roots_of);
+    passes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let top = BASE + TAU;
+    for (i, &(u, up)) in passes.iter().enumerate() {
+        if !up {
+            let (mut end, _) = passes[(i + 1) % passes.len()];
+            if end <= u {
+                end += TAU;
+            }
+            sum = add(sum, around(d, top, u, end));
+        }
+    }
+    let whole = around(d, top, 0.0, TAU);
+    if passes.is_empty() && sum[0] <= 0.5 * FEW * whole[0] {
+        add(sum, whole)
+    } else {
+        sum
+    }
+}
+
+/// The box of a boundary: of its edges, and of its faces where they bulge beyond them.
+pub fn bounds(brep: &Brep) -> Box3 {
+    let mut all = Box3::EMPTY;
+    for e in brep.topology.edge_ids() {
+        all = all.hull(&bounds::bounds(brep.curve(e), brep.range(e)));
+    }
+    for face in brep.topology.face_ids() {
+        all = all.hull(&bulge(brep, face));
+    }
+    all
+}
+
+/// The box of the points of a face whose normal is along an axis: where it bulges.
+fn bulge(brep: &Brep, face: FaceId) -> Box3 {
+    let surface = brep.surface(face);
+    let f = surface.frame();
+    let mut points = Vec::new();
+    for i in 0..3 {
+        let mut axis = Vector3::zeros();
+        axis[i] = 1.0;
+        match surface {
+            Surface::Sphere(s) => {
+                points.extend([-1.0, 1.0].map(|k| f.origin + axis * (k * s.radius)));
+            }
+            Surface::Torus(t) => {
+                let across = axis - f.z * f.z.dot(&axis);
+                let out = across.try_normalize(0.0).unwrap_or(f.x);
+                for (k, l) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+                    points.push(f.origin + out * (k * t.major) + axis * (l * t.minor));
+                }
+            }
+            _ => {}
+        }
+    }
+    if points.is_empty() {
+        return Box3::EMPTY;
+    }
+    let locator = super::locate::FaceLocator::of(brep, face, 0.0);
+    points.retain(|p| locator.place(p) != super::locate::Place::Outside);
+    points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)))
+}

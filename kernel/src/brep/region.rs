@@ -1,0 +1,390 @@
+//! The loops of one surface sorted into the regions that they bound.
+//!
+//! From each loop a walk runs over the surface to its end: along a line of a plane, a ruling of a
+//! cylinder or a cone, a great circle of a sphere to a fixed point. Between entering the boundary
+//! and leaving it, the walk is in one region, so the two loops passed belong together. Every loop
+//! of a plane, a cylinder, a cone or a sphere parts the surface (Jordan), so these pairs connect
+//! all loops of a region. On a torus both circles through each loop are walked, and ways to the
+//! first loop.
+
+use super::topology::Sense;
+use super::walk::{Crossing, DirectedArc, Passage, Walk};
+use crate::geometry::bounds::{Box3, bounds};
+use crate::geometry::frame::perpendicular;
+use crate::geometry::surface::{Surface, Torus};
+use crate::geometry::toric::wrap;
+use nalgebra::{Point3, Rotation3, Unit, Vector3};
+use std::f64::consts::TAU;
+
+/// A region: the loops that bound it, by index, and its Euler characteristic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Region {
+    /// In increasing order.
+    pub loops: Vec<usize>,
+    /// 2 less the number of loops on a part of a sphere.
+    pub euler: i32,
+}
+
+/// The loops of a surface cannot be sorted.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the loops of a surface around ({:.9}, {:.9}, {:.9}) bound no regions", place[0], place[1], place[2])]
+pub struct RegionError {
+    /// A point of one of them.
+    pub place: [f64; 3],
+}
+
+/// Where on an arc a walk may start.
+const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
+
+/// How many directions are tried.
+const ATTEMPTS: usize = 4;
+
+struct Sorter<'a> {
+    surface: &'a Surface,
+    outward: Sense,
+    arcs: Vec<DirectedArc<'a>>,
+    boxes: Vec<Box3>,
+    owner: Vec<usize>,
+    band: f64,
+    parent: Vec<usize>,
+}
+
+/// The regions of `surface` bounded by `loops`, the region to the left of each, seen from outside.
+pub(super) fn regions<'a>(
+    surface: &'a Surface,
+    outward: Sense,
+    loops: &[Vec<DirectedArc<'a>>],
+    band: f64,
+) -> Result<Vec<Region>, RegionError> {
+    let mut owner = Vec::new();
+    let mut arcs = Vec::new();
+    for (i, ring) in loops.iter().enumerate() {
+        owner.extend(ring.iter().map(|_| i));
+        arcs.extend(ring.iter().copied());
+    }
+    let boxes = arcs
+        .iter()
+        .map(|a| bounds(a.curve, a.range).grown(band))
+        .collect();
+    // More than the loops: the fixed points of a sphere, one for each attempt.
+    let parent = (0..loops.len() + ATTEMPTS).collect();
+    let mut sorter = Sorter {
+        surface,
+        outward,
+        arcs,
+        boxes,
+        owner,
+        band,
+        parent,
+    };
+    if loops.len() > 1 {
+        for i in 0..loops.len() {
+            sorter.connect(i)?;
+        }
+    }
+    let mut lists: Vec<Vec<usize>> = vec![Vec::new(); loops.len() + 1];
+    for i in 0..loops.len() {
+        let root = sorter.find(i);
+        lists[root].push(i);
+    }
+    let mut regions = Vec::new();
+    for list in lists.into_iter().filter(|l| !l.is_empty()) {
+        let euler = sorter.euler(loops, &list);
+        regions.push(Region { loops: list, euler });
+    }
+    Ok(regions)
+}
+
+impl Sorter<'_> {
+    fn find(&mut self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            self.parent[i] = self.parent[self.parent[i]];
+            i = self.parent[i];
+        }
+        i
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+
+    /// Joins a loop to those that it bounds a region with.
+    fn connect(&mut self, ring: usize) -> Result<(), RegionError> {
+        let own: Vec<usize> = (0..self.arcs.len())
+            .filter(|&a| self.owner[a] == ring)
+            .collect();
+        let mut place = [0.0; 3];
+        for attempt in 0..ATTEMPTS {
+            for &fraction in &STARTS {
+                for &arc in &own {
+                    let a = &self.arcs[arc];
+                    let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
+                    let p = a.curve.point(t);
+                    place = p.into();
+                    let tangent = a.curve.tangent(t) * a.sense.sign();
+                    let left = (self.surface.normal(&p) * self.outward.sign()).cross(&tangent);
+                    if self.walk_from(ring, arc, &p, &left, attempt) {
+                        return Ok(());
+                    }
+                }
+            }
+        }
+        Err(RegionError { place })
+    }
+
+    /// Walks from a point of a loop; false where the walk was unclear.
+    fn walk_from(
+        &mut self,
+        ring: usize,
+        arc: usize,
+        p: &Point3<f64>,
+        left: &Vector3<f64>,
+        attempt: usize,
+    ) -> bool {
+        match self.surface {
+            Surface::Torus(t) => self.walk_torus(*t, ring, arc, p, left),
+            Surface::Sphere(s) => {
+                let target = pole(s.frame.origin, s.radius, attempt);
+                let Some(walk) = Walk::great_circle(&s.frame.origin, p, &target) else {
+                    return false;
+                };
+                let walk = walk.upto(walk.at(&target));
+                self.follow(
+                    ring,
+                    arc,
+                    p,
+                    left,
+                    &[walk],
+                    Some(self.parent.len() - ATTEMPTS + attempt),
+                )
+            }
+            Surface::Plane(plane) => {
+                let f = &plane.frame;
+                let angle = 0.7 + 1.9 * attempt as f64;
+                let d = f.x * angle.cos() + f.y * angle.sin();
+                self.follow(ring, arc, p, left, &[Walk::straight(plane, p, d)], None)
+            }
+            Surface::Cylinder(_) | Surface::Cone(_) => {
+                let [u, _] = self.surface.parameters(p);
+                let Some(walk) = Walk::ruling(self.surface, p, u, Sense::Along) else {
+                    return false;
+                };
+                self.follow(ring, arc, p, left, &[walk], None)
+            }
+        }
+    }
+
+    /// Follows the legs of a walk and joins the loops passed; `goal` is joined where the walk ends
+    /// inside. False where anything is unclear.
+    fn follow(
+        &mut self,
+        ring: usize,
+        arc: usize,
+        p: &Point3<f64>,
+        left: &Vector3<f64>,
+        legs: &[Walk],
+        goal: Option<usize>,
+    ) -> bool {
+        let heading = legs[0].direction(p).dot(left);
+        if heading.abs() < 0.02 {
+            return false;
+        }
+        let mut inside = (heading > 0.0).then_some(ring);
+        let mut pairs = Vec::new();
+        for (k, leg) in legs.iter().enumerate() {
+            let Some(crossings) = self.crossings(leg, (k == 0).then_some(arc)) else {
+                return false;
+            };
+            for c in crossings {
+                let passed = self.owner[c.arc];
+                match (inside, c.passage) {
+                    (Some(from), Passage::Leaving) => {
+                        pairs.push((from, passed));
+                        inside = None;
+                    }
+                    (None, Passage::Entering) => inside = Some(passed),
+                    _ => return false,
+                }
+            }
+        }
+        if let (Some(from), Some(goal)) = (inside, goal) {
+            pairs.push((from, goal));
+        }
+        for (a, b) in pairs {
+            self.join(a, b);
+        }
+        true
+    }
+
+    /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.
+    fn crossings(&self, walk: &Walk, start: Option<usize>) -> Option<Vec<Crossing>> {
+        let mut found: Vec<Crossing> = Vec::new();
+        for (i, arc) in self.arcs.iter().enumerate() {
+            if !walk.may_meet_box(&self.boxes[i], self.band) {
+                continue;
+            }
+            walk.meet(
+                self.surface,
+                self.outward,
+                arc,
+                self.band,
+                &mut |at, t, passage| {
+                    // Arcs of both senses run over the starting edge where a face bounds itself.
+                    let here = start.is_some() && at <= 64.0 * self.band;
+                    if !here && !self.is_full_turn(walk, at, start) {
+                        found.push(Crossing {
+                            at,
+                            arc: i,
+                            t,
+                            passage,
+                        });
+                    }
+                },
+            );
+        }
+        if found.iter().any(|c| c.passage == Passage::Unclear) {
+            return None;
+        }
+        found.sort_by(|a, b| a.at.total_cmp(&b.at));
+        // Where a face bounds itself along an edge it is left and entered at one place.
+        for k in 1..found.len() {
+            let together = found[k].at - found[k - 1].at <= self.band;
+            let before = if k >= 2 {
+                Some(found[k - 2].passage)
+            } else {
+                None
+            };
+            if together
+                && found[k - 1].passage == before.unwrap_or(found[k - 1].passage)
+                && found[k].passage != found[k - 1].passage
+                && before.is_some()
+            {
+                found.swap(k - 1, k);
+            }
+        }
+        Some(found)
+    }
+
+    /// Whether a closed walk is back at its start.
+    fn is_full_turn(&self, walk: &Walk, at: f64, start: Option<usize>) -> bool {
+        start.is_some() && (walk.point(at) - walk.point(0.0)).norm() <= 64.0 * self.band
+    }
+
+    /// Both circles through a loop's point, and a way to the first loop.
+    fn walk_torus(
+        &mut self,
+        t: Torus,
+        ring: usize,
+        arc: usize,
+        p: &Point3<f64>,
+        left: &Vector3<f64>,
+    ) -> bool {
+        let mut walked = 0;
+        for sense in [Sense::Along, Sense::Against] {
+            let tube = Walk::tube(&t, p, sense);
+            walked += usize::from(self.follow(ring, arc, p, left, &[tube], None));
+            if let Some(round) = Walk::parallel(self.surface, p, sense, self.band) {
+                walked += usize::from(self.follow(ring, arc, p, left, &[round], None));
+            }
+        }
+        walked > 0 && (ring == 0 || self.way_to_first(t, ring, arc, p, left))
+    }
+
+    /// A way around the axis, then around the tube, to a point of the first loop.
+    fn way_to_first(
+        &mut self,
+        t: Torus,
+        ring: usize,
+        arc: usize,
+        p: &Point3<f64>,
+        left: &Vector3<f64>,
+    ) -> bool {
+        let Some(first) = (0..self.arcs.len()).find(|&a| self.owner[a] == 0) else {
+            return true;
+        };
+        let [u, v] = self.surface.parameters(p);
+        for &fraction in &STARTS {
+            let a = &self.arcs[first];
+            let s = a.range[0] + fraction * (a.range[1] - a.range[0]);
+            let [x, y] = self.surface.parameters(&a.curve.point(s));
+            let corner = self.surface.point(x, v);
+            let turn = wrap(x - u);
+            let sense = if turn > 0.0 {
+                Sense::Along
+            } else {
+                Sense::Against
+            };
+            let Some(round) = Walk::parallel(self.surface, p, sense, self.band) else {
+                continue;
+            };
+            let rho = t.major + t.minor * v.cos();
+            let up = wrap(y - v);
+            let rise = if up > 0.0 {
+                Sense::Along
+            } else {
+                Sense::Against
+            };
+            let tube = Walk::tube(&t, &corner, rise);
+            let legs = [
+                round.upto(turn.abs() * rho),
+                tube.upto((up.abs() * t.minor - 64.0 * self.band).max(0.0)),
+            ];
+            if self.follow(ring, arc, p, left, &legs, None) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The Euler characteristic of a region.
+    fn euler(&self, loops: &[Vec<DirectedArc<'_>>], list: &[usize]) -> i32 {
+        let n = list.len() as i32;
+        if !matches!(self.surface, Surface::Torus(_)) {
+            return 2 - n;
+        }
+        // With a loop that does not shrink to a point the region is an annulus with holes; with
+        // one that runs counterclockwise, a disc with holes; else a torus with holes.
+        let turns: Vec<Turns> = list.iter().map(|&i| self.turns(&loops[i])).collect();
+        let is_part_of_sphere = turns.iter().any(|t| t.winds || t.area > 0.0);
+        if is_part_of_sphere { 2 - n } else { -n }
+    }
+
+    /// How a loop runs in the two angles of a torus.
+    fn turns(&self, ring: &[DirectedArc<'_>]) -> Turns {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for a in ring {
+            for k in 0..32 {
+                let s = f64::from(k) / 32.0;
+                let s = if a.sense == Sense::Along { s } else { 1.0 - s };
+                let p = a.curve.point(a.range[0] + s * (a.range[1] - a.range[0]));
+                points.push(self.surface.parameters(&p));
+            }
+        }
+        let (mut x, mut y, mut area) = (0.0, 0.0, 0.0);
+        for (i, p) in points.iter().enumerate() {
+            let q = points[(i + 1) % points.len()];
+            let (dx, dy) = (wrap(q[0] - p[0]), wrap(q[1] - p[1]));
+            area += x * dy - y * dx;
+            x += dx;
+            y += dy;
+        }
+        let winds = x.abs() > TAU / 2.0 || y.abs() > TAU / 2.0;
+        Turns {
+            winds,
+            area: area * self.outward.sign(),
+        }
+    }
+}
+
+struct Turns {
+    winds: bool,
+    area: f64,
+}
+
+/// A point of a sphere where nothing is likely to be: another for each attempt.
+fn pole(centre: Point3<f64>, radius: f64, attempt: usize) -> Point3<f64> {
+    let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).normalize();
+    let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);
+    centre + Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d * radius
+}

@@ -2,5 +2,7 @@
 //! drawings.
 
 pub mod camera;
+pub mod image;
 pub mod limb;
 pub mod projection;
+pub mod sight;

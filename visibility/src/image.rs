@@ -197,52 +197,45 @@ impl Image {
         let Image::Flat { basis, map, line } = self else {
             return Vec::new();
         };
-        // Along the line, y(t) = (p·h)/(q·h); y' = 0 where (p·h')(q·h) = (p·h)(q·h').
         let along = Vector3::new(-line.y, line.x, 0.0);
-        let p = map.tr_mul(&along);
-        let q = map.tr_mul(&Vector3::z());
-        // With the basis (f, g, 1) that is k0 (f' g - f g') + k1 f' + k2 g' = 0.
-        let k0 = p.x * q.y - p.y * q.x;
-        let k1 = p.x * q.z - p.z * q.x;
-        let k2 = p.y * q.z - p.z * q.y;
-        let mut turns = Vec::new();
-        match basis {
-            // f' g - f g' = -1, f' = -sin, g' = cos.
-            Basis::Circular => {
-                let size = k1.hypot(k2);
-                if k0.abs() < size {
-                    let middle = (-k1).atan2(k2);
-                    let half = (k0 / size).acos();
-                    turns.extend([middle - half, middle + half]);
-                }
-            }
-            // f' g - f g' = t², f' = 2 t, g' = 1.
-            Basis::Parabolic => {
-                let radicand = k1 * k1 - k0 * k2;
-                if radicand > 0.0 {
-                    let k = -(k1 + radicand.sqrt().copysign(k1));
-                    turns.extend([k / k0, k2 / k]);
-                }
-            }
-            // f' g - f g' = -1, f' = sinh, g' = cosh: with e = exp t, a quadratic.
-            Basis::Hyperbolic => {
-                let (a, b, c) = (k1 + k2, -k0, k2 - k1);
-                let radicand = b * b - a * c;
-                if radicand > 0.0 {
-                    let k = -(b + radicand.sqrt().copysign(b));
-                    turns.extend([k / a, c / k].iter().filter(|e| **e > 0.0).map(|e| e.ln()));
-                }
-            }
-        }
+        let (p, q) = (map.tr_mul(&along), map.tr_mul(&Vector3::z()));
+        let found = Self::turns_of(*basis, &p, &q);
+        let mut turns: Vec<f64> = found.into_iter().flatten().collect();
         let [lo, hi] = range;
         let within = |t: f64| match basis {
             Basis::Circular => lo + (t - lo).rem_euclid(TAU),
             _ => t,
         };
-        turns.retain(|t| t.is_finite());
         turns.iter_mut().for_each(|t| *t = within(*t));
         turns.retain(|t| (lo..=hi).contains(t));
         turns
+    }
+
+    /// Where the derivative of (p·b)/(q·b) vanishes: (p·b')(q·b) = (p·b)(q·b').
+    pub fn turns_of(basis: Basis, p: &Vector3<f64>, q: &Vector3<f64>) -> [Option<f64>; 2] {
+        // With b = (f, g, 1) that is k0 (f' g - f g') + k1 f' + k2 g' = 0.
+        let k0 = p.x * q.y - p.y * q.x;
+        let k1 = p.x * q.z - p.z * q.x;
+        let k2 = p.y * q.z - p.z * q.y;
+        let roots = |a: f64, b: f64, c: f64| {
+            let radicand = b * b - a * c;
+            let k = -(b + radicand.sqrt().copysign(b));
+            [k / a, c / k]
+        };
+        let found = match basis {
+            // f' g - f g' = -1, f' = -sin, g' = cos.
+            Basis::Circular => {
+                let size = k1.hypot(k2);
+                let middle = (-k1).atan2(k2);
+                let half = (k0 / size).acos();
+                [middle - half, middle + half]
+            }
+            // f' g - f g' = t², f' = 2 t, g' = 1.
+            Basis::Parabolic => roots(k0, k1, k2),
+            // f' g - f g' = -1, f' = sinh, g' = cosh: with e = exp t, a quadratic.
+            Basis::Hyperbolic => roots(k1 + k2, -k0, k2 - k1).map(f64::ln),
+        };
+        found.map(|t| t.is_finite().then_some(t))
     }
 
     /// The parameter of the curve's point whose image is `h`, given that there is one; of a conic
@@ -283,12 +276,7 @@ impl Image {
 }
 
 /// Where k·b(t) = 0 over the range.
-pub fn line_on_conic(
-    basis: Basis,
-    k: &Vector3<f64>,
-    range: [f64; 2],
-    found: &mut impl FnMut(f64),
-) {
+pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mut impl FnMut(f64)) {
     let [lo, hi] = range;
     match basis {
         Basis::Circular => {

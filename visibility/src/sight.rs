@@ -203,7 +203,10 @@ impl<'a> Scene<'a> {
         let pierced = Pierced {
             origin: ray.origin.into(),
             // Finite, so that zero times it is zero: a line in the plane of a side is inside.
-            inverse: ray.towards.map(|x| (1.0 / x).clamp(f64::MIN, f64::MAX)).into(),
+            inverse: ray
+                .towards
+                .map(|x| (1.0 / x).clamp(f64::MIN, f64::MAX))
+                .into(),
             length: ray.length,
         };
         for leaf in self.tree.locate_with_selection_function(pierced) {
@@ -371,9 +374,8 @@ impl<'a> Scene<'a> {
                 ..*s
             });
             let f = |t: Interval| {
-                let p: [Jet<Interval>; 3] = std::array::from_fn(|i| {
-                    Jet::variable(t).scale(w[i]) + Jet::constant(q0[i])
-                });
+                let p: [Jet<Interval>; 3] =
+                    std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
                 surface.level(p)
             };
             return self.isolated(&f, lo, hi, found);

@@ -13,6 +13,8 @@ use premio_kernel::number::jet::Jet;
 
 /// Halvings of the pair after which it is given up as overlapping or touching.
 const DEPTH: u32 = 26;
+/// Halvings after which a pair of pieces of one curve counts as next to a cusp.
+const CUSP_DEPTH: u32 = 8;
 /// So many pairs given up mean that the curves fall on one another.
 const MANY: usize = 64;
 /// So many pairs are looked at.
@@ -96,6 +98,10 @@ pub fn general_pair(
             given_up += 1;
             continue;
         }
+        // Next to one cusp, and only one, a curve does not cross itself.
+        if same && pair.depth >= CUSP_DEPTH && around_one(a, &pair) {
+            continue;
+        }
         halve(pair, x, y, &mut stack);
     }
     Overlap::No
@@ -115,6 +121,16 @@ fn monotone(a: &Strand<'_>, projection: &Projection, pair: &Pair) -> bool {
     let (x, y) = (over(a, projection, pair.t), over(a, projection, pair.s));
     // The parameter of each piece has its own speed, but both run the same way.
     (0..2).any(|i| !x[i].d.hull(y[i].d).has_zero())
+}
+
+/// Whether exactly one cusp lies between the outer ends of the pair, and no more than one piece
+/// on either side of it.
+fn around_one(a: &Strand<'_>, pair: &Pair) -> bool {
+    let (lo, hi) = (pair.t[0].min(pair.s[0]), pair.t[1].max(pair.s[1]));
+    let width = (pair.t[1] - pair.t[0]).max(pair.s[1] - pair.s[0]);
+    let within = |t: f64| t >= lo && t <= hi;
+    let near = hi - lo <= 4.0 * width;
+    near && a.splits.iter().filter(|m| within(m.t)).count() == 1
 }
 
 fn halve(pair: Pair, x: [Jet<Interval>; 2], y: [Jet<Interval>; 2], stack: &mut Vec<Pair>) {

@@ -3,9 +3,10 @@
 
 use crate::contour::Piece;
 use crate::sight::{Count, Own, Scene};
-use crate::strand::{Change, Split, Strand};
+use crate::strand::{Change, Passing, Split, Strand};
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
+use premio_kernel::geometry::surface::Surface;
 
 /// How the quantitative invisibility of the pieces is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -17,6 +18,8 @@ pub enum Method {
     Counted,
 }
 
+/// Distances between points found on two ways, in multiples of the resolution.
+const LOOSE: f64 = 16.0;
 /// Where in a piece its faces in front are counted: the first place, and those asked where the
 /// answer there was not plain.
 const PLACES: [f64; 3] = [0.5, 0.31, 0.73];
@@ -69,10 +72,7 @@ fn ordered(strand: &mut Strand<'_>, near: f64) -> Vec<Split> {
                 if last.t == split.t
                     || (split.t - last.t) * curve.derivative(split.t).norm() <= near =>
             {
-                last.change = match (last.change, split.change) {
-                    (Change::Add(a), Change::Add(b)) => Change::Add(a + b),
-                    _ => Change::Recount,
-                };
+                last.change = Change::Recount;
             }
             _ => kept.push(split),
         }
@@ -107,7 +107,9 @@ pub fn pieces(
             .map_or((end, last), |next| (next.0, next.1));
         let range = [t, until];
         let known = match (method, change, carried) {
-            (Method::Carried, Change::Add(by), Some(before)) => carry(before, by),
+            (Method::Carried, Change::Pass(passing), Some(before)) => {
+                carry(scene, &strand.curve.point(t), before, &passing)
+            }
             _ => None,
         };
         let now = known.unwrap_or_else(|| count(scene, strand, range));
@@ -124,16 +126,41 @@ pub fn pieces(
     }
 }
 
-/// The count after a change, where it follows from the count before.
-fn carry(before: Count, by: i32) -> Option<Count> {
-    let qi = before.qi.checked_add_signed(by)?;
-    // Which face is nearest to the eye follows only where there is none, or no change.
-    match (qi, by) {
-        (0, _) => Some(Count {
-            qi,
-            occluder: None,
-            plain: true,
-        }),
+/// The count after a passage behind another contour at `p`, where it follows from the count
+/// before.
+fn carry(scene: &Scene<'_>, p: &Point3<f64>, before: Count, passing: &Passing) -> Option<Count> {
+    let qi = before.qi.checked_add_signed(passing.by)?;
+    let occluder = match (qi, before.occluder) {
+        (0, _) => None,
+        (_, None) => Some(passing.entered?),
+        (_, Some(first)) => Some(nearest(scene, p, first, passing)?),
+    };
+    Some(Count {
+        qi,
+        occluder,
+        plain: true,
+    })
+}
+
+/// The face nearest to the eye after the passage, if it was `first` before.
+fn nearest(scene: &Scene<'_>, p: &Point3<f64>, first: FaceId, passing: &Passing) -> Option<FaceId> {
+    if passing.left == Some(first) || passing.entered == Some(first) {
+        // A plane is met once, so it is the one that ends here.
+        let plane = matches!(scene.brep.surface(first), Surface::Plane(_));
+        return match (passing.left, passing.entered) {
+            (Some(left), Some(entered)) if plane && left == first => Some(entered),
+            _ => None,
+        };
+    }
+    let margin = LOOSE * scene.band;
+    let (mut before, mut behind) = (false, false);
+    scene.depths(p, first, &mut |s| {
+        before |= s > passing.ahead - margin;
+        behind |= s < passing.ahead + margin;
+    });
+    match (before, behind) {
+        (true, false) => Some(first),
+        (false, true) if passing.left.is_none() => passing.entered,
         _ => None,
     }
 }

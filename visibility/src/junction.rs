@@ -3,9 +3,8 @@
 //! Candidates come from an R-tree on the boxes of the images; long contours are chains of boxes.
 //! Notation: v is the unit vector towards the eye, T the direction of the nearer contour, U that
 //! of the farther one. A face to the left of T (seen from outside) lies in the image on the side
-//! on which det(T, ·, v) has the sign of N·v: so along the farther contour the number of faces in
-//! front grows by sign det(T, U, v) times the sum of the senses of the nearer contour's faces that
-//! are turned towards the eye. The folded sheet of a limb lies towards -N, or towards N where the
+//! on which det(T, ·, v) has the sign of N·v: so a face turned towards the eye begins to hide the
+//! farther contour where its loop's sense along T has the sign of det(T, U, v), else it ceases to. The folded sheet of a limb lies towards -N, or towards N where the
 //! surface is hollow along the line of sight.
 
 use crate::contour::JunctionKind;
@@ -13,8 +12,10 @@ use crate::crossing::{Overlap, cross, parameters_at};
 use crate::image::{Basis, Image, flat_of, flat_point};
 use crate::projection::{Projection, Sight};
 use crate::sight::Scene;
-use crate::strand::{Change, Junctions, Split, Strand};
+use crate::strand::{Change, Junctions, Passing, Split, Strand};
 use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::sign::ROUNDING;
 use rstar::RTree;
@@ -293,9 +294,16 @@ impl Search<'_, '_, '_, '_> {
         let change = if s.at_end {
             Change::Recount
         } else {
-            match self.hidden_by(near, s.t, &q, &far.curve.tangent(t.t), v) {
-                Some(Change::Add(0)) if !self.faces_front(near, &q, v) => return,
-                Some(change) => change,
+            let along = far.curve.tangent(t.t);
+            match self.hidden_by(near, s.t, &q, &along, v) {
+                // Faces turned away change nothing, and what is not seen has no junction.
+                Some((None, None)) => return,
+                Some((entered, left)) => Change::Pass(Passing {
+                    by: i32::from(entered.is_some()) - i32::from(left.is_some()),
+                    entered,
+                    left,
+                    ahead: (q - p).dot(v),
+                }),
                 None => Change::Recount,
             }
         };
@@ -309,14 +317,8 @@ impl Search<'_, '_, '_, '_> {
         self.splits.push((i, split));
     }
 
-    /// Whether any face along a boundary is turned towards the eye.
-    fn faces_front(&self, strand: &Strand<'_>, q: &Point3<f64>, v: &Vector3<f64>) -> bool {
-        let front = |f| self.scene.brep.outward(f, q).dot(v) > 0.0;
-        strand.limb || strand.faces.iter().any(|&(f, _)| front(f))
-    }
-
-    /// How many more faces hide what passes behind `near` at `q` in the direction `u`; none where
-    /// that is not clear.
+    /// Which face begins and which ceases to hide what passes behind `near` at `q` in the
+    /// direction `u`; none where that is not clear, or more than one face does.
     fn hidden_by(
         &self,
         near: &Strand<'_>,
@@ -324,41 +326,59 @@ impl Search<'_, '_, '_, '_> {
         q: &Point3<f64>,
         u: &Vector3<f64>,
         v: &Vector3<f64>,
-    ) -> Option<Change> {
+    ) -> Option<(Option<FaceId>, Option<FaceId>)> {
         let flat = ROUNDING.sqrt();
         let t = near.curve.tangent(s);
         let turn = t.cross(u).dot(v);
         if turn.abs() <= flat {
             return None;
         }
-        let mut sum = 0.0;
+        let (mut entered, mut left) = (None, None);
         for &(face, sense) in &near.faces {
-            let n = self.scene.brep.outward(face, q);
-            if near.limb {
-                let surface = self.scene.brep.surface(face);
-                let sign = if self.scene.along(face) { 1.0 } else { -1.0 };
-                let bend = sign * surface.normal_curvature(q, v);
-                let side = -t.cross(&n).dot(v) * bend.signum();
-                (side.abs() > flat && bend != 0.0).then_some(())?;
-                sum += side.signum();
-            } else {
-                let facing = n.dot(v);
-                if facing.abs() <= flat {
-                    // Edge-on planes hide nothing; a limb that runs along the edge is not clear.
-                    self.edge_on_plane(face).then_some(())?;
-                } else if facing > 0.0 {
-                    sum += sense.sign();
-                }
+            let side = self.image_side(near, face, sense, &t, q, v)?;
+            let slot = match side * turn {
+                x if x > 0.0 => &mut entered,
+                x if x < 0.0 => &mut left,
+                _ => continue,
+            };
+            if slot.replace(face).is_some() {
+                return None;
             }
         }
-        Some(Change::Add((turn.signum() * sum) as i32))
+        Some((entered, left))
     }
 
-    fn edge_on_plane(&self, face: premio_kernel::brep::topology::FaceId) -> bool {
+    /// The side of a contour on which a face of it hides what is behind: the sign of det(t, ·, v),
+    /// zero for a face turned away, none where it is not clear.
+    fn image_side(
+        &self,
+        near: &Strand<'_>,
+        face: FaceId,
+        sense: Sense,
+        t: &Vector3<f64>,
+        q: &Point3<f64>,
+        v: &Vector3<f64>,
+    ) -> Option<f64> {
+        let flat = ROUNDING.sqrt();
+        let n = self.scene.brep.outward(face, q);
+        if near.limb {
+            let surface = self.scene.brep.surface(face);
+            let sign = if self.scene.along(face) { 1.0 } else { -1.0 };
+            let bend = sign * surface.normal_curvature(q, v);
+            let side = -t.cross(&n).dot(v) * bend.signum();
+            return (side.abs() > flat && bend != 0.0).then_some(side.signum());
+        }
+        let facing = n.dot(v);
+        if facing.abs() <= flat {
+            // Edge-on planes hide nothing; a limb that runs along the edge is not clear.
+            return self.edge_on_plane(face).then_some(0.0);
+        }
+        Some(if facing > 0.0 { sense.sign() } else { 0.0 })
+    }
+
+    fn edge_on_plane(&self, face: FaceId) -> bool {
         match self.scene.brep.surface(face) {
-            premio_kernel::geometry::surface::Surface::Plane(s) => {
-                self.scene.edge_on(&s.frame.origin, &s.frame.z)
-            }
+            Surface::Plane(s) => self.scene.edge_on(&s.frame.origin, &s.frame.z),
             _ => false,
         }
     }

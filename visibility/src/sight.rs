@@ -241,6 +241,17 @@ impl<'a> Scene<'a> {
         }
     }
 
+    /// Where the line of sight from `p` meets the whole surface of a face, before it.
+    pub fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
+        let ray = self.ray(p);
+        let meetings = self.meetings(&ray, self.brep.surface(face), Own::No);
+        for &(s, _) in &meetings.at[..meetings.count] {
+            if s > 0.0 {
+                report(s);
+            }
+        }
+    }
+
     /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
     pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
         match self.projection.sight {

@@ -14,11 +14,24 @@ use premio_kernel::geometry::surface::{Plane, Surface};
 use premio_kernel::geometry::trace::Unresolved;
 use premio_kernel::number::roots::{Root, Zeros};
 
+/// A clean passage behind another contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passing {
+    /// By how much the quantitative invisibility grows.
+    pub by: i32,
+    /// The face turned towards the eye that begins to hide.
+    pub entered: Option<FaceId>,
+    /// The face turned towards the eye that ceases to hide.
+    pub left: Option<FaceId>,
+    /// How far the other contour lies before this one, along the line of sight.
+    pub ahead: f64,
+}
+
 /// What a split does to the quantitative invisibility along the strand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
-    /// It grows by so much.
-    Add(i32),
+    /// It changes as the other contour says.
+    Pass(Passing),
     /// It has to be counted anew.
     Recount,
 }

@@ -4,6 +4,7 @@
 pub mod camera;
 pub mod contour;
 pub mod crossing;
+pub mod drawing;
 pub mod image;
 pub mod invisibility;
 pub mod junction;

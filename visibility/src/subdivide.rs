@@ -1,8 +1,7 @@
 //! Crossings in the image of two curves without a closed form, by certified subdivision.
 //!
-//! The pair of parameter intervals is halved until the images are apart, or the Jacobian of the
-//! difference keeps its sign over the pair: then Newton's steps decide whether there is a crossing
-//! in it, and there is at most one.
+//! The pair of parameter intervals is halved until the images are apart, or Krawczyk's test shows
+//! that there is no crossing in it, or exactly one.
 
 use crate::crossing::Overlap;
 use crate::image::flat_point;
@@ -10,11 +9,12 @@ use crate::projection::Projection;
 use crate::strand::Strand;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
+use premio_kernel::number::scalar::Scalar;
 
 /// Halvings of the pair after which it is given up as overlapping or touching.
 const DEPTH: u32 = 26;
-/// Halvings after which a pair of pieces of one curve counts as next to a cusp.
-const CUSP_DEPTH: u32 = 8;
+/// How near to a cusp, in lengths of a segment, a curve is sure not to cross itself.
+const NEAR_CUSP: f64 = 0.25;
 /// So many pairs given up mean that the curves fall on one another.
 const MANY: usize = 64;
 /// So many pairs are looked at.
@@ -67,7 +67,7 @@ pub fn general_pair(
     let mut roots: Vec<(f64, f64)> = Vec::new();
     while let Some(pair) = stack.pop() {
         work += 1;
-        if given_up > MANY || work > WORK {
+        if (given_up > MANY && !same) || work > WORK {
             return Overlap::Yes;
         }
         if same && (pair.t == pair.s || pair.t[1] == pair.s[0]) && monotone(a, projection, &pair) {
@@ -78,28 +78,30 @@ pub fn general_pair(
         if apart {
             continue;
         }
-        let det = x[0].d * y[1].d - x[1].d * y[0].d;
-        if !det.has_zero() {
-            if let Some((t, s)) = newton(a, b, projection, &pair) {
-                let near = |r: &(f64, f64)| {
-                    let d = |c: &Strand<'_>, u: f64, v: f64| {
-                        (c.curve.point(u) - c.curve.point(v)).norm()
-                    };
-                    d(a, r.0, t) <= 16.0 * band && d(b, r.1, s) <= 16.0 * band
-                };
-                if !roots.iter().any(near) {
-                    roots.push((t, s));
-                    found(t, s);
+        let verdict = krawczyk(a, b, projection, &pair, &x, &y);
+        let last = pair.depth >= DEPTH;
+        match (verdict, last) {
+            (Verdict::Nothing, _) => continue,
+            (Verdict::Unsure, false) => {}
+            (Verdict::One, _) | (Verdict::Unsure, true) => {
+                let root = newton(a, b, projection, &pair);
+                if verdict == Verdict::Unsure && root.is_none() {
+                    given_up += 1;
                 }
+                if let Some((t, s)) = root {
+                    let apart = |c: &Strand<'_>, u: f64, v: f64| {
+                        (c.curve.point(u) - c.curve.point(v)).norm() > 16.0 * band
+                    };
+                    if roots.iter().all(|r| apart(a, r.0, t) || apart(b, r.1, s)) {
+                        roots.push((t, s));
+                        found(t, s);
+                    }
+                }
+                continue;
             }
-            continue;
-        }
-        if pair.depth >= DEPTH {
-            given_up += 1;
-            continue;
         }
         // Next to one cusp, and only one, a curve does not cross itself.
-        if same && pair.depth >= CUSP_DEPTH && around_one(a, &pair) {
+        if same && around_one(a, &pair) {
             continue;
         }
         halve(pair, x, y, &mut stack);
@@ -123,14 +125,14 @@ fn monotone(a: &Strand<'_>, projection: &Projection, pair: &Pair) -> bool {
     (0..2).any(|i| !x[i].d.hull(y[i].d).has_zero())
 }
 
-/// Whether exactly one cusp lies between the outer ends of the pair, and no more than one piece
-/// on either side of it.
+/// Whether exactly one cusp lies between the outer ends of the pair, and the next one far off:
+/// there the image is a semicubical parabola, which does not cross itself.
 fn around_one(a: &Strand<'_>, pair: &Pair) -> bool {
     let (lo, hi) = (pair.t[0].min(pair.s[0]), pair.t[1].max(pair.s[1]));
-    let width = (pair.t[1] - pair.t[0]).max(pair.s[1] - pair.s[0]);
-    let within = |t: f64| t >= lo && t <= hi;
-    let near = hi - lo <= 4.0 * width;
-    near && a.splits.iter().filter(|m| within(m.t)).count() == 1
+    let width = hi - lo;
+    let within = |t: f64, by: f64| t >= lo - by && t <= hi + by;
+    let marks = |by: f64| a.splits.iter().filter(|m| within(m.t, by)).count();
+    width <= NEAR_CUSP && marks(0.0) == 1 && marks(4.0 * width) == 1
 }
 
 fn halve(pair: Pair, x: [Jet<Interval>; 2], y: [Jet<Interval>; 2], stack: &mut Vec<Pair>) {
@@ -156,7 +158,67 @@ fn halve(pair: Pair, x: [Jet<Interval>; 2], y: [Jet<Interval>; 2], stack: &mut V
     }
 }
 
-/// The only crossing that the pair can hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verdict {
+    /// No crossing.
+    Nothing,
+    /// Exactly one.
+    One,
+    /// Not known.
+    Unsure,
+}
+
+/// Krawczyk's test of the difference of the images over the pair.
+fn krawczyk(
+    a: &Strand<'_>,
+    b: &Strand<'_>,
+    projection: &Projection,
+    pair: &Pair,
+    x: &[Jet<Interval>; 2],
+    y: &[Jet<Interval>; 2],
+) -> Verdict {
+    let middle = |r: [f64; 2]| 0.5 * (r[0] + r[1]);
+    let m = [middle(pair.t), middle(pair.s)];
+    let at = |c: &Strand<'_>, t: f64| flat_point(projection, c.curve.jet_over(Interval::point(t)));
+    let (p, q) = (at(a, m[0]), at(b, m[1]));
+    let j = [[x[0].d, -y[0].d], [x[1].d, -y[1].d]];
+    let k = j.map(|row| row.map(Interval::mid));
+    let det = k[0][0] * k[1][1] - k[0][1] * k[1][0];
+    let inverse = [
+        [k[1][1] / det, -k[0][1] / det],
+        [-k[1][0] / det, k[0][0] / det],
+    ];
+    if !inverse.iter().flatten().all(|c| c.is_finite()) {
+        return Verdict::Unsure;
+    }
+    let f = [p[0].v - q[0].v, p[1].v - q[1].v];
+    let whole = [pair.t, pair.s].map(|r| Interval::new(r[0], r[1]));
+    let run = [
+        whole[0] - Interval::point(m[0]),
+        whole[1] - Interval::point(m[1]),
+    ];
+    let mut inside = true;
+    for i in 0..2 {
+        let step = f[0].scale(inverse[i][0]) + f[1].scale(inverse[i][1]);
+        let mut image = Interval::point(m[i]) - step;
+        for n in 0..2 {
+            let product = j[0][n].scale(inverse[i][0]) + j[1][n].scale(inverse[i][1]);
+            let unit = Interval::point(if i == n { 1.0 } else { 0.0 });
+            image = image + (unit - product) * run[n];
+        }
+        if !image.meets(whole[i]) {
+            return Verdict::Nothing;
+        }
+        inside &= whole[i].lo <= image.lo && image.hi <= whole[i].hi;
+    }
+    if inside {
+        Verdict::One
+    } else {
+        Verdict::Unsure
+    }
+}
+
+/// The crossing that the pair holds, where Newton's steps settle in it.
 fn newton(
     a: &Strand<'_>,
     b: &Strand<'_>,
@@ -164,6 +226,7 @@ fn newton(
     pair: &Pair,
 ) -> Option<(f64, f64)> {
     let (mut t, mut s) = (0.5 * (pair.t[0] + pair.t[1]), 0.5 * (pair.s[0] + pair.s[1]));
+    let mut settled = false;
     for _ in 0..30 {
         let x = flat_point(projection, a.curve.jet(t));
         let y = flat_point(projection, b.curve.jet(s));
@@ -181,10 +244,11 @@ fn newton(
             && (ns - s).abs() <= 4.0 * f64::EPSILON * (1.0 + s.abs());
         (t, s) = (nt, ns);
         if done {
+            settled = true;
             break;
         }
     }
     let slack = |[lo, hi]: [f64; 2]| 64.0 * f64::EPSILON * (lo.abs() + hi.abs() + 1.0);
     let inside = |u: f64, r: [f64; 2]| u >= r[0] - slack(r) && u <= r[1] + slack(r);
-    (inside(t, pair.t) && inside(s, pair.s)).then_some((t, s))
+    (settled && inside(t, pair.t) && inside(s, pair.s)).then_some((t, s))
 }

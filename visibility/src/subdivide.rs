@@ -84,7 +84,7 @@ pub fn general_pair(
             (Verdict::Nothing, _) => continue,
             (Verdict::Unsure, false) => {}
             (Verdict::One, _) | (Verdict::Unsure, true) => {
-                let root = newton(a, b, projection, &pair);
+                let root = newton(a, b, projection, &pair, band);
                 if verdict == Verdict::Unsure && root.is_none() {
                     given_up += 1;
                 }
@@ -224,9 +224,11 @@ fn newton(
     b: &Strand<'_>,
     projection: &Projection,
     pair: &Pair,
+    near: f64,
 ) -> Option<(f64, f64)> {
     let (mut t, mut s) = (0.5 * (pair.t[0] + pair.t[1]), 0.5 * (pair.s[0] + pair.s[1]));
-    let mut settled = false;
+    // Steps that no longer shrink are rounding.
+    let (mut settled, mut last) = (false, f64::INFINITY);
     for _ in 0..30 {
         let x = flat_point(projection, a.curve.jet(t));
         let y = flat_point(projection, b.curve.jet(s));
@@ -240,15 +242,21 @@ fn newton(
         // One step may leave the pair; the next ones have to come back.
         let keep = |u: f64, [lo, hi]: [f64; 2]| u.clamp(lo - (hi - lo), hi + (hi - lo));
         let (nt, ns) = (keep(t + dt, pair.t), keep(s + ds, pair.s));
-        let done = (nt - t).abs() <= 4.0 * f64::EPSILON * (1.0 + t.abs())
-            && (ns - s).abs() <= 4.0 * f64::EPSILON * (1.0 + s.abs());
+        let moved = |c: &Strand<'_>, from: f64, to: f64| {
+            (to - from).abs() * c.curve.derivative(from).norm()
+        };
+        let step = moved(a, t, nt).max(moved(b, s, ns));
+        let done = step <= near && step >= last;
+        settled = step <= near;
+        last = step;
         (t, s) = (nt, ns);
         if done {
-            settled = true;
             break;
         }
     }
-    let slack = |[lo, hi]: [f64; 2]| 64.0 * f64::EPSILON * (lo.abs() + hi.abs() + 1.0);
-    let inside = |u: f64, r: [f64; 2]| u >= r[0] - slack(r) && u <= r[1] + slack(r);
-    (settled && inside(t, pair.t) && inside(s, pair.s)).then_some((t, s))
+    let inside = |c: &Strand<'_>, u: f64, r: [f64; 2]| {
+        let slack = near / c.curve.derivative(u).norm();
+        u >= r[0] - slack && u <= r[1] + slack
+    };
+    (settled && inside(a, t, pair.t) && inside(b, s, pair.s)).then_some((t, s))
 }

@@ -6,7 +6,7 @@ use premio_kernel::brep::topology::*;
 use premio_kernel::brep::{Arc, Brep, Patch};
 use premio_kernel::geometry::curve::{Circle, Curve, Line};
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::surface::{Cylinder, Plane, Sphere, Surface, Torus};
+use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
@@ -159,6 +159,26 @@ impl Builder {
             Surface::Plane(Plane { frame: *f }),
             Sense::Against,
             &[vec![(low, Sense::Against)]],
+        );
+    }
+
+    pub fn cone(&mut self, f: &Frame, sin: f64, height: f64) {
+        let cos = (1.0 - sin * sin).sqrt();
+        let base = f.at(f.point(0.0, 0.0, height));
+        let rim = self.circle(base, height * sin / cos);
+        self.face(
+            Surface::Cone(Cone {
+                frame: *f,
+                sin,
+                cos,
+            }),
+            Sense::Along,
+            &[vec![(rim, Sense::Against)]],
+        );
+        self.face(
+            Surface::Plane(Plane { frame: base }),
+            Sense::Along,
+            &[vec![(rim, Sense::Along)]],
         );
     }
 

@@ -79,24 +79,24 @@ pub fn general_pair(
             continue;
         }
         let verdict = krawczyk(a, b, projection, &pair, &x, &y);
+        if verdict == Verdict::Nothing {
+            continue;
+        }
         let last = pair.depth >= DEPTH;
-        match (verdict, last) {
-            (Verdict::Nothing, _) => continue,
-            (Verdict::Unsure, false) => {}
-            (Verdict::One, _) | (Verdict::Unsure, true) => {
-                let root = newton(a, b, projection, &pair, band);
-                if verdict == Verdict::Unsure && root.is_none() {
-                    given_up += 1;
+        if verdict == Verdict::One || last {
+            if let Some((t, s)) = newton(a, b, projection, &pair, band) {
+                let apart = |c: &Strand<'_>, u: f64, v: f64| {
+                    (c.curve.point(u) - c.curve.point(v)).norm() > 16.0 * band
+                };
+                if roots.iter().all(|r| apart(a, r.0, t) || apart(b, r.1, s)) {
+                    roots.push((t, s));
+                    found(t, s);
                 }
-                if let Some((t, s)) = root {
-                    let apart = |c: &Strand<'_>, u: f64, v: f64| {
-                        (c.curve.point(u) - c.curve.point(v)).norm() > 16.0 * band
-                    };
-                    if roots.iter().all(|r| apart(a, r.0, t) || apart(b, r.1, s)) {
-                        roots.push((t, s));
-                        found(t, s);
-                    }
-                }
+                continue;
+            }
+            // Newton's steps may leave a pair that is still wide.
+            if last {
+                given_up += 1;
                 continue;
             }
         }
@@ -104,7 +104,7 @@ pub fn general_pair(
         if same && around_one(a, &pair) {
             continue;
         }
-        halve(pair, x, y, &mut stack);
+        halve(pair, same, [&x, &y], &mut stack);
     }
     Overlap::No
 }
@@ -135,17 +135,17 @@ fn around_one(a: &Strand<'_>, pair: &Pair) -> bool {
     width <= NEAR_CUSP && marks(0.0) == 1 && marks(4.0 * width) == 1
 }
 
-fn halve(pair: Pair, x: [Jet<Interval>; 2], y: [Jet<Interval>; 2], stack: &mut Vec<Pair>) {
+fn halve(pair: Pair, same: bool, [x, y]: [&[Jet<Interval>; 2]; 2], stack: &mut Vec<Pair>) {
     let size = |j: &[Jet<Interval>; 2]| j[0].v.width().max(j[1].v.width());
     let depth = pair.depth + 1;
-    if pair.t == pair.s {
+    if same && pair.t == pair.s {
         // The diagonal of a curve with itself stays a diagonal.
         let m = 0.5 * (pair.t[0] + pair.t[1]);
         let (lo, hi) = ([pair.t[0], m], [m, pair.t[1]]);
         for (t, s) in [(lo, lo), (lo, hi), (hi, hi)] {
             stack.push(Pair { t, s, depth });
         }
-    } else if size(&x) >= size(&y) {
+    } else if size(x) >= size(y) {
         let m = 0.5 * (pair.t[0] + pair.t[1]);
         for t in [[pair.t[0], m], [m, pair.t[1]]] {
             stack.push(Pair { t, depth, ..pair });

@@ -277,7 +277,7 @@ impl Image {
 
 /// Where k·b(t) = 0 over the range.
 pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mut impl FnMut(f64)) {
-    let [lo, hi] = range;
+    let lo = range[0];
     match basis {
         Basis::Circular => {
             let size = k.x.hypot(k.y);
@@ -301,7 +301,6 @@ pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mu
             quadratic([k.x - k.y, 2.0 * k.z, k.x + k.y], &mut keep);
         }
     }
-    let _ = hi;
 }
 
 /// The real roots of k[0] + k[1] t + k[2] t².

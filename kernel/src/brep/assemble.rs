@@ -519,7 +519,8 @@ fn bind_shells(brep: &mut Brep, fans: &Fans, judge: &Judge) -> Result<(), Assemb
         members[s].push(FaceId(f as u32));
     }
     for (s, faces) in members.iter().enumerate() {
-        let volume = shell_volume(brep, faces);
+        // One shell alone is an outer one.
+        let volume = if members.len() == 1 { 1.0 } else { shell_volume(brep, faces) };
         if volume == 0.0 || !volume.is_finite() {
             return Err(AssemblyError::Flat {
                 place: point_of(brep, faces[0]).into(),

@@ -11,7 +11,7 @@ use super::walk::plane_roots;
 use crate::geometry::bounds::{self, Box3};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
-use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
+use crate::geometry::surface::{Plane, Sphere, Surface, SurfaceKind, Torus};
 use crate::number::quadrature::{Rule, TWENTY, TWO, adaptive, integral};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -72,7 +72,13 @@ pub fn face_area(brep: &Brep, face: FaceId) -> f64 {
 
 /// A point amid the part: sums relative to it do not cancel.
 fn reference(brep: &Brep) -> Point3<f64> {
-    let b = bounds(brep);
+    let mut b = Box3::EMPTY;
+    for e in brep.topology.edge_ids() {
+        b = b.hull(&Box3::of(&brep.curve(e).point(brep.range(e)[0])));
+    }
+    for p in brep.geometry.surfaces.iter().filter(|s| s.kind() >= SurfaceKind::Sphere) {
+        b = b.hull(&Box3::of(&p.frame().origin));
+    }
     if b.min[0] > b.max[0] {
         Point3::origin()
     } else {
@@ -320,7 +326,7 @@ fn torus_moments(
 pub fn bounds(brep: &Brep) -> Box3 {
     let mut all = Box3::EMPTY;
     for e in brep.topology.edge_ids() {
-        all = all.hull(&bounds::bounds(brep.curve(e), brep.range(e)));
+        all = all.hull(&bounds::tight_bounds(brep.curve(e), brep.range(e)));
     }
     for face in brep.topology.face_ids() {
         all = all.hull(&bulge(brep, face));

@@ -47,6 +47,8 @@ struct Sorter<'a> {
     owner: Vec<usize>,
     band: f64,
     parent: Vec<usize>,
+    /// Whether a loop on a torus does not shrink to a point.
+    winding: bool,
 }
 
 /// The regions of `surface` bounded by `loops`, the region to the left of each, seen from outside.
@@ -76,7 +78,11 @@ pub(super) fn regions<'a>(
         owner,
         band,
         parent,
+        winding: false,
     };
+    if let Surface::Torus(_) = surface {
+        sorter.winding = loops.iter().any(|ring| sorter.turns(ring).winds);
+    }
     if loops.len() > 1 {
         for i in 0..loops.len() {
             sorter.connect(i)?;
@@ -288,7 +294,8 @@ impl Sorter<'_> {
                 walked += usize::from(self.follow(ring, arc, p, left, &[round], None));
             }
         }
-        walked > 0 && (ring == 0 || self.way_to_first(t, ring, arc, p, left))
+        // A loop that winds around is met by one of the circles: then no other way is needed.
+        walked > 0 && (ring == 0 || self.winding || self.way_to_first(t, ring, arc, p, left))
     }
 
     /// A way around the axis, then around the tube, to a point of the first loop.

@@ -4,6 +4,7 @@ use super::curve::Curve;
 use super::frame::Frame;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::sign::ROUNDING;
 use nalgebra::Point3;
 use std::f64::consts::TAU;
 
@@ -94,19 +95,52 @@ fn turn_bounds(f: &Frame, a: f64, b: f64, [lo, hi]: [f64; 2], mut hull: Box3) ->
     hull
 }
 
-/// How many parts an enclosure halves each smooth piece into.
-const PARTS: usize = 4;
+/// An enclosure may be larger than the curve by this part of its size.
+const LOOSE: f64 = 1.0 / 16.0;
+/// The halvings after which an enclosure is taken as it is.
+const DEPTH: u32 = 40;
 
 fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
-    let mut hull = ends(curve, range);
-    for pair in curve.breaks(range[0], range[1]).windows(2) {
-        for k in 0..PARTS {
-            let at = |k: usize| pair[0] + (pair[1] - pair[0]) * (k as f64 / PARTS as f64);
-            let over = Interval::new(at(k), at(k + 1));
-            hull = hull.hull(&piece_box(curve, over));
+    within(curve, range, LOOSE)
+}
+
+/// The box of the arc of a curve, to rounding.
+pub fn tight_bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
+    match curve {
+        Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_) => bounds(curve, range),
+        _ => within(curve, range, 4.0 * ROUNDING),
+    }
+}
+
+/// Branch and bound: pieces are halved until none reaches beyond the points seen by more than
+/// `slack` times their size.
+fn within(curve: &Curve, range: [f64; 2], slack: f64) -> Box3 {
+    let breaks = curve.breaks(range[0], range[1]);
+    let mut seen = Box3::EMPTY;
+    for pair in breaks.windows(2) {
+        for k in 0..=4 {
+            let t = pair[0] + (pair[1] - pair[0]) * f64::from(k) / 4.0;
+            seen = seen.hull(&Box3::of(&curve.point(t)));
         }
     }
-    hull
+    let mut all = seen;
+    let mut stack: Vec<(f64, f64, u32)> =
+        breaks.windows(2).map(|p| (p[0], p[1], 0)).collect();
+    while let Some((a, b, depth)) = stack.pop() {
+        let part = piece_box(curve, Interval { lo: a, hi: b });
+        let far = seen.grown(slack * seen.diagonal());
+        let inside = (0..3).all(|i| part.min[i] >= far.min[i] && part.max[i] <= far.max[i]);
+        if inside || depth >= DEPTH {
+            all = all.hull(&part);
+            continue;
+        }
+        let m = 0.5 * (a + b);
+        seen = seen.hull(&Box3::of(&curve.point(m)));
+        stack.push((a, m, depth + 1));
+        stack.push((m, b, depth + 1));
+    }
+    // What a piece was allowed to be larger by is no part of a tight box.
+    if slack < LOOSE { seen } else { all }
 }
 
 fn piece_box(curve: &Curve, t: Interval) -> Box3 {

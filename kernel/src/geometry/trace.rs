@@ -61,25 +61,13 @@ impl Cell {
             0.5 * (self.hi[1] - self.lo[1]),
         ]
     }
-    fn quarters(&self) -> [Cell; 4] {
-        let c = self.centre();
-        let part = |i: usize, j: usize| {
-            let x = if i == 0 {
-                [self.lo[0], c[0]]
-            } else {
-                [c[0], self.hi[0]]
-            };
-            let y = if j == 0 {
-                [self.lo[1], c[1]]
-            } else {
-                [c[1], self.hi[1]]
-            };
-            Cell {
-                lo: [x[0], y[0]],
-                hi: [x[1], y[1]],
-            }
-        };
-        [part(0, 0), part(1, 0), part(0, 1), part(1, 1)]
+    /// Both halves across one angle.
+    fn halves(&self, across: usize) -> [Cell; 2] {
+        let c = self.centre()[across];
+        let (mut low, mut high) = (*self, *self);
+        low.hi[across] = c;
+        high.lo[across] = c;
+        [low, high]
     }
 }
 
@@ -89,6 +77,16 @@ struct Bounds {
     x: [f64; 2],
     y: [f64; 2],
     at: Partials<f64>,
+    /// The angle along which the form varies more over the cell.
+    wide: usize,
+}
+
+#[derive(Default)]
+struct Remainders {
+    third: f64,
+    x: f64,
+    y: f64,
+    across: [f64; 2],
 }
 
 struct Tracer<'a> {
@@ -99,7 +97,7 @@ struct Tracer<'a> {
 }
 
 /// The depth at which a cell that is still undecided is given up: sides of 1e-7 radians.
-const DEPTH: u32 = 24;
+const DEPTH: u32 = 48;
 /// The cells of the first grid along each angle.
 const GRID: usize = 10;
 /// Where the first grid starts, so that symmetric curves do not meet its lines in special points.
@@ -112,27 +110,46 @@ impl Tracer<'_> {
         let [cx, cy] = cell.centre();
         let [hx, hy] = cell.half();
         let p = self.form.partials(cx, cy);
-        let h = hx.max(hy);
-        let cubic = self.third * h * h;
+        let r = self.remainders(hx, hy);
         let spread = p.x.abs() * hx
             + p.y.abs() * hy
             + 0.5 * (p.xx.abs() * hx * hx + 2.0 * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy)
-            + cubic * h / 6.0
+            + r.third / 6.0
             + self.slop;
-        let rx = p.xx.abs() * hx + p.xy.abs() * hy + 0.5 * cubic + self.slop;
-        let ry = p.xy.abs() * hx + p.yy.abs() * hy + 0.5 * cubic + self.slop;
+        let rx = p.xx.abs() * hx + p.xy.abs() * hy + 0.5 * r.x + self.slop;
+        let ry = p.xy.abs() * hx + p.yy.abs() * hy + 0.5 * r.y + self.slop;
         Bounds {
             clear: p.f.abs() > spread,
             x: [p.x.abs() - rx, p.x.abs() + rx],
             y: [p.y.abs() - ry, p.y.abs() + ry],
             at: p,
+            wide: usize::from(r.across[1] > r.across[0]),
         }
+    }
+
+    /// Bounds of the third derivatives in the direction (hx, hy), of those of both first partial
+    /// derivatives, and how much the form varies along each angle.
+    fn remainders(&self, hx: f64, hy: f64) -> Remainders {
+        let degree = [0.0, 1.0, 1.0, 2.0, 2.0];
+        let mut r = Remainders::default();
+        for (row, dx) in self.form.0.iter().zip(degree) {
+            for (c, dy) in row.iter().zip(degree) {
+                let d: f64 = dx * hx + dy * hy;
+                let c = c.abs() * d * d;
+                r.third += c * d;
+                r.x += c * dx;
+                r.y += c * dy;
+                r.across[0] += c * dx * hx;
+                r.across[1] += c * dy * hy;
+            }
+        }
+        r
     }
 
     /// The critical points of F at which F is within the band.
     fn singular_points(&self) -> Result<Vec<[f64; 2]>, Unresolved> {
         let mut found: Vec<[f64; 2]> = Vec::new();
-        let mut stack: Vec<(Cell, u32)> = grid(&lines(&[]), &lines(&[]))
+        let mut stack: Vec<(Cell, u32)> = grid(&lines(&[], 0.0, 1.0), &lines(&[], 0.0, 1.0))
             .into_iter()
             .map(|c| (c, 0))
             .collect();
@@ -157,7 +174,7 @@ impl Tracer<'_> {
                     angles: cell.centre(),
                 });
             }
-            stack.extend(cell.quarters().map(|c| (c, depth + 1)));
+            stack.extend(cell.halves(b.wide).map(|c| (c, depth + 1)));
         }
         found.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         Ok(found)
@@ -218,7 +235,7 @@ impl Tracer<'_> {
                     angles: cell.centre(),
                 });
             } else {
-                stack.extend(cell.quarters().map(|c| (c, depth + 1)));
+                stack.extend(cell.halves(b.wide).map(|c| (c, depth + 1)));
             }
         }
         Ok(leaves)
@@ -259,16 +276,21 @@ fn near(a: &[f64; 2], b: &[f64; 2], reach: f64) -> bool {
 
 /// The lines of the first grid along one angle: even ones, but none through a zone, and the sides
 /// of the zones.
-fn lines(zones: &[(f64, f64)]) -> Vec<f64> {
+fn lines(centres: &[f64], size: f64, skew: f64) -> Vec<f64> {
     let mut all: Vec<f64> = (0..GRID)
         .map(|i| START + TAU * i as f64 / GRID as f64)
         .collect();
-    all.retain(|x| zones.iter().all(|(c, d)| wrap(x - c).abs() > *d));
-    for (c, d) in zones {
-        for side in [c - d, c + d] {
+    all.retain(|x| centres.iter().all(|c| wrap(x - c).abs() > size));
+    for c in centres {
+        // Unequal sides: a curve of a simple slope then misses the corners.
+        for side in [c - size * skew, c + size] {
             let side = START + (side - START).rem_euclid(TAU);
-            let same = all.iter().any(|x| wrap(x - side).abs() < d * 1e-6);
-            if !same && zones.iter().all(|(c, d)| wrap(side - c).abs() > d * 0.999) {
+            let same = all.iter().any(|x| wrap(x - side).abs() < size * SAME);
+            let within = |c: &f64| {
+                let d = wrap(side - c);
+                d > -size * skew * WITHIN && d < size * WITHIN
+            };
+            if !same && !centres.iter().any(within) {
                 all.push(side);
             }
         }
@@ -278,6 +300,11 @@ fn lines(zones: &[(f64, f64)]) -> Vec<f64> {
     all.push(first + TAU);
     all
 }
+
+/// Lines nearer than this part of a zone are one.
+const SAME: f64 = 1.0 / (1 << 20) as f64;
+/// What lies within this part of a zone is inside.
+const WITHIN: f64 = 0.999;
 
 fn grid(xs: &[f64], ys: &[f64]) -> Vec<Cell> {
     let mut cells = Vec::new();
@@ -350,8 +377,9 @@ impl Tracer<'_> {
         shrink: f64,
     ) -> Result<Traced, Unresolved> {
         let size = points.iter().map(|p| self.zone(p)).fold(0.05, f64::min) * shrink;
-        let zones = |k: usize| points.iter().map(|p| (p[k], size)).collect::<Vec<_>>();
-        let (xs, ys) = (lines(&zones(0)), lines(&zones(1)));
+        let centres = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<_>>();
+        let xs = lines(&centres(0), size, 0.913_7);
+        let ys = lines(&centres(1), size, 0.871_3);
         let cells = grid(&xs, &ys);
         let home = |c: &Cell| points.iter().position(|p| near(&c.centre(), p, 0.9 * size));
         let (own, free): (Vec<Cell>, Vec<Cell>) =

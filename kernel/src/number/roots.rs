@@ -55,9 +55,23 @@ struct Cluster {
     lo: f64,
     hi: f64,
     t: f64,
-    simple: bool,
+    kind: Kind,
     margin: Option<f64>,
 }
+
+/// What is known of a cluster's best parameter.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// A root between opposite signs.
+    Simple,
+    /// The extremum.
+    Extremum,
+    /// Only that it lies in the cluster.
+    Loose,
+}
+
+/// How far beyond its range, as a part of it, the function is asked for its sign.
+const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 
 struct Search<'a, F> {
     f: &'a F,
@@ -99,12 +113,12 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
         (self.f)(Interval::point(t)).d.mid()
     }
 
-    fn cluster(&mut self, lo: f64, hi: f64, t: f64, simple: bool, margin: Option<f64>) {
+    fn cluster(&mut self, lo: f64, hi: f64, t: f64, kind: Kind, margin: Option<f64>) {
         self.clusters.push(Cluster {
             lo,
             hi,
             t,
-            simple,
+            kind,
             margin,
         });
     }
@@ -125,13 +139,13 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
                 continue;
             }
             if v.magnitude() <= self.band {
-                self.cluster(a, b, m, false, Some(0.0));
+                self.cluster(a, b, m, Kind::Loose, Some(0.0));
             } else if !jet.d.has_zero() {
                 self.monotone(a, b);
             } else if !jet.dd.has_zero() {
                 self.convex(a, b);
             } else if b - a <= self.floor {
-                self.cluster(a, b, m, false, Some(v.magnitude()));
+                self.cluster(a, b, m, Kind::Loose, Some(v.magnitude()));
             } else {
                 stack.push((m, b));
                 stack.push((a, m));
@@ -153,28 +167,29 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
     fn monotone(&mut self, a: f64, b: f64) {
         let (fa, fb) = (self.value(a), self.value(b));
         match (self.sign(fa), self.sign(fb)) {
-            (0, 0) => self.cluster(a, b, 0.5 * (a + b), false, Some(0.0)),
+            (0, 0) => self.cluster(a, b, 0.5 * (a + b), Kind::Loose, Some(0.0)),
             (0, _) => {
-                let (t, simple) = if fa * fb <= 0.0 {
-                    (self.refine(a, b, fa), true)
-                } else {
-                    (a, false)
-                };
-                self.cluster(a, t, t, simple, None);
+                let (t, kind) = self.near_end(a, b, fa, fb, a);
+                self.cluster(a, t, t, kind, None);
             }
             (_, 0) => {
-                let (t, simple) = if fa * fb <= 0.0 {
-                    (self.refine(a, b, fa), true)
-                } else {
-                    (b, false)
-                };
-                self.cluster(t, b, t, simple, None);
+                let (t, kind) = self.near_end(a, b, fa, fb, b);
+                self.cluster(t, b, t, kind, None);
             }
             (p, q) if p != q => {
                 let t = self.refine(a, b, fa);
-                self.cluster(t, t, t, true, None);
+                self.cluster(t, t, t, Kind::Simple, None);
             }
             _ => {}
+        }
+    }
+
+    /// The zero of a monotone function one of whose ends is within the band, or that end.
+    fn near_end(&self, a: f64, b: f64, fa: f64, fb: f64, end: f64) -> (f64, Kind) {
+        if fa * fb <= 0.0 {
+            (self.refine(a, b, fa), Kind::Simple)
+        } else {
+            (end, Kind::Loose)
         }
     }
 
@@ -188,7 +203,7 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
         if self.sign(extremum) == 0 {
             let lo = if self.sign(self.value(a)) == 0 { a } else { t };
             let hi = if self.sign(self.value(b)) == 0 { b } else { t };
-            return self.cluster(lo, hi, t, false, Some(extremum.abs()));
+            return self.cluster(lo, hi, t, Kind::Extremum, Some(extremum.abs()));
         }
         self.misses.push((t, extremum));
         self.monotone(a, t);
@@ -222,14 +237,23 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
             .iter()
             .map(|g| (g[0].lo, g[g.len() - 1].hi))
             .collect();
+        // Between clusters the sign is plain; beyond the ends of the range the function goes on.
+        let step = (last - first) * OUTSIDE;
         let sign_between = |i: usize| {
-            let left = if i == 0 { first } else { ends[i - 1].1 };
-            let right = ends.get(i).map_or(last, |e| e.0);
-            self.value(0.5 * (left + right)).signum()
+            let left = if i == 0 { None } else { Some(ends[i - 1].1) };
+            let right = ends.get(i).map(|e| e.0);
+            let t = match (left, right) {
+                (Some(l), Some(r)) => 0.5 * (l + r),
+                (None, Some(r)) if r <= first => r - step,
+                (None, Some(r)) => 0.5 * (first + r),
+                (Some(l), None) if l >= last => l + step,
+                (Some(l), None) => 0.5 * (l + last),
+                (None, None) => 0.5 * (first + last),
+            };
+            self.value(t).signum()
         };
         let roots = merged.iter().enumerate().map(|(i, group)| {
-            let at_end = ends[i].0 <= first || ends[i].1 >= last;
-            let crosses = at_end || sign_between(i) != sign_between(i + 1);
+            let crosses = sign_between(i) != sign_between(i + 1);
             self.root(group, crosses)
         });
         Zeros::At {
@@ -242,48 +266,31 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
     fn root(&self, group: &[Cluster], crosses: bool) -> Root {
         let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
         let margin = group.iter().filter_map(|c| c.margin).reduce(f64::min);
-        let mut simple = group.iter().filter(|c| c.simple);
+        let mut simple = group.iter().filter(|c| c.kind == Kind::Simple);
+        let found = |t, contact| Root { t, lo, hi, contact, margin };
         if let (Some(c), None, true) = (simple.next(), simple.next(), crosses) {
-            return Root {
-                t: c.t,
-                lo,
-                hi,
-                contact: Contact::Simple,
-                margin,
-            };
+            return found(c.t, Contact::Simple);
         }
-        if !crosses {
-            let t = match group {
-                [c] => c.t,
-                _ => self.balance(lo, hi, |j| j.d),
-            };
-            return Root {
-                t,
-                lo,
-                hi,
-                contact: Contact::Touching,
-                margin,
-            };
+        if crosses {
+            return found(self.balance(lo, hi, |j| j.dd), Contact::Inflected);
         }
-        let t = self.balance(lo, hi, |j| j.dd);
-        Root {
-            t,
-            lo,
-            hi,
-            contact: Contact::Inflected,
-            margin,
-        }
+        let extremum = group.iter().find(|c| c.kind == Kind::Extremum);
+        let t = extremum.map_or_else(|| self.balance(lo, hi, |j| j.d), |c| c.t);
+        found(t, Contact::Touching)
     }
 
-    /// The zero of a derivative within a cluster, or its middle.
+    /// The zero of a derivative in or next to a cluster, or where it is least.
     fn balance(&self, lo: f64, hi: f64, part: impl Fn(Jet<Interval>) -> Interval) -> f64 {
         let g = |t: f64| part((self.f)(Interval::point(t))).mid();
-        let (ga, gb) = (g(lo), g(hi));
-        if ga * gb < 0.0 {
-            bisect(lo, hi, ga, g)
-        } else {
-            0.5 * (lo + hi)
+        let w = hi - lo;
+        let marks = [lo - w, lo, 0.5 * (lo + hi), hi, hi + w].map(|t| (t, g(t)));
+        for pair in marks.windows(2) {
+            if pair[0].1 * pair[1].1 < 0.0 {
+                return bisect(pair[0].0, pair[1].0, pair[0].1, g);
+            }
         }
+        let least = marks.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        least.map_or(lo, |m| m.0)
     }
 }
 

@@ -4,7 +4,8 @@
 
 use clap::Parser;
 use premio_tests::examine::{Depth, examine};
-use premio_tests::random::tree;
+use premio_tests::random::{simpler, tree};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 use std::process::{Command, ExitCode, Stdio};
@@ -33,9 +34,12 @@ struct Arguments {
     /// After how many seconds a tree is given up.
     #[arg(long, default_value_t = 20)]
     limit: u64,
-    /// Examine this seed alone, in this process.
+    /// Make each failing tree as small as it fails in the same way.
     #[arg(long)]
-    one: Option<u64>,
+    shrink: bool,
+    /// Examine this tree alone, in this process.
+    #[arg(long)]
+    tree: Option<String>,
 }
 
 /// What took longer is named in the summary.
@@ -51,8 +55,8 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     // Panics are caught and counted.
     std::panic::set_hook(Box::new(|_| {}));
-    if let Some(seed) = arguments.one {
-        return one(seed, &arguments);
+    if let Some(tree) = &arguments.tree {
+        return one(tree, &arguments);
     }
     let started = Instant::now();
     let next = AtomicU64::new(arguments.from);
@@ -91,8 +95,13 @@ fn work(arguments: &Arguments, next: &AtomicU64, summary: &Mutex<Summary>) {
             return;
         }
         let started = Instant::now();
-        let wrong = in_a_process(seed, arguments);
+        let mut json = tree(seed);
+        let mut wrong = in_a_process(&json, arguments);
         let time = started.elapsed();
+        if arguments.shrink && !wrong.is_empty() {
+            json = shrunk(json, &wrong, arguments);
+            wrong = in_a_process(&json, arguments);
+        }
         let Ok(mut summary) = summary.lock() else {
             return;
         };
@@ -100,22 +109,45 @@ fn work(arguments: &Arguments, next: &AtomicU64, summary: &Mutex<Summary>) {
             summary.slow.push((seed, time));
         }
         if !wrong.is_empty() {
-            let json = tree(seed);
             say(&format!("seed {seed}\n  {}\n  {json}", wrong.join("\n  ")));
         }
         for text in wrong {
-            let kind = text.split(':').next().unwrap_or_default().to_owned();
+            let kind = kind(&text).to_owned();
             summary.failures.entry(kind).or_default().push(seed);
         }
     }
 }
 
-/// Examines one seed in a process of its own, which may hang, overflow its stack or eat memory.
-fn in_a_process(seed: u64, arguments: &Arguments) -> Vec<String> {
+/// What comes before the first colon.
+fn kind(text: &str) -> &str {
+    text.split(':').next().unwrap_or_default()
+}
+
+/// A smaller tree that is wrong in the same way as far as the first thing goes.
+fn shrunk(mut tree: Value, wrong: &[String], arguments: &Arguments) -> Value {
+    let Some(first) = wrong.first().map(|text| kind(text)) else {
+        return tree;
+    };
+    loop {
+        let smaller = simpler(&tree).into_iter().find(|tree| {
+            let found = in_a_process(tree, arguments);
+            found
+                .iter()
+                .any(|text| kind(text) == first && !text.contains("tree:"))
+        });
+        match smaller {
+            Some(smaller) => tree = smaller,
+            None => return tree,
+        }
+    }
+}
+
+/// Examines one tree in a process of its own, which may hang, overflow its stack or eat memory.
+fn in_a_process(tree: &Value, arguments: &Arguments) -> Vec<String> {
     let mut command = Command::new(std::env::current_exe().unwrap_or_default());
     command.args([
-        "--one",
-        &seed.to_string(),
+        "--tree",
+        &tree.to_string(),
         "--rays",
         &arguments.rays.to_string(),
     ]);
@@ -154,12 +186,12 @@ fn run(mut command: Command, limit: Duration) -> io::Result<Vec<String>> {
 }
 
 /// The child's part.
-fn one(seed: u64, arguments: &Arguments) -> ExitCode {
+fn one(tree: &str, arguments: &Arguments) -> ExitCode {
     let depth = Depth {
         rays: arguments.rays,
         views: arguments.views,
     };
-    for text in examine(&tree(seed).to_string(), depth) {
+    for text in examine(tree, depth) {
         // One line each; a pipe holds that much.
         say(&text
             .replace('\n', " ")

@@ -17,6 +17,42 @@ pub fn tree(seed: u64) -> Value {
     parts.pop().unwrap_or(Value::Null)
 }
 
+/// The trees that are a step simpler than this one: a child in place of its parent, a child or a
+/// transform less, a motion a step shorter.
+pub fn simpler(tree: &Value) -> Vec<Value> {
+    let mut found = Vec::new();
+    let children = tree["children"].as_array();
+    found.extend(children.into_iter().flatten().cloned());
+    for (i, child) in children.into_iter().flatten().enumerate() {
+        let mut fewer = tree.clone();
+        if let Some(list) = fewer["children"].as_array_mut()
+            && list.len() > 2
+        {
+            list.remove(i);
+            found.push(fewer);
+        }
+        for smaller in simpler(child) {
+            let mut changed = tree.clone();
+            changed["children"][i] = smaller;
+            found.push(changed);
+        }
+    }
+    let steps = tree["transform"].as_array().map_or(0, Vec::len);
+    for i in 0..steps {
+        let mut fewer = tree.clone();
+        if let Some(list) = fewer["transform"].as_array_mut() {
+            list.remove(i);
+        }
+        if steps == 1
+            && let Some(node) = fewer.as_object_mut()
+        {
+            node.remove("transform");
+        }
+        found.push(fewer);
+    }
+    found
+}
+
 fn operation(random: &mut Random, children: Vec<Value>) -> Value {
     let op = random.choose(&["union", "difference", "intersection", "union", "difference"]);
     let mut node = json!({"op": op, "children": children});
@@ -128,6 +164,18 @@ mod tests {
             let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
             let leaves = read.expect(&text).tree.leaves().count();
             assert!(leaves <= 8, "{text}");
+        }
+    }
+
+    #[test]
+    fn simpler_trees_are_trees() {
+        for seed in 0..20 {
+            for smaller in simpler(&tree(seed)) {
+                let text = smaller.to_string();
+                assert!(text.len() < tree(seed).to_string().len());
+                let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+                assert!(read.is_ok(), "{text}");
+            }
         }
     }
 

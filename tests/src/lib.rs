@@ -1,1 +1,4 @@
-//! placeholder
+//! What the tests across crates share: random trees, and what is asked of each.
+
+pub mod examine;
+pub mod random;

@@ -7,6 +7,7 @@ pub mod cut;
 pub mod frame;
 pub mod intersect;
 pub mod quartic;
+pub mod serial;
 pub mod surface;
 pub mod toric;
 pub mod trace;

@@ -1,0 +1,217 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// From a description of a solid to its exact boundary and to what a camera sees of it.
+#[derive(Debug, Parser)]
+#[command(name = "premio", version, after_help = EXIT_STATUS)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_STATUS: &str = "Example: premio info part.padl
+
+Exit status: 0 done; 1 a self-check failed; 2 the input or the arguments are wrong; 3 the geometry
+is beyond a stated limit, or a close call under --strict.";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Measures of the solid: volume, area, topology, how it was decided
+    #[command(after_help = "Example: premio info part.padl --json")]
+    Info(InfoOptions),
+    /// What a camera sees: contours with their visibility
+    #[command(
+        after_help = "Examples: premio contours part.padl --eye 30,-40,25 --target 0,0,0 --format svg -o part.svg
+          premio contours part.padl --camera view.json --format json --samples 5"
+    )]
+    Contours(ContoursOptions),
+    /// Every self-check there is, on one description
+    #[command(after_help = "Example: premio check part.padl")]
+    Check(CheckOptions),
+    /// The boundary, written in a format of choice
+    #[command(after_help = "Example: premio export part.padl --format json -o part.json")]
+    Export(ExportOptions),
+}
+
+/// What is described, and how it is read and evaluated.
+#[derive(Debug, Args)]
+pub struct DescriptionOptions {
+    /// The description: .padl, .csg (OpenSCAD's flattened output) or .json
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// What lies nearer than this coincides, in the part's unit [default: 1e-11 of its size]
+    #[arg(long, value_name = "D", value_parser = positive)]
+    pub resolution: Option<f64>,
+    /// Refuse the part where a decision was closer than a hundred to one
+    #[arg(long)]
+    pub strict: bool,
+    /// The part of a .padl file to take [default: the last solid assigned]
+    #[arg(long, value_name = "NAME")]
+    pub part: Option<String>,
+    /// Read a .csg primitive with a small $fn as the smooth one
+    #[arg(long)]
+    pub smooth: bool,
+}
+
+/// Options of `info`.
+#[derive(Debug, Args)]
+pub struct InfoOptions {
+    #[command(flatten)]
+    pub description: DescriptionOptions,
+    /// Write JSON (premio.info/1)
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `contours`.
+#[derive(Debug, Args)]
+pub struct ContoursOptions {
+    #[command(flatten)]
+    pub description: DescriptionOptions,
+    #[command(flatten)]
+    pub camera: CameraOptions,
+    /// What to write
+    #[arg(long, value_enum)]
+    pub format: ContoursFormat,
+    /// Put N points of the 3-D curve into each piece (json)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub samples: Option<u32>,
+    /// Draw what is hidden, too (svg, dxf)
+    #[arg(long)]
+    pub hidden: bool,
+    /// Draw boundaries along which the normal does not jump, too (svg, dxf)
+    #[arg(long)]
+    pub smooth_edges: bool,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// The camera: a file, or an eye that looks at a target.
+#[derive(Debug, Args)]
+pub struct CameraOptions {
+    /// A file with the camera as JSON
+    #[arg(long, value_name = "CAM.json", conflicts_with_all = ["eye", "target", "up", "focal", "ortho"],
+          required_unless_present = "eye")]
+    pub camera: Option<PathBuf>,
+    /// Where the eye is
+    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true, requires = "target")]
+    pub eye: Option<[f64; 3]>,
+    /// A point that it looks at
+    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true, requires = "eye")]
+    pub target: Option<[f64; 3]>,
+    /// What is up in the image
+    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true, requires = "eye",
+          default_value = "0,0,1")]
+    pub up: [f64; 3],
+    /// The focal length, the unit of the image
+    #[arg(long, value_name = "f", value_parser = positive, conflicts_with = "ortho", default_value = "1")]
+    pub focal: f64,
+    /// Parallel instead of central projection
+    #[arg(long)]
+    pub ortho: bool,
+}
+
+/// Options of `check`.
+#[derive(Debug, Args)]
+pub struct CheckOptions {
+    #[command(flatten)]
+    pub description: DescriptionOptions,
+    /// How many rays measure the volume
+    #[arg(long, value_name = "N", default_value_t = 200_000)]
+    pub rays: u32,
+}
+
+/// Options of `export`.
+#[derive(Debug, Args)]
+pub struct ExportOptions {
+    #[command(flatten)]
+    pub description: DescriptionOptions,
+    /// What to write
+    #[arg(long, value_enum)]
+    pub format: ExportFormat,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// The formats of contours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ContoursFormat {
+    /// premio.contours/1, with exact curves
+    Json,
+    /// A drawing for the browser and the page
+    Svg,
+    /// A drawing for CAD programs
+    Dxf,
+}
+
+/// The formats of boundaries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// premio.object/1: the topological object model
+    Json,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a positive number".to_owned()),
+    }
+}
+
+fn vector(text: &str) -> Result<[f64; 3], String> {
+    let wrong = || "expected three numbers `x,y,z`".to_owned();
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    let vector: [f64; 3] = numbers
+        .map_err(|_| wrong())?
+        .try_into()
+        .map_err(|_| wrong())?;
+    if vector.iter().all(|x| x.is_finite()) {
+        Ok(vector)
+    } else {
+        Err(wrong())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_shows_an_example() {
+        for command in Arguments::command().get_subcommands() {
+            let help = command.get_after_help().map(ToString::to_string);
+            assert!(help.is_some_and(|h| h.starts_with("Example")));
+        }
+    }
+
+    #[test]
+    fn cameras_on_the_command_line() {
+        let parse = |words: &str| {
+            let all = format!("premio contours a.padl --format json {words}");
+            Arguments::try_parse_from(all.split_whitespace()).is_ok()
+        };
+        assert!(parse("--camera c.json"));
+        assert!(parse("--eye -1,2,3 --target 0,0,-1"));
+        assert!(parse("--eye 1,2,3 --target 0,0,0 --up 0,1,0 --focal 2"));
+        assert!(parse("--eye 1,2,3 --target 0,0,0 --ortho"));
+        assert!(!parse(""));
+        assert!(!parse("--eye 1,2,3"));
+        assert!(!parse("--eye 1,2 --target 0,0,0"));
+        assert!(!parse("--eye 1,2,nan --target 0,0,0"));
+        assert!(!parse("--eye 1,2,3 --target 0,0,0 --focal 2 --ortho"));
+        assert!(!parse("--camera c.json --ortho"));
+        assert!(!parse("--camera c.json --samples 0"));
+    }
+}

@@ -1,0 +1,205 @@
+//! The self-checks that cross crates: the boundary and the contours against the tree, which rays
+//! ask directly.
+
+mod recount;
+pub mod views;
+
+pub use recount::{Recount, WrongPiece};
+
+use premio_csg::boundary::Evaluation;
+use premio_csg::rays::{Clearance, Estimate, Material};
+use premio_csg::tree::Tree;
+use premio_kernel::brep::check::check;
+use premio_kernel::brep::mass::mass;
+use premio_kernel::number::sign::ROUNDING;
+use premio_visibility::{Camera, contours};
+use std::fmt;
+
+/// How many standard errors a measured volume may be off.
+pub const DEVIATIONS: f64 = 5.0;
+
+/// How many times more rays decide where few rays disagree.
+const AGAIN: usize = 16;
+
+/// What a check is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// The rules of the boundary representation.
+    Topology,
+    /// The volume of the boundary against the tree's by rays.
+    Volume,
+    /// The quantitative invisibility of every piece of a view against rays on the tree.
+    View(String),
+}
+
+/// The outcome of one check.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What it is about.
+    pub subject: Subject,
+    /// Whether it holds.
+    pub holds: bool,
+    /// The figures, or what is wrong.
+    pub detail: String,
+}
+
+/// The outcome of all checks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// In the order made.
+    pub checks: Vec<Check>,
+}
+
+/// A part to be checked.
+#[derive(Debug)]
+pub struct Checker<'a> {
+    material: Material,
+    evaluation: &'a Evaluation,
+}
+
+impl Report {
+    /// Whether all checks hold.
+    pub fn holds(&self) -> bool {
+        self.checks.iter().all(|c| c.holds)
+    }
+
+    /// The checks that do not hold.
+    pub fn failures(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(|c| !c.holds)
+    }
+}
+
+impl<'a> Checker<'a> {
+    /// Prepares the checks of a tree and its boundary.
+    pub fn new(tree: &Tree, evaluation: &'a Evaluation) -> Self {
+        Self {
+            material: Material::of(tree),
+            evaluation,
+        }
+    }
+
+    /// Every check there is: the boundary's rules, the volume by `rays` rays, and the views.
+    pub fn all(&self, rays: usize) -> Report {
+        let mut report = self.solid(rays);
+        let around = views::around(&self.evaluation.bounds);
+        report
+            .checks
+            .extend(around.into_iter().map(|v| self.view(&v.name, &v.camera)));
+        report
+    }
+
+    /// The checks of the solid alone.
+    pub fn solid(&self, rays: usize) -> Report {
+        Report {
+            checks: vec![self.topology(), self.volume(rays)],
+        }
+    }
+
+    fn topology(&self) -> Check {
+        let violations = check(&self.evaluation.brep, self.evaluation.resolution);
+        let texts: Vec<String> = violations.iter().map(ToString::to_string).collect();
+        Check {
+            subject: Subject::Topology,
+            holds: texts.is_empty(),
+            detail: if texts.is_empty() {
+                "no violation".to_owned()
+            } else {
+                texts.join("; ")
+            },
+        }
+    }
+
+    fn volume(&self, rays: usize) -> Check {
+        let volume = mass(&self.evaluation.brep).volume;
+        let mut estimate = self.material.volume(rays, 1);
+        let mut off = self.deviation(&estimate, volume);
+        // Chance alone exceeds the bound now and then: fresh rays decide.
+        if off > DEVIATIONS {
+            estimate = self.material.volume(rays.saturating_mul(AGAIN), 2);
+            off = self.deviation(&estimate, volume);
+        }
+        let Estimate {
+            value,
+            standard_error,
+        } = estimate;
+        Check {
+            subject: Subject::Volume,
+            holds: off <= DEVIATIONS,
+            detail: format!(
+                "{volume} of the boundary, {value} ± {standard_error:.1e} by rays: {off:.1} standard errors"
+            ),
+        }
+    }
+
+    fn deviation(&self, estimate: &Estimate, volume: f64) -> f64 {
+        let size = self.evaluation.bounds.diagonal();
+        // What lies within the resolution over the whole surface is no difference.
+        let surface = size * size * 6.0;
+        let rounding = surface * (self.evaluation.resolution + ROUNDING * size);
+        estimate.deviation(volume, if rounding.is_finite() { rounding } else { 0.0 })
+    }
+
+    /// Counts the faces before every piece that a camera sees.
+    pub fn view(&self, name: &str, camera: &Camera) -> Check {
+        let subject = Subject::View(name.to_owned());
+        let Evaluation {
+            brep, resolution, ..
+        } = self.evaluation;
+        match contours(brep, camera, *resolution) {
+            Ok(seen) => {
+                let counted = Recount::of(&self.material, &seen, &self.clearance());
+                Check {
+                    subject,
+                    holds: counted.wrong.is_empty(),
+                    detail: counted.to_string(),
+                }
+            }
+            Err(error) => Check {
+                subject,
+                holds: false,
+                detail: error.to_string(),
+            },
+        }
+    }
+
+    fn clearance(&self) -> Clearance {
+        let size = self.evaluation.bounds.diagonal();
+        let resolution = self.evaluation.resolution;
+        Clearance {
+            sliver: 100.0 * resolution,
+            // Between the resolution and the size, nearer the former.
+            aside: (size * ROUNDING.sqrt()).max(1000.0 * resolution),
+            size,
+        }
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Topology => f.write_str("topology"),
+            Self::Volume => f.write_str("volume"),
+            Self::View(name) => write!(f, "view {name}"),
+        }
+    }
+}
+
+impl fmt::Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let outcome = if self.holds { "ok" } else { "FAILED" };
+        write!(f, "{outcome:<6} {}: {}", self.subject, self.detail)
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for check in &self.checks {
+            writeln!(f, "{check}")?;
+        }
+        let (all, failed) = (self.checks.len(), self.failures().count());
+        match failed {
+            0 => writeln!(f, "all {all} checks hold"),
+            _ => writeln!(f, "{failed} of {all} checks failed"),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! The quantitative invisibility of pieces, counted again by rays on the tree.
+
+use nalgebra::{Point3, Vector3};
+use premio_csg::rays::{Clearance, Material};
+use premio_visibility::Contours;
+use premio_visibility::contour::Kind;
+use premio_visibility::projection::{Projection, Sight};
+use std::fmt;
+
+/// Where in a piece samples are taken, as parts of its range.
+const SAMPLES: [f64; 3] = [0.21, 0.5, 0.83];
+
+/// A piece whose invisibility is not what rays say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrongPiece {
+    /// The contour.
+    pub contour: u32,
+    /// What kind it is of.
+    pub kind: Kind,
+    /// The place of the piece in the contour.
+    pub piece: usize,
+    /// The sample.
+    pub place: [f64; 3],
+    /// What the piece says.
+    pub given: u32,
+    /// What the rays say.
+    pub counted: u32,
+}
+
+/// The pieces of a view, counted again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recount {
+    /// How many pieces there are.
+    pub pieces: usize,
+    /// How many samples agree.
+    pub agreed: usize,
+    /// How many samples lie too close to something else to be counted.
+    pub ambiguous: usize,
+    /// The pieces that say something else than the rays.
+    pub wrong: Vec<WrongPiece>,
+}
+
+impl Recount {
+    /// Counts every piece again.
+    pub fn of(material: &Material, seen: &Contours, clearance: &Clearance) -> Self {
+        let projection = Projection::new(&seen.camera, clearance.size);
+        let sight = |p: &_| line_of_sight(&projection, p);
+        let mut recount = Self::default();
+        for contour in &seen.contours {
+            for (index, piece) in contour.pieces.iter().enumerate() {
+                recount.pieces += 1;
+                let [lo, hi] = piece.t;
+                let mut wrong = None;
+                for part in SAMPLES {
+                    let place = contour.curve3.point(lo + part * (hi - lo));
+                    match material.invisibility(&place, sight, clearance) {
+                        None => recount.ambiguous += 1,
+                        Some(counted) if counted == piece.qi && piece.visible == (counted == 0) => {
+                            recount.agreed += 1;
+                        }
+                        Some(counted) => {
+                            wrong = Some(WrongPiece {
+                                contour: contour.id,
+                                kind: contour.kind,
+                                piece: index,
+                                place: place.into(),
+                                given: piece.qi,
+                                counted,
+                            });
+                        }
+                    }
+                }
+                recount.wrong.extend(wrong);
+            }
+        }
+        recount
+    }
+}
+
+/// The direction from a point to the eye, and how far it is to the eye or the near plane.
+fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64) {
+    let (towards, length) = projection.towards_eye(p);
+    let depth = projection.depth(p);
+    let seen = depth - projection.near;
+    let reach = match projection.sight {
+        Sight::Eye(_) => length * (seen / depth),
+        Sight::Direction(_) => seen,
+    };
+    (towards, reach)
+}
+
+/// How many wrong pieces are named.
+const NAMED: usize = 5;
+
+impl fmt::Display for Recount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            pieces,
+            agreed,
+            ambiguous,
+            wrong,
+        } = self;
+        write!(
+            f,
+            "{pieces} pieces, {agreed} samples agree, {ambiguous} too close to another contour"
+        )?;
+        if !wrong.is_empty() {
+            write!(f, ", {} pieces wrong", wrong.len())?;
+        }
+        for w in wrong.iter().take(NAMED) {
+            let [x, y, z] = w.place;
+            write!(
+                f,
+                "; contour {} ({:?}) piece {}: {} for {} at ({x:.6}, {y:.6}, {z:.6})",
+                w.contour, w.kind, w.piece, w.given, w.counted
+            )?;
+        }
+        Ok(())
+    }
+}

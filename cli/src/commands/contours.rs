@@ -1,0 +1,36 @@
+//! `premio contours`: what a camera sees.
+
+use crate::arguments::{ContoursFormat, ContoursOptions};
+use crate::diagnostics::Failure;
+use crate::{input, output};
+use premio_visibility::{Contours, contours};
+use premio_visibility::drawing::{self, Drawing, dxf, svg};
+
+/// Runs the command.
+pub fn run(options: &ContoursOptions) -> Result<(), Failure> {
+    let camera = input::camera(&options.camera)?;
+    let part = input::part(&options.description)?;
+    let evaluation = &part.evaluation;
+    let mut seen = contours(&evaluation.brep, &camera, evaluation.resolution)
+        .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))?;
+    let to = options.output.as_deref();
+    match options.format {
+        ContoursFormat::Json => {
+            if let Some(n) = options.samples {
+                seen.sample(n as usize);
+            }
+            output::json(&seen, to)
+        }
+        ContoursFormat::Svg => output::write(&svg::write(&drawing(&seen, options)), to),
+        ContoursFormat::Dxf => output::write(&dxf::write(&drawing(&seen, options)), to),
+    }
+}
+
+fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
+    let how = drawing::Options {
+        hidden: options.hidden,
+        smooth: options.smooth_edges,
+        ..drawing::Options::default()
+    };
+    Drawing::new(seen, &how)
+}

@@ -1,0 +1,163 @@
+//! `premio info`: measures of the solid.
+
+use crate::arguments::InfoOptions;
+use crate::diagnostics::Failure;
+use crate::input::{self, Part};
+use crate::output;
+use premio_kernel::brep::mass::{bounds, mass};
+use premio_kernel::number::sign::Decisions;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// `premio.info/1`.
+#[derive(Debug, Serialize)]
+struct Info {
+    schema: &'static str,
+    volume: f64,
+    area: f64,
+    centroid: [f64; 3],
+    bounds: Bounds,
+    solids: usize,
+    shells: usize,
+    faces: usize,
+    edges: usize,
+    loops: usize,
+    vertices: u32,
+    genus: Vec<i32>,
+    faces_by_surface: BTreeMap<&'static str, usize>,
+    decisions: Counts,
+    resolution: f64,
+    seconds: Seconds,
+}
+
+#[derive(Debug, Serialize)]
+struct Bounds {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+#[derive(Debug, Serialize)]
+struct Counts {
+    filtered: u64,
+    refined: u64,
+    exact: u64,
+    coincident: u64,
+    close_calls: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct Seconds {
+    read: f64,
+    evaluate: f64,
+}
+
+/// Runs the command.
+pub fn run(options: &InfoOptions) -> Result<(), Failure> {
+    let part = input::part(&options.description)?;
+    let info = Info::of(&part);
+    if options.json {
+        output::json(&info, None)
+    } else {
+        output::write(&info.to_string(), None)
+    }
+}
+
+impl Info {
+    fn of(part: &Part) -> Self {
+        let brep = &part.evaluation.brep;
+        let topology = &brep.topology;
+        let mut faces_by_surface = BTreeMap::new();
+        for face in topology.face_ids() {
+            *faces_by_surface
+                .entry(brep.surface(face).kind().name())
+                .or_default() += 1;
+        }
+        let mass = mass(brep);
+        Self {
+            schema: "premio.info/1",
+            volume: mass.volume,
+            area: mass.area,
+            centroid: mass.centroid.into(),
+            bounds: Bounds::of(part),
+            solids: topology.solids.len(),
+            shells: topology.shells.len(),
+            faces: topology.faces.len(),
+            edges: topology.edges.len(),
+            loops: topology.loops.len(),
+            vertices: topology.vertices,
+            genus: topology.shells.iter().map(|s| s.genus).collect(),
+            faces_by_surface,
+            decisions: Counts::of(&part.evaluation.decisions),
+            resolution: part.evaluation.resolution,
+            seconds: Seconds {
+                read: part.read,
+                evaluate: part.evaluate,
+            },
+        }
+    }
+}
+
+impl Bounds {
+    /// The box of the boundary; a point at the origin for an empty solid.
+    fn of(part: &Part) -> Self {
+        let brep = &part.evaluation.brep;
+        if brep.topology.faces.is_empty() {
+            let (min, max) = ([0.0; 3], [0.0; 3]);
+            return Self { min, max };
+        }
+        let found = bounds(brep);
+        Self {
+            min: found.min,
+            max: found.max,
+        }
+    }
+}
+
+impl Counts {
+    fn of(decisions: &Decisions) -> Self {
+        Self {
+            filtered: decisions.filtered,
+            refined: decisions.refined,
+            exact: decisions.exact,
+            coincident: decisions.coincident,
+            close_calls: decisions.close_calls.len(),
+        }
+    }
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let three = |v: &[f64; 3]| format!("({}, {}, {})", v[0], v[1], v[2]);
+        writeln!(f, "volume      {}", self.volume)?;
+        writeln!(f, "area        {}", self.area)?;
+        writeln!(f, "centroid    {}", three(&self.centroid))?;
+        let Bounds { min, max } = &self.bounds;
+        writeln!(f, "bounds      {} to {}", three(min), three(max))?;
+        writeln!(f, "solids      {}", self.solids)?;
+        writeln!(f, "shells      {}, genus {:?}", self.shells, self.genus)?;
+        let kinds: Vec<String> = self
+            .faces_by_surface
+            .iter()
+            .map(|(kind, n)| format!("{n} {kind}"))
+            .collect();
+        writeln!(f, "faces       {} ({})", self.faces, kinds.join(", "))?;
+        writeln!(f, "loops       {}", self.loops)?;
+        writeln!(f, "edges       {}", self.edges)?;
+        writeln!(f, "vertices    {}", self.vertices)?;
+        let Counts {
+            filtered,
+            refined,
+            exact,
+            coincident,
+            close_calls,
+        } = self.decisions;
+        writeln!(
+            f,
+            "decisions   {filtered} filtered, {refined} refined, {exact} exact, {coincident} coincident, {close_calls} close calls"
+        )?;
+        writeln!(f, "resolution  {:e}", self.resolution)?;
+        let Seconds { read, evaluate } = self.seconds;
+        writeln!(f, "seconds     {read:.3} read, {evaluate:.3} evaluate")
+    }
+}

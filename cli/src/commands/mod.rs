@@ -1,0 +1,6 @@
+//! The commands.
+
+pub mod check;
+pub mod contours;
+pub mod export;
+pub mod info;

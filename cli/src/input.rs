@@ -1,0 +1,93 @@
+//! Reading files and evaluating what they describe.
+
+use crate::arguments::{CameraOptions, DescriptionOptions};
+use crate::diagnostics::{self, Failure};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{self, Description, Format, Options};
+use premio_visibility::Camera;
+use std::path::Path;
+use std::time::Instant;
+
+/// A part: its description and its boundary.
+#[derive(Debug)]
+pub struct Part {
+    /// What messages call it.
+    pub name: String,
+    /// What was read.
+    pub description: Description,
+    /// Its boundary.
+    pub evaluation: Evaluation,
+    /// How long reading took, in seconds.
+    pub read: f64,
+    /// How long the evaluation took, in seconds.
+    pub evaluate: f64,
+}
+
+/// Reads and evaluates a description; tells the reader's notes and the close calls.
+pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
+    let started = Instant::now();
+    let name = options.file.display().to_string();
+    let description = description(&name, options)?;
+    let read = started.elapsed().as_secs_f64();
+    let started = Instant::now();
+    let how = EvaluationOptions {
+        resolution: options.resolution,
+        noise: description.digits,
+    };
+    let evaluation =
+        evaluate(&description.tree, &how).map_err(|e| Failure::evaluation(&name, &e))?;
+    let calls = &evaluation.decisions.close_calls;
+    if options.strict && !calls.is_empty() {
+        let text = diagnostics::close_calls(&name, evaluation.resolution, calls);
+        return Err(Failure::limit(text));
+    }
+    diagnostics::tell_close_calls(&name, evaluation.resolution, calls);
+    Ok(Part {
+        name,
+        description,
+        evaluation,
+        read,
+        evaluate: started.elapsed().as_secs_f64(),
+    })
+}
+
+fn description(name: &str, options: &DescriptionOptions) -> Result<Description, Failure> {
+    let format = Format::from_path(&options.file).ok_or_else(|| {
+        Failure::input(format!(
+            "{name}: found a file of an unknown kind, expected one that ends in .padl, .csg or .json"
+        ))
+    })?;
+    let text = bytes(&options.file)?;
+    let how = Options {
+        smooth: options.smooth,
+        part: options.part.clone(),
+    };
+    let description =
+        reader::read(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
+    diagnostics::notes(name, &text, &description.notes);
+    Ok(description)
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(path).map_err(|e| Failure::input(format!("{}: {e}", path.display())))
+}
+
+/// The camera of the command line.
+pub fn camera(options: &CameraOptions) -> Result<Camera, Failure> {
+    if let Some(path) = &options.camera {
+        let name = path.display();
+        let text =
+            String::from_utf8(bytes(path)?).map_err(|e| Failure::input(format!("{name}: {e}")))?;
+        return Camera::from_json(&text).map_err(|e| Failure::input(format!("{name}: {e}")));
+    }
+    let (Some(eye), Some(target)) = (options.eye, options.target) else {
+        return Err(Failure::input("expected --camera, or --eye and --target"));
+    };
+    let (eye, target, up) = (eye.into(), target.into(), options.up.into());
+    let camera = if options.ortho {
+        Camera::orthographic(eye, target, up)
+    } else {
+        Camera::perspective(eye, target, up, options.focal)
+    };
+    camera.map_err(|e| Failure::input(e.to_string()))
+}

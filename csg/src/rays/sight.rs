@@ -1,0 +1,76 @@
+//! How many faces turned towards the eye lie before a point of a contour, by rays.
+
+use super::{Material, Ray};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::frame::Frame;
+use std::f64::consts::TAU;
+
+/// How many neighbours must agree.
+const NEIGHBOURS: usize = 8;
+
+/// How far things must be apart for rays to tell them apart, in the part's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    /// Gaps and slivers up to this length are none.
+    pub sliver: f64,
+    /// A count holds where it is the same on the lines of sight this far aside.
+    pub aside: f64,
+    /// The part's size.
+    pub size: f64,
+}
+
+impl Material {
+    /// How often the line of sight enters material between the eye and a point of a contour: its
+    /// quantitative invisibility. None where the answer changes within the clearance: next to
+    /// another contour, along a face seen edge-on, close behind another face.
+    ///
+    /// `sight` gives the unit direction from a point to the eye, and how far the line of sight
+    /// reaches.
+    pub fn invisibility(
+        &self,
+        point: &Point3<f64>,
+        sight: impl Fn(&Point3<f64>) -> (Vector3<f64>, f64),
+        clearance: &Clearance,
+    ) -> Option<u32> {
+        // Aside of a limb, its own surface lies this much nearer.
+        let depth = 2.0 * (clearance.aside * clearance.size).sqrt();
+        let (towards, length) = sight(point);
+        if length <= depth {
+            return None;
+        }
+        let own = self.along(point, towards, clearance);
+        let unclear = |s: &f64| *s > clearance.aside && *s < depth;
+        if own.iter().flatten().any(unclear) {
+            return None;
+        }
+        let count = entries(&own, depth, length);
+        let frame = Frame::about(*point, towards);
+        let agree = (0..NEIGHBOURS).all(|k| {
+            let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
+            let aside = frame.point(clearance.aside * cos, clearance.aside * sin, 0.0);
+            let (towards, length) = sight(&aside);
+            entries(&self.along(&aside, towards, clearance), depth, length) == count
+        });
+        agree.then_some(count)
+    }
+
+    fn along(
+        &self,
+        origin: &Point3<f64>,
+        direction: Vector3<f64>,
+        clearance: &Clearance,
+    ) -> Vec<[f64; 2]> {
+        let ray = Ray {
+            origin: *origin,
+            direction,
+        };
+        self.intervals(&ray, clearance.sliver)
+    }
+}
+
+fn entries(intervals: &[[f64; 2]], from: f64, to: f64) -> u32 {
+    intervals
+        .iter()
+        .filter(|i| i[1] > from && i[1] < to)
+        .count() as u32
+}

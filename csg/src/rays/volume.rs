@@ -1,0 +1,116 @@
+//! The volume by rays: the mean length of material on parallel lines.
+
+use super::{Material, Ray};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::frame::Frame;
+use std::f64::consts::{PI, SQRT_2};
+
+/// A measured value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+impl Estimate {
+    /// How many standard errors a value is away; none where it is as near as `rounding`.
+    pub fn deviation(&self, value: f64, rounding: f64) -> f64 {
+        let off = (value - self.value).abs();
+        if off <= rounding {
+            return 0.0;
+        }
+        off / self.standard_error
+    }
+}
+
+/// How many independent grids the rays are dealt to: their scatter gives the error.
+const GRIDS: usize = 32;
+
+/// The plastic number's powers, by which Roberts's sequence steps through the unit square.
+const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+
+impl Material {
+    /// The volume by about `rays` rays along a direction in general position: low-discrepancy
+    /// grids at random places, which `seed` chooses.
+    pub fn volume(&self, rays: usize, seed: u64) -> Estimate {
+        if self.bounds.min[0] > self.bounds.max[0] {
+            return Estimate::default();
+        }
+        let window = Window::around(self);
+        let mut scratch = self.scratch();
+        let each = (rays / GRIDS).max(1);
+        let mut random = SplitMix(seed);
+        let mut means = [0.0; GRIDS];
+        for mean in &mut means {
+            let shift = [random.next(), random.next()];
+            let mut sum = 0.0;
+            for k in 0..each {
+                let at = |i: usize| (shift[i] + k as f64 * STEPS[i]).fract();
+                let ray = window.ray(at(0), at(1));
+                self.cross(&ray, &mut scratch, |[lo, hi]| sum += hi - lo);
+            }
+            *mean = sum / each as f64 * window.area();
+        }
+        let n = GRIDS as f64;
+        let value = means.iter().sum::<f64>() / n;
+        let scatter: f64 = means.iter().map(|m| (m - value).powi(2)).sum();
+        Estimate {
+            value,
+            standard_error: (scatter / (n * (n - 1.0))).sqrt(),
+        }
+    }
+}
+
+/// A rectangle across the direction of the rays that the whole part is behind.
+struct Window {
+    frame: Frame,
+    min: [f64; 2],
+    size: [f64; 2],
+}
+
+impl Window {
+    fn around(material: &Material) -> Self {
+        let bounds = &material.bounds;
+        // No turn of a whole number of degrees brings an axis to this direction.
+        let direction = Vector3::new(1.0, SQRT_2, PI).normalize();
+        let frame = Frame::about(bounds.centre(), direction);
+        let half = Vector3::from_fn(|i, _| 0.5 * (bounds.max[i] - bounds.min[i]));
+        let reach = [frame.x, frame.y].map(|axis| axis.abs().dot(&half));
+        Self {
+            frame,
+            min: reach.map(|r| -r),
+            size: reach.map(|r| 2.0 * r),
+        }
+    }
+
+    fn area(&self) -> f64 {
+        self.size[0] * self.size[1]
+    }
+
+    fn ray(&self, u: f64, v: f64) -> Ray {
+        let origin: Point3<f64> = self.frame.point(
+            self.min[0] + u * self.size[0],
+            self.min[1] + v * self.size[1],
+            0.0,
+        );
+        Ray {
+            origin,
+            direction: self.frame.z,
+        }
+    }
+}
+
+/// Steele, Lea and Flood's generator (2014).
+struct SplitMix(u64);
+
+impl SplitMix {
+    /// A number in [0, 1).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}

@@ -1,0 +1,78 @@
+//! What is asked of every tree: it is evaluated without a refusal, a panic or a close call, the
+//! boundary keeps its rules, the volume is the rays', and no piece of a view is wrong.
+
+use premio::checks::{Checker, views};
+use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc;
+use std::time::Duration;
+
+/// What to look at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Depth {
+    /// How many rays measure the volume.
+    pub rays: usize,
+    /// Whether a perspective, a general orthographic and an axis view are counted again.
+    pub views: bool,
+}
+
+/// The same as [`examine`], given up after some time; the work then goes on unheeded.
+pub fn examine_within(json: &str, depth: Depth, limit: Duration) -> Vec<String> {
+    let (sender, receiver) = mpsc::channel();
+    let text = json.to_owned();
+    // Nobody listens any more where the time has run out.
+    std::thread::spawn(move || sender.send(examine(&text, depth)).is_ok());
+    let late = |_| vec![format!("time: more than {limit:?}")];
+    receiver.recv_timeout(limit).unwrap_or_else(late)
+}
+
+/// What is wrong with a tree, one kind each; nothing where all is well.
+pub fn examine(json: &str, depth: Depth) -> Vec<String> {
+    let work = AssertUnwindSafe(|| examine_unguarded(json, depth));
+    catch_unwind(work).unwrap_or_else(|panic| vec![format!("panic: {}", message(&*panic))])
+}
+
+fn message(panic: &(dyn std::any::Any + Send)) -> &str {
+    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
+        (Some(text), _) => text,
+        (None, Some(text)) => text,
+        (None, None) => "of an unknown kind",
+    }
+}
+
+fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
+    let description = match read("tree", json.as_bytes(), Format::Json, &Options::default()) {
+        Ok(description) => description,
+        Err(error) => return vec![format!("refusal: {error}")],
+    };
+    let evaluation = match evaluate(&description.tree, &EvaluationOptions::default()) {
+        Ok(evaluation) => evaluation,
+        Err(error) => return vec![format!("refusal: {error}")],
+    };
+    let mut wrong = Vec::new();
+    if let Some(call) = evaluation.decisions.close_calls.first() {
+        let [x, y, z] = call.place;
+        wrong.push(format!(
+            "close call: {} {:e} apart at ({x}, {y}, {z})",
+            call.question, call.distance
+        ));
+    }
+    let checker = Checker::new(&description.tree, &evaluation);
+    let mut report = checker.solid(depth.rays);
+    if depth.views && report.holds() {
+        let all = views::around(&evaluation.bounds);
+        for name in ["perspective 3", "orthographic 1", "along z"] {
+            let view = all.iter().filter(|v| v.name == name);
+            report
+                .checks
+                .extend(view.map(|v| checker.view(&v.name, &v.camera)));
+        }
+    }
+    wrong.extend(
+        report
+            .failures()
+            .map(|c| format!("{}: {}", c.subject, c.detail)),
+    );
+    wrong
+}

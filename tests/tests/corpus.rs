@@ -1,0 +1,157 @@
+//! Descriptions with known answers, from the folder that PREMIO_CORPUS names.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use premio::checks::{Checker, Subject};
+use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_kernel::brep::mass::mass;
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::PathBuf;
+
+/// Cases that are wrong today. One that starts to pass must be taken off.
+const KNOWN_FAILURES: &[&str] = &[];
+
+/// Cases that the reader refuses, with a piece of what it expects.
+const REFUSED: &[(&str, &str)] = &[("oscad-4001", "minor radius")];
+
+fn corpus() -> Option<PathBuf> {
+    let folder = std::env::var_os("PREMIO_CORPUS").map(PathBuf::from)?;
+    assert!(
+        folder.join("cases.json").is_file(),
+        "PREMIO_CORPUS names {}, where there is no corpus",
+        folder.display()
+    );
+    Some(folder)
+}
+
+#[derive(Debug, Deserialize)]
+struct Case {
+    id: String,
+    tree: Value,
+    volume: Option<f64>,
+    volume_by_rays: f64,
+    rays_std_error: f64,
+}
+
+/// What is wrong with a description; its volume may be off by `slack`.
+fn wrong(
+    name: &str,
+    text: &[u8],
+    format: Format,
+    smooth: bool,
+    expected: Option<(f64, f64)>,
+) -> Result<(), String> {
+    let options = Options { smooth, part: None };
+    let description = read(name, text, format, &options).map_err(|e| e.to_string())?;
+    let how = EvaluationOptions {
+        noise: description.digits,
+        resolution: None,
+    };
+    let evaluation = evaluate(&description.tree, &how).map_err(|e| e.to_string())?;
+    if let Some((volume, slack)) = expected {
+        let found = mass(&evaluation.brep).volume;
+        if (found - volume).abs() > slack || found.is_nan() {
+            return Err(format!("volume {found} for {volume} ± {slack:e}"));
+        }
+    }
+    let report = Checker::new(&description.tree, &evaluation).solid(100_000);
+    let failures: Vec<String> = report
+        .failures()
+        .filter(|c| c.subject == Subject::Topology || expected.is_none())
+        .map(ToString::to_string)
+        .collect();
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        Err(failures.join("; "))
+    }
+}
+
+fn case_is_right(case: &Case) -> Result<(), String> {
+    let expected = match case.volume {
+        Some(volume) => (volume, 1e-9 * volume.abs().max(1e-3)),
+        None => (case.volume_by_rays, 5.0 * case.rays_std_error),
+    };
+    let text = case.tree.to_string();
+    wrong(
+        &case.id,
+        text.as_bytes(),
+        Format::Json,
+        false,
+        Some(expected),
+    )
+}
+
+#[test]
+fn cases() {
+    let Some(folder) = corpus() else { return };
+    let text = fs::read_to_string(folder.join("cases.json")).unwrap();
+    let cases: Vec<Case> = serde_json::from_str(&text).unwrap();
+    let known: BTreeSet<&str> = KNOWN_FAILURES.iter().copied().collect();
+    let mut complaints = Vec::new();
+    for case in &cases {
+        let outcome = case_is_right(case);
+        let refused = REFUSED.iter().find(|(id, _)| *id == case.id);
+        let complaint = match (outcome, refused, known.contains(case.id.as_str())) {
+            (Err(e), Some((_, why)), _) if e.contains(why) => continue,
+            (Ok(()), None, false) | (Err(_), None, true) => continue,
+            (Ok(()), Some(_), _) => "is not refused any more".to_owned(),
+            (Ok(()), None, true) => "passes now: take it off the list".to_owned(),
+            (Err(e), _, _) => e,
+        };
+        complaints.push(format!("{}: {complaint}", case.id));
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+/// Name, volume, and how far it may be off: half a unit of the last digit given, or as noted there.
+const OPENSCAD: &[(&str, f64, f64)] = &[
+    ("CSG.csg", 7829.922474671492, 1e-8),
+    ("example001.csg", 18730.1607954, 1e-7),
+    ("example002.csg", 12319.5413751, 1e-7),
+    ("example003.csg", 23750.0, 1e-8),
+    ("example005.csg", 2251821.9386, 1e-4),
+    ("example014.csg", 5936.76775, 1e-5 * 5936.76775),
+    ("example019.csg", 91431.843, 1e-6 * 91431.843),
+    ("example022.csg", 45377.58, 1e-5 * 45377.58),
+    ("cube-tests.csg", 23.0, 1e-11),
+    ("for-nested-tests.csg", 3964.6899, 1e-4),
+    ("nullspace-difference.csg", 0.0, 0.0),
+];
+
+#[test]
+fn openscad_files() {
+    let Some(folder) = corpus() else { return };
+    let folder = folder.join("openscad");
+    let mut complaints = Vec::new();
+    for &(name, volume, slack) in OPENSCAD {
+        let text = fs::read(folder.join(name)).unwrap();
+        if let Err(e) = wrong(name, &text, Format::Csg, false, Some((volume, slack))) {
+            complaints.push(format!("{name}: {e}"));
+        }
+    }
+    let polygons = fs::read(folder.join("sphere-tests.csg")).unwrap();
+    if let Err(e) = wrong("sphere-tests.csg", &polygons, Format::Csg, true, None) {
+        complaints.push(format!("sphere-tests.csg, smooth: {e}"));
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn openscad_files_that_are_refused() {
+    let Some(folder) = corpus() else { return };
+    for (name, why) in [
+        ("sphere-tests.csg", "$fn"),
+        ("transform-tests.csg", "rotation"),
+    ] {
+        let text = fs::read(folder.join("openscad").join(name)).unwrap();
+        let error = wrong(name, &text, Format::Csg, false, None).unwrap_err();
+        assert!(
+            error.starts_with(&format!("{name}:")) && error.contains(why),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,179 @@
+//! What must never be: dependencies that run backwards, tolerances outside their place, tests that
+//! are switched off, files that outgrow their subject.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Each package with the packages of ours that it may depend on.
+const LAYERS: &[(&str, &str, &[&str])] = &[
+    ("kernel", "premio-kernel", &[]),
+    ("csg", "premio-csg", &["premio-kernel"]),
+    ("visibility", "premio-visibility", &["premio-kernel"]),
+    (
+        "predict",
+        "premio-predict",
+        &["premio-visibility", "premio-kernel"],
+    ),
+    (
+        "match",
+        "premio-matching",
+        &["premio-predict", "premio-visibility", "premio-kernel"],
+    ),
+    (
+        "cli",
+        "premio",
+        &[
+            "premio-kernel",
+            "premio-csg",
+            "premio-visibility",
+            "premio-predict",
+            "premio-matching",
+        ],
+    ),
+];
+
+/// A file with more lines is asked to split.
+const LONG: usize = 600;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+#[test]
+fn dependencies_flow_one_way() {
+    for (folder, package, allowed) in LAYERS {
+        let Ok(manifest) = fs::read_to_string(root().join(folder).join("Cargo.toml")) else {
+            continue;
+        };
+        for name in dependencies(&manifest) {
+            assert!(
+                allowed.contains(&name.as_str()),
+                "{package} must not depend on {name}"
+            );
+        }
+    }
+}
+
+/// The packages of ours that a manifest depends on, tests included.
+fn dependencies(manifest: &str) -> Vec<String> {
+    let mut inside = false;
+    let mut found = Vec::new();
+    for line in manifest.lines().map(str::trim) {
+        if line.starts_with('[') {
+            inside = line.ends_with("dependencies]");
+            let one = line.trim_matches(['[', ']']).rsplit_once("dependencies.");
+            found.extend(one.map(|(_, name)| name.to_owned()));
+        } else if inside {
+            let name = line.split(['.', '=', ' ']).next().unwrap_or_default();
+            found.push(name.to_owned());
+        }
+    }
+    found.retain(|name| name.starts_with("premio"));
+    found
+}
+
+/// The source files of the workspace, without build output.
+fn sources() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![root()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            if path.is_dir() && name != "target" && !name.starts_with('.') {
+                folders.push(path);
+            } else if name.ends_with(".rs") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    assert!(found.len() > 20);
+    found
+}
+
+fn is_for_tests(path: &Path) -> bool {
+    let inside = path.strip_prefix(root()).unwrap();
+    let folder = |name: &str| inside.components().any(|c| c.as_os_str() == name);
+    folder("tests") || folder("benches") || folder("fuzz") || path.ends_with("tests.rs")
+}
+
+/// The lines of a file before its tests, without comments and the insides of strings.
+fn code(text: &str) -> impl Iterator<Item = (usize, String)> {
+    let lines = text
+        .lines()
+        .take_while(|line| line.trim() != "#[cfg(test)]");
+    lines.enumerate().map(|(i, line)| {
+        let mut shown = String::new();
+        let mut quoted = false;
+        let mut before = ' ';
+        for c in line.chars() {
+            if c == '"' && before != '\\' {
+                quoted = !quoted;
+            } else if !quoted {
+                shown.push(c);
+            }
+            before = c;
+        }
+        let end = shown.find("//").unwrap_or(shown.len());
+        (i + 1, shown[..end].to_owned())
+    })
+}
+
+/// Whether a line holds a literal like 1e-9 or 0.00001.
+fn has_small_float(line: &str) -> bool {
+    let bytes = line.as_bytes();
+    let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
+    (1..bytes.len()).any(|i| {
+        let exponent = matches!(bytes[i], b'e' | b'E') && bytes.get(i + 1) == Some(&b'-');
+        // A digit before it that is not the end of a name.
+        let start = line[..i].rfind(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '.'));
+        let number = digit(start.map_or(0, |s| s + 1))
+            || line[..i].starts_with(|c: char| c.is_ascii_digit());
+        exponent && digit(i + 2) && digit(i - 1) && number
+    }) || line.contains("0.0000")
+}
+
+#[test]
+fn tolerances_have_one_place() {
+    assert!(has_small_float("x < 1e-9"));
+    assert!(has_small_float("x < 1.5E-12;"));
+    assert!(has_small_float("1e-9"));
+    assert!(!has_small_float("value-1"));
+    assert!(!has_small_float("some1e-2"));
+    assert!(!has_small_float("1e9 - 0.5"));
+    let number = root().join("kernel/src/number");
+    let mut wrong = Vec::new();
+    for path in sources() {
+        if is_for_tests(&path) || path.starts_with(&number) {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        for (line, text) in code(&text).filter(|(_, l)| has_small_float(l)) {
+            wrong.push(format!("{}:{line}: {}", path.display(), text.trim()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_test_is_switched_off() {
+    let switched_off = concat!("#[", "ignore");
+    for path in sources() {
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(!text.contains(switched_off), "{}", path.display());
+    }
+}
+
+#[test]
+fn long_files_are_named() {
+    for path in sources() {
+        let lines = fs::read_to_string(&path).unwrap().lines().count();
+        if lines > LONG {
+            // A warning: the length of a file is a hint, not a fault.
+            let text = format!("warning: {} has {lines} lines\n", path.display());
+            std::io::Write::write_all(&mut std::io::stderr(), text.as_bytes()).unwrap();
+        }
+    }
+}

@@ -66,9 +66,13 @@ pub fn shell_volume(brep: &Brep, faces: &[FaceId]) -> f64 {
         .sum()
 }
 
-/// The area of a face.
-pub fn face_area(brep: &Brep, face: FaceId) -> f64 {
-    moments(brep, face, &Amid::of(brep))[0]
+/// The areas of all faces, by id.
+pub fn face_areas(brep: &Brep) -> Vec<f64> {
+    let amid = &Amid::of(brep);
+    brep.topology
+        .face_ids()
+        .map(|face| moments(brep, face, amid)[0])
+        .collect()
 }
 
 /// A point amid the part, relative to which sums do not cancel, and the errors of the moments that
@@ -86,13 +90,25 @@ impl Amid {
             b = b.hull(&Box3::of(&brep.curve(e).point(lo)));
             b = b.hull(&Box3::of(&brep.curve(e).point(0.5 * (lo + hi))));
         }
-        for s in brep.geometry.surfaces.iter().filter(|s| s.kind() >= SurfaceKind::Sphere) {
+        for s in brep
+            .geometry
+            .surfaces
+            .iter()
+            .filter(|s| s.kind() >= SurfaceKind::Sphere)
+        {
             b = b.hull(&Box3::of(&s.frame().origin));
         }
         let l = b.diagonal();
         let area = l * l * ROUNDING;
-        let reference = if l.is_finite() { b.centre() } else { Point3::origin() };
-        Self { reference, floor: [area, area * l, area * l * l, area * l * l, area * l * l] }
+        let reference = if l.is_finite() {
+            b.centre()
+        } else {
+            Point3::origin()
+        };
+        Self {
+            reference,
+            floor: [area, area * l, area * l * l, area * l * l, area * l * l],
+        }
     }
 }
 

@@ -2,5 +2,21 @@
 //! drawings.
 
 pub mod camera;
+pub mod contour;
+pub mod crossing;
+pub mod drawing;
+pub mod image;
+pub mod invisibility;
+pub mod junction;
 pub mod limb;
+pub mod polynomial;
 pub mod projection;
+pub mod serial;
+pub mod sight;
+pub mod strand;
+pub mod subdivide;
+pub mod view;
+
+pub use camera::Camera;
+pub use contour::Contours;
+pub use view::{ViewError, contours};

@@ -151,7 +151,7 @@ fn sphere_limb(s: &Sphere, sight: &Sight, band: f64) -> Option<Limb> {
 
 fn torus_limbs(s: &Torus, sight: &Sight, band: f64) -> Result<Vec<Limb>, Unresolved> {
     let local = local(&s.frame, sight);
-    if let Some(circles) = axial_limbs(s, &local, band) {
+    if let Some(circles) = axial_limbs(s, &local, band).or_else(|| side_limbs(s, &local)) {
         return Ok(circles);
     }
     let form = torus_form(s, &local);
@@ -189,6 +189,43 @@ fn axial_limbs(s: &Torus, sight: &LocalSight, band: f64) -> Option<Vec<Limb>> {
         }))
     };
     Some(angles.map(circle).to_vec())
+}
+
+/// Seen across its axis from far away, cos φ cos(θ - α) = 0: the circles at the top and at the
+/// bottom, and two circles of the tube, which cross them.
+fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
+    let LocalSight::Direction(d) = sight else {
+        return None;
+    };
+    (d.z.abs() <= ROUNDING).then_some(())?;
+    let alpha = d.y.atan2(d.x);
+    let side = s.frame.x * -alpha.sin() + s.frame.y * alpha.cos();
+    let quarter = TAU / 4.0;
+    let level = |z: f64| Limb {
+        nodes: vec![alpha + quarter, alpha - quarter],
+        ..Limb::of(Curve::Circle(Circle {
+            frame: s.frame.at(s.frame.point(0.0, 0.0, z)),
+            radius: s.major,
+        }))
+    };
+    let tube = |radial: Vector3<f64>| Limb {
+        nodes: vec![quarter, -quarter],
+        ..Limb::of(Curve::Circle(Circle {
+            frame: Frame {
+                origin: s.frame.origin + radial * s.major,
+                x: radial,
+                y: s.frame.z,
+                z: radial.cross(&s.frame.z),
+            },
+            radius: s.minor,
+        }))
+    };
+    Some(vec![
+        level(s.minor),
+        level(-s.minor),
+        tube(side),
+        tube(-side),
+    ])
 }
 
 /// N·(P - E), or N·d, over the angles, scaled to a distance to first order.

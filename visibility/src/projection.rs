@@ -188,4 +188,12 @@ impl Projection {
         let size = six.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         six.map(|x| x / size)
     }
+
+    /// The coefficients (a, b, c) of a x + b y + c = 0 in image coordinates, a² + b² = 1, for the
+    /// line l·h = 0.
+    pub fn line(&self, l: &Vector3<f64>) -> [f64; 3] {
+        let inverse = self.affine.try_inverse().unwrap_or_else(Matrix3::identity);
+        let m = inverse.tr_mul(l);
+        (m / m.x.hypot(m.y)).into()
+    }
 }

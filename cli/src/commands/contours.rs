@@ -3,8 +3,8 @@
 use crate::arguments::{ContoursFormat, ContoursOptions};
 use crate::diagnostics::Failure;
 use crate::{input, output};
-use premio_visibility::{Contours, contours};
 use premio_visibility::drawing::{self, Drawing, dxf, svg};
+use premio_visibility::{Contours, contours};
 
 /// Runs the command.
 pub fn run(options: &ContoursOptions) -> Result<(), Failure> {

@@ -519,7 +519,12 @@ fn bind_shells(brep: &mut Brep, fans: &Fans, judge: &Judge) -> Result<(), Assemb
         members[s].push(FaceId(f as u32));
     }
     for (s, faces) in members.iter().enumerate() {
-        let volume = shell_volume(brep, faces);
+        // One shell alone is an outer one.
+        let volume = if members.len() == 1 {
+            1.0
+        } else {
+            shell_volume(brep, faces)
+        };
         if volume == 0.0 || !volume.is_finite() {
             return Err(AssemblyError::Flat {
                 place: point_of(brep, faces[0]).into(),
@@ -529,7 +534,8 @@ fn bind_shells(brep: &mut Brep, fans: &Fans, judge: &Judge) -> Result<(), Assemb
             faces: faces.clone(),
             solid: SolidId(u32::MAX),
             void: volume < 0.0,
-            genus: (2 - fans.euler[s]) / 2,
+            genus: (2 - fans.euler[s]).div_euclid(2),
+            odd: fans.euler[s].rem_euclid(2) == 1,
         });
     }
     let shells = brep.topology.shells.len();

@@ -43,6 +43,8 @@ pub struct FaceLocator<'a> {
     arcs: Vec<DirectedArc<'a>>,
     boxes: Vec<Box3>,
     tree: Option<RTree<ArcBox>>,
+    /// About how far it is from one arc to the next.
+    spacing: f64,
     band: f64,
 }
 
@@ -82,12 +84,15 @@ impl<'a> FaceLocator<'a> {
             };
             RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect())
         });
+        let hull = boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b));
+        let spacing = 2.0 * hull.diagonal() / (arcs.len() as f64).sqrt();
         Self {
             surface,
             side,
             arcs,
             boxes,
             tree,
+            spacing,
             band,
         }
     }
@@ -175,7 +180,7 @@ impl<'a> FaceLocator<'a> {
             Surface::Plane(s) => {
                 let (sin, cos) = turn.sin_cos();
                 let direction = s.frame.x * cos + s.frame.y * sin;
-                self.take(&Walk::straight(s, p, direction))
+                self.reach(&Walk::straight(s, p, direction))
             }
             Surface::Cylinder(_) | Surface::Cone(_) => self.ruled(p, k, turn),
             Surface::Sphere(s) => match Walk::great_circle(&s.frame.origin, p, &self.target(k)) {
@@ -271,6 +276,21 @@ impl<'a> FaceLocator<'a> {
         let part = (0.5 + SPREAD * (k / self.arcs.len()) as f64).fract();
         let [lo, hi] = arc.range;
         arc.curve.point(lo + (hi - lo) * (0.1 + 0.8 * part))
+    }
+
+    /// A walk without end, in growing lengths where there are many arcs: mostly the nearest
+    /// crossing is near.
+    fn reach(&self, walk: &Walk) -> Outcome {
+        let mut length = self.spacing;
+        if self.tree.is_some() {
+            for _ in 0..3 {
+                match self.take(&walk.upto(length)) {
+                    Outcome::Found(place) => return Outcome::Found(place),
+                    Outcome::Nothing | Outcome::Unclear => length *= 4.0,
+                }
+            }
+        }
+        self.take(walk)
     }
 
     fn take(&self, walk: &Walk) -> Outcome {

@@ -13,6 +13,7 @@ use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Plane, Sphere, Surface, SurfaceKind, Torus};
 use crate::number::quadrature::{Rule, TWENTY, TWO, adaptive, integral};
+use crate::number::sign::ROUNDING;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
 
@@ -32,10 +33,10 @@ type Moments = [f64; 5];
 
 /// The mass properties of the solid that a boundary encloses.
 pub fn mass(brep: &Brep) -> Mass {
-    let reference = reference(brep);
+    let amid = &Amid::of(brep);
     let mut total = [0.0; 5];
     for face in brep.topology.face_ids() {
-        let m = moments(brep, face, &reference);
+        let m = moments(brep, face, amid);
         let sign = brep.sense(face).sign();
         total[0] += m[0];
         for i in 1..5 {
@@ -45,9 +46,9 @@ pub fn mass(brep: &Brep) -> Mass {
     let volume = total[1] / 3.0;
     let offset = Vector3::new(total[2], total[3], total[4]) / (4.0 * volume);
     let centroid = if volume == 0.0 {
-        reference
+        amid.reference
     } else {
-        reference + offset
+        amid.reference + offset
     };
     Mass {
         volume,
@@ -58,38 +59,63 @@ pub fn mass(brep: &Brep) -> Mass {
 
 /// The signed volume that a shell encloses, negative for a void.
 pub fn shell_volume(brep: &Brep, faces: &[FaceId]) -> f64 {
-    let reference = reference(brep);
+    let amid = &Amid::of(brep);
     faces
         .iter()
-        .map(|&f| brep.sense(f).sign() * moments(brep, f, &reference)[1] / 3.0)
+        .map(|&f| brep.sense(f).sign() * moments(brep, f, amid)[1] / 3.0)
         .sum()
 }
 
-/// The area of a face.
-pub fn face_area(brep: &Brep, face: FaceId) -> f64 {
-    moments(brep, face, &reference(brep))[0]
+/// The areas of all faces, by id.
+pub fn face_areas(brep: &Brep) -> Vec<f64> {
+    let amid = &Amid::of(brep);
+    brep.topology
+        .face_ids()
+        .map(|face| moments(brep, face, amid)[0])
+        .collect()
 }
 
-/// A point amid the part: sums relative to it do not cancel.
-fn reference(brep: &Brep) -> Point3<f64> {
-    let mut b = Box3::EMPTY;
-    for e in brep.topology.edge_ids() {
-        b = b.hull(&Box3::of(&brep.curve(e).point(brep.range(e)[0])));
-    }
-    for p in brep.geometry.surfaces.iter().filter(|s| s.kind() >= SurfaceKind::Sphere) {
-        b = b.hull(&Box3::of(&p.frame().origin));
-    }
-    if b.min[0] > b.max[0] {
-        Point3::origin()
-    } else {
-        b.centre()
+/// A point amid the part, relative to which sums do not cancel, and the errors of the moments that
+/// do not matter: rounding, in terms of the part's size.
+struct Amid {
+    reference: Point3<f64>,
+    floor: Moments,
+}
+
+impl Amid {
+    fn of(brep: &Brep) -> Self {
+        let mut b = Box3::EMPTY;
+        for e in brep.topology.edge_ids() {
+            let [lo, hi] = brep.range(e);
+            b = b.hull(&Box3::of(&brep.curve(e).point(lo)));
+            b = b.hull(&Box3::of(&brep.curve(e).point(0.5 * (lo + hi))));
+        }
+        for s in brep
+            .geometry
+            .surfaces
+            .iter()
+            .filter(|s| s.kind() >= SurfaceKind::Sphere)
+        {
+            b = b.hull(&Box3::of(&s.frame().origin));
+        }
+        let l = b.diagonal();
+        let area = l * l * ROUNDING;
+        let reference = if l.is_finite() {
+            b.centre()
+        } else {
+            Point3::origin()
+        };
+        Self {
+            reference,
+            floor: [area, area * l, area * l * l, area * l * l, area * l * l],
+        }
     }
 }
 
 /// The integrand over the parameters of a surface, and its integral along v.
 struct Density<'a> {
     surface: Surface,
-    reference: &'a Point3<f64>,
+    amid: &'a Amid,
     rule: &'static Rule,
     /// Where the integral along v starts.
     base: f64,
@@ -97,7 +123,7 @@ struct Density<'a> {
 
 impl Density<'_> {
     fn at(&self, u: f64, v: f64) -> Moments {
-        let p = self.surface.point(u, v) - self.reference;
+        let p = self.surface.point(u, v) - self.amid.reference;
         let (sin, cos) = u.sin_cos();
         let f = self.surface.frame();
         let radial = f.x * cos + f.y * sin;
@@ -128,7 +154,7 @@ impl Density<'_> {
 }
 
 /// The moments of a face.
-fn moments(brep: &Brep, face: FaceId, reference: &Point3<f64>) -> Moments {
+fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
     let loops = &brep.topology.face(face).loops;
     let coedges: Vec<CoedgeId> = loops
         .iter()
@@ -137,7 +163,7 @@ fn moments(brep: &Brep, face: FaceId, reference: &Point3<f64>) -> Moments {
     let surface = *brep.surface(face);
     let density = |surface: Surface, rule: &'static Rule, base: f64| Density {
         surface,
-        reference,
+        amid,
         rule,
         base,
     };
@@ -178,7 +204,7 @@ fn add(a: Moments, b: Moments) -> Moments {
 
 /// ∫ G(u, v) du at one v.
 fn around(d: &Density<'_>, v: f64, from: f64, to: f64) -> Moments {
-    adaptive(from, to, &mut |u| d.along(u, v))
+    adaptive(from, to, &d.amid.floor, &mut |u| d.along(u, v))
 }
 
 /// −∮ G du over the boundary of a face, each edge broken where `marks` says.
@@ -204,7 +230,7 @@ fn boundary_sum(
             let [_, near] = density
                 .surface
                 .parameters(&curve.point(0.5 * (pair[0] + pair[1])));
-            let part = adaptive(pair[0], pair[1], &mut |t| {
+            let part = adaptive(pair[0], pair[1], &density.amid.floor, &mut |t| {
                 edge_density(curve, t, density, near)
             });
             for (s, v) in total.iter_mut().zip(part) {

@@ -5,12 +5,14 @@
 //! a vertex where several fans of faces meet, are represented as they are.
 
 pub mod assemble;
+pub mod check;
 mod inside;
 pub mod locate;
 pub mod mass;
 mod region;
 pub mod topology;
 pub mod walk;
+pub mod welch;
 
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;

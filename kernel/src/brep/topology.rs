@@ -111,8 +111,10 @@ pub struct Shell {
     pub solid: SolidId,
     /// Whether it bounds a void.
     pub void: bool,
-    /// Its genus.
+    /// Its genus: one less half its Euler characteristic.
     pub genus: i32,
+    /// Whether the characteristic is odd, which no closed shell's is.
+    pub odd: bool,
 }
 
 /// A solid: one outer shell, then its voids.

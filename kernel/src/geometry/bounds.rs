@@ -124,8 +124,7 @@ fn within(curve: &Curve, range: [f64; 2], slack: f64) -> Box3 {
         }
     }
     let mut all = seen;
-    let mut stack: Vec<(f64, f64, u32)> =
-        breaks.windows(2).map(|p| (p[0], p[1], 0)).collect();
+    let mut stack: Vec<(f64, f64, u32)> = breaks.windows(2).map(|p| (p[0], p[1], 0)).collect();
     while let Some((a, b, depth)) = stack.pop() {
         let part = piece_box(curve, Interval { lo: a, hi: b });
         let far = seen.grown(slack * seen.diagonal());

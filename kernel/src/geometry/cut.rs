@@ -7,6 +7,22 @@ use crate::number::roots::{Zeros, isolate};
 /// Where the curve, over `range` of its parameter, meets the surface: isolated parameters with
 /// their contact, or everywhere where it lies on the surface. `band` is the resolution.
 pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zeros {
+    if lies_on(curve, range, surface, band) {
+        return Zeros::Everywhere;
+    }
     let breaks = curve.breaks(range[0], range[1]);
     isolate(&|t| surface.level(curve.jet_over(t)), &breaks, band)
+}
+
+/// The points at which a curve is asked whether it lies on a surface: more than twice the number
+/// of zeros that any of the curves can have on any of the surfaces, so that one that is within the
+/// band at all of them is so in between.
+const PROBES: u32 = 67;
+
+fn lies_on(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
+    // Steps of the golden section: the first few probes already lie far apart.
+    (1..=PROBES).all(|k| {
+        let part = (f64::from(k) * 0.618_033_988_749_895).fract();
+        surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band
+    })
 }

@@ -57,10 +57,16 @@ pub fn integral<const N: usize>(
     sum
 }
 
-/// The integral over [a, b], halved until both halves agree with the whole to rounding.
-pub fn adaptive<const N: usize>(a: f64, b: f64, f: &mut impl FnMut(f64) -> [f64; N]) -> [f64; N] {
+/// The integral over [a, b], halved until both halves agree with the whole to within rounding or
+/// to within `floor`, an absolute error that does not matter.
+pub fn adaptive<const N: usize>(
+    a: f64,
+    b: f64,
+    floor: &[f64; N],
+    f: &mut impl FnMut(f64) -> [f64; N],
+) -> [f64; N] {
     let whole = integral(&TEN, a, b, &mut *f);
-    refine(a, b, whole, 0, f)
+    refine(a, b, whole, 0, floor, f)
 }
 
 fn refine<const N: usize>(
@@ -68,19 +74,22 @@ fn refine<const N: usize>(
     b: f64,
     whole: [f64; N],
     depth: u32,
+    floor: &[f64; N],
     f: &mut impl FnMut(f64) -> [f64; N],
 ) -> [f64; N] {
     let m = 0.5 * (a + b);
     let left = integral(&TEN, a, m, &mut *f);
     let right = integral(&TEN, m, b, &mut *f);
     let sum: [f64; N] = std::array::from_fn(|i| left[i] + right[i]);
-    let scale = |i: usize| left[i].abs() + right[i].abs();
-    let settled = (0..N).all(|i| (sum[i] - whole[i]).abs() <= 64.0 * ROUNDING * scale(i));
+    let settled = (0..N).all(|i| {
+        let scale = left[i].abs() + right[i].abs();
+        (sum[i] - whole[i]).abs() <= (64.0 * ROUNDING * scale).max(floor[i])
+    });
     if settled || depth >= 14 {
         return sum;
     }
-    let left = refine(a, m, left, depth + 1, f);
-    let right = refine(m, b, right, depth + 1, f);
+    let left = refine(a, m, left, depth + 1, floor, f);
+    let right = refine(m, b, right, depth + 1, floor, f);
     std::array::from_fn(|i| left[i] + right[i])
 }
 
@@ -94,7 +103,7 @@ mod tests {
         assert!((i - 4.0).abs() < 1e-14);
         let [i] = integral(&TWENTY, 0.0, 2.0 * PI, |x| [(1.5 * x).cos().powi(2)]);
         assert!((i - PI).abs() < 1e-12);
-        let [i] = adaptive(0.0, 1.0, &mut |x: f64| [x.sqrt()]);
+        let [i] = adaptive(0.0, 1.0, &[0.0], &mut |x: f64| [x.sqrt()]);
         assert!((i - 2.0 / 3.0).abs() < 1e-8);
     }
 }

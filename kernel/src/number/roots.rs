@@ -267,7 +267,13 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
         let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
         let margin = group.iter().filter_map(|c| c.margin).reduce(f64::min);
         let mut simple = group.iter().filter(|c| c.kind == Kind::Simple);
-        let found = |t, contact| Root { t, lo, hi, contact, margin };
+        let found = |t, contact| Root {
+            t,
+            lo,
+            hi,
+            contact,
+            margin,
+        };
         if let (Some(c), None, true) = (simple.next(), simple.next(), crosses) {
             return found(c.t, Contact::Simple);
         }

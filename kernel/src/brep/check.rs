@@ -1,0 +1,209 @@
+//! The checker: one named violation for each rule that a boundary must keep.
+
+use super::Brep;
+use super::mass::{face_areas, shell_volume};
+use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, VertexId};
+use super::welch;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A rule that a boundary breaks.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Violation {
+    /// The end of a coedge is not the start of the next.
+    #[error("loop {} is open after its coedge {}", ring.0, after.0)]
+    LoopOpen {
+        /// The loop.
+        ring: LoopId,
+        /// The coedge that leads nowhere.
+        after: CoedgeId,
+    },
+    /// A loop is no sum of the cycles of its face's boundary.
+    #[error("loop {} is no sum of cycles", ring.0)]
+    LoopNoCycle {
+        /// The loop.
+        ring: LoopId,
+    },
+    /// An edge is not used in pairs that run oppositely.
+    #[error("edge {} is not used in opposite pairs", edge.0)]
+    EdgeUse {
+        /// The edge.
+        edge: EdgeId,
+    },
+    /// An edge does not end at its vertex.
+    #[error("edge {} ends {distance:e} away from vertex {}", edge.0, vertex.0)]
+    EdgeEnd {
+        /// The edge.
+        edge: EdgeId,
+        /// The vertex.
+        vertex: VertexId,
+        /// How far away, in the part's unit.
+        distance: f64,
+    },
+    /// An edge leaves the surface of one of its faces.
+    #[error("edge {} lies {distance:e} off face {}", edge.0, face.0)]
+    EdgeOffFace {
+        /// The edge.
+        edge: EdgeId,
+        /// The face.
+        face: FaceId,
+        /// How far, in the part's unit.
+        distance: f64,
+    },
+    /// The entities of a shell do not add up (Euler-Poincaré).
+    #[error("shell {} has the Euler characteristic {euler}", shell.0)]
+    Euler {
+        /// The shell.
+        shell: ShellId,
+        /// Vertices less edges plus the faces' characteristics: must be even, and at most two.
+        euler: i32,
+    },
+    /// A face has no area, or more than its surface.
+    #[error("face {} has the area {area:e}", face.0)]
+    Area {
+        /// The face.
+        face: FaceId,
+        /// The area, in square units.
+        area: f64,
+    },
+    /// A shell is turned inside out.
+    #[error("shell {} encloses the volume {volume:e}", shell.0)]
+    Orientation {
+        /// The shell.
+        shell: ShellId,
+        /// The signed volume, in cubic units.
+        volume: f64,
+    },
+}
+
+/// An edge may lie this many times the resolution off its faces and its vertices: it was found
+/// from two of them, and what coincides within the resolution was made one.
+const PLAY: f64 = 8.0;
+
+/// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
+pub fn check(brep: &Brep, band: f64) -> Vec<Violation> {
+    let mut found = Vec::new();
+    check_loops(brep, &mut found);
+    check_edges(brep, band, &mut found);
+    check_shells(brep, &mut found);
+    for (i, area) in face_areas(brep).into_iter().enumerate() {
+        if area.is_nan() || area <= 0.0 {
+            found.push(Violation::Area {
+                face: FaceId(i as u32),
+                area,
+            });
+        }
+    }
+    found
+}
+
+fn check_loops(brep: &Brep, found: &mut Vec<Violation>) {
+    let t = &brep.topology;
+    for (i, ring) in t.loops.iter().enumerate() {
+        let id = LoopId(i as u32);
+        for (k, &c) in ring.coedges.iter().enumerate() {
+            let next = ring.coedges[(k + 1) % ring.coedges.len()];
+            let joined = match (t.run(c), t.run(next)) {
+                (Some([_, end]), Some([start, _])) => end == start,
+                (None, None) => ring.coedges.len() == 1,
+                _ => false,
+            };
+            if !joined {
+                found.push(Violation::LoopOpen { ring: id, after: c });
+            }
+        }
+    }
+    for face in &t.faces {
+        check_cycles(brep, &face.loops, found);
+    }
+}
+
+/// The loops of a face against the cycles of its boundary.
+fn check_cycles(brep: &Brep, loops: &[LoopId], found: &mut Vec<Violation>) {
+    let t = &brep.topology;
+    let mut number: BTreeMap<EdgeId, usize> = BTreeMap::new();
+    let mut links = Vec::new();
+    for &l in loops {
+        for &c in &t.ring(l).coedges {
+            let edge = t.coedge(c).edge;
+            if let Some([a, b]) = t.edge(edge).ends
+                && !number.contains_key(&edge)
+            {
+                number.insert(edge, links.len());
+                links.push([a.index(), b.index()]);
+            }
+        }
+    }
+    // A face with thousands of loops is a graph of as many parts: each is its own check.
+    let few = loops.len() <= 64;
+    for &l in loops.iter().filter(|_| few) {
+        let mut edges = BTreeSet::new();
+        for &c in &t.ring(l).coedges {
+            if let Some(&n) = number.get(&t.coedge(c).edge)
+                && !edges.remove(&n)
+            {
+                edges.insert(n);
+            }
+        }
+        if !welch::is_sum_of_cycles(&links, &edges) {
+            found.push(Violation::LoopNoCycle { ring: l });
+        }
+    }
+}
+
+fn check_edges(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
+    let t = &brep.topology;
+    for id in t.edge_ids() {
+        let edge = t.edge(id);
+        let paired = edge.coedges.len() >= 2
+            && edge.coedges.len() % 2 == 0
+            && edge
+                .coedges
+                .chunks(2)
+                .all(|p| t.coedge(p[0]).sense != t.coedge(p[1]).sense);
+        if !paired {
+            found.push(Violation::EdgeUse { edge: id });
+        }
+        let [lo, hi] = brep.range(id);
+        let curve = brep.curve(id);
+        if let Some(ends) = edge.ends {
+            for (vertex, t) in ends.into_iter().zip([lo, hi]) {
+                let distance = (brep.point(vertex) - curve.point(t)).norm();
+                if distance.is_nan() || distance > PLAY * band {
+                    found.push(Violation::EdgeEnd {
+                        edge: id,
+                        vertex,
+                        distance,
+                    });
+                }
+            }
+        }
+        for face in t.faces_of(id) {
+            let off = |k: u32| {
+                let p = curve.point(lo + (hi - lo) * f64::from(k) / 8.0);
+                brep.surface(face).distance(&p).abs()
+            };
+            let distance = (0..=8).map(off).fold(0.0, f64::max);
+            if distance.is_nan() || distance > PLAY * band {
+                found.push(Violation::EdgeOffFace {
+                    edge: id,
+                    face,
+                    distance,
+                });
+            }
+        }
+    }
+}
+
+fn check_shells(brep: &Brep, found: &mut Vec<Violation>) {
+    for (i, shell) in brep.topology.shells.iter().enumerate() {
+        let id = ShellId(i as u32);
+        if shell.genus < 0 || shell.odd {
+            let euler = 2 - 2 * shell.genus - i32::from(shell.odd);
+            found.push(Violation::Euler { shell: id, euler });
+        }
+        let volume = shell_volume(brep, &shell.faces);
+        if volume.is_nan() || volume == 0.0 || (volume < 0.0) != shell.void {
+            found.push(Violation::Orientation { shell: id, volume });
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Where two contours cross in the image.
+//!
+//! One contour's points are put into the other's cone of sight: a plane through the eye for a
+//! line, a quadric cone for a conic. Line and line, line and conic are closed forms; two conics
+//! give a polynomial of the fourth degree in the tangent of half the angle; other curves against
+//! these are isolated on their parameter, and two other curves by certified subdivision.
+
+use crate::image::{Basis, Image, line_on_conic, quadratic};
+use crate::polynomial::{Quartic, crossings};
+use crate::projection::Projection;
+use crate::strand::Strand;
+use crate::subdivide::general_pair;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::number::interval::Interval;
+use premio_kernel::number::roots::{Contact, Zeros, isolate};
+use premio_kernel::number::scalar::{Scalar, dot};
+use std::f64::consts::TAU;
+
+/// How two contours meet in the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Overlap {
+    /// In points only.
+    No,
+    /// They are on one curve.
+    Yes,
+}
+
+/// What the distances between contours in the image may be, in multiples of the resolution, for
+/// them to fall on one another.
+const LOOSE: f64 = 8.0;
+
+/// A turn without meaning: conics of symmetric parts must not cross at the ends of the halves.
+const TURN: f64 = 0.618_033_988_749_894_9;
+
+/// Reports the crossings of two strands in the image: the parameters on both.
+pub fn cross(
+    a: &Strand<'_>,
+    b: &Strand<'_>,
+    projection: &Projection,
+    band: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let near = LOOSE * band;
+    match (&a.image, &b.image) {
+        (Image::Point, _) | (_, Image::Point) => Overlap::No,
+        (Image::General, Image::General) => general_pair(a, b, projection, band, found),
+        (Image::General, _) => general(a, b, projection, band, found),
+        (_, Image::General) => general(b, a, projection, band, &mut |s, t| found(t, s)),
+        (Image::Conic { .. }, Image::Conic { .. }) => conics(a, b, near, found),
+        (Image::Conic { .. }, _) => line_and_conic(b, a, near, &mut |s, t| found(t, s)),
+        (_, Image::Conic { .. }) => line_and_conic(a, b, near, found),
+        _ => lines(a, b, projection, near, found),
+    }
+}
+
+/// The homogeneous image at a parameter.
+fn at(strand: &Strand<'_>, t: f64) -> Vector3<f64> {
+    match &strand.image {
+        Image::Line {
+            origin, direction, ..
+        } => origin + direction * t,
+        Image::Conic { basis, map, .. } | Image::Flat { basis, map, .. } => map * basis.at(t),
+        Image::Point | Image::General => Vector3::z(),
+    }
+}
+
+/// Both on lines.
+fn lines(
+    a: &Strand<'_>,
+    b: &Strand<'_>,
+    projection: &Projection,
+    near: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let (Some(la), Some(lb)) = (a.image.line(), b.image.line()) else {
+        return Overlap::No;
+    };
+    let off = |s: &Strand<'_>, l: &Vector3<f64>| {
+        let size = l.x.hypot(l.y);
+        let away = |t: f64| (l.dot(&projection.homogeneous(&s.curve.point(t))) / size).abs();
+        let middle = 0.5 * (s.range[0] + s.range[1]);
+        away(s.range[0]).max(away(s.range[1])).max(away(middle))
+    };
+    if off(a, lb) <= near && off(b, la) <= near {
+        return Overlap::Yes;
+    }
+    line_parameters(a, lb, &mut |t| {
+        let h = at(a, t);
+        b.image.parameters(&h, b.range, &mut |s| found(t, s));
+    });
+    Overlap::No
+}
+
+/// Where a strand on a line meets another line in the image.
+fn line_parameters(a: &Strand<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)) {
+    match &a.image {
+        Image::Line {
+            origin, direction, ..
+        } => {
+            let slope = l.dot(direction);
+            if slope != 0.0 {
+                found(-l.dot(origin) / slope);
+            }
+        }
+        Image::Flat { basis, map, .. } => {
+            line_on_conic(*basis, &map.tr_mul(l), a.range, found);
+        }
+        _ => {}
+    }
+}
+
+/// Whether a point in a conic's image is within `near` of it, as a distance in space.
+fn on_conic(conic: &Matrix3<f64>, h: &Vector3<f64>, near: f64) -> bool {
+    let polar = conic * h;
+    h.dot(&polar).abs() <= near * 2.0 * polar.x.hypot(polar.y)
+}
+
+fn line_and_conic(
+    a: &Strand<'_>,
+    b: &Strand<'_>,
+    near: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let Image::Conic { conic, .. } = &b.image else {
+        return Overlap::No;
+    };
+    let mut both = |t: f64| {
+        let h = at(a, t);
+        b.image.parameters(&h, b.range, &mut |s| found(t, s));
+    };
+    match &a.image {
+        Image::Line {
+            origin, direction, ..
+        } => {
+            let k2 = direction.dot(&(conic * direction));
+            let k1 = 2.0 * origin.dot(&(conic * direction));
+            let k0 = origin.dot(&(conic * origin));
+            // A tangent: its two roots are one, and no crossing.
+            let touch = -0.5 * k1 / k2;
+            let tangent = touch.is_finite() && on_conic(conic, &(origin + direction * touch), near);
+            if !tangent {
+                quadratic([k0, k1, k2], &mut both);
+            }
+        }
+        Image::Flat { basis, map, .. } => {
+            let form = map.transpose() * conic * map;
+            let touches = |t: f64, _: f64| on_conic(conic, &(map * basis.at(t)), near);
+            conic_parameters(*basis, &form, a.range, &touches, &mut both);
+        }
+        _ => {}
+    }
+    Overlap::No
+}
+
+fn conics(a: &Strand<'_>, b: &Strand<'_>, near: f64, found: &mut impl FnMut(f64, f64)) -> Overlap {
+    let (Image::Conic { basis, map, .. }, Image::Conic { conic, .. }) = (&a.image, &b.image) else {
+        return Overlap::No;
+    };
+    let [lo, hi] = a.range;
+    // Five points determine a conic.
+    let same = [0.03, 0.21, 0.47, 0.68, 0.91]
+        .iter()
+        .all(|part| on_conic(conic, &(map * basis.at(lo + (hi - lo) * part)), near));
+    if same {
+        return Overlap::Yes;
+    }
+    let form = map.transpose() * conic * map;
+    let touches = |t: f64, _: f64| on_conic(conic, &(map * basis.at(t)), near);
+    conic_parameters(*basis, &form, a.range, &touches, &mut |t| {
+        let h = map * basis.at(t);
+        b.image.parameters(&h, b.range, &mut |s| found(t, s));
+    });
+    Overlap::No
+}
+
+/// Where b(t)ᵀ G b(t) changes its sign, over the range.
+fn conic_parameters(
+    basis: Basis,
+    g: &Matrix3<f64>,
+    [lo, hi]: [f64; 2],
+    touches: &impl Fn(f64, f64) -> bool,
+    found: &mut impl FnMut(f64),
+) {
+    match basis {
+        Basis::Circular => {
+            for half in 0..2 {
+                let turn = TURN + 0.5 * TAU * f64::from(half);
+                let spin = Rotation3::from_axis_angle(&Vector3::z_axis(), turn);
+                let g = spin.matrix().tr_mul(&(g * spin.matrix()));
+                // b = (1 - u², 2 u, 1 + u²) with u = tan(t/2).
+                let k = binary([1.0, 0.0, -1.0], [0.0, 2.0, 0.0], [1.0, 0.0, 1.0], &g);
+                let angle = |u: f64| turn + 2.0 * u.atan();
+                crossings(&k, [-1.0, 1.0], &|u, v| touches(angle(u), v), &mut |u| {
+                    found(lo + (angle(u) - lo).rem_euclid(TAU));
+                });
+            }
+        }
+        Basis::Parabolic => {
+            let k = binary([0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], g);
+            crossings(&k, [lo, hi], touches, found);
+        }
+        Basis::Hyperbolic => {
+            // 2 e b = (e² + 1, e² - 1, 2 e) with e = exp t.
+            let k = binary([1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 2.0, 0.0], g);
+            let ends = [lo.exp(), hi.exp()];
+            crossings(&k, ends, &|e, v| touches(e.ln(), v), &mut |e| found(e.ln()));
+        }
+    }
+}
+
+/// vᵀ G v for a vector of three quadratics.
+fn binary(x: [f64; 3], y: [f64; 3], z: [f64; 3], g: &Matrix3<f64>) -> Quartic {
+    let v = [x, y, z];
+    let mut k = [0.0; 5];
+    for i in 0..3 {
+        for j in 0..3 {
+            for (m, p) in v[i].iter().enumerate() {
+                for (n, q) in v[j].iter().enumerate() {
+                    k[m + n] += g[(i, j)] * p * q;
+                }
+            }
+        }
+    }
+    k
+}
+
+/// A curve that is neither line nor conic against one that is.
+fn general(
+    a: &Strand<'_>,
+    b: &Strand<'_>,
+    projection: &Projection,
+    band: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let middle = a.curve.point(0.5 * (a.range[0] + a.range[1]));
+    let middle = projection.homogeneous(&middle);
+    let breaks = a.curve.breaks(a.range[0], a.range[1]);
+    let image = |t: Interval| projection.homogeneous_over(a.curve.jet_over(t));
+    let zeros = match &b.image {
+        Image::Conic { conic, .. } => {
+            let polar = conic * middle;
+            let scale = 0.5 / polar.x.hypot(polar.y);
+            let f = |t: Interval| {
+                let h = image(t);
+                let row = |i: usize| dot(&conic.row(i).transpose(), h);
+                (h[0] * row(0) + h[1] * row(1) + h[2] * row(2)).scale(scale)
+            };
+            isolate(&f, &breaks, band)
+        }
+        other => {
+            let Some(line) = other.line() else {
+                return Overlap::No;
+            };
+            let line = line / line.x.hypot(line.y);
+            isolate(&|t: Interval| dot(&line, image(t)), &breaks, band)
+        }
+    };
+    match zeros {
+        Zeros::Everywhere => Overlap::Yes,
+        Zeros::At { roots, .. } => {
+            for r in roots.iter().filter(|r| r.contact != Contact::Touching) {
+                let h = projection.homogeneous(&a.curve.point(r.t));
+                b.image.parameters(&h, b.range, &mut |s| found(r.t, s));
+            }
+            Overlap::No
+        }
+    }
+}
+
+/// The parameters at which a strand's image passes the image point of `h`, where it does.
+pub fn parameters_at(
+    strand: &Strand<'_>,
+    h: &Vector3<f64>,
+    p: [f64; 3],
+    found: &mut impl FnMut(f64),
+) {
+    match (&strand.image, strand.curve) {
+        (Image::General, Curve::Quartic(_) | Curve::Toric(_)) => {
+            found(strand.curve.parameter(&p.into()));
+        }
+        (image, _) => image.parameters(h, strand.range, found),
+    }
+}

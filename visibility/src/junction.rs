@@ -1,0 +1,433 @@
+//! T-junctions: the pairs of contours that can cross in the image, and what a crossing does.
+//!
+//! Candidates come from an R-tree on the boxes of the images; long contours are chains of boxes.
+//! Notation: v is the unit vector towards the eye, T the direction of the nearer contour, U that
+//! of the farther one. A face to the left of T (seen from outside) lies in the image on the side
+//! on which det(T, ·, v) has the sign of N·v: so a face turned towards the eye begins to hide the
+//! farther contour where its loop's sense along T has the sign of det(T, U, v), else it ceases to. The folded sheet of a limb lies towards -N, or towards N where the
+//! surface is hollow along the line of sight.
+
+use crate::contour::JunctionKind;
+use crate::crossing::{Overlap, cross, parameters_at};
+use crate::image::{Basis, Image, flat_of, flat_point};
+use crate::projection::{Projection, Sight};
+use crate::sight::Scene;
+use crate::strand::{Change, Junctions, Passing, Split, Strand};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::interval::Interval;
+use premio_kernel::number::sign::ROUNDING;
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
+use std::f64::consts::TAU;
+
+/// A link of a chain: its box in the image, and the strand it belongs to.
+type Link = GeomWithData<Rectangle<[f64; 2]>, u32>;
+
+/// A contour is cut into links of about this part of the image's size.
+const LINKS: f64 = 24.0;
+/// Distances between points found on two ways, in multiples of the resolution.
+const LOOSE: f64 = 8.0;
+
+#[derive(Clone, Copy, Debug)]
+struct Box2 {
+    min: [f64; 2],
+    max: [f64; 2],
+}
+
+impl Box2 {
+    const EMPTY: Self = Self {
+        min: [f64::INFINITY; 2],
+        max: [f64::NEG_INFINITY; 2],
+    };
+
+    fn with(self, p: [f64; 2]) -> Self {
+        Self {
+            min: [self.min[0].min(p[0]), self.min[1].min(p[1])],
+            max: [self.max[0].max(p[0]), self.max[1].max(p[1])],
+        }
+    }
+
+    fn sides(&self) -> [f64; 2] {
+        [self.max[0] - self.min[0], self.max[1] - self.min[1]]
+    }
+}
+
+/// The parameters at which the image of a conic runs along x or along y.
+fn extremes(image: &Image) -> ([f64; 4], usize) {
+    let mut found = ([0.0; 4], 0);
+    let Image::Conic { basis, map, .. } = image else {
+        return found;
+    };
+    let q = map.row(2).transpose();
+    for i in 0..2 {
+        let p = map.row(i).transpose();
+        let flat = Image::turns_of(*basis, &p, &q);
+        for t in flat.into_iter().flatten() {
+            found.0[found.1] = t;
+            found.1 += 1;
+        }
+    }
+    found
+}
+
+/// The links of a strand.
+fn links(
+    strand: &Strand<'_>,
+    index: u32,
+    projection: &Projection,
+    step: f64,
+    grow: f64,
+    out: &mut Vec<Link>,
+) {
+    let [lo, hi] = strand.range;
+    let mut push = |b: Box2| {
+        let (min, max) = (b.min.map(|x| x - grow), b.max.map(|x| x + grow));
+        out.push(GeomWithData::new(Rectangle::from_corners(min, max), index));
+    };
+    if let Image::General = strand.image {
+        for pair in strand.curve.breaks(lo, hi).windows(2) {
+            for k in 0..4 {
+                let at = |k: usize| pair[0] + (pair[1] - pair[0]) * (k as f64 / 4.0);
+                push(general_box(
+                    strand,
+                    projection,
+                    Interval::new(at(k), at(k + 1)),
+                ));
+            }
+        }
+        return;
+    }
+    let (turns, count) = extremes(&strand.image);
+    let point = |t: f64| flat_of(projection, &strand.curve.point(t));
+    let chain = |from: f64, to: f64| {
+        let mut b = Box2::EMPTY.with(point(from)).with(point(to));
+        for &t in &turns[..count] {
+            let t = match strand.image {
+                Image::Conic {
+                    basis: Basis::Circular,
+                    ..
+                } => from + (t - from).rem_euclid(TAU),
+                _ => t,
+            };
+            if t > from && t < to {
+                b = b.with(point(t));
+            }
+        }
+        if let Image::Flat { .. } = strand.image {
+            for t in strand.image.turns([from, to]) {
+                b = b.with(point(t));
+            }
+        }
+        b
+    };
+    let whole = chain(lo, hi);
+    let [w, h] = whole.sides();
+    let thick = match strand.image {
+        Image::Line { .. } => w.min(h),
+        _ => w.max(h),
+    };
+    let n = (thick / step).ceil().clamp(1.0, 4.0 * LINKS);
+    if n <= 1.0 {
+        return push(whole);
+    }
+    for k in 0..n as usize {
+        let at = |k: usize| lo + (hi - lo) * (k as f64 / n);
+        push(chain(at(k), at(k + 1)));
+    }
+}
+
+fn general_box(strand: &Strand<'_>, projection: &Projection, t: Interval) -> Box2 {
+    let wide = flat_point(projection, strand.curve.jet_over(t));
+    let middle = flat_point(projection, strand.curve.jet_over(Interval::point(t.mid())));
+    let run = t - Interval::point(t.mid());
+    let side = |i: usize| {
+        let tight = middle[i].v + wide[i].d * run;
+        if tight.width().is_finite() {
+            wide[i].v.meet(tight)
+        } else {
+            wide[i].v
+        }
+    };
+    let (x, y) = (side(0), side(1));
+    Box2 {
+        min: [x.lo, y.lo],
+        max: [x.hi, y.hi],
+    }
+}
+
+/// The pairs of strands whose images may meet, each once and in order.
+fn candidates(strands: &[Strand<'_>], scene: &Scene<'_>) -> Vec<(u32, u32)> {
+    let projection = scene.projection;
+    let mut part = Box2::EMPTY;
+    let mut least = f64::INFINITY;
+    for strand in strands {
+        for t in strand.range {
+            let p = strand.curve.point(t);
+            part = part.with(flat_of(projection, &p));
+            least = least.min(projection.homogeneous(&p).z);
+        }
+    }
+    let [w, h] = part.sides();
+    let step = w.max(h) / LINKS;
+    let grow = LOOSE * scene.band / least.max(scene.band);
+    let mut all = Vec::with_capacity(strands.len() * 2);
+    for (i, strand) in strands.iter().enumerate() {
+        if !matches!(strand.image, Image::Point) {
+            links(strand, i as u32, projection, step, grow.min(step), &mut all);
+        }
+    }
+    let tree = RTree::bulk_load(all);
+    let mut pairs: Vec<(u32, u32)> = tree
+        .intersection_candidates_with_other_tree(&tree)
+        .filter(|(a, b)| a.data < b.data)
+        .map(|(a, b)| (a.data, b.data))
+        .collect();
+    pairs.extend(
+        strands
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| matches!(s.image, Image::General))
+            .map(|(i, _)| (i as u32, i as u32)),
+    );
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// A parameter on a strand: within it, or at one of its ends.
+#[derive(Clone, Copy, Debug)]
+struct Settled {
+    t: f64,
+    at_end: bool,
+}
+
+fn settle(strand: &Strand<'_>, t: f64, near: f64) -> Option<Settled> {
+    let [lo, hi] = strand.range;
+    let t = match strand.curve.period() {
+        Some(period) => {
+            let t = lo + (t - lo).rem_euclid(period);
+            // Just before the start is nearer to the start than to the end.
+            if !strand.closed && t - hi > lo + period - t {
+                t - period
+            } else {
+                t
+            }
+        }
+        None => t,
+    };
+    if strand.closed {
+        return Some(Settled { t, at_end: false });
+    }
+    let slack = near / strand.curve.derivative(t).norm();
+    if t < lo - slack || t > hi + slack || t.is_nan() {
+        return None;
+    }
+    let at_end = t <= lo + slack || t >= hi - slack;
+    Some(Settled {
+        t: t.clamp(lo, hi),
+        at_end,
+    })
+}
+
+struct Search<'s, 'a, 'j, 'p> {
+    scene: &'s Scene<'a>,
+    junctions: &'j mut Junctions<'p>,
+    /// (strand, split) found so far.
+    splits: Vec<(u32, Split)>,
+}
+
+/// Finds all T-junctions and notes them as splits of the farther strands.
+pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    let pairs = candidates(strands, scene);
+    let mut search = Search {
+        scene,
+        junctions,
+        splits: Vec::new(),
+    };
+    for (i, j) in pairs {
+        let (a, b) = (&strands[i as usize], &strands[j as usize]);
+        let mut found = |t: f64, s: f64| search.crossing((i, a, t), (j, b, s));
+        let overlap = cross(a, b, scene.projection, scene.band, &mut found);
+        if overlap == Overlap::Yes && i != j {
+            search.overlap((i, a), (j, b));
+            search.overlap((j, b), (i, a));
+        }
+    }
+    for (strand, split) in search.splits {
+        strands[strand as usize].splits.push(split);
+    }
+}
+
+type At<'x, 'a> = (u32, &'x Strand<'a>, f64);
+
+impl Search<'_, '_, '_, '_> {
+    fn crossing(&mut self, (i, a, t): At<'_, '_>, (j, b, s): At<'_, '_>) {
+        let near = LOOSE * self.scene.band;
+        let (Some(t), Some(s)) = (settle(a, t, near), settle(b, s, near)) else {
+            return;
+        };
+        let (p, q) = (a.curve.point(t.t), b.curve.point(s.t));
+        let (v, _) = self.scene.projection.towards_eye(&p);
+        let ahead = (q - p).dot(&v);
+        if ahead.abs() <= 2.0 * near {
+            return;
+        }
+        if ahead > 0.0 {
+            self.junction((j, b, s, q), (i, a, t, p), &v);
+        } else {
+            self.junction((i, a, t, p), (j, b, s, q), &v);
+        }
+    }
+
+    /// The nearer strand splits the farther.
+    fn junction(
+        &mut self,
+        (_, near, s, q): (u32, &Strand<'_>, Settled, Point3<f64>),
+        (i, far, t, p): (u32, &Strand<'_>, Settled, Point3<f64>),
+        v: &Vector3<f64>,
+    ) {
+        if t.at_end {
+            return;
+        }
+        let change = if s.at_end {
+            Change::Recount
+        } else {
+            let along = far.curve.tangent(t.t);
+            match self.hidden_by(near, s.t, &q, &along, v) {
+                // Faces turned away change nothing, and what is not seen has no junction.
+                Some((None, None)) => return,
+                Some((entered, left)) => Change::Pass(Passing {
+                    by: i32::from(entered.is_some()) - i32::from(left.is_some()),
+                    entered,
+                    left,
+                    ahead: (q - p).dot(v),
+                }),
+                None => Change::Recount,
+            }
+        };
+        let id = self.junctions.add(JunctionKind::T, &p);
+        self.junctions.list[id as usize].contours = vec![near.contour, far.contour];
+        let split = Split {
+            t: t.t,
+            junction: id,
+            change,
+        };
+        self.splits.push((i, split));
+    }
+
+    /// Which face begins and which ceases to hide what passes behind `near` at `q` in the
+    /// direction `u`; none where that is not clear, or more than one face does.
+    fn hidden_by(
+        &self,
+        near: &Strand<'_>,
+        s: f64,
+        q: &Point3<f64>,
+        u: &Vector3<f64>,
+        v: &Vector3<f64>,
+    ) -> Option<(Option<FaceId>, Option<FaceId>)> {
+        let flat = ROUNDING.sqrt();
+        let t = near.curve.tangent(s);
+        let turn = t.cross(u).dot(v);
+        if turn.abs() <= flat {
+            return None;
+        }
+        let (mut entered, mut left) = (None, None);
+        for &(face, sense) in &near.faces {
+            let side = self.image_side(near, face, sense, &t, q, v)?;
+            let slot = match side * turn {
+                x if x > 0.0 => &mut entered,
+                x if x < 0.0 => &mut left,
+                _ => continue,
+            };
+            if slot.replace(face).is_some() {
+                return None;
+            }
+        }
+        Some((entered, left))
+    }
+
+    /// The side of a contour on which a face of it hides what is behind: the sign of det(t, ·, v),
+    /// zero for a face turned away, none where it is not clear.
+    fn image_side(
+        &self,
+        near: &Strand<'_>,
+        face: FaceId,
+        sense: Sense,
+        t: &Vector3<f64>,
+        q: &Point3<f64>,
+        v: &Vector3<f64>,
+    ) -> Option<f64> {
+        let flat = ROUNDING.sqrt();
+        let n = self.scene.brep.outward(face, q);
+        if near.limb {
+            let surface = self.scene.brep.surface(face);
+            let sign = if self.scene.along(face) { 1.0 } else { -1.0 };
+            let bend = sign * surface.normal_curvature(q, v);
+            let side = -t.cross(&n).dot(v) * bend.signum();
+            return (side.abs() > flat && bend != 0.0).then_some(side.signum());
+        }
+        let facing = n.dot(v);
+        if facing.abs() <= flat {
+            // Edge-on planes hide nothing; a limb that runs along the edge is not clear.
+            return self.edge_on_plane(face).then_some(0.0);
+        }
+        Some(if facing > 0.0 { sense.sign() } else { 0.0 })
+    }
+
+    fn edge_on_plane(&self, face: FaceId) -> bool {
+        match self.scene.brep.surface(face) {
+            Surface::Plane(s) => self.scene.edge_on(&s.frame.origin, &s.frame.z),
+            _ => false,
+        }
+    }
+
+    /// Splits `a` where `b`, which falls on it in the image, begins and ends.
+    fn overlap(&mut self, (i, a): (u32, &Strand<'_>), (_, b): (u32, &Strand<'_>)) {
+        if b.closed && b.image.turns(b.range).is_empty() {
+            return;
+        }
+        let near = LOOSE * self.scene.band;
+        let [lo, hi] = b.range;
+        let mut stops = b.image.turns(b.range);
+        stops.extend([lo, hi]);
+        for s in stops {
+            let q = b.curve.point(s);
+            let h = self.scene.projection.homogeneous(&q);
+            let (splits, junctions) = (&mut self.splits, &mut *self.junctions);
+            let projection = self.scene.projection;
+            parameters_at(a, &h, q.into(), &mut |t| {
+                let Some(t) = settle(a, t, near) else { return };
+                if t.at_end {
+                    return;
+                }
+                let p = a.curve.point(t.t);
+                // Where a curve without a closed form is not met, its nearest point is no end.
+                let (x, y) = (flat_of(projection, &p), flat_of(projection, &q));
+                let off = (x[0] - y[0]).hypot(x[1] - y[1]);
+                if off * depth_scale(projection, &p) > 4.0 * near {
+                    return;
+                }
+                let id = junctions.add(JunctionKind::T, &p);
+                junctions.list[id as usize].contours = vec![b.contour, a.contour];
+                splits.push((
+                    i,
+                    Split {
+                        t: t.t,
+                        junction: id,
+                        change: Change::Recount,
+                    },
+                ));
+            });
+        }
+    }
+}
+
+/// What turns a distance at depth one into one at the point's depth.
+fn depth_scale(projection: &Projection, p: &Point3<f64>) -> f64 {
+    match projection.sight {
+        Sight::Eye(_) => projection.depth(p),
+        Sight::Direction(_) => 1.0,
+    }
+}

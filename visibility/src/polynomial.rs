@@ -1,0 +1,148 @@
+//! Real roots of polynomials to the fourth degree on an interval, on plain doubles.
+//!
+//! The roots of each derivative separate those of the next lower one, so each is bracketed. Where
+//! an extremum is as good as zero, by the caller's measure, the polynomial touches zero: a double
+//! root, however rounding would split it.
+
+use premio_kernel::number::roots::bisect_newton;
+
+/// A polynomial, k[i] the coefficient of the i-th power.
+pub type Quartic = [f64; 5];
+
+fn value(k: &Quartic, degree: usize, x: f64) -> (f64, f64) {
+    let (mut v, mut d) = (0.0, 0.0);
+    for &c in k[..=degree].iter().rev() {
+        d = d * x + v;
+        v = v * x + c;
+    }
+    (v, d)
+}
+
+/// A few numbers in order.
+#[derive(Clone, Copy, Debug, Default)]
+struct Few {
+    at: [f64; 6],
+    count: usize,
+}
+
+impl Few {
+    fn push(&mut self, x: f64) {
+        if self.count < self.at.len() {
+            self.at[self.count] = x;
+            self.count += 1;
+        }
+    }
+}
+
+/// The roots of the polynomial in [lo, hi] at which it changes its sign; `touches` tells, from a
+/// parameter and the value there, whether the value is as good as zero.
+pub fn crossings(
+    k: &Quartic,
+    [lo, hi]: [f64; 2],
+    touches: &impl Fn(f64, f64) -> bool,
+    found: &mut impl FnMut(f64),
+) {
+    // The derivatives, the lowest degree first.
+    let mut chain = [*k; 5];
+    for order in 1..5 {
+        let previous = chain[order - 1];
+        chain[order] = [0.0; 5];
+        for i in 0..4 {
+            chain[order][i] = previous[i + 1] * (i + 1) as f64;
+        }
+    }
+    let mut splits = Few::default();
+    for degree in 1..4 {
+        let p = &chain[4 - degree];
+        splits = simple_roots(p, degree, lo, hi, &splits);
+    }
+    // The polynomial itself: extrema that touch zero belong to no bracket.
+    let mut bounds = Few::default();
+    bounds.push(lo);
+    for &s in &splits.at[..splits.count] {
+        bounds.push(s);
+    }
+    bounds.push(hi);
+    let mut last: Option<(f64, f64)> = None;
+    let mut touched = None;
+    for (i, &x) in bounds.at[..bounds.count].iter().enumerate() {
+        let v = value(k, 4, x).0;
+        let inner = i > 0 && i + 1 < bounds.count;
+        if inner && touches(x, v) {
+            touched = Some(x);
+            continue;
+        }
+        if let Some((a, va)) = last
+            && (va < 0.0) != (v < 0.0)
+        {
+            match touched {
+                Some(t) => found(t),
+                None => found(bisect_newton(a, x, va, |t| value(k, 4, t))),
+            }
+        }
+        last = Some((x, v));
+        touched = None;
+    }
+}
+
+/// The sign changes of a polynomial between the roots of its derivative.
+fn simple_roots(k: &Quartic, degree: usize, lo: f64, hi: f64, splits: &Few) -> Few {
+    let mut roots = Few::default();
+    let mut a = (lo, value(k, degree, lo).0);
+    for &x in splits.at[..splits.count].iter().chain([&hi]) {
+        let v = value(k, degree, x).0;
+        if (a.1 < 0.0) != (v < 0.0) {
+            roots.push(bisect_newton(a.0, x, a.1, |t| value(k, degree, t)));
+        }
+        a = (x, v);
+    }
+    roots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn product(roots: &[f64]) -> Quartic {
+        let mut k = [1.0, 0.0, 0.0, 0.0, 0.0];
+        for (n, r) in roots.iter().enumerate() {
+            for i in (0..=n + 1).rev() {
+                let lower = if i > 0 { k[i - 1] } else { 0.0 };
+                k[i] = lower - r * k[i];
+            }
+        }
+        k
+    }
+
+    fn solve(k: &Quartic) -> Vec<f64> {
+        let mut found = Vec::new();
+        let small = |_: f64, v: f64| v.abs() < 1e-13;
+        crossings(k, [-1.0, 1.0], &small, &mut |t| found.push(t));
+        found
+    }
+
+    proptest! {
+        #[test]
+        fn planted_roots_are_found(mut r in proptest::collection::vec(-2.0..2.0f64, 4)) {
+            r.sort_by(f64::total_cmp);
+            prop_assume!(r.windows(2).all(|w| w[1] - w[0] > 1e-3));
+            prop_assume!(r.iter().all(|x| (x.abs() - 1.0).abs() > 1e-6));
+            let truth: Vec<f64> = r.iter().copied().filter(|x| x.abs() < 1.0).collect();
+            let found = solve(&product(&r));
+            prop_assert_eq!(found.len(), truth.len());
+            for (a, b) in found.iter().zip(truth) {
+                prop_assert!((a - b).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn double_roots_are_no_crossings_and_low_degrees_are_fine() {
+        assert!(solve(&product(&[0.3, 0.3, 2.0, 3.0])).is_empty());
+        assert_eq!(solve(&product(&[0.3, 0.3, 0.5])).len(), 1);
+        assert_eq!(solve(&product(&[0.25])), vec![0.25]);
+        assert_eq!(solve(&product(&[0.25, -0.5])).len(), 2);
+        assert_eq!(solve(&product(&[0.3, 0.3, 0.3])).len(), 1);
+    }
+}

@@ -1,0 +1,119 @@
+//! How curves are written.
+
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::quartic::{Height, Quartic, Ruled, Sweep};
+use premio_kernel::geometry::toric::{Axis, Toric};
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
+
+/// Writes a curve with its exact parameters.
+pub fn curve<S: Serializer>(curve: &Curve, serializer: S) -> Result<S::Ok, S::Error> {
+    value(curve).serialize(serializer)
+}
+
+fn three(v: impl Into<[f64; 3]>) -> [f64; 3] {
+    v.into()
+}
+
+fn placed(name: &str, at: &str, f: &Frame) -> Value {
+    let mut v = json!({"type": name, "x": three(f.x), "y": three(f.y), "normal": three(f.z)});
+    v[at] = json!(three(f.origin));
+    v
+}
+
+fn with(mut v: Value, more: &[(&str, f64)]) -> Value {
+    for (key, x) in more {
+        v[*key] = json!(x);
+    }
+    v
+}
+
+/// The JSON of a curve: its type, its parameters; the point is given in the documentation of
+/// [`Curve`].
+pub fn value(curve: &Curve) -> Value {
+    match curve {
+        Curve::Line(c) => {
+            json!({"type": "line", "origin": three(c.origin), "direction": three(c.direction)})
+        }
+        Curve::Circle(c) => with(
+            placed("circle", "center", &c.frame),
+            &[("radius", c.radius)],
+        ),
+        Curve::Ellipse(c) => with(
+            placed("ellipse", "center", &c.frame),
+            &[("a", c.a), ("b", c.b)],
+        ),
+        Curve::Parabola(c) => with(
+            placed("parabola", "vertex", &c.frame),
+            &[("focal", c.focal)],
+        ),
+        Curve::Hyperbola(c) => with(
+            placed("hyperbola", "center", &c.frame),
+            &[("a", c.a), ("b", c.b)],
+        ),
+        Curve::Quartic(q) => quartic(q),
+        Curve::Toric(c) => toric(c),
+    }
+}
+
+fn quartic(q: &Quartic) -> Value {
+    let base = match &q.base {
+        Ruled::Cylinder(s) => with(
+            placed("cylinder", "origin", &s.frame),
+            &[("radius", s.radius)],
+        ),
+        Ruled::Cone(s) => with(
+            placed("cone", "apex", &s.frame),
+            &[("sin", s.sin), ("cos", s.cos)],
+        ),
+    };
+    let sweep = match q.sweep {
+        Sweep::Round { turns } => json!({"turns": turns}),
+        Sweep::Oval { mid, half } => json!({"mid": mid, "half": half}),
+    };
+    let height = match &q.height {
+        Height::Whole {
+            lead,
+            linear,
+            radicand,
+            sign,
+        } => json!({"form": "whole", "lead": lead, "linear": linear,
+            "radicand": radicand, "sign": sign}),
+        Height::Deflated {
+            lead,
+            linear,
+            rest,
+            node,
+            sign,
+        } => json!({"form": "deflated", "lead": lead, "linear": linear, "rest": rest,
+            "node": node, "sign": sign}),
+        Height::Rational { linear, constant } => {
+            json!({"form": "rational", "linear": linear, "constant": constant})
+        }
+        Height::Cubic { linear, constant } => {
+            json!({"form": "cubic", "linear": linear, "constant": constant})
+        }
+    };
+    json!({"type": "quartic", "base": base, "sweep": sweep, "height": height})
+}
+
+fn toric(c: &Toric) -> Value {
+    let torus = with(
+        placed("torus", "center", &c.torus.frame),
+        &[("major", c.torus.major), ("minor", c.torus.minor)],
+    );
+    let segments: Vec<Value> = c
+        .segments
+        .iter()
+        .map(|s| {
+            let along = match s.axis {
+                Axis::Around => "theta",
+                Axis::Tube => "phi",
+            };
+            json!({"along": along, "from": s.from, "to": s.to, "ends": s.ends})
+        })
+        .collect();
+    json!({"type": "toric", "torus": torus, "form": c.form.0, "closed": c.closed,
+        "segments": segments})
+}

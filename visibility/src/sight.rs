@@ -1,0 +1,485 @@
+//! Lines of sight against the boundary: which faces lie between a point and the eye.
+//!
+//! A line of sight runs from the point towards the eye: P + s v, s > 0. A contour's own faces pass
+//! through P, so there the root s = 0 is divided out (twice where the line is tangent, on a limb),
+//! and never has to be told from zero.
+
+use crate::projection::{Projection, Sight};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::locate::{Locator, Place};
+use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::geometry::surface::{Surface, Torus};
+use premio_kernel::number::interval::Interval;
+use premio_kernel::number::jet::Jet;
+use premio_kernel::number::roots::{Contact, Zeros, isolate};
+use premio_kernel::number::scalar::Scalar;
+use premio_kernel::number::sign::ROUNDING;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
+
+/// A line of sight from a point towards the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// The point.
+    pub origin: Point3<f64>,
+    /// The unit vector towards the eye.
+    pub towards: Vector3<f64>,
+    /// Where the line of sight ends: at the eye, or the near plane.
+    pub length: f64,
+}
+
+/// How a line of sight meets a surface through its origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Own {
+    /// The origin is not known to be on the surface.
+    No,
+    /// The origin is on the surface.
+    Through,
+    /// The line is tangent to the surface at the origin.
+    Tangent,
+}
+
+/// A face on a line of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The distance from the origin of the line towards the eye.
+    pub at: f64,
+    /// The face.
+    pub face: FaceId,
+    /// Whether the face is turned towards the eye; so is one that is touched along its limb.
+    pub front: bool,
+    /// Whether the line passes through the inside of the face, neither along its limb nor on its
+    /// boundary.
+    pub plain: bool,
+}
+
+/// What a line of sight met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Count {
+    /// How many faces turned towards the eye.
+    pub qi: u32,
+    /// The one nearest to the eye.
+    pub occluder: Option<FaceId>,
+    /// Whether all were met plainly.
+    pub plain: bool,
+}
+
+type FaceBox = GeomWithData<Rectangle<[f64; 3]>, FaceId>;
+
+/// Up to four meetings of a line and a surface: distance, and whether it only touches.
+#[derive(Clone, Copy, Debug, Default)]
+struct Meetings {
+    at: [(f64, bool); 4],
+    count: usize,
+}
+
+impl Meetings {
+    fn push(&mut self, s: f64, touch: bool) {
+        if s.is_finite() && self.count < 4 {
+            self.at[self.count] = (s, touch);
+            self.count += 1;
+        }
+    }
+}
+
+/// The boundary, ready for lines of sight.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    /// The part.
+    pub brep: &'a Brep,
+    /// The camera.
+    pub projection: &'a Projection,
+    /// Where points lie in faces.
+    pub locator: Locator<'a>,
+    /// The resolution.
+    pub band: f64,
+    tree: RTree<FaceBox>,
+    boxes: Vec<Box3>,
+}
+
+struct Pierced {
+    origin: [f64; 3],
+    inverse: [f64; 3],
+    length: f64,
+}
+
+impl Pierced {
+    fn meets(&self, lo: &[f64; 3], hi: &[f64; 3]) -> bool {
+        let (mut from, mut to) = (0.0f64, self.length);
+        for i in 0..3 {
+            let a = (lo[i] - self.origin[i]) * self.inverse[i];
+            let b = (hi[i] - self.origin[i]) * self.inverse[i];
+            from = from.max(a.min(b));
+            to = to.min(a.max(b));
+        }
+        from <= to
+    }
+}
+
+impl SelectionFunction<FaceBox> for Pierced {
+    fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
+        self.meets(&e.lower(), &e.upper())
+    }
+    fn should_unpack_leaf(&self, leaf: &FaceBox) -> bool {
+        let e = leaf.envelope();
+        self.meets(&e.lower(), &e.upper())
+    }
+}
+
+/// A box around a face.
+fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, band: f64) -> Box3 {
+    let whole = |o: &Point3<f64>, z: &Vector3<f64>, tube: f64, spine: f64| {
+        let reach = |i: usize| tube + spine * (1.0 - z[i] * z[i]).max(0.0).sqrt();
+        Box3 {
+            min: std::array::from_fn(|i| o[i] - reach(i)),
+            max: std::array::from_fn(|i| o[i] + reach(i)),
+        }
+    };
+    let hull = match brep.surface(face) {
+        Surface::Sphere(s) => whole(&s.frame.origin, &s.frame.z, s.radius, 0.0),
+        Surface::Torus(s) => whole(&s.frame.origin, &s.frame.z, s.minor, s.major),
+        // Every point of these lies on a segment between two points of the boundary; of a cone
+        // perhaps one of them is the apex.
+        surface => {
+            let arcs = locator.face(face).boxes().iter();
+            let hull = arcs.fold(Box3::EMPTY, |a, b| a.hull(b));
+            match surface {
+                Surface::Cone(s) => hull.hull(&Box3::of(&s.frame.origin)),
+                _ => hull,
+            }
+        }
+    };
+    hull.grown(4.0 * band)
+}
+
+impl<'a> Scene<'a> {
+    /// The scene of a part seen by a camera; `band` is the resolution.
+    pub fn new(brep: &'a Brep, projection: &'a Projection, band: f64) -> Self {
+        let locator = Locator::new(brep, band);
+        let boxes: Vec<Box3> = brep
+            .topology
+            .face_ids()
+            .map(|f| face_box(brep, &locator, f, band))
+            .collect();
+        let leaf = |(i, b): (usize, &Box3)| {
+            GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
+        };
+        let tree = RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect());
+        Self {
+            brep,
+            projection,
+            locator,
+            band,
+            tree,
+            boxes,
+        }
+    }
+
+    /// The box of the whole part.
+    pub fn bounds(&self) -> Box3 {
+        self.boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b))
+    }
+
+    /// The line of sight from a point.
+    pub fn ray(&self, p: &Point3<f64>) -> Ray {
+        let (towards, away) = self.projection.towards_eye(p);
+        let near = self.projection.near;
+        // What lies nearer than the near plane does not hide.
+        let rise = -towards.dot(&self.projection.axis());
+        let to_near = (self.projection.depth(p) - near) / rise;
+        let length = if near.is_finite() { to_near } else { away };
+        Ray {
+            origin: *p,
+            towards,
+            length: length.min(away).max(0.0),
+        }
+    }
+
+    /// All faces on a line of sight, with what `own` says about those through its origin; the
+    /// faces seen edge-on are passed over.
+    pub fn hits(&self, ray: &Ray, own: &impl Fn(FaceId) -> Own, report: &mut impl FnMut(Hit)) {
+        let pierced = Pierced {
+            origin: ray.origin.into(),
+            // Finite, so that zero times it is zero: a line in the plane of a side is inside.
+            inverse: ray
+                .towards
+                .map(|x| (1.0 / x).clamp(f64::MIN, f64::MAX))
+                .into(),
+            length: ray.length,
+        };
+        for leaf in self.tree.locate_with_selection_function(pierced) {
+            self.face_hits(ray, leaf.data, own(leaf.data), report);
+        }
+    }
+
+    fn face_hits(&self, ray: &Ray, face: FaceId, own: Own, report: &mut impl FnMut(Hit)) {
+        let surface = self.brep.surface(face);
+        let meetings = self.meetings(ray, surface, own);
+        // What is this near to the origin passes through it.
+        let least = match own {
+            Own::No => 4.0 * self.band,
+            Own::Through | Own::Tangent => 0.0,
+        };
+        for &(s, touch) in &meetings.at[..meetings.count] {
+            if s <= least || s >= ray.length {
+                continue;
+            }
+            let p = ray.origin + ray.towards * s;
+            let place = self.locator.place(face, &p);
+            if place == Place::Outside {
+                continue;
+            }
+            let front = touch || self.brep.outward(face, &p).dot(&ray.towards) > 0.0;
+            report(Hit {
+                at: s,
+                face,
+                front,
+                plain: !touch && place == Place::Inside,
+            });
+        }
+    }
+
+    /// Where the line of sight from `p` meets the whole surface of a face, before it.
+    pub fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
+        let ray = self.ray(p);
+        let meetings = self.meetings(&ray, self.brep.surface(face), Own::No);
+        for &(s, _) in &meetings.at[..meetings.count] {
+            if s > 0.0 {
+                report(s);
+            }
+        }
+    }
+
+    /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
+    pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
+        match self.projection.sight {
+            Sight::Eye(e) => (e - origin).dot(normal).abs() <= self.band,
+            Sight::Direction(d) => d.dot(normal).abs() <= ROUNDING,
+        }
+    }
+
+    fn meetings(&self, ray: &Ray, surface: &Surface, own: Own) -> Meetings {
+        let mut found = Meetings::default();
+        let f = surface.frame();
+        let q = f.coordinates(&ray.origin);
+        let w = f.components(&ray.towards);
+        match surface {
+            Surface::Plane(_) => {
+                if own == Own::No && !self.edge_on(&f.origin, &f.z) {
+                    found.push(-q.z / w.z, false);
+                }
+            }
+            Surface::Cylinder(s) => {
+                let a = w.x * w.x + w.y * w.y;
+                let b = q.x * w.x + q.y * w.y;
+                let c = (q.x.hypot(q.y) - s.radius) * (q.x.hypot(q.y) + s.radius);
+                self.quadric([a, b, c], own, |_| 2.0 * s.radius, &mut found);
+            }
+            Surface::Sphere(s) => {
+                let b = q.dot(&w);
+                let c = (q.norm() - s.radius) * (q.norm() + s.radius);
+                self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, &mut found);
+            }
+            Surface::Cone(s) => {
+                let (k, m) = (s.cos * s.cos, s.sin * s.sin);
+                let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
+                let b = k * (q.x * w.x + q.y * w.y) - m * q.z * w.z;
+                let rho = q.x.hypot(q.y);
+                let c = (s.cos * rho - s.sin * q.z) * (s.cos * rho + s.sin * q.z);
+                let gradient = |t: f64| 2.0 * s.sin * (q.z + t * w.z).abs();
+                let mut both = Meetings::default();
+                self.quadric([a, b, c], own, gradient, &mut both);
+                for &(t, touch) in &both.at[..both.count] {
+                    if q.z + t * w.z >= 0.0 {
+                        found.push(t, touch);
+                    }
+                }
+            }
+            Surface::Torus(s) => self.torus(s, &q, &w, own, ray.length, &mut found),
+        }
+        found
+    }
+
+    /// The roots of a s² + 2 b s + c; `gradient` is what turns the value into a distance.
+    fn quadric(
+        &self,
+        [a, b, c]: [f64; 3],
+        own: Own,
+        gradient: impl Fn(f64) -> f64,
+        found: &mut Meetings,
+    ) {
+        // Along a ruling the line stays on the surface, or never meets it.
+        let flat = a.abs() <= ROUNDING;
+        match own {
+            Own::Tangent => {}
+            Own::Through if flat => {}
+            Own::Through => found.push(-2.0 * b / a, false),
+            Own::No if flat => {
+                if b.abs() > ROUNDING * c.abs().sqrt() {
+                    found.push(-0.5 * c / b, false);
+                }
+            }
+            Own::No => {
+                let at = -b / a;
+                let extremum = c - b * b / a;
+                if extremum.abs() <= 4.0 * self.band * gradient(at) {
+                    return found.push(at, true);
+                }
+                let radicand = b * b - a * c;
+                if radicand < 0.0 {
+                    return;
+                }
+                let k = -(b + radicand.sqrt().copysign(b));
+                found.push(k / a, false);
+                found.push(c / k, false);
+            }
+        }
+    }
+
+    /// The roots of the torus's quartic (|q|² + R² - r²)² = 4 R² (x² + y²) along the line, less
+    /// the known ones.
+    fn torus(
+        &self,
+        s: &Torus,
+        q: &Vector3<f64>,
+        w: &Vector3<f64>,
+        own: Own,
+        length: f64,
+        found: &mut Meetings,
+    ) {
+        // Beyond the tube's sphere there is nothing; the origin may be far away.
+        let reach = s.major + s.minor;
+        let nearest = -q.dot(w);
+        let half2 = reach * reach - (q + w * nearest).norm_squared();
+        if half2 <= 0.0 {
+            return;
+        }
+        let (lo, hi) = (nearest - half2.sqrt(), nearest + half2.sqrt());
+        let (lo, hi) = (lo.max(0.0), hi.min(length));
+        if lo >= hi {
+            return;
+        }
+        let (major, minor) = (s.major, s.minor);
+        // s² + b s + c with c the value at the origin, then the quartic's coefficients.
+        let b = 2.0 * q.dot(w);
+        let c = q.norm_squared() + major * major - minor * minor;
+        let k = 4.0 * major * major;
+        let quartic = [
+            c * c - k * (q.x * q.x + q.y * q.y),
+            2.0 * b * c - 2.0 * k * (q.x * w.x + q.y * w.y),
+            b * b + 2.0 * c - k * (w.x * w.x + w.y * w.y),
+            2.0 * b,
+            1.0,
+        ];
+        let known = match own {
+            Own::No => 0,
+            Own::Through => 1,
+            Own::Tangent => 2,
+        };
+        if known == 0 {
+            let q0 = [q.x, q.y, q.z];
+            let surface = Surface::Torus(Torus {
+                frame: premio_kernel::geometry::frame::Frame::world(),
+                ..*s
+            });
+            let f = |t: Interval| {
+                let p: [Jet<Interval>; 3] =
+                    std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
+                surface.level(p)
+            };
+            return self.isolated(&f, lo, hi, found);
+        }
+        // The gradient of the quartic is 8 R r ρ; ρ is at least R - r.
+        let size = 8.0 * major * minor * (major - minor) / reach.powi(known as i32);
+        let rest = &quartic[known..];
+        let f = |t: Interval| {
+            let t = Jet::variable(t);
+            let zero = Jet::constant(0.0);
+            rest.iter()
+                .rev()
+                .fold(zero, |sum, &k| sum * t + Jet::constant(k))
+                .scale(1.0 / size)
+        };
+        self.isolated(&f, lo, hi, found);
+    }
+
+    fn isolated(
+        &self,
+        f: &impl Fn(Interval) -> Jet<Interval>,
+        lo: f64,
+        hi: f64,
+        found: &mut Meetings,
+    ) {
+        if let Zeros::At { roots, .. } = isolate(f, &[lo, hi], self.band) {
+            for r in roots {
+                found.push(r.t, r.contact == Contact::Touching);
+            }
+        }
+    }
+
+    /// The quantitative invisibility of a point: the faces turned towards the eye on the open line
+    /// of sight, counting those that are only touched; `own` tells the faces through the point.
+    pub fn count(&self, p: &Point3<f64>, own: &impl Fn(FaceId) -> Own) -> Count {
+        let mut count = Count {
+            qi: 0,
+            occluder: None,
+            plain: true,
+        };
+        let mut nearest = f64::NEG_INFINITY;
+        self.hits(&self.ray(p), own, &mut |hit| {
+            count.plain &= hit.plain;
+            if hit.front {
+                count.qi += 1;
+                if hit.at > nearest {
+                    nearest = hit.at;
+                    count.occluder = Some(hit.face);
+                }
+            }
+        });
+        count
+    }
+
+    /// Whether the eye of a perspective camera lies in the material.
+    pub fn eye_inside(&self) -> bool {
+        let Sight::Eye(eye) = self.projection.sight else {
+            return false;
+        };
+        let part = self.bounds();
+        if !part.holds(&eye) {
+            return false;
+        }
+        // Directions without a common pattern, until one meets every face plainly.
+        let mut votes = 0i32;
+        for k in 0..16u32 {
+            let a = f64::from(k) * 2.399_963_229_728_653 + 0.7;
+            let z = 0.9 - 1.7 * f64::from(k) / 15.0;
+            let rho = (1.0 - z * z).sqrt();
+            let ray = Ray {
+                origin: eye,
+                towards: Vector3::new(rho * a.cos(), rho * a.sin(), z),
+                length: f64::INFINITY,
+            };
+            let (mut plain, mut nearest) = (true, (f64::INFINITY, true));
+            self.hits(&ray, &|_| Own::No, &mut |hit| {
+                plain &= hit.plain;
+                if hit.at < nearest.0 {
+                    // A face turned towards where the line runs is left from inside.
+                    nearest = (hit.at, hit.front);
+                }
+            });
+            let inside = nearest.0.is_finite() && nearest.1;
+            if plain {
+                return inside;
+            }
+            votes += if inside { 1 } else { -1 };
+        }
+        votes > 0
+    }
+
+    /// Whether a face's outward normal is its surface's.
+    pub fn along(&self, face: FaceId) -> bool {
+        self.brep.sense(face) == Sense::Along
+    }
+}

@@ -1,0 +1,377 @@
+//! Contours before they are cut at junctions: edges, and limbs trimmed by their faces.
+
+use crate::contour::{Junction, JunctionKind};
+use crate::image::Image;
+use crate::limb::{Limb, cusps, limbs, polar_plane, torus_limb_on};
+use crate::projection::Projection;
+use crate::sight::Scene;
+use nalgebra::Point3;
+use premio_kernel::brep::locate::Place;
+use premio_kernel::brep::topology::{EdgeId, FaceId, Sense, VertexId};
+use premio_kernel::brep::walk::plane_roots;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::surface::{Plane, Surface};
+use premio_kernel::geometry::trace::Unresolved;
+use premio_kernel::number::roots::{Root, Zeros};
+
+/// A clean passage behind another contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passing {
+    /// By how much the quantitative invisibility grows.
+    pub by: i32,
+    /// The face turned towards the eye that begins to hide.
+    pub entered: Option<FaceId>,
+    /// The face turned towards the eye that ceases to hide.
+    pub left: Option<FaceId>,
+    /// How far the other contour lies before this one, along the line of sight.
+    pub ahead: f64,
+}
+
+/// What a split does to the quantitative invisibility along the strand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// It changes as the other contour says.
+    Pass(Passing),
+    /// It has to be counted anew.
+    Recount,
+}
+
+/// A point at which a strand is cut.
+#[derive(Clone, Copy, Debug)]
+pub struct Split {
+    /// The parameter.
+    pub t: f64,
+    /// The junction there.
+    pub junction: u32,
+    /// What happens to the quantitative invisibility.
+    pub change: Change,
+}
+
+/// A connected stretch of a contour before the near plane.
+#[derive(Debug)]
+pub struct Strand<'a> {
+    /// The curve in space.
+    pub curve: &'a Curve,
+    /// The range of its parameter.
+    pub range: [f64; 2],
+    /// Whether the range is a whole period.
+    pub closed: bool,
+    /// The junctions at both ends.
+    pub ends: [Option<u32>; 2],
+    /// The contour it belongs to.
+    pub contour: u32,
+    /// The faces along it, each with the sense in which its loop runs.
+    pub faces: Vec<(FaceId, Sense)>,
+    /// Whether it is a limb, of its only face.
+    pub limb: bool,
+    /// Its image.
+    pub image: Image,
+    /// Where it is cut, in no order.
+    pub splits: Vec<Split>,
+}
+
+/// All junctions.
+#[derive(Debug)]
+pub struct Junctions<'p> {
+    projection: &'p Projection,
+    /// By their ids.
+    pub list: Vec<Junction>,
+    vertices: Vec<Option<u32>>,
+}
+
+impl<'p> Junctions<'p> {
+    /// None yet, for a part with so many vertices.
+    pub fn new(projection: &'p Projection, vertices: usize) -> Self {
+        Self {
+            projection,
+            list: Vec::new(),
+            vertices: vec![None; vertices],
+        }
+    }
+
+    /// A new junction.
+    pub fn add(&mut self, kind: JunctionKind, p: &Point3<f64>) -> u32 {
+        let id = self.list.len() as u32;
+        self.list.push(Junction {
+            id,
+            kind,
+            point2: self.projection.project(p).into(),
+            point3: (*p).into(),
+            contours: Vec::new(),
+        });
+        id
+    }
+
+    /// The junction at a vertex.
+    pub fn vertex(&mut self, vertex: VertexId, p: &Point3<f64>) -> u32 {
+        if let Some(id) = self.vertices[vertex.index()] {
+            return id;
+        }
+        let id = self.add(JunctionKind::Vertex, p);
+        self.vertices[vertex.index()] = Some(id);
+        id
+    }
+
+    /// The place of a junction.
+    pub fn point(&self, id: u32) -> Point3<f64> {
+        Point3::from(self.list[id as usize].point3)
+    }
+}
+
+/// A limb inside a face.
+#[derive(Debug)]
+pub struct LimbArc {
+    /// The curve.
+    pub curve: Curve,
+    /// The range of its parameter.
+    pub range: [f64; 2],
+    /// Whether the range is a whole period.
+    pub closed: bool,
+    /// The face.
+    pub face: FaceId,
+    /// The junctions at both ends.
+    pub ends: [Option<u32>; 2],
+    /// Cusps and nodes: parameter and junction.
+    pub marks: Vec<(f64, u32)>,
+}
+
+/// All limbs of a part, and where they end on its edges.
+#[derive(Debug)]
+pub struct LimbArcs {
+    /// The limbs.
+    pub arcs: Vec<LimbArc>,
+    /// By edge: parameter and junction of each limb's end on it.
+    pub on_edges: Vec<Vec<(f64, u32)>>,
+}
+
+/// What the point-like comparisons allow, in multiples of the resolution: positions come out of
+/// a few more operations than the distances that the resolution was applied to.
+const LOOSE: f64 = 16.0;
+
+/// Trims the limbs of every surface by the faces on it.
+pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<LimbArcs, Unresolved> {
+    let brep = scene.brep;
+    let mut known: Vec<Option<Vec<Limb>>> = vec![None; brep.geometry.surfaces.len()];
+    let mut trim = Trim {
+        scene,
+        junctions,
+        found: LimbArcs {
+            arcs: Vec::new(),
+            on_edges: vec![Vec::new(); brep.topology.edges.len()],
+        },
+    };
+    for face in brep.topology.face_ids() {
+        let index = brep.geometry.patches[face.index()].surface;
+        let surface = &brep.geometry.surfaces[index];
+        if matches!(surface, Surface::Plane(_)) {
+            continue;
+        }
+        if known[index].is_none() {
+            known[index] = Some(limbs(surface, &scene.projection.sight, scene.band)?);
+        }
+        if let Some(limbs) = &known[index] {
+            trim.face(face, limbs);
+        }
+    }
+    Ok(trim.found)
+}
+
+struct Trim<'s, 'a, 'j, 'p> {
+    scene: &'s Scene<'a>,
+    junctions: &'j mut Junctions<'p>,
+    found: LimbArcs,
+}
+
+impl Trim<'_, '_, '_, '_> {
+    fn face(&mut self, face: FaceId, limbs: &[Limb]) {
+        let mut ends: Vec<Vec<(f64, u32)>> = vec![Vec::new(); limbs.len()];
+        for edge in face_edges(self.scene, face) {
+            for t in self.meets(face, edge) {
+                let p = self.scene.brep.curve(edge).point(t);
+                let Some(which) = nearest_limb(limbs, &p, LOOSE * self.scene.band) else {
+                    continue;
+                };
+                let junction = self.end_on(edge, t, &p);
+                ends[which].push((limbs[which].curve.parameter(&p), junction));
+            }
+        }
+        let mut apex = None;
+        for (limb, mut ends) in limbs.iter().zip(ends) {
+            if let Some(from) = limb.from {
+                let p = limb.curve.point(from);
+                let near = LOOSE * self.scene.band;
+                if ends.iter().all(|e| (e.0 - from).abs() > near) {
+                    let id =
+                        *apex.get_or_insert_with(|| self.junctions.add(JunctionKind::Vertex, &p));
+                    ends.push((from, id));
+                }
+            }
+            self.limb(face, limb, ends);
+        }
+    }
+
+    /// The parameters at which the limb of a face meets an edge of it.
+    fn meets(&self, face: FaceId, edge: EdgeId) -> Vec<f64> {
+        let brep = self.scene.brep;
+        let (curve, range) = (brep.curve(edge), brep.range(edge));
+        let sight = &self.scene.projection.sight;
+        let band = self.scene.band;
+        let mut found = Vec::new();
+        match brep.surface(face) {
+            Surface::Torus(s) => match torus_limb_on(s, sight, curve, range, band) {
+                Zeros::Everywhere => found.extend(range),
+                Zeros::At { roots, .. } => found.extend(roots.iter().map(|r: &Root| r.t)),
+            },
+            surface => {
+                if let Some(plane) = polar_plane(surface, sight) {
+                    if runs_in(curve, range, &plane, band) {
+                        found.extend(range);
+                    } else {
+                        plane_roots(curve, range, &plane, band, &mut |t, _| found.push(t));
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// The junction where a limb ends on an edge, shared by the faces on both sides.
+    fn end_on(&mut self, edge: EdgeId, t: f64, p: &Point3<f64>) -> u32 {
+        let brep = self.scene.brep;
+        let near = LOOSE * self.scene.band;
+        if let Some(ends) = brep.topology.edge(edge).ends {
+            for v in ends {
+                let q = brep.point(v);
+                if (q - p).norm() <= near {
+                    return self.junctions.vertex(v, &q);
+                }
+            }
+        }
+        let curve = brep.curve(edge);
+        let known = self.found.on_edges[edge.index()]
+            .iter()
+            .find(|m| (curve.point(m.0) - p).norm() <= near);
+        if let Some(&(_, id)) = known {
+            return id;
+        }
+        let id = self.junctions.add(JunctionKind::Limb, p);
+        self.found.on_edges[edge.index()].push((t, id));
+        id
+    }
+
+    /// Keeps the stretches of a limb between `ends` that lie in the face.
+    fn limb(&mut self, face: FaceId, limb: &Limb, mut ends: Vec<(f64, u32)>) {
+        let curve = &limb.curve;
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let near = LOOSE * self.scene.band;
+        ends.dedup_by(|b, a| a.1 == b.1 || (curve.point(a.0) - curve.point(b.0)).norm() <= near);
+        let Some(period) = curve.period() else {
+            for pair in ends.windows(2) {
+                self.stretch(
+                    face,
+                    limb,
+                    [pair[0].0, pair[1].0],
+                    [pair[0].1, pair[1].1].map(Some),
+                );
+            }
+            return;
+        };
+        let Some(&(first, id)) = ends.first() else {
+            return self.stretch(face, limb, [0.0, period], [None, None]);
+        };
+        ends.push((first + period, id));
+        for pair in ends.windows(2) {
+            self.stretch(
+                face,
+                limb,
+                [pair[0].0, pair[1].0],
+                [pair[0].1, pair[1].1].map(Some),
+            );
+        }
+    }
+
+    fn stretch(&mut self, face: FaceId, limb: &Limb, range: [f64; 2], ends: [Option<u32>; 2]) {
+        let [lo, hi] = range;
+        let at = |part: f64| limb.curve.point(lo + (hi - lo) * part);
+        let locator = self.scene.locator.face(face);
+        // On the boundary means that the limb runs along an edge, which stands for it.
+        let inside = [0.5, 0.31, 0.73]
+            .iter()
+            .map(|&part| locator.place(&at(part)))
+            .find(|&place| place != Place::On);
+        if inside != Some(Place::Inside) {
+            return;
+        }
+        let mut arc = LimbArc {
+            curve: limb.curve.clone(),
+            range,
+            closed: ends == [None, None],
+            face,
+            ends,
+            marks: Vec::new(),
+        };
+        if let Surface::Torus(s) = self.scene.brep.surface(face) {
+            let sight = &self.scene.projection.sight;
+            for t in cusps(s, sight, &arc.curve, range, self.scene.band) {
+                let id = self.junctions.add(JunctionKind::Cusp, &arc.curve.point(t));
+                arc.marks.push((t, id));
+            }
+            for &t in &limb.nodes {
+                let t = arc
+                    .curve
+                    .period()
+                    .map_or(t, |p| lo + (t - lo).rem_euclid(p));
+                if t > lo && t < hi {
+                    let id = self.junctions.add(JunctionKind::Node, &arc.curve.point(t));
+                    arc.marks.push((t, id));
+                }
+            }
+        }
+        self.found.arcs.push(arc);
+    }
+}
+
+/// Whether an edge lies in a plane throughout: no line or conic does at three points only.
+fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], plane: &Plane, band: f64) -> bool {
+    let n = &plane.frame.z;
+    [0.0, 0.23, 0.51, 0.77, 1.0].iter().all(|part| {
+        let p = curve.point(lo + (hi - lo) * part);
+        (p - plane.frame.origin).dot(n).abs() <= band
+    })
+}
+
+fn nearest_limb(limbs: &[Limb], p: &Point3<f64>, near: f64) -> Option<usize> {
+    let away = |limb: &Limb| (limb.curve.point(limb.curve.parameter(p)) - p).norm();
+    match limbs {
+        [] => None,
+        [_] => Some(0),
+        _ => {
+            let mut best = (f64::INFINITY, 0);
+            for (i, limb) in limbs.iter().enumerate() {
+                let d = away(limb);
+                if d < best.0 {
+                    best = (d, i);
+                }
+                if d <= near {
+                    break;
+                }
+            }
+            Some(best.1)
+        }
+    }
+}
+
+/// The edges of a face, each once.
+fn face_edges(scene: &Scene<'_>, face: FaceId) -> Vec<EdgeId> {
+    let topology = &scene.brep.topology;
+    let mut edges: Vec<EdgeId> = topology
+        .face(face)
+        .loops
+        .iter()
+        .flat_map(|&l| &topology.ring(l).coedges)
+        .map(|&c| topology.coedge(c).edge)
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}

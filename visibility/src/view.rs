@@ -1,0 +1,330 @@
+//! The contours of a part for a viewpoint.
+
+use crate::camera::Camera;
+use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece, SCHEMA, Seconds};
+use crate::image::{Image, image};
+use crate::invisibility::{Method, pieces};
+use crate::junction;
+use crate::projection::Projection;
+use crate::sight::Scene;
+use crate::strand::{Change, Junctions, LimbArcs, Split, Strand, limb_arcs};
+use nalgebra::Point3;
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::brep::walk::plane_roots;
+use premio_kernel::geometry::bounds::{Box3, bounds};
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::Plane;
+use premio_kernel::geometry::trace::Unresolved;
+use std::time::Instant;
+
+/// Why there are no contours.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ViewError {
+    /// The eye lies in the material.
+    #[error("the eye ({}, {}, {}) lies inside the material", .0.x, .0.y, .0.z)]
+    EyeInside(Point3<f64>),
+    /// A limb of a torus could not be resolved.
+    #[error("a limb: {0}")]
+    Limb(#[from] Unresolved),
+}
+
+/// The contours of a part seen by a camera; `band` is the part's resolution.
+pub fn contours(brep: &Brep, camera: &Camera, band: f64) -> Result<Contours, ViewError> {
+    contours_by(brep, camera, band, Method::Carried)
+}
+
+/// The same with the choice of how quantitative invisibility is found.
+pub fn contours_by(
+    brep: &Brep,
+    camera: &Camera,
+    band: f64,
+    method: Method,
+) -> Result<Contours, ViewError> {
+    let started = Instant::now();
+    let projection = Projection::new(camera, part_size(brep));
+    let scene = Scene::new(brep, &projection, band);
+    if scene.eye_inside() {
+        return Err(ViewError::EyeInside(projection.origin()));
+    }
+    let mut junctions = Junctions::new(&projection, brep.topology.vertices as usize);
+    let limbs = limb_arcs(&scene, &mut junctions)?;
+    let mut seconds = Seconds {
+        limbs: started.elapsed().as_secs_f64(),
+        ..Seconds::default()
+    };
+    let started = Instant::now();
+    let mut weave = Weave {
+        scene: &scene,
+        junctions: &mut junctions,
+        contours: Vec::new(),
+        strands: Vec::new(),
+    };
+    weave.edges(&limbs);
+    weave.limbs(&limbs);
+    let (mut contours, mut strands) = (weave.contours, weave.strands);
+    junction::find(&mut strands, &scene, &mut junctions);
+    seconds.junctions = started.elapsed().as_secs_f64();
+    let started = Instant::now();
+    let near = 16.0 * band;
+    for strand in &mut strands {
+        let out = &mut contours[strand.contour as usize].pieces;
+        pieces(&scene, strand, method, near, out);
+    }
+    let mut junctions = junctions.list;
+    for contour in &contours {
+        for id in contour.pieces.iter().flat_map(ends).flatten() {
+            let at = &mut junctions[id as usize].contours;
+            if !at.contains(&contour.id) {
+                at.push(contour.id);
+            }
+        }
+    }
+    seconds.visibility = started.elapsed().as_secs_f64();
+    Ok(Contours {
+        schema: SCHEMA,
+        camera: camera.clone(),
+        contours,
+        junctions,
+        seconds,
+    })
+}
+
+fn ends(piece: &Piece) -> [Option<u32>; 2] {
+    [piece.start, piece.end]
+}
+
+/// The size of a part: the diagonal of the box of its edges and closed surfaces.
+fn part_size(brep: &Brep) -> f64 {
+    use premio_kernel::geometry::surface::Surface;
+    let mut hull = Box3::EMPTY;
+    for edge in brep.topology.edge_ids() {
+        hull = hull.hull(&bounds(brep.curve(edge), brep.range(edge)));
+    }
+    for face in brep.topology.face_ids() {
+        let around = |f: &Frame, r: f64| Box3::of(&f.origin).grown(r);
+        match brep.surface(face) {
+            Surface::Sphere(s) => hull = hull.hull(&around(&s.frame, s.radius)),
+            Surface::Torus(s) => hull = hull.hull(&around(&s.frame, s.major + s.minor)),
+            _ => {}
+        }
+    }
+    let size = hull.diagonal();
+    if size.is_finite() { size } else { 1.0 }
+}
+
+/// An arc on its way to become strands of a contour.
+struct Source<'a> {
+    curve: &'a Curve,
+    range: [f64; 2],
+    closed: bool,
+    ends: [Option<u32>; 2],
+    contour: u32,
+    faces: Vec<(FaceId, Sense)>,
+    limb: bool,
+    marks: Vec<(f64, u32)>,
+}
+
+struct Weave<'s, 'a, 'j, 'p> {
+    scene: &'s Scene<'a>,
+    junctions: &'j mut Junctions<'p>,
+    contours: Vec<Contour>,
+    strands: Vec<Strand<'a>>,
+}
+
+impl<'a> Weave<'_, 'a, '_, '_> {
+    fn edges(&mut self, limbs: &LimbArcs) {
+        let brep = self.scene.brep;
+        let topology = &brep.topology;
+        for edge in topology.edge_ids() {
+            let entity = topology.edge(edge);
+            let ends = match entity.ends {
+                Some(ends) => ends.map(|v| Some(self.junctions.vertex(v, &brep.point(v)))),
+                None => [None, None],
+            };
+            let uses = entity.coedges.iter();
+            let faces = uses.map(|&c| (topology.face_of(c), topology.coedge(c).sense));
+            let source = Source {
+                curve: brep.curve(edge),
+                range: brep.range(edge),
+                closed: entity.ends.is_none(),
+                ends,
+                contour: self.contours.len() as u32,
+                faces: faces.collect(),
+                limb: false,
+                marks: limbs.on_edges[edge.index()].clone(),
+            };
+            let contour = self.contour(&source, Kind::Boundary);
+            self.contours.push(Contour {
+                smooth: entity.smooth,
+                edge: Some(edge),
+                ..contour
+            });
+            self.strand(source);
+        }
+    }
+
+    fn limbs<'l: 'a>(&mut self, limbs: &'l LimbArcs) {
+        for arc in &limbs.arcs {
+            let source = Source {
+                curve: &arc.curve,
+                range: arc.range,
+                closed: arc.closed,
+                ends: arc.ends,
+                contour: self.contours.len() as u32,
+                faces: vec![(arc.face, Sense::Along)],
+                limb: true,
+                marks: arc.marks.clone(),
+            };
+            let contour = self.contour(&source, Kind::Limb);
+            self.contours.push(contour);
+            self.strand(source);
+        }
+    }
+
+    fn contour(&self, source: &Source<'_>, kind: Kind) -> Contour {
+        let projection = self.scene.projection;
+        let seen = image(source.curve, source.range, projection, self.scene.band);
+        let mut faces: Vec<FaceId> = source.faces.iter().map(|f| f.0).collect();
+        if kind == Kind::Limb {
+            faces.push(source.faces[0].0);
+        }
+        Contour {
+            id: source.contour,
+            kind,
+            smooth: false,
+            faces,
+            edge: None,
+            curve3: source.curve.clone(),
+            curve2: image_curve(&seen, source, projection),
+            pieces: Vec::new(),
+        }
+    }
+
+    /// Cuts an arc at the near plane and keeps what lies beyond.
+    fn strand(&mut self, source: Source<'a>) {
+        let projection = self.scene.projection;
+        let hull = bounds(source.curve, source.range);
+        let corner = |k: usize| {
+            let pick = |i: usize| {
+                if k >> i & 1 == 0 {
+                    hull.min[i]
+                } else {
+                    hull.max[i]
+                }
+            };
+            projection.depth(&Point3::new(pick(0), pick(1), pick(2)))
+        };
+        let least = (0..8).map(corner).fold(f64::INFINITY, f64::min);
+        if least > projection.near {
+            let (range, closed, ends) = (source.range, source.closed, source.ends);
+            return self.push(&source, range, closed, ends);
+        }
+        let [lo, hi] = source.range;
+        let plane = Plane {
+            frame: Frame::about(
+                projection.origin() + projection.axis() * projection.near,
+                projection.axis().normalize(),
+            ),
+        };
+        let mut cuts: Vec<f64> = Vec::new();
+        plane_roots(
+            source.curve,
+            source.range,
+            &plane,
+            self.scene.band,
+            &mut |t, plain| {
+                if plain {
+                    cuts.push(t);
+                }
+            },
+        );
+        cuts.sort_by(f64::total_cmp);
+        let mut stops: Vec<(f64, Option<u32>)> = Vec::new();
+        for t in cuts {
+            let id = self
+                .junctions
+                .add(JunctionKind::Cut, &source.curve.point(t));
+            stops.push((t, Some(id)));
+        }
+        let whole = source.closed && stops.is_empty();
+        if let (true, Some(&(t, id))) = (source.closed, stops.first()) {
+            stops.push((t + (hi - lo), id));
+        } else {
+            stops.insert(0, (lo, source.ends[0]));
+            stops.push((hi, source.ends[1]));
+        }
+        for pair in stops.windows(2) {
+            let middle = source.curve.point(0.5 * (pair[0].0 + pair[1].0));
+            if projection.depth(&middle) > projection.near {
+                self.push(
+                    &source,
+                    [pair[0].0, pair[1].0],
+                    whole,
+                    [pair[0].1, pair[1].1],
+                );
+            }
+        }
+    }
+
+    fn push(&mut self, source: &Source<'a>, range: [f64; 2], closed: bool, ends: [Option<u32>; 2]) {
+        let [lo, hi] = range;
+        let seen = image(source.curve, range, self.scene.projection, self.scene.band);
+        let within = |t: f64| match source.curve.period() {
+            Some(period) => lo + (t - lo).rem_euclid(period),
+            None => t,
+        };
+        let mut splits: Vec<Split> = Vec::new();
+        for &(t, junction) in &source.marks {
+            let t = within(t);
+            if t > lo && t < hi || closed {
+                splits.push(Split {
+                    t,
+                    junction,
+                    change: Change::Recount,
+                });
+            }
+        }
+        for t in seen.turns(range) {
+            if t > lo && t < hi || closed {
+                let junction = self
+                    .junctions
+                    .add(JunctionKind::Turn, &source.curve.point(t));
+                splits.push(Split {
+                    t,
+                    junction,
+                    change: Change::Recount,
+                });
+            }
+        }
+        self.strands.push(Strand {
+            curve: source.curve,
+            range,
+            closed,
+            ends,
+            contour: source.contour,
+            faces: source.faces.clone(),
+            limb: source.limb,
+            image: seen,
+            splits,
+        });
+    }
+}
+
+fn image_curve(seen: &Image, source: &Source<'_>, projection: &Projection) -> ImageCurve {
+    match seen {
+        Image::Point => ImageCurve::Point {
+            point: projection
+                .project(&source.curve.point(source.range[0]))
+                .into(),
+        },
+        Image::Conic { conic, .. } => ImageCurve::Conic {
+            coefficients: projection.conic(conic),
+        },
+        Image::Line { line, .. } | Image::Flat { line, .. } => ImageCurve::Line {
+            coefficients: projection.line(line),
+        },
+        Image::General => ImageCurve::Projected,
+    }
+}

@@ -109,6 +109,9 @@ pub(super) fn arrange(
     Ok(found)
 }
 
+/// Points nearer to one another than this many times the resolution are a close call.
+const CLOSE_CALL: f64 = 100.0;
+
 /// A curve may pass one corner twice, but never within this part of a radian or a unit.
 const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
 
@@ -278,39 +281,90 @@ impl Arrangement {
         }
         near.sort_unstable();
         near.dedup();
+        let known: Vec<Cut> = m.cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for c in near {
-            match cut(&m.curve, m.range, &self.carriers[c], band) {
-                Zeros::Everywhere => holding.push(c),
-                Zeros::At { roots, misses } => {
-                    for r in roots {
-                        let p = m.curve.point(r.t);
-                        let all = [m.carriers[0], m.carriers[1], c];
-                        let plain = r.contact == Contact::Simple;
-                        let p = if plain { self.polished(p, all) } else { p };
-                        if let Some(margin) = r.margin {
-                            judge.note("curve on surface", margin, p.coords.into());
-                        }
-                        cuts.push(Cut {
-                            t: r.t,
-                            vertex: corners.at(&p, &all, judge),
-                        });
-                    }
-                    for (t, value) in misses {
-                        judge.note(
-                            "curve beside surface",
-                            value,
-                            m.curve.point(t).coords.into(),
-                        );
-                    }
+            let special = self.special_points(index, c, &known, judge, corners);
+            let m = &self.meetings[index];
+            let (roots, misses) = match cut(&m.curve, m.range, &self.carriers[c], band) {
+                Zeros::Everywhere => {
+                    holding.push(c);
+                    continue;
                 }
+                Zeros::At { roots, misses } => (roots, misses),
+            };
+            for r in roots {
+                let p = m.curve.point(r.t);
+                let absorbed = special.iter().any(|s| {
+                    let at = corners.all[s.vertex].point;
+                    (r.lo <= s.t && s.t <= r.hi) || (at - p).norm() <= CLOSE_CALL * band
+                });
+                if absorbed {
+                    continue;
+                }
+                let all = [m.carriers[0], m.carriers[1], c];
+                let plain = r.contact == Contact::Simple;
+                let p = if plain { self.polished(p, all) } else { p };
+                if let Some(margin) = r.margin {
+                    judge.note("curve on surface", margin, p.coords.into());
+                }
+                cuts.push(Cut {
+                    t: r.t,
+                    vertex: corners.at(&p, &all, judge),
+                });
             }
+            for (t, value) in misses {
+                judge.note(
+                    "curve beside surface",
+                    value,
+                    m.curve.point(t).coords.into(),
+                );
+            }
+            cuts.extend(special);
         }
         let m = &mut self.meetings[index];
         m.carriers.extend(holding);
         m.carriers.sort_unstable();
         m.cuts.extend(cuts);
+    }
+
+    /// The points of a curve known beforehand to lie on a carrier: where the curve crosses itself,
+    /// and the carrier's apex. The distance is no smooth function along the curve there, so roots
+    /// next to them are less well known than the points.
+    fn special_points(
+        &self,
+        index: usize,
+        carrier: usize,
+        known: &[Cut],
+        judge: &Judge,
+        corners: &mut Corners,
+    ) -> Vec<Cut> {
+        let m = &self.meetings[index];
+        let surface = &self.carriers[carrier];
+        let mut special: Vec<Cut> = Vec::new();
+        for cut in known {
+            let p = corners.all[cut.vertex].point;
+            if judge.within(surface.distance(&p)) {
+                let vertex = corners.at(&p, &[carrier], judge);
+                special.push(Cut { vertex, ..*cut });
+            }
+        }
+        if let Surface::Cone(cone) = surface {
+            let apex = cone.frame.origin;
+            if m.bounds.grown(judge.band()).holds(&apex) {
+                let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
+                let away = (m.curve.point(t) - apex).norm();
+                if t >= m.range[0] && t <= m.range[1] && judge.within(away) {
+                    let all = [m.carriers[0], m.carriers[1], carrier];
+                    special.push(Cut {
+                        t,
+                        vertex: corners.at(&apex, &all, judge),
+                    });
+                }
+            }
+        }
+        special
     }
 
     /// The common point of three surfaces next to `p`, by Newton's steps where they are well
@@ -360,15 +414,20 @@ impl Arrangement {
                 }
                 let t = m.curve.parameter(&corner.point);
                 let [lo, hi] = m.range;
-                let t = match m.curve.period() {
-                    Some(period) => lo + (t - lo).rem_euclid(period),
-                    None => t,
-                };
+                let t = in_range(&m.curve, m.range, t);
                 if t >= lo && t <= hi && judge.within((m.curve.point(t) - corner.point).norm()) {
                     m.cuts.push(Cut { t, vertex: v });
                 }
             }
         }
+    }
+}
+
+/// The parameter of a closed curve brought into a range that starts where it does.
+fn in_range(curve: &Curve, range: [f64; 2], t: f64) -> f64 {
+    match curve.period() {
+        Some(period) => range[0] + (t - range[0]).rem_euclid(period),
+        None => t,
     }
 }
 

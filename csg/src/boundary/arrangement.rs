@@ -312,7 +312,14 @@ impl Arrangement {
                 }
                 Zeros::At { roots, misses } => (roots, misses),
             };
-            if std::env::var("DBG").is_ok() { eprintln!("CUT {} {:?} by {c} {:?}: {roots:?}", m.curve.name(), m.carriers, self.carriers[c].kind()); }
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "CUT {} {:?} by {c} {:?}: {roots:?}",
+                    m.curve.name(),
+                    m.carriers,
+                    self.carriers[c].kind()
+                );
+            }
             for r in roots {
                 let p = m.curve.point(r.t);
                 let absorbed = special.iter().any(|s| {
@@ -464,17 +471,34 @@ impl Arrangement {
             asked.dedup();
             for i in asked {
                 let m = &mut self.meetings[i];
-                if m.cuts.iter().any(|c| c.vertex == v)
-                    || !m.bounds.grown(judge.band()).holds(&corner.point)
-                {
-                    continue;
+                if m.bounds.grown(judge.band()).holds(&corner.point) {
+                    m.pass(v, &corner.point, judge);
                 }
-                let t = m.curve.parameter(&corner.point);
-                let [lo, hi] = m.range;
-                let t = in_range(&m.curve, m.range, t);
-                if t >= lo && t <= hi && judge.within((m.curve.point(t) - corner.point).norm()) {
-                    m.cuts.push(Cut { t, vertex: v });
-                }
+            }
+        }
+    }
+}
+
+impl Meeting {
+    /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, at
+    /// both its ends.
+    fn pass(&mut self, vertex: usize, p: &Point3<f64>, judge: &Judge) {
+        let [lo, hi] = self.range;
+        let t = in_range(&self.curve, self.range, self.curve.parameter(p));
+        let opened = !self.closed && self.curve.period().is_some();
+        let ends = if opened {
+            [Some(lo), Some(hi)]
+        } else {
+            [None, None]
+        };
+        for t in ends.into_iter().flatten().chain([t]) {
+            let known = self
+                .cuts
+                .iter()
+                .any(|c| c.vertex == vertex && (!opened || (c.t - t).abs() < CLOSE_PASS));
+            let on = t >= lo && t <= hi && judge.within((self.curve.point(t) - p).norm());
+            if on && !known {
+                self.cuts.push(Cut { t, vertex });
             }
         }
     }

@@ -253,18 +253,12 @@ impl Sorter<'_> {
             return None;
         }
         found.sort_by(|a, b| a.at.total_cmp(&b.at));
-        // Where a face bounds itself along an edge it is left and entered at one place.
+        // Where faces of one surface share an edge, one is left before the other is entered.
         for k in 1..found.len() {
             let together = found[k].at - found[k - 1].at <= self.band;
-            let before = if k >= 2 {
-                Some(found[k - 2].passage)
-            } else {
-                None
-            };
             if together
-                && found[k - 1].passage == before.unwrap_or(found[k - 1].passage)
-                && found[k].passage != found[k - 1].passage
-                && before.is_some()
+                && found[k - 1].passage == Passage::Entering
+                && found[k].passage == Passage::Leaving
             {
                 found.swap(k - 1, k);
             }
@@ -307,42 +301,67 @@ impl Sorter<'_> {
         p: &Point3<f64>,
         left: &Vector3<f64>,
     ) -> bool {
-        let Some(first) = (0..self.arcs.len()).find(|&a| self.owner[a] == 0) else {
-            return true;
-        };
-        let [u, v] = self.surface.parameters(p);
+        let goals: Vec<usize> = (0..self.arcs.len())
+            .filter(|&a| self.owner[a] == 0)
+            .collect();
         for &fraction in &STARTS {
-            let a = &self.arcs[first];
-            let s = a.range[0] + fraction * (a.range[1] - a.range[0]);
-            let [x, y] = self.surface.parameters(&a.curve.point(s));
-            let corner = self.surface.point(x, v);
-            let turn = wrap(x - u);
-            let sense = if turn > 0.0 {
-                Sense::Along
-            } else {
-                Sense::Against
-            };
-            let Some(round) = Walk::parallel(self.surface, p, sense, self.band) else {
-                continue;
-            };
-            let rho = t.major + t.minor * v.cos();
-            let up = wrap(y - v);
-            let rise = if up > 0.0 {
-                Sense::Along
-            } else {
-                Sense::Against
-            };
-            let tube = Walk::tube(&t, &corner, rise);
-            let legs = [
-                round.upto(turn.abs() * rho),
-                tube.upto((up.abs() * t.minor - 64.0 * self.band).max(0.0)),
-            ];
-            // The way ends just before the first loop: within its face, or on its other side.
-            if self.follow(ring, arc, p, left, &legs, Some(0)) {
-                return true;
+            for &goal in &goals {
+                let a = &self.arcs[goal];
+                let q = a
+                    .curve
+                    .point(a.range[0] + fraction * (a.range[1] - a.range[0]));
+                for round_first in [true, false] {
+                    // The way ends just before the first loop: within its face, or on the other
+                    // side of it.
+                    let legs = self.legs(&t, p, &q, round_first);
+                    if legs.is_some_and(|l| self.follow(ring, arc, p, left, &l, Some(0))) {
+                        return true;
+                    }
+                }
             }
         }
         false
+    }
+
+    /// A way from `p` almost to `q` along a parallel and a circle of the tube, in either order.
+    fn legs(
+        &self,
+        t: &Torus,
+        p: &Point3<f64>,
+        q: &Point3<f64>,
+        round_first: bool,
+    ) -> Option<[Walk; 2]> {
+        let ([u, v], [x, y]) = (self.surface.parameters(p), self.surface.parameters(q));
+        let toward = |a: f64| {
+            if a > 0.0 {
+                Sense::Along
+            } else {
+                Sense::Against
+            }
+        };
+        let (turn, rise) = (wrap(x - u), wrap(y - v));
+        let height = if round_first { v } else { y };
+        let around = turn.abs() * (t.major + t.minor * height.cos());
+        let up = rise.abs() * t.minor;
+        let short = 64.0 * self.band;
+        let round = |from: &Point3<f64>, length: f64| {
+            let walk = Walk::parallel(self.surface, from, toward(turn), self.band)?;
+            Some(walk.upto(length.max(0.0)))
+        };
+        let tube = |from: &Point3<f64>, length: f64| {
+            Walk::tube(t, from, toward(rise)).upto(length.max(0.0))
+        };
+        Some(if round_first {
+            [
+                round(p, around)?,
+                tube(&self.surface.point(x, v), up - short),
+            ]
+        } else {
+            [
+                tube(p, up),
+                round(&self.surface.point(u, y), around - short)?,
+            ]
+        })
     }
 
     /// The Euler characteristic of a region.

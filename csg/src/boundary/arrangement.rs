@@ -12,7 +12,7 @@ use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::cut::cut;
 use premio_kernel::geometry::intersect::{Branch, Extent, coincidence, meet};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::roots::{Contact, Zeros};
+use premio_kernel::number::roots::{Contact, Root, Zeros};
 use premio_kernel::number::sign::{Judge, ROUNDING};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -53,6 +53,13 @@ pub(super) struct Corner {
     pub point: Point3<f64>,
     /// The carriers through it, in order.
     pub carriers: Vec<usize>,
+}
+
+/// A contact of so high an order that many points are within the band.
+struct Wide {
+    meeting: usize,
+    carrier: usize,
+    root: Root,
 }
 
 /// The solids' boxes, to be asked for what lies near.
@@ -96,8 +103,12 @@ pub(super) fn arrange(
     for ((a, b), supports) in found.pairs(solids, band) {
         found.add_pair(a, b, &supports, extent, judge, &mut corners)?;
     }
+    let mut wide = Vec::new();
     for i in 0..found.meetings.len() {
-        found.cut_meeting(i, solids, judge, &mut corners);
+        found.cut_meeting(i, solids, judge, &mut corners, &mut wide);
+    }
+    for w in &wide {
+        found.place_wide(w, judge, &mut corners);
     }
     found.corners = corners.all;
     found.share_corners(judge);
@@ -265,7 +276,14 @@ impl Arrangement {
     }
 
     /// Cuts a curve by the carriers of all faces that come near it.
-    fn cut_meeting(&mut self, index: usize, solids: &Solids, judge: &Judge, corners: &mut Corners) {
+    fn cut_meeting(
+        &mut self,
+        index: usize,
+        solids: &Solids,
+        judge: &Judge,
+        corners: &mut Corners,
+        wide: &mut Vec<Wide>,
+    ) {
         let band = judge.band();
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
@@ -294,6 +312,7 @@ impl Arrangement {
                 }
                 Zeros::At { roots, misses } => (roots, misses),
             };
+            if std::env::var("DBG").is_ok() { eprintln!("CUT {} {:?} by {c} {:?}: {roots:?}", m.curve.name(), m.carriers, self.carriers[c].kind()); }
             for r in roots {
                 let p = m.curve.point(r.t);
                 let absorbed = special.iter().any(|s| {
@@ -303,12 +322,20 @@ impl Arrangement {
                 if absorbed {
                     continue;
                 }
-                let all = [m.carriers[0], m.carriers[1], c];
-                let plain = r.contact == Contact::Simple;
-                let p = if plain { self.polished(p, all) } else { p };
                 if let Some(margin) = r.margin {
                     judge.note("curve on surface", margin, p.coords.into());
                 }
+                let all = [m.carriers[0], m.carriers[1], c];
+                if (m.curve.point(r.lo) - m.curve.point(r.hi)).norm() > CLOSE_CALL * band {
+                    wide.push(Wide {
+                        meeting: index,
+                        carrier: c,
+                        root: r,
+                    });
+                    continue;
+                }
+                let plain = r.contact == Contact::Simple;
+                let p = if plain { self.polished(p, all) } else { p };
                 cuts.push(Cut {
                     t: r.t,
                     vertex: corners.at(&p, &all, judge),
@@ -327,6 +354,36 @@ impl Arrangement {
         m.carriers.extend(holding);
         m.carriers.sort_unstable();
         m.cuts.extend(cuts);
+    }
+
+    /// Puts a cut whose place is not well known at a corner that is, where there is one in reach.
+    fn place_wide(&mut self, w: &Wide, judge: &Judge, corners: &mut Corners) {
+        let m = &self.meetings[w.meeting];
+        let all = [m.carriers[0], m.carriers[1], w.carrier];
+        let middle = m.curve.point(w.root.t);
+        let ends = [w.root.lo, w.root.hi].map(|t| (m.curve.point(t) - middle).norm());
+        let reach = ends[0].max(ends[1]) + judge.band();
+        let fits = |v: &usize| {
+            let p = corners.all[*v].point;
+            (p - middle).norm() <= reach
+                && all
+                    .iter()
+                    .all(|&c| judge.within(self.carriers[c].distance(&p)))
+                && judge.within((m.curve.point(m.curve.parameter(&p)) - p).norm())
+        };
+        let away = |v: &usize| (corners.all[*v].point - middle).norm();
+        let best = (0..corners.all.len())
+            .filter(fits)
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        let (t, vertex) = match best {
+            Some(v) => {
+                let p = corners.all[v].point;
+                let t = in_range(&m.curve, m.range, m.curve.parameter(&p));
+                (t, corners.at(&p, &all, judge))
+            }
+            None => (w.root.t, corners.at(&middle, &all, judge)),
+        };
+        self.meetings[w.meeting].cuts.push(Cut { t, vertex });
     }
 
     /// The points of a curve known beforehand to lie on a carrier: where the curve crosses itself,

@@ -303,7 +303,7 @@ pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mu
     }
 }
 
-/// The real roots of k[0] + k[1] t + k[2] t².
+/// The real roots of `k[0] + k[1] t + k[2] t²`.
 pub fn quadratic(k: [f64; 3], found: &mut impl FnMut(f64)) {
     let half = 0.5 * k[1];
     let radicand = half * half - k[0] * k[2];

@@ -6,7 +6,7 @@
 
 use premio_kernel::number::roots::bisect_newton;
 
-/// A polynomial, k[i] the coefficient of the i-th power.
+/// A polynomial, `k[i]` the coefficient of the i-th power.
 pub type Quartic = [f64; 5];
 
 fn value(k: &Quartic, degree: usize, x: f64) -> (f64, f64) {

@@ -1,10 +1,8 @@
 //! From edges with the faces around them to loops, faces, shells and solids.
 //!
 //! Loops: at a vertex a coedge is followed by the next one clockwise, seen from outside, so that
-//! the face stays to the left. Faces: loops of one surface that bound one region ([`region`]).
+//! the face stays to the left. Faces: loops of one surface that bound one region (`region`).
 //! Shells: faces that enclose material together along an edge. Solids: shells around shells.
-//!
-//! [`region`]: super::region
 
 use super::inside::shell_holds;
 use super::mass::shell_volume;

@@ -1,0 +1,169 @@
+//! The program from outside: exit status, messages, output.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const PART: &str = "BASE = BLO(X=6, Y=4, Z=2)
+PART = BASE DIF CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1)
+";
+
+fn premio(folder: &Path, words: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
+    command.current_dir(folder).args(words.split_whitespace());
+    command.output().unwrap()
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.padl"), PART).unwrap();
+    folder
+}
+
+fn json(output: &Output) -> Value {
+    assert!(output.status.success(), "{output:?}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn info_measures_the_solid() {
+    let folder = folder();
+    let info = json(&premio(folder.path(), "info part.padl --json"));
+    let volume = 48.0 - 2.0 * std::f64::consts::PI;
+    assert!((info["volume"].as_f64().unwrap() - volume).abs() < 1e-10);
+    assert_eq!(info["schema"], "premio.info/1");
+    assert_eq!(info["genus"], serde_json::json!([1]));
+    assert_eq!(info["faces_by_surface"]["plane"], 6);
+    let base = json(&premio(folder.path(), "info part.padl --json --part BASE"));
+    assert!((base["volume"].as_f64().unwrap() - 48.0).abs() < 1e-10);
+}
+
+#[test]
+fn an_empty_solid_is_no_error() {
+    let folder = folder();
+    let text = "A = SPH(R=1)\nB = A INT A AT (MOVX=3)\n";
+    fs::write(folder.path().join("empty.padl"), text).unwrap();
+    let info = json(&premio(folder.path(), "info empty.padl --json"));
+    assert_eq!(
+        (info["volume"].as_f64(), info["faces"].as_u64()),
+        (Some(0.0), Some(0))
+    );
+    assert!(premio(folder.path(), "check empty.padl").status.success());
+}
+
+#[test]
+fn contours_and_drawings() {
+    let folder = folder();
+    let view = "contours part.padl --eye 20,-15,12 --target 3,2,1";
+    let contours = json(&premio(
+        folder.path(),
+        &format!("{view} --format json --samples 2"),
+    ));
+    assert_eq!(contours["schema"], "premio.contours/1");
+    let piece = &contours["contours"][0]["pieces"][0];
+    assert_eq!(piece["samples"].as_array().unwrap().len(), 2);
+    for format in ["svg", "dxf"] {
+        let out = premio(
+            folder.path(),
+            &format!("{view} --format {format} -o out.{format}"),
+        );
+        assert!(out.status.success() && out.stdout.is_empty());
+        let text = fs::read_to_string(folder.path().join(format!("out.{format}"))).unwrap();
+        assert!(!text.is_empty());
+    }
+}
+
+#[test]
+fn the_object_model_relates_faces_and_arcs() {
+    let folder = folder();
+    let model = json(&premio(folder.path(), "export part.padl --format json"));
+    let edges = model["relations"]["edge"].as_array().unwrap();
+    assert_eq!(edges.len(), model["arcs"].as_array().unwrap().len());
+    assert!(
+        edges
+            .iter()
+            .all(|e| e["faces"].as_array().unwrap().len() == 2)
+    );
+    let vertices = model["relations"]["vertex"].as_array().unwrap();
+    assert!(
+        vertices.len() == 8
+            && vertices
+                .iter()
+                .all(|v| v["arcs"].as_array().unwrap().len() == 3)
+    );
+}
+
+#[test]
+fn check_holds() {
+    let folder = folder();
+    let out = premio(folder.path(), "check part.padl");
+    assert!(
+        out.status.success(),
+        "{}",
+        String::from_utf8_lossy(&out.stdout)
+    );
+}
+
+#[test]
+fn wrong_input_ends_with_2() {
+    let folder = folder();
+    fs::write(
+        folder.path().join("bad.padl"),
+        "A = SPH(R=1)\nB = A DUF A\n",
+    )
+    .unwrap();
+    let out = premio(folder.path(), "info bad.padl");
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(2));
+    assert!(
+        said.contains("bad.padl:2:7") && said.contains("B = A DUF A") && said.contains('^'),
+        "{said}"
+    );
+    for words in [
+        "",
+        "info",
+        "info absent.padl",
+        "info part.step",
+        "info part.padl --part NONE",
+        "info part.padl --resolution -1",
+        "contours part.padl --format json",
+        "contours part.padl --format json --eye 0,0,0 --target 0,0,0",
+        "export part.padl --format json -o no/such/folder/out.json",
+    ] {
+        let out = premio(folder.path(), words);
+        assert_eq!(out.status.code(), Some(2), "{words}");
+        assert!(out.stdout.is_empty() && !out.stderr.is_empty(), "{words}");
+    }
+}
+
+#[test]
+fn a_close_call_ends_with_3_under_strict() {
+    let folder = folder();
+    let text = "A = BLO(X=1, Y=1, Z=1)\nB = A UN A AT (MOVX=1.0000000001)\n";
+    fs::write(folder.path().join("close.padl"), text).unwrap();
+    assert!(premio(folder.path(), "info close.padl").status.success());
+    let strict = premio(folder.path(), "info close.padl --strict");
+    assert_eq!(strict.status.code(), Some(3));
+    assert!(strict.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&strict.stderr).contains("apart at"));
+}
+
+#[test]
+fn nobody_has_to_read_to_the_end() {
+    let folder = folder();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
+    command
+        .current_dir(folder.path())
+        .args(["export", "part.padl", "--format", "json"]);
+    let mut child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let out = child.wait_with_output().unwrap();
+    assert!(!String::from_utf8_lossy(&out.stderr).contains("panicked"));
+    assert!(out.status.code().is_some());
+}

@@ -19,6 +19,9 @@ use premio_kernel::geometry::surface::Plane;
 use premio_kernel::geometry::trace::Unresolved;
 use std::time::Instant;
 
+/// Distances between points found on two ways, in multiples of the resolution.
+const LOOSE: f64 = 16.0;
+
 /// Why there are no contours.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ViewError {
@@ -67,7 +70,7 @@ pub fn contours_by(
     junction::find(&mut strands, &scene, &mut junctions);
     seconds.junctions = started.elapsed().as_secs_f64();
     let started = Instant::now();
-    let near = 16.0 * band;
+    let near = LOOSE * band;
     for strand in &mut strands {
         let out = &mut contours[strand.contour as usize].pieces;
         pieces(&scene, strand, method, near, out);
@@ -275,6 +278,13 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             Some(period) => lo + (t - lo).rem_euclid(period),
             None => t,
         };
+        // A turn at the very end of an arc is no point of its own.
+        let ends_at = [source.curve.point(lo), source.curve.point(hi)];
+        let near = LOOSE * self.scene.band;
+        let at_end = |t: f64| {
+            let p = source.curve.point(t);
+            ends_at.iter().any(|end| (p - end).norm() <= near)
+        };
         let mut splits: Vec<Split> = Vec::new();
         for &(t, junction) in &source.marks {
             let t = within(t);
@@ -287,7 +297,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             }
         }
         for t in seen.turns(range) {
-            if t > lo && t < hi || closed {
+            if t > lo && t < hi && !at_end(t) || closed {
                 let junction = self
                     .junctions
                     .add(JunctionKind::Turn, &source.curve.point(t));

@@ -36,7 +36,8 @@ fn open(k: usize) -> Value {
 
 /// The union of pipes, each hollow by itself.
 fn crossing(k: usize) -> Value {
-    let hollow = |outer: Value, inner: Value| json!({"op": "difference", "children": [outer, inner]});
+    let hollow =
+        |outer: Value, inner: Value| json!({"op": "difference", "children": [outer, inner]});
     let mut all = vec![hollow(
         main_tube(50.0, 0.0, 200.0),
         main_tube(48.0, -1.0, 201.0),
@@ -65,9 +66,18 @@ fn cameras() -> Vec<(&'static str, Camera)> {
     let aside = Point3::new(310.0, 270.0, 420.0);
     vec![
         ("along", Camera::orthographic(above, centre, up).unwrap()),
-        ("from below", Camera::orthographic(below, centre, up).unwrap()),
-        ("on the axis", Camera::perspective(above, centre, up, 1.0).unwrap()),
-        ("general", Camera::orthographic(aside, centre, Vector3::z()).unwrap()),
+        (
+            "from below",
+            Camera::orthographic(below, centre, up).unwrap(),
+        ),
+        (
+            "on the axis",
+            Camera::perspective(above, centre, up, 1.0).unwrap(),
+        ),
+        (
+            "general",
+            Camera::orthographic(aside, centre, Vector3::z()).unwrap(),
+        ),
         (
             "general perspective",
             Camera::perspective(aside, centre, Vector3::z(), 1.0).unwrap(),

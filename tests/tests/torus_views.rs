@@ -60,11 +60,7 @@ impl Torus {
 
     fn point(&self, theta: f64, phi: f64) -> Point3<f64> {
         let rho = self.major + self.minor * phi.cos();
-        Point3::new(
-            rho * theta.cos(),
-            rho * theta.sin(),
-            self.minor * phi.sin(),
-        )
+        Point3::new(rho * theta.cos(), rho * theta.sin(), self.minor * phi.sin())
     }
 
     /// Where the line p + s v is in the torus, for s over `range`.
@@ -274,7 +270,12 @@ fn examine(t: Torus, seed: u64) {
         let target = Point3::from(random.direction() * (0.3 * reach * random.unit()));
         let up = random.direction();
         let perspective = Camera::perspective(eye, target, up, 1.0).unwrap();
-        tally.view(&format!("perspective {k} from {eye}"), &t, &part, &perspective);
+        tally.view(
+            &format!("perspective {k} from {eye}"),
+            &t,
+            &part,
+            &perspective,
+        );
         let orthographic = Camera::orthographic(eye, Point3::origin(), up).unwrap();
         tally.view(
             &format!("orthographic {k} from {eye}"),
@@ -291,7 +292,12 @@ fn examine(t: Torus, seed: u64) {
         tally.wrong.len()
     );
     let some = &tally.wrong[..tally.wrong.len().min(12)];
-    assert!(some.is_empty(), "{} wrong:\n{}", tally.wrong.len(), some.join("\n"));
+    assert!(
+        some.is_empty(),
+        "{} wrong:\n{}",
+        tally.wrong.len(),
+        some.join("\n")
+    );
     assert!(tally.ambiguous * 20 < tally.agreed && tally.cusps > 100);
 }
 

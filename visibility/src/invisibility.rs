@@ -26,9 +26,7 @@ const PLACES: [f64; 3] = [0.5, 0.31, 0.73];
 
 /// The count for a piece of a strand over [lo, hi].
 pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Count {
-    let at = |part: f64| {
-        count_at(scene, strand, lo + (hi - lo) * part)
-    };
+    let at = |part: f64| count_at(scene, strand, lo + (hi - lo) * part);
     let first = at(PLACES[0]);
     if first.plain {
         return first;

@@ -86,7 +86,7 @@ fn links(
         let (min, max) = (b.min.map(|x| x - grow), b.max.map(|x| x + grow));
         out.push(GeomWithData::new(Rectangle::from_corners(min, max), index));
     };
-    if let Image::General = strand.image {
+    if let Image::General | Image::Edgewise(_) = strand.image {
         for pair in strand.curve.breaks(lo, hi).windows(2) {
             for k in 0..4 {
                 let at = |k: usize| pair[0] + (pair[1] - pair[0]) * (k as f64 / 4.0);
@@ -282,11 +282,16 @@ impl Search<'_, '_, '_, '_> {
     fn settle(&self, strand: &Strand<'_>, t: f64) -> Option<Settled> {
         let near = LOOSE * self.scene.band;
         let settled = settle(strand, t, near)?;
-        if let Image::Flat { .. } = strand.image {
+        if let Image::Flat { .. } | Image::Edgewise(_) = strand.image {
             // The image stands still at a turn: there little of the image is much of the curve.
             let p = strand.curve.point(settled.t);
             let mut stops = strand.image.turns(strand.range);
-            stops.extend((!strand.closed).then_some(strand.range).into_iter().flatten());
+            stops.extend(
+                (!strand.closed)
+                    .then_some(strand.range)
+                    .into_iter()
+                    .flatten(),
+            );
             let stop = |t: &f64| {
                 self.apart(&p, &strand.curve.point(*t)) <= near
                     && self.straight(strand, *t, settled.t)
@@ -455,38 +460,30 @@ impl Search<'_, '_, '_, '_> {
         if b.closed && b.image.turns(b.range).is_empty() {
             return;
         }
-        let near = LOOSE * self.scene.band;
         let [lo, hi] = b.range;
         let mut stops = b.image.turns(b.range);
         stops.extend([lo, hi]);
         for s in stops {
             let q = b.curve.point(s);
             let h = self.scene.projection.homogeneous(&q);
-            let (splits, junctions) = (&mut self.splits, &mut *self.junctions);
-            let projection = self.scene.projection;
-            parameters_at(a, &h, q.into(), &mut |t| {
-                let Some(t) = settle(a, t, near) else { return };
-                if t.at_end {
-                    return;
-                }
+            let mut met = Vec::new();
+            parameters_at(a, &h, q.into(), self.scene.band, &mut |t| met.push(t));
+            for t in met {
+                let Some(t) = self.settle(a, t) else { continue };
                 let p = a.curve.point(t.t);
                 // Where a curve without a closed form is not met, its nearest point is no end.
-                let (x, y) = (flat_of(projection, &p), flat_of(projection, &q));
-                let off = (x[0] - y[0]).hypot(x[1] - y[1]);
-                if off * depth_scale(projection, &p) > 4.0 * near {
-                    return;
+                if t.at_end || self.apart(&p, &q) > 4.0 * LOOSE * self.scene.band {
+                    continue;
                 }
-                let id = junctions.add(JunctionKind::T, &p);
-                junctions.list[id as usize].contours = vec![b.contour, a.contour];
-                splits.push((
-                    i,
-                    Split {
-                        t: t.t,
-                        junction: id,
-                        change: Change::Recount,
-                    },
-                ));
-            });
+                let id = self.junctions.add(JunctionKind::T, &p);
+                self.junctions.list[id as usize].contours = vec![b.contour, a.contour];
+                let split = Split {
+                    t: t.t,
+                    junction: id,
+                    change: Change::Recount,
+                };
+                self.splits.push((i, split));
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece, SCHEMA, Seconds};
+use crate::edgewise::Edgewise;
 use crate::image::{Image, image};
 use crate::invisibility::{Method, pieces};
 use crate::junction;
@@ -273,7 +274,14 @@ impl<'a> Weave<'_, 'a, '_, '_> {
 
     fn push(&mut self, source: &Source<'a>, range: [f64; 2], closed: bool, ends: [Option<u32>; 2]) {
         let [lo, hi] = range;
-        let seen = image(source.curve, range, self.scene.projection, self.scene.band);
+        let (projection, band) = (self.scene.projection, self.scene.band);
+        let mut seen = image(source.curve, range, projection, band);
+        if let Image::General = seen {
+            let brep = self.scene.brep;
+            let surfaces = source.faces.iter().map(|f| brep.surface(f.0));
+            seen = Edgewise::of(source.curve, range, surfaces, projection, band)
+                .map_or(seen, Image::Edgewise);
+        }
         let within = |t: f64| match source.curve.period() {
             Some(period) => lo + (t - lo).rem_euclid(period),
             None => t,
@@ -335,6 +343,6 @@ fn image_curve(seen: &Image, source: &Source<'_>, projection: &Projection) -> Im
         Image::Line { line, .. } | Image::Flat { line, .. } => ImageCurve::Line {
             coefficients: projection.line(line),
         },
-        Image::General => ImageCurve::Projected,
+        Image::Edgewise(_) | Image::General => ImageCurve::Projected,
     }
 }

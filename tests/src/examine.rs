@@ -2,8 +2,11 @@
 //! boundary keeps its rules, the volume is the rays', and no piece of a view is wrong.
 
 use premio::checks::{Checker, views};
-use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
+use premio_visibility::Camera;
+use premio_visibility::invisibility::Method;
+use premio_visibility::view::contours_by;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
@@ -72,9 +75,10 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
         let all = views::around(&evaluation.bounds);
         for name in ["perspective 3", "orthographic 1", "along z"] {
             let view = all.iter().filter(|v| v.name == name);
-            report
-                .checks
-                .extend(view.map(|v| checker.view(&v.name, &v.camera)));
+            for v in view {
+                report.checks.push(checker.view(&v.name, &v.camera));
+                wrong.extend(differences(&evaluation, &v.name, &v.camera));
+            }
         }
     }
     wrong.extend(
@@ -83,4 +87,20 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
             .map(|c| format!("{}: {}", c.subject, c.detail)),
     );
     wrong
+}
+
+/// Where the invisibility that is carried along contours is not what is counted piece by piece.
+pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Option<String> {
+    let of = |method| contours_by(&evaluation.brep, camera, evaluation.resolution, method).ok();
+    let (carried, counted) = (of(Method::Carried)?, of(Method::Counted)?);
+    let both = carried.contours.iter().zip(&counted.contours);
+    both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(|pair| (a.id, pair)))
+        .find(|(_, (a, b))| a.qi != b.qi)
+        .map(|(id, (a, b))| {
+            let [from, to] = a.t;
+            format!(
+                "methods in {name}: contour {id} from {from} to {to}: carried {}, counted {}",
+                a.qi, b.qi
+            )
+        })
 }

@@ -5,6 +5,7 @@
 //! give a polynomial of the fourth degree in the tangent of half the angle; other curves against
 //! these are isolated on their parameter, and two other curves by certified subdivision.
 
+use crate::edgewise::Edgewise;
 use crate::image::{Basis, Image, line_on_conic, quadratic};
 use crate::polynomial::{Quartic, crossings};
 use crate::projection::Projection;
@@ -44,6 +45,8 @@ pub fn cross(
     let near = LOOSE * band;
     match (&a.image, &b.image) {
         (Image::Point, _) | (_, Image::Point) => Overlap::No,
+        (Image::Edgewise(on), _) => edgewise(on, a, b, band, found),
+        (_, Image::Edgewise(on)) => edgewise(on, b, a, band, &mut |s, t| found(t, s)),
         (Image::General, Image::General) => general_pair(a, b, projection, band, found),
         (Image::General, _) => general(a, b, projection, band, found),
         (_, Image::General) => general(b, a, projection, band, &mut |s, t| found(t, s)),
@@ -61,7 +64,7 @@ fn at(strand: &Strand<'_>, t: f64) -> Vector3<f64> {
             origin, direction, ..
         } => origin + direction * t,
         Image::Conic { basis, map, .. } | Image::Flat { basis, map, .. } => map * basis.at(t),
-        Image::Point | Image::General => Vector3::z(),
+        Image::Point | Image::Edgewise(_) | Image::General => Vector3::z(),
     }
 }
 
@@ -268,14 +271,34 @@ fn general(
     }
 }
 
+/// A curve on a surface seen edge-on against any other.
+fn edgewise(
+    on: &Edgewise,
+    a: &Strand<'_>,
+    b: &Strand<'_>,
+    band: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    if on.holds(b.curve, b.range, LOOSE * band) {
+        return Overlap::Yes;
+    }
+    for s in on.passed_by(b.curve, b.range, band) {
+        let p = b.curve.point(s);
+        on.parameters(a.curve, a.range, p.into(), band, &mut |t| found(t, s));
+    }
+    Overlap::No
+}
+
 /// The parameters at which a strand's image passes the image point of `h`, where it does.
 pub fn parameters_at(
     strand: &Strand<'_>,
     h: &Vector3<f64>,
     p: [f64; 3],
+    band: f64,
     found: &mut impl FnMut(f64),
 ) {
     match (&strand.image, strand.curve) {
+        (Image::Edgewise(on), curve) => on.parameters(curve, strand.range, p, band, found),
         (Image::General, Curve::Quartic(_) | Curve::Toric(_)) => {
             found(strand.curve.parameter(&p.into()));
         }

@@ -5,6 +5,7 @@
 //! conic. The conic is hᵀ C h = 0 with C = M⁻ᵀ B M⁻¹, B the conic of b; it is also the cone of
 //! sight, the lines from the eye through the curve. A line's cone of sight is the plane l·h = 0.
 
+use crate::edgewise::Edgewise;
 use crate::projection::Projection;
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::curve::Curve;
@@ -102,6 +103,8 @@ pub enum Image {
         /// The line's coefficients.
         line: Vector3<f64>,
     },
+    /// Neither a line nor a conic, on a cylinder seen along its axis.
+    Edgewise(Edgewise),
     /// Neither a line nor a conic.
     General,
 }
@@ -194,8 +197,10 @@ impl Image {
     /// Where the image turns back on itself: the parameters at which the derivative of the image
     /// of a conic seen edge-on vanishes.
     pub fn turns(&self, range: [f64; 2]) -> Vec<f64> {
-        let Image::Flat { basis, map, line } = self else {
-            return Vec::new();
+        let (basis, map, line) = match self {
+            Image::Flat { basis, map, line } => (basis, map, line),
+            Image::Edgewise(image) => return image.turns.clone(),
+            _ => return Vec::new(),
         };
         let along = Vector3::new(-line.y, line.x, 0.0);
         let (p, q) = (map.tr_mul(&along), map.tr_mul(&Vector3::z()));
@@ -242,7 +247,7 @@ impl Image {
     /// seen edge-on, both.
     pub fn parameters(&self, h: &Vector3<f64>, range: [f64; 2], found: &mut impl FnMut(f64)) {
         match self {
-            Image::Point | Image::General => {}
+            Image::Point | Image::Edgewise(_) | Image::General => {}
             Image::Line {
                 origin,
                 direction,

@@ -26,10 +26,7 @@ const PLACES: [f64; 3] = [0.5, 0.31, 0.73];
 
 /// The count for a piece of a strand over [lo, hi].
 pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Count {
-    let at = |part: f64| {
-        let p = strand.curve.point(lo + (hi - lo) * part);
-        count_at(scene, strand, &p)
-    };
+    let at = |part: f64| count_at(scene, strand, lo + (hi - lo) * part);
     let first = at(PLACES[0]);
     if first.plain {
         return first;
@@ -41,7 +38,8 @@ pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Coun
     three[1]
 }
 
-fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, p: &Point3<f64>) -> Count {
+fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
+    let p = &strand.curve.point(t);
     let (v, _) = scene.projection.towards_eye(p);
     let own = |face: FaceId| {
         if !strand.faces.iter().any(|f| f.0 == face) {
@@ -58,7 +56,7 @@ fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, p: &Point3<f64>) -> Count {
             Own::Through
         }
     };
-    scene.count(p, &own)
+    scene.count(p, &strand.curve.tangent(t), &own)
 }
 
 /// The splits of a strand in order, those at one point taken together.

@@ -86,7 +86,7 @@ fn links(
         let (min, max) = (b.min.map(|x| x - grow), b.max.map(|x| x + grow));
         out.push(GeomWithData::new(Rectangle::from_corners(min, max), index));
     };
-    if let Image::General = strand.image {
+    if let Image::General | Image::Edgewise(_) = strand.image {
         for pair in strand.curve.breaks(lo, hi).windows(2) {
             for k in 0..4 {
                 let at = |k: usize| pair[0] + (pair[1] - pair[0]) * (k as f64 / 4.0);
@@ -231,6 +231,21 @@ fn settle(strand: &Strand<'_>, t: f64, near: f64) -> Option<Settled> {
     })
 }
 
+/// The junctions known on a strand, with their parameters.
+fn junctions_of<'x>(strand: &'x Strand<'_>) -> impl Iterator<Item = (u32, f64)> + 'x {
+    let ends = strand.ends.iter().zip(strand.range);
+    let ends = ends.filter_map(|(id, t)| id.map(|id| (id, t)));
+    ends.chain(strand.splits.iter().map(|split| (split.junction, split.t)))
+}
+
+/// Of the parameters of one point of a closed curve, the one nearest to `t`.
+fn nearest_turn(strand: &Strand<'_>, from: f64, t: f64) -> f64 {
+    match strand.curve.period() {
+        Some(period) if strand.closed => from + ((t - from) / period).round() * period,
+        _ => from,
+    }
+}
+
 struct Search<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
@@ -263,11 +278,68 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
 type At<'x, 'a> = (u32, &'x Strand<'a>, f64);
 
 impl Search<'_, '_, '_, '_> {
+    /// The parameter on its strand; where the image turns back on itself counts as an end.
+    fn settle(&self, strand: &Strand<'_>, t: f64) -> Option<Settled> {
+        let near = LOOSE * self.scene.band;
+        let settled = settle(strand, t, near)?;
+        if let Image::Flat { .. } | Image::Edgewise(_) = strand.image {
+            // The image stands still at a turn: there little of the image is much of the curve.
+            let p = strand.curve.point(settled.t);
+            let mut stops = strand.image.turns(strand.range);
+            stops.extend(
+                (!strand.closed)
+                    .then_some(strand.range)
+                    .into_iter()
+                    .flatten(),
+            );
+            let stop = |t: &f64| {
+                self.apart(&p, &strand.curve.point(*t)) <= near
+                    && self.straight(strand, *t, settled.t)
+            };
+            if let Some(t) = stops.into_iter().find(stop) {
+                return Some(Settled { t, at_end: true });
+            }
+        }
+        Some(settled)
+    }
+
+    /// How far two points are apart in the image, as a distance in space.
+    fn apart(&self, p: &Point3<f64>, q: &Point3<f64>) -> f64 {
+        let projection = self.scene.projection;
+        let (x, y) = (flat_of(projection, p), flat_of(projection, q));
+        (x[0] - y[0]).hypot(x[1] - y[1]) * depth_scale(projection, p)
+    }
+
+    /// Whether the image between two parameters is straight to within the resolution.
+    fn straight(&self, strand: &Strand<'_>, from: f64, to: f64) -> bool {
+        let [p, m, q] = [from, 0.5 * (from + to), to].map(|t| strand.curve.point(t));
+        let chord = Point3::from((p.coords + q.coords) * 0.5);
+        self.apart(&m, &chord) <= LOOSE * self.scene.band
+    }
+
+    /// Whether a crossing is that at a junction of both strands: their images may touch there, as
+    /// a limb's and an edge's do where the limb ends on the edge, and rounding moves such a root a
+    /// long way. Up to the junction both images are straight to within the resolution, so nothing
+    /// tells them from each other.
+    fn at_shared(&self, a: &Strand<'_>, t: f64, b: &Strand<'_>, s: f64) -> bool {
+        junctions_of(a).any(|(id, from)| {
+            junctions_of(b)
+                .filter(|other| other.0 == id)
+                .any(|(_, other)| {
+                    self.straight(a, nearest_turn(a, from, t), t)
+                        && self.straight(b, nearest_turn(b, other, s), s)
+                })
+        })
+    }
+
     fn crossing(&mut self, (i, a, t): At<'_, '_>, (j, b, s): At<'_, '_>) {
         let near = LOOSE * self.scene.band;
-        let (Some(t), Some(s)) = (settle(a, t, near), settle(b, s, near)) else {
+        let (Some(t), Some(s)) = (self.settle(a, t), self.settle(b, s)) else {
             return;
         };
+        if self.at_shared(a, t.t, b, s.t) {
+            return;
+        }
         let (p, q) = (a.curve.point(t.t), b.curve.point(s.t));
         let (v, _) = self.scene.projection.towards_eye(&p);
         let ahead = (q - p).dot(&v);
@@ -388,38 +460,30 @@ impl Search<'_, '_, '_, '_> {
         if b.closed && b.image.turns(b.range).is_empty() {
             return;
         }
-        let near = LOOSE * self.scene.band;
         let [lo, hi] = b.range;
         let mut stops = b.image.turns(b.range);
         stops.extend([lo, hi]);
         for s in stops {
             let q = b.curve.point(s);
             let h = self.scene.projection.homogeneous(&q);
-            let (splits, junctions) = (&mut self.splits, &mut *self.junctions);
-            let projection = self.scene.projection;
-            parameters_at(a, &h, q.into(), &mut |t| {
-                let Some(t) = settle(a, t, near) else { return };
-                if t.at_end {
-                    return;
-                }
+            let mut met = Vec::new();
+            parameters_at(a, &h, q.into(), self.scene.band, &mut |t| met.push(t));
+            for t in met {
+                let Some(t) = self.settle(a, t) else { continue };
                 let p = a.curve.point(t.t);
                 // Where a curve without a closed form is not met, its nearest point is no end.
-                let (x, y) = (flat_of(projection, &p), flat_of(projection, &q));
-                let off = (x[0] - y[0]).hypot(x[1] - y[1]);
-                if off * depth_scale(projection, &p) > 4.0 * near {
-                    return;
+                if t.at_end || self.apart(&p, &q) > 4.0 * LOOSE * self.scene.band {
+                    continue;
                 }
-                let id = junctions.add(JunctionKind::T, &p);
-                junctions.list[id as usize].contours = vec![b.contour, a.contour];
-                splits.push((
-                    i,
-                    Split {
-                        t: t.t,
-                        junction: id,
-                        change: Change::Recount,
-                    },
-                ));
-            });
+                let id = self.junctions.add(JunctionKind::T, &p);
+                self.junctions.list[id as usize].contours = vec![b.contour, a.contour];
+                let split = Split {
+                    t: t.t,
+                    junction: id,
+                    change: Change::Recount,
+                };
+                self.splits.push((i, split));
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ pub mod camera;
 pub mod contour;
 pub mod crossing;
 pub mod drawing;
+pub mod edgewise;
 pub mod image;
 pub mod invisibility;
 pub mod junction;

@@ -10,6 +10,7 @@ use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::{Locator, Place};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Surface, Torus};
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
@@ -18,6 +19,7 @@ use premio_kernel::number::scalar::Scalar;
 use premio_kernel::number::sign::ROUNDING;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
+use std::f64::consts::TAU;
 
 /// A line of sight from a point towards the eye.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +66,26 @@ pub struct Count {
     pub occluder: Option<FaceId>,
     /// Whether all were met plainly.
     pub plain: bool,
+}
+
+/// How far aside of a contour its sides are looked at, in multiples of the resolution: beyond what
+/// counts as touching.
+const ASIDE: f64 = 64.0;
+
+/// The directions in which a curve seen along `towards` has its two sides in the image; all around
+/// where it is seen end-on.
+fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
+    let across = along.cross(towards);
+    let size = across.norm();
+    if size > ROUNDING.sqrt() {
+        return vec![across / size, -across / size];
+    }
+    let frame = Frame::about(Point3::origin(), *towards);
+    let turn = |k: u32| f64::from(k).mul_add(TAU / 8.0, 0.4).sin_cos();
+    (0..8)
+        .map(turn)
+        .map(|(sin, cos)| frame.x * cos + frame.y * sin)
+        .collect()
 }
 
 type FaceBox = GeomWithData<Rectangle<[f64; 3]>, FaceId>;
@@ -381,7 +403,7 @@ impl<'a> Scene<'a> {
         if known == 0 {
             let q0 = [q.x, q.y, q.z];
             let surface = Surface::Torus(Torus {
-                frame: premio_kernel::geometry::frame::Frame::world(),
+                frame: Frame::world(),
                 ..*s
             });
             let f = |t: Interval| {
@@ -419,18 +441,30 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The quantitative invisibility of a point: the faces turned towards the eye on the open line
-    /// of sight, counting those that are only touched; `own` tells the faces through the point.
-    pub fn count(&self, p: &Point3<f64>, own: &impl Fn(FaceId) -> Own) -> Count {
+    /// The quantitative invisibility of a point of a curve with the unit tangent `along`: the faces
+    /// turned towards the eye on the open line of sight; `own` tells the faces through the point.
+    ///
+    /// A face that is met on its boundary or along its limb hides what is on one side of the curve
+    /// in the image, or on both; the curve is as hidden as its more hidden side.
+    pub fn count(
+        &self,
+        p: &Point3<f64>,
+        along: &Vector3<f64>,
+        own: &impl Fn(FaceId) -> Own,
+    ) -> Count {
+        let ray = self.ray(p);
         let mut count = Count {
             qi: 0,
             occluder: None,
             plain: true,
         };
         let mut nearest = f64::NEG_INFINITY;
-        self.hits(&self.ray(p), own, &mut |hit| {
+        let mut unclear: Vec<Hit> = Vec::new();
+        self.hits(&ray, own, &mut |hit| {
             count.plain &= hit.plain;
-            if hit.front {
+            if hit.front && !hit.plain {
+                unclear.push(hit);
+            } else if hit.front {
                 count.qi += 1;
                 if hit.at > nearest {
                     nearest = hit.at;
@@ -438,7 +472,66 @@ impl<'a> Scene<'a> {
                 }
             }
         });
+        if unclear.is_empty() {
+            return count;
+        }
+        unclear.sort_by(|a, b| b.at.total_cmp(&a.at));
+        let mut most: (u32, Option<Hit>) = (0, None);
+        for side in sides(&ray.towards, along) {
+            let mut covered: (u32, Option<Hit>) = (0, None);
+            for hit in &unclear {
+                let layers = self.layers_beside(&ray, hit, own(hit.face), &side);
+                if layers > 0 {
+                    covered = (covered.0 + layers, covered.1.or(Some(*hit)));
+                }
+            }
+            if covered.0 > most.0 {
+                most = covered;
+            }
+        }
+        count.qi += most.0;
+        if let Some(hit) = most.1
+            && hit.at > nearest
+        {
+            count.occluder = Some(hit.face);
+        }
         count
+    }
+
+    /// How often the line of sight just aside of a hit passes the same face from its front, there
+    /// and not where the line of sight itself meets it elsewhere.
+    fn layers_beside(&self, ray: &Ray, hit: &Hit, own: Own, side: &Vector3<f64>) -> u32 {
+        let surface = self.brep.surface(hit.face);
+        let beside = ray.origin + ray.towards * hit.at + side * (ASIDE * self.band);
+        let (towards, _) = self.projection.towards_eye(&beside);
+        let back = 2.0 * hit.at;
+        let parallel = Ray {
+            origin: beside - towards * back,
+            towards,
+            length: f64::INFINITY,
+        };
+        let elsewhere = self.meetings(ray, surface, own);
+        let through = (own != Own::No).then_some(0.0);
+        let known = |s: f64| {
+            let others = elsewhere.at[..elsewhere.count].iter().map(|m| m.0);
+            let away = (s - hit.at).abs();
+            others
+                .chain(through)
+                .all(|other| other == hit.at || (s - other).abs() > away)
+        };
+        let found = self.meetings(&parallel, surface, Own::No);
+        let mut layers = 0;
+        for &(s, touch) in &found.at[..found.count] {
+            if !known(s - back + hit.at) {
+                continue;
+            }
+            let p = parallel.origin + towards * s;
+            let front = touch || self.brep.outward(hit.face, &p).dot(&towards) > 0.0;
+            if front && self.locator.place(hit.face, &p) != Place::Outside {
+                layers += 1;
+            }
+        }
+        layers
     }
 
     /// Whether the eye of a perspective camera lies in the material.

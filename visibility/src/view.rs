@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece, SCHEMA, Seconds};
+use crate::edgewise::Edgewise;
 use crate::image::{Image, image};
 use crate::invisibility::{Method, pieces};
 use crate::junction;
@@ -18,6 +19,9 @@ use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Plane;
 use premio_kernel::geometry::trace::Unresolved;
 use std::time::Instant;
+
+/// Distances between points found on two ways, in multiples of the resolution.
+const LOOSE: f64 = 16.0;
 
 /// Why there are no contours.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -67,7 +71,7 @@ pub fn contours_by(
     junction::find(&mut strands, &scene, &mut junctions);
     seconds.junctions = started.elapsed().as_secs_f64();
     let started = Instant::now();
-    let near = 16.0 * band;
+    let near = LOOSE * band;
     for strand in &mut strands {
         let out = &mut contours[strand.contour as usize].pieces;
         pieces(&scene, strand, method, near, out);
@@ -270,10 +274,24 @@ impl<'a> Weave<'_, 'a, '_, '_> {
 
     fn push(&mut self, source: &Source<'a>, range: [f64; 2], closed: bool, ends: [Option<u32>; 2]) {
         let [lo, hi] = range;
-        let seen = image(source.curve, range, self.scene.projection, self.scene.band);
+        let (projection, band) = (self.scene.projection, self.scene.band);
+        let mut seen = image(source.curve, range, projection, band);
+        if let Image::General = seen {
+            let brep = self.scene.brep;
+            let surfaces = source.faces.iter().map(|f| brep.surface(f.0));
+            seen = Edgewise::of(source.curve, range, surfaces, projection, band)
+                .map_or(seen, Image::Edgewise);
+        }
         let within = |t: f64| match source.curve.period() {
             Some(period) => lo + (t - lo).rem_euclid(period),
             None => t,
+        };
+        // A turn at the very end of an arc is no point of its own.
+        let ends_at = [source.curve.point(lo), source.curve.point(hi)];
+        let near = LOOSE * self.scene.band;
+        let at_end = |t: f64| {
+            let p = source.curve.point(t);
+            ends_at.iter().any(|end| (p - end).norm() <= near)
         };
         let mut splits: Vec<Split> = Vec::new();
         for &(t, junction) in &source.marks {
@@ -287,7 +305,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             }
         }
         for t in seen.turns(range) {
-            if t > lo && t < hi || closed {
+            if t > lo && t < hi && !at_end(t) || closed {
                 let junction = self
                     .junctions
                     .add(JunctionKind::Turn, &source.curve.point(t));
@@ -325,6 +343,6 @@ fn image_curve(seen: &Image, source: &Source<'_>, projection: &Projection) -> Im
         Image::Line { line, .. } | Image::Flat { line, .. } => ImageCurve::Line {
             coefficients: projection.line(line),
         },
-        Image::General => ImageCurve::Projected,
+        Image::Edgewise(_) | Image::General => ImageCurve::Projected,
     }
 }

@@ -13,6 +13,9 @@ const SAMPLES: [f64; 3] = [0.21, 0.5, 0.83];
 /// How many times the clearance a sample is away from the ends of its piece.
 const NEAR: f64 = 10.0;
 
+/// What disagrees is looked at again with rays that run this much closer.
+const CLOSER: f64 = 1.0 / 16.0;
+
 /// A piece whose invisibility is not what rays say.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrongPiece {
@@ -50,14 +53,19 @@ impl Recount {
     pub fn of(material: &Material, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let sight = |p: &_| line_of_sight(&projection, p);
+        let closer = Clearance {
+            aside: clearance.aside * CLOSER,
+            ..*clearance
+        };
+        let again = |p: &_| material.invisibility(p, sight, &closer);
         let mut recount = Self::default();
         for contour in &seen.contours {
+            let end_on = matches!(contour.curve2, ImageCurve::Point { .. });
             for (index, piece) in contour.pieces.iter().enumerate() {
                 recount.pieces += 1;
                 let [lo, hi] = piece.t;
                 let ends = [lo, hi].map(|t| contour.curve3.point(t));
                 let open = piece.start.is_some() || piece.end.is_some();
-                let end_on = matches!(contour.curve2, ImageCurve::Point { .. });
                 let mut wrong = None;
                 for part in SAMPLES {
                     let place = contour.curve3.point(lo + part * (hi - lo));
@@ -67,9 +75,14 @@ impl Recount {
                     let counted = material.invisibility(&place, sight, clearance);
                     match counted.filter(|_| !unclear) {
                         None => recount.ambiguous += 1,
+                        // Seen end-on it has no two sides; the rays beside it may all miss what
+                        // covers a narrow angle of its surroundings.
+                        Some(counted) if end_on && counted != piece.qi => recount.ambiguous += 1,
                         Some(counted) if counted == piece.qi && piece.visible == (counted == 0) => {
                             recount.agreed += 1;
                         }
+                        // Depends on how far beside the rays run.
+                        Some(counted) if again(&place) != Some(counted) => recount.ambiguous += 1,
                         Some(counted) => {
                             wrong = Some(WrongPiece {
                                 t: piece.t,

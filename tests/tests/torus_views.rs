@@ -1,0 +1,324 @@
+//! Views of a torus against the torus's own equations: every limb that the closed form finds is
+//! there, no piece passes a cusp, and the invisibility of every piece is what the roots of the
+//! quartic on its line of sight say.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
+
+use nalgebra::{Point3, Vector3};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_visibility::contour::{Contours, JunctionKind};
+use premio_visibility::invisibility::Method;
+use premio_visibility::projection::{Projection, Sight};
+use premio_visibility::view::contours_by;
+use premio_visibility::{Camera, contours};
+use std::f64::consts::TAU;
+
+/// A torus about the z axis.
+#[derive(Clone, Copy)]
+struct Torus {
+    major: f64,
+    minor: f64,
+}
+
+/// Where in a piece samples are taken.
+const SAMPLES: usize = 5;
+
+fn torus(t: Torus) -> Evaluation {
+    let json = format!(r#"{{"prim":"torus","R":{},"r":{}}}"#, t.major, t.minor);
+    let tree = read("torus", json.as_bytes(), Format::Json, &Options::default()).unwrap();
+    evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
+}
+
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn direction(&mut self) -> Vector3<f64> {
+        let z = 2.0 * self.unit() - 1.0;
+        let (sin, cos) = (TAU * self.unit()).sin_cos();
+        let rho = (1.0 - z * z).sqrt();
+        Vector3::new(rho * cos, rho * sin, z)
+    }
+}
+
+impl Torus {
+    fn value(&self, p: &Point3<f64>) -> f64 {
+        (p.x.hypot(p.y) - self.major).hypot(p.z) - self.minor
+    }
+
+    fn normal(&self, p: &Point3<f64>) -> Vector3<f64> {
+        let k = 1.0 - self.major / p.x.hypot(p.y);
+        Vector3::new(k * p.x, k * p.y, p.z).normalize()
+    }
+
+    fn point(&self, theta: f64, phi: f64) -> Point3<f64> {
+        let rho = self.major + self.minor * phi.cos();
+        Point3::new(rho * theta.cos(), rho * theta.sin(), self.minor * phi.sin())
+    }
+
+    /// Where the line p + s v is in the torus, for s over `range`.
+    fn inside(&self, p: &Point3<f64>, v: &Vector3<f64>, range: [f64; 2]) -> Vec<[f64; 2]> {
+        // About the point nearest to the centre, lengths in units of the reach.
+        let middle = -p.coords.dot(v);
+        let unit = self.major + self.minor;
+        let q = (p.coords + v * middle) / unit;
+        let (major, minor) = (self.major / unit, self.minor / unit);
+        let c = q.norm_squared() + major * major - minor * minor;
+        let b = 2.0 * q.dot(v);
+        let k = 4.0 * major * major;
+        let quartic = [
+            c * c - k * (q.x * q.x + q.y * q.y),
+            2.0 * b * c - 2.0 * k * (q.x * v.x + q.y * v.y),
+            b * b + 2.0 * c - k * (v.x * v.x + v.y * v.y),
+            2.0 * b,
+            1.0,
+        ];
+        let bounds = [-1.01, 1.01];
+        let roots = real_roots(&quartic, bounds);
+        let s = |u: f64| middle + u * unit;
+        roots
+            .chunks_exact(2)
+            .map(|c| [s(c[0]), s(c[1])])
+            .filter(|c| c[1] > range[0] && c[0] < range[1])
+            .collect()
+    }
+}
+
+/// The sign changes of a polynomial, between those of its derivative, by bisection alone.
+fn real_roots(k: &[f64], [lo, hi]: [f64; 2]) -> Vec<f64> {
+    if k.len() < 2 {
+        return Vec::new();
+    }
+    let derivative: Vec<f64> = (1..k.len()).map(|i| k[i] * i as f64).collect();
+    let mut stops = vec![lo];
+    stops.extend(real_roots(&derivative, [lo, hi]));
+    stops.push(hi);
+    let value = |x: f64| k.iter().rev().fold(0.0, |v, c| v * x + c);
+    let mut roots = Vec::new();
+    for pair in stops.windows(2) {
+        let [mut a, mut b] = [pair[0], pair[1]];
+        if (value(a) < 0.0) == (value(b) < 0.0) {
+            continue;
+        }
+        let low = value(a) < 0.0;
+        for _ in 0..80 {
+            let m = 0.5 * (a + b);
+            if (value(m) < 0.0) == low {
+                a = m;
+            } else {
+                b = m;
+            }
+        }
+        roots.push(0.5 * (a + b));
+    }
+    roots
+}
+
+/// How many stretches of the torus lie before a point of a limb; none where the answer changes
+/// next to the point.
+fn invisibility(t: &Torus, projection: &Projection, p: &Point3<f64>) -> Option<u32> {
+    let aside = 1e-7 * (t.major + t.minor);
+    let depth = 4.0 * (aside * (t.major + t.minor)).sqrt();
+    let (v, _) = projection.towards_eye(p);
+    let n = t.normal(p);
+    let across = n.cross(&v);
+    let count = |offset: Vector3<f64>| {
+        let q = p + offset * aside;
+        let (v, length) = projection.towards_eye(&q);
+        let within = t.inside(&q, &v, [depth, length]);
+        within.iter().filter(|i| i[1] < length).count() as u32
+    };
+    let all: Vec<u32> = [n, n + across, n - across, -n, across - n, -n - across]
+        .iter()
+        .map(|o| count(*o))
+        .collect();
+    // The own fold adds nothing beyond the depth, unless it is a hollow one.
+    all.iter().all(|c| *c == all[0]).then_some(all[0])
+}
+
+/// The limb's points by the closed form (two angles of the tube for each about the axis).
+fn limb_points(t: &Torus, sight: &Sight) -> Vec<Point3<f64>> {
+    let mut found = Vec::new();
+    for k in 0..360 {
+        let theta = TAU * (f64::from(k) + 0.37) / 360.0;
+        let (sin, cos) = theta.sin_cos();
+        let (a, b, c) = match sight {
+            Sight::Eye(e) => (t.major - e.x * cos - e.y * sin, -e.z, t.minor),
+            Sight::Direction(d) => (-d.x * cos - d.y * sin, -d.z, 0.0),
+        };
+        let size = a.hypot(b);
+        if c.abs() < size {
+            let (middle, half) = (b.atan2(a), (-c / size).acos());
+            found.push(t.point(theta, middle + half));
+            found.push(t.point(theta, middle - half));
+        }
+    }
+    found
+}
+
+#[derive(Debug, Default)]
+struct Tally {
+    agreed: usize,
+    ambiguous: usize,
+    cusps: usize,
+    wrong: Vec<String>,
+}
+
+impl Tally {
+    fn view(&mut self, name: &str, t: &Torus, part: &Evaluation, camera: &Camera) {
+        let size = 2.0 * (t.major + t.minor);
+        let projection = Projection::new(camera, size);
+        let seen = match contours(&part.brep, camera, part.resolution) {
+            Ok(seen) => seen,
+            Err(error) => return self.wrong.push(format!("{name}: {error}")),
+        };
+        let again = contours_by(&part.brep, camera, part.resolution, Method::Counted).unwrap();
+        for (a, b) in seen.contours.iter().zip(&again.contours) {
+            let qi = |c: &premio_visibility::contour::Contour| {
+                c.pieces.iter().map(|p| p.qi).collect::<Vec<_>>()
+            };
+            if qi(a) != qi(b) {
+                let text = format!("{name}: carried {:?}, counted {:?}", qi(a), qi(b));
+                self.wrong.push(text);
+            }
+        }
+        let found = self.pieces(name, t, &projection, &seen);
+        self.wrong.extend(found);
+        for p in limb_points(t, &projection.sight) {
+            let on = seen.contours.iter().any(|c| {
+                let s = c.curve3.parameter(&p);
+                let near = (c.curve3.point(s) - p).norm() < 1e-7 * size;
+                let period = c.curve3.period().unwrap_or(f64::INFINITY);
+                near && c.pieces.iter().any(|piece| {
+                    let s = piece.t[0] + (s - piece.t[0]).rem_euclid(period);
+                    s <= piece.t[1] || s - period > piece.t[0] - 1e-6
+                })
+            });
+            if !on {
+                self.wrong.push(format!("{name}: no limb through {p}"));
+            }
+        }
+    }
+
+    fn pieces(
+        &mut self,
+        name: &str,
+        t: &Torus,
+        projection: &Projection,
+        seen: &Contours,
+    ) -> Vec<String> {
+        let mut wrong = Vec::new();
+        self.cusps += seen
+            .junctions
+            .iter()
+            .filter(|j| j.kind == JunctionKind::Cusp)
+            .count();
+        for contour in &seen.contours {
+            for piece in &contour.pieces {
+                let [lo, hi] = piece.t;
+                let at = |part: f64| contour.curve3.point(lo + (hi - lo) * part);
+                let mut bends = [false; 2];
+                for k in 0..24 {
+                    let p = at((f64::from(k) + 0.5) / 24.0);
+                    let (v, _) = projection.towards_eye(&p);
+                    if t.value(&p).abs() > 1e-9 || t.normal(&p).dot(&v).abs() > 1e-7 {
+                        wrong.push(format!("{name}: {p} is on no limb"));
+                    }
+                    // The fold's side: how the torus leaves its tangent along the line of sight.
+                    let (n, step) = (t.normal(&p), 1e-3 * t.minor);
+                    let level = |s: f64| t.value(&(p + v * s));
+                    let bend = level(step) + level(-step) - 2.0 * t.value(&p);
+                    if bend.abs() > 1e-8 && n.norm() > 0.0 {
+                        bends[usize::from(bend > 0.0)] = true;
+                    }
+                }
+                if bends == [true; 2] {
+                    wrong.push(format!("{name}: a cusp within {:?}", piece.t));
+                }
+                for k in 0..SAMPLES {
+                    let p = at((k as f64 + 0.5) / SAMPLES as f64);
+                    match invisibility(t, projection, &p) {
+                        None => self.ambiguous += 1,
+                        Some(qi) if qi == piece.qi => self.agreed += 1,
+                        Some(qi) => wrong.push(format!(
+                            "{name}: contour {} {:?}: {} for {qi} at {p}",
+                            contour.id, piece.t, piece.qi
+                        )),
+                    }
+                }
+            }
+        }
+        wrong
+    }
+}
+
+fn examine(t: Torus, seed: u64) {
+    let part = torus(t);
+    let mut random = Random(seed);
+    let reach = t.major + t.minor;
+    let mut tally = Tally::default();
+    for k in 0..200 {
+        let towards = random.direction();
+        let eye = Point3::from(towards * (reach * (1.1 + 6.0 * random.unit())));
+        let target = Point3::from(random.direction() * (0.3 * reach * random.unit()));
+        let up = random.direction();
+        let perspective = Camera::perspective(eye, target, up, 1.0).unwrap();
+        tally.view(
+            &format!("perspective {k} from {eye}"),
+            &t,
+            &part,
+            &perspective,
+        );
+        let orthographic = Camera::orthographic(eye, Point3::origin(), up).unwrap();
+        tally.view(
+            &format!("orthographic {k} from {eye}"),
+            &t,
+            &part,
+            &orthographic,
+        );
+    }
+    println!(
+        "{} agree, {} ambiguous, {} cusps, {} wrong",
+        tally.agreed,
+        tally.ambiguous,
+        tally.cusps,
+        tally.wrong.len()
+    );
+    let some = &tally.wrong[..tally.wrong.len().min(12)];
+    assert!(
+        some.is_empty(),
+        "{} wrong:\n{}",
+        tally.wrong.len(),
+        some.join("\n")
+    );
+    assert!(tally.ambiguous * 20 < tally.agreed && tally.cusps > 100);
+}
+
+#[test]
+fn a_thick_torus() {
+    examine(
+        Torus {
+            major: 10.0,
+            minor: 4.0,
+        },
+        1,
+    );
+}
+
+#[test]
+fn a_thin_torus() {
+    examine(
+        Torus {
+            major: 10.0,
+            minor: 2.0,
+        },
+        2,
+    );
+}

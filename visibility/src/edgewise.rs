@@ -1,0 +1,105 @@
+//! Curves without a closed form on a surface that is seen edge-on: a branch's mouth on the wall of
+//! a pipe seen along its axis. Their images lie on the surface's, a line or a conic, and turn back
+//! on themselves.
+//!
+//! Two such curves on one surface overlap; every other curve crosses them where it passes the
+//! surface. So nothing of the image has to be searched in two parameters.
+
+use crate::projection::{Projection, Sight};
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::surface::{Cylinder, Surface};
+use premio_kernel::number::interval::Interval;
+use premio_kernel::number::jet::Jet;
+use premio_kernel::number::roots::{Zeros, isolate};
+use premio_kernel::number::scalar::Scalar;
+use premio_kernel::number::sign::ROUNDING;
+
+/// The cylinder that an image lies on, and where it turns back on itself.
+#[derive(Clone, Debug)]
+pub struct Edgewise {
+    /// A cylinder seen along its axis.
+    pub carrier: Cylinder,
+    /// The parameters of the turns.
+    pub turns: Vec<f64>,
+}
+
+/// Places that tell whether a curve lies on a surface: no curve of the kinds there are meets a
+/// cylinder in so many points of a range without lying on it, other than by design.
+const PLACES: usize = 17;
+
+impl Edgewise {
+    /// The curve over `range` on one of the surfaces, if that is seen edge-on.
+    pub fn of<'a>(
+        curve: &Curve,
+        range: [f64; 2],
+        surfaces: impl Iterator<Item = &'a Surface>,
+        projection: &Projection,
+        band: f64,
+    ) -> Option<Self> {
+        let Sight::Direction(sight) = projection.sight else {
+            return None;
+        };
+        let carrier = surfaces.into_iter().find_map(|surface| match surface {
+            Surface::Cylinder(s) if s.frame.z.cross(&sight).norm() <= ROUNDING => Some(*s),
+            _ => None,
+        })?;
+        // x y' - y x' vanishes; it is the square of the radius times the angle's derivative.
+        let f = |t: Interval| {
+            let [x, y, _] = carrier.frame.local(curve.jet_over(t));
+            Jet {
+                v: (x.v * y.d - y.v * x.d).scale(1.0 / carrier.radius),
+                d: (x.v * y.dd - y.v * x.dd).scale(1.0 / carrier.radius),
+                dd: Interval::ENTIRE,
+            }
+        };
+        let turns = match isolate(&f, &curve.breaks(range[0], range[1]), band) {
+            Zeros::Everywhere => Vec::new(),
+            Zeros::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
+        };
+        Some(Self { carrier, turns })
+    }
+
+    /// Whether another curve lies on the carrier.
+    pub fn holds(&self, curve: &Curve, [lo, hi]: [f64; 2], near: f64) -> bool {
+        let carrier = Surface::Cylinder(self.carrier);
+        let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
+        (0..PLACES).all(|k| carrier.distance(&curve.point(at(k))).abs() <= near)
+    }
+
+    /// Where another curve passes the carrier.
+    pub fn passed_by(&self, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
+        let carrier = Surface::Cylinder(self.carrier);
+        let f = |t: Interval| carrier.level(curve.jet_over(t));
+        match isolate(&f, &curve.breaks(range[0], range[1]), band) {
+            Zeros::Everywhere => Vec::new(),
+            Zeros::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
+        }
+    }
+
+    /// The parameters of the curve itself whose image is that of the point `p`.
+    pub fn parameters(
+        &self,
+        curve: &Curve,
+        range: [f64; 2],
+        p: [f64; 3],
+        band: f64,
+        found: &mut impl FnMut(f64),
+    ) {
+        let q = self.carrier.frame.coordinates(&p.into());
+        let size = q.x.hypot(q.y);
+        let (cos, sin) = (q.x / size, q.y / size);
+        // On the ray from the axis through the point, not the one opposite.
+        let f = |t: Interval| {
+            let [x, y, _] = self.carrier.frame.local(curve.jet_over(t));
+            y.scale(cos) - x.scale(sin)
+        };
+        if let Zeros::At { roots, .. } = isolate(&f, &curve.breaks(range[0], range[1]), band) {
+            for r in roots {
+                let at = self.carrier.frame.coordinates(&curve.point(r.t));
+                if at.x * cos + at.y * sin > 0.0 {
+                    found(r.t);
+                }
+            }
+        }
+    }
+}

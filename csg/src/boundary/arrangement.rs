@@ -312,14 +312,6 @@ impl Arrangement {
                 }
                 Zeros::At { roots, misses } => (roots, misses),
             };
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "CUT {} {:?} by {c} {:?}: {roots:?}",
-                    m.curve.name(),
-                    m.carriers,
-                    self.carriers[c].kind()
-                );
-            }
             for r in roots {
                 let p = m.curve.point(r.t);
                 let absorbed = special.iter().any(|s| {

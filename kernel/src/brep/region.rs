@@ -33,6 +33,9 @@ pub struct RegionError {
     pub place: [f64; 3],
 }
 
+/// The least sine of the angle under which a walk leaves an arc.
+const SLANT: f64 = 0.02;
+
 /// Where on an arc a walk may start.
 const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
 
@@ -49,6 +52,8 @@ struct Sorter<'a> {
     parent: Vec<usize>,
     /// Whether a loop on a torus does not shrink to a point.
     winding: bool,
+    /// Whether walks may start out of the face.
+    outward_walks: bool,
 }
 
 /// The regions of `surface` bounded by `loops`, the region to the left of each, seen from outside.
@@ -79,6 +84,7 @@ pub(super) fn regions<'a>(
         band,
         parent,
         winding: false,
+        outward_walks: false,
     };
     if let Surface::Torus(_) = surface {
         sorter.winding = loops.iter().any(|ring| sorter.turns(ring).winds);
@@ -121,19 +127,27 @@ impl Sorter<'_> {
             .filter(|&a| self.owner[a] == ring)
             .collect();
         let mut place = [0.0; 3];
-        for attempt in 0..ATTEMPTS {
-            for &fraction in &STARTS {
-                for &arc in &own {
-                    let a = &self.arcs[arc];
-                    let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
-                    let p = a.curve.point(t);
-                    place = p.into();
-                    let tangent = a.curve.tangent(t) * a.sense.sign();
-                    let left = (self.surface.normal(&p) * self.outward.sign()).cross(&tangent);
-                    if self.walk_from(ring, arc, &p, &left, attempt) {
-                        return Ok(());
+        // First into the face; a loop from which every walk leads out of it, as from the upper rim
+        // of a cylinder, is met by the walks of the others.
+        for outward in [false, true] {
+            self.outward_walks = outward;
+            for attempt in 0..ATTEMPTS {
+                for &fraction in &STARTS {
+                    for &arc in &own {
+                        let a = &self.arcs[arc];
+                        let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
+                        let p = a.curve.point(t);
+                        place = p.into();
+                        let tangent = a.curve.tangent(t) * a.sense.sign();
+                        let normal = self.surface.normal(&p) * self.outward.sign();
+                        if self.walk_from(ring, arc, &p, &normal.cross(&tangent), attempt) {
+                            return Ok(());
+                        }
                     }
                 }
+            }
+            if let Surface::Torus(_) = self.surface {
+                break;
             }
         }
         Err(RegionError { place })
@@ -193,7 +207,7 @@ impl Sorter<'_> {
         goal: Option<usize>,
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
-        if heading.abs() < 0.02 {
+        if heading.abs() < SLANT || (heading < 0.0 && !self.outward_walks) {
             return false;
         }
         let mut inside = (heading > 0.0).then_some(ring);

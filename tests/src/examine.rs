@@ -20,14 +20,22 @@ pub struct Depth {
     pub views: bool,
 }
 
-/// The same as [`examine`], given up after some time; the work then goes on unheeded.
-pub fn examine_within(json: &str, depth: Depth, limit: Duration) -> Vec<String> {
+/// The outcome of some work; none where it takes longer than `limit`, and then goes on unheeded.
+pub fn within<T: Send + 'static>(
+    limit: Duration,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Option<T> {
     let (sender, receiver) = mpsc::channel();
-    let text = json.to_owned();
     // Nobody listens any more where the time has run out.
-    std::thread::spawn(move || sender.send(examine(&text, depth)).is_ok());
-    let late = |_| vec![format!("time: more than {limit:?}")];
-    receiver.recv_timeout(limit).unwrap_or_else(late)
+    std::thread::spawn(move || sender.send(work()).is_ok());
+    receiver.recv_timeout(limit).ok()
+}
+
+/// The same as [`examine`], given up after some time.
+pub fn examine_within(json: &str, depth: Depth, limit: Duration) -> Vec<String> {
+    let text = json.to_owned();
+    within(limit, move || examine(&text, depth))
+        .unwrap_or_else(|| vec![format!("time: more than {limit:?}")])
 }
 
 /// What is wrong with a tree, one kind each; nothing where all is well.

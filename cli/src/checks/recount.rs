@@ -12,6 +12,8 @@ const SAMPLES: [f64; 3] = [0.21, 0.5, 0.83];
 
 /// What disagrees is looked at again with rays that run this much closer.
 const CLOSER: f64 = 1.0 / 16.0;
+/// How many times the clearance a sample is away from the ends of its piece.
+const NEAR: f64 = 10.0;
 
 /// A piece whose invisibility is not what rays say.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +26,8 @@ pub struct WrongPiece {
     pub piece: usize,
     /// The sample.
     pub place: [f64; 3],
+    /// The range of the piece.
+    pub t: [f64; 2],
     /// What the piece says.
     pub given: u32,
     /// What the rays say.
@@ -55,18 +59,21 @@ impl Recount {
         let again = |p: &_| material.invisibility(p, sight, &closer);
         let mut recount = Self::default();
         for contour in &seen.contours {
-            let end_on = matches!(contour.curve2, ImageCurve::Point { .. });
             for (index, piece) in contour.pieces.iter().enumerate() {
                 recount.pieces += 1;
                 let [lo, hi] = piece.t;
+                let ends = [lo, hi].map(|t| contour.curve3.point(t));
+                let open = piece.start.is_some() || piece.end.is_some();
+                let end_on = matches!(contour.curve2, ImageCurve::Point { .. });
                 let mut wrong = None;
                 for part in SAMPLES {
                     let place = contour.curve3.point(lo + part * (hi - lo));
-                    match material.invisibility(&place, sight, clearance) {
+                    // Where a piece ends, another contour is near.
+                    let short = ends.map(|e| (e - place).norm() < NEAR * clearance.aside);
+                    let unclear = end_on || (open && short.contains(&true));
+                    let counted = material.invisibility(&place, sight, clearance);
+                    match counted.filter(|_| !unclear) {
                         None => recount.ambiguous += 1,
-                        // Seen end-on it has no two sides; the rays beside it may all miss what
-                        // covers a narrow angle of its surroundings.
-                        Some(counted) if end_on && counted != piece.qi => recount.ambiguous += 1,
                         Some(counted) if counted == piece.qi && piece.visible == (counted == 0) => {
                             recount.agreed += 1;
                         }
@@ -74,6 +81,7 @@ impl Recount {
                         Some(counted) if again(&place) != Some(counted) => recount.ambiguous += 1,
                         Some(counted) => {
                             wrong = Some(WrongPiece {
+                                t: piece.t,
                                 contour: contour.id,
                                 kind: contour.kind,
                                 piece: index,
@@ -125,8 +133,8 @@ impl fmt::Display for Recount {
             let [x, y, z] = w.place;
             write!(
                 f,
-                "; contour {} ({:?}) piece {}: {} for {} at ({x:.6}, {y:.6}, {z:.6})",
-                w.contour, w.kind, w.piece, w.given, w.counted
+                "; contour {} ({:?}) piece {} over {:?}: {} for {} at ({x:.6}, {y:.6}, {z:.6})",
+                w.contour, w.kind, w.piece, w.t, w.given, w.counted
             )?;
         }
         Ok(())

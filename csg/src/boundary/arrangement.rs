@@ -12,7 +12,7 @@ use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::cut::cut;
 use premio_kernel::geometry::intersect::{Branch, Extent, coincidence, meet};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::roots::{Contact, Zeros};
+use premio_kernel::number::roots::{Contact, Root, Zeros};
 use premio_kernel::number::sign::{Judge, ROUNDING};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -53,6 +53,13 @@ pub(super) struct Corner {
     pub point: Point3<f64>,
     /// The carriers through it, in order.
     pub carriers: Vec<usize>,
+}
+
+/// A contact of so high an order that many points are within the band.
+struct Wide {
+    meeting: usize,
+    carrier: usize,
+    root: Root,
 }
 
 /// The solids' boxes, to be asked for what lies near.
@@ -96,8 +103,12 @@ pub(super) fn arrange(
     for ((a, b), supports) in found.pairs(solids, band) {
         found.add_pair(a, b, &supports, extent, judge, &mut corners)?;
     }
+    let mut wide = Vec::new();
     for i in 0..found.meetings.len() {
-        found.cut_meeting(i, solids, judge, &mut corners);
+        found.cut_meeting(i, solids, judge, &mut corners, &mut wide);
+    }
+    for w in &wide {
+        found.place_wide(w, judge, &mut corners);
     }
     found.corners = corners.all;
     found.share_corners(judge);
@@ -108,6 +119,9 @@ pub(super) fn arrange(
     }
     Ok(found)
 }
+
+/// Points nearer to one another than this many times the resolution are a close call.
+const CLOSE_CALL: f64 = 100.0;
 
 /// A curve may pass one corner twice, but never within this part of a radian or a unit.
 const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
@@ -262,7 +276,14 @@ impl Arrangement {
     }
 
     /// Cuts a curve by the carriers of all faces that come near it.
-    fn cut_meeting(&mut self, index: usize, solids: &Solids, judge: &Judge, corners: &mut Corners) {
+    fn cut_meeting(
+        &mut self,
+        index: usize,
+        solids: &Solids,
+        judge: &Judge,
+        corners: &mut Corners,
+        wide: &mut Vec<Wide>,
+    ) {
         let band = judge.band();
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
@@ -278,39 +299,136 @@ impl Arrangement {
         }
         near.sort_unstable();
         near.dedup();
+        let known: Vec<Cut> = m.cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for c in near {
-            match cut(&m.curve, m.range, &self.carriers[c], band) {
-                Zeros::Everywhere => holding.push(c),
-                Zeros::At { roots, misses } => {
-                    for r in roots {
-                        let p = m.curve.point(r.t);
-                        let all = [m.carriers[0], m.carriers[1], c];
-                        let plain = r.contact == Contact::Simple;
-                        let p = if plain { self.polished(p, all) } else { p };
-                        if let Some(margin) = r.margin {
-                            judge.note("curve on surface", margin, p.coords.into());
-                        }
-                        cuts.push(Cut {
-                            t: r.t,
-                            vertex: corners.at(&p, &all, judge),
-                        });
-                    }
-                    for (t, value) in misses {
-                        judge.note(
-                            "curve beside surface",
-                            value,
-                            m.curve.point(t).coords.into(),
-                        );
-                    }
+            let special = self.special_points(index, c, &known, judge, corners);
+            let m = &self.meetings[index];
+            let (roots, misses) = match cut(&m.curve, m.range, &self.carriers[c], band) {
+                Zeros::Everywhere => {
+                    holding.push(c);
+                    continue;
                 }
+                Zeros::At { roots, misses } => (roots, misses),
+            };
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "CUT {} {:?} by {c} {:?}: {roots:?}",
+                    m.curve.name(),
+                    m.carriers,
+                    self.carriers[c].kind()
+                );
             }
+            for r in roots {
+                let p = m.curve.point(r.t);
+                let absorbed = special.iter().any(|s| {
+                    let at = corners.all[s.vertex].point;
+                    (r.lo <= s.t && s.t <= r.hi) || (at - p).norm() <= CLOSE_CALL * band
+                });
+                if absorbed {
+                    continue;
+                }
+                if let Some(margin) = r.margin {
+                    judge.note("curve on surface", margin, p.coords.into());
+                }
+                let all = [m.carriers[0], m.carriers[1], c];
+                if (m.curve.point(r.lo) - m.curve.point(r.hi)).norm() > CLOSE_CALL * band {
+                    wide.push(Wide {
+                        meeting: index,
+                        carrier: c,
+                        root: r,
+                    });
+                    continue;
+                }
+                let plain = r.contact == Contact::Simple;
+                let p = if plain { self.polished(p, all) } else { p };
+                cuts.push(Cut {
+                    t: r.t,
+                    vertex: corners.at(&p, &all, judge),
+                });
+            }
+            for (t, value) in misses {
+                judge.note(
+                    "curve beside surface",
+                    value,
+                    m.curve.point(t).coords.into(),
+                );
+            }
+            cuts.extend(special);
         }
         let m = &mut self.meetings[index];
         m.carriers.extend(holding);
         m.carriers.sort_unstable();
         m.cuts.extend(cuts);
+    }
+
+    /// Puts a cut whose place is not well known at a corner that is, where there is one in reach.
+    fn place_wide(&mut self, w: &Wide, judge: &Judge, corners: &mut Corners) {
+        let m = &self.meetings[w.meeting];
+        let all = [m.carriers[0], m.carriers[1], w.carrier];
+        let middle = m.curve.point(w.root.t);
+        let ends = [w.root.lo, w.root.hi].map(|t| (m.curve.point(t) - middle).norm());
+        let reach = ends[0].max(ends[1]) + judge.band();
+        let fits = |v: &usize| {
+            let p = corners.all[*v].point;
+            (p - middle).norm() <= reach
+                && all
+                    .iter()
+                    .all(|&c| judge.within(self.carriers[c].distance(&p)))
+                && judge.within((m.curve.point(m.curve.parameter(&p)) - p).norm())
+        };
+        let away = |v: &usize| (corners.all[*v].point - middle).norm();
+        let best = (0..corners.all.len())
+            .filter(fits)
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        let (t, vertex) = match best {
+            Some(v) => {
+                let p = corners.all[v].point;
+                let t = in_range(&m.curve, m.range, m.curve.parameter(&p));
+                (t, corners.at(&p, &all, judge))
+            }
+            None => (w.root.t, corners.at(&middle, &all, judge)),
+        };
+        self.meetings[w.meeting].cuts.push(Cut { t, vertex });
+    }
+
+    /// The points of a curve known beforehand to lie on a carrier: where the curve crosses itself,
+    /// and the carrier's apex. The distance is no smooth function along the curve there, so roots
+    /// next to them are less well known than the points.
+    fn special_points(
+        &self,
+        index: usize,
+        carrier: usize,
+        known: &[Cut],
+        judge: &Judge,
+        corners: &mut Corners,
+    ) -> Vec<Cut> {
+        let m = &self.meetings[index];
+        let surface = &self.carriers[carrier];
+        let mut special: Vec<Cut> = Vec::new();
+        for cut in known {
+            let p = corners.all[cut.vertex].point;
+            if judge.within(surface.distance(&p)) {
+                let vertex = corners.at(&p, &[carrier], judge);
+                special.push(Cut { vertex, ..*cut });
+            }
+        }
+        if let Surface::Cone(cone) = surface {
+            let apex = cone.frame.origin;
+            if m.bounds.grown(judge.band()).holds(&apex) {
+                let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
+                let away = (m.curve.point(t) - apex).norm();
+                if t >= m.range[0] && t <= m.range[1] && judge.within(away) {
+                    let all = [m.carriers[0], m.carriers[1], carrier];
+                    special.push(Cut {
+                        t,
+                        vertex: corners.at(&apex, &all, judge),
+                    });
+                }
+            }
+        }
+        special
     }
 
     /// The common point of three surfaces next to `p`, by Newton's steps where they are well
@@ -360,15 +478,20 @@ impl Arrangement {
                 }
                 let t = m.curve.parameter(&corner.point);
                 let [lo, hi] = m.range;
-                let t = match m.curve.period() {
-                    Some(period) => lo + (t - lo).rem_euclid(period),
-                    None => t,
-                };
+                let t = in_range(&m.curve, m.range, t);
                 if t >= lo && t <= hi && judge.within((m.curve.point(t) - corner.point).norm()) {
                     m.cuts.push(Cut { t, vertex: v });
                 }
             }
         }
+    }
+}
+
+/// The parameter of a closed curve brought into a range that starts where it does.
+fn in_range(curve: &Curve, range: [f64; 2], t: f64) -> f64 {
+    match curve.period() {
+        Some(period) => range[0] + (t - range[0]).rem_euclid(period),
+        None => t,
     }
 }
 

@@ -6,7 +6,7 @@ use premio_kernel::geometry::frame::Frame;
 use std::f64::consts::TAU;
 
 /// How many neighbours must agree.
-const NEIGHBOURS: usize = 8;
+const NEIGHBOURS: usize = 24;
 
 /// How far things must be apart for rays to tell them apart, in the part's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -285,7 +285,12 @@ impl<'a> Assembler<'a> {
         let start = if first { e.range[0] } else { e.range[1] };
         let middle = 0.5 * (e.range[0] + e.range[1]);
         let gap = |t: f64| (curve.point(t) - v).norm() - radius;
-        curve.point(bisect(start, middle, -radius, gap))
+        let t = if first {
+            bisect(start, middle, -radius, gap)
+        } else {
+            bisect(middle, start, radius, gap)
+        };
+        curve.point(t)
     }
 
     /// The closed runs of halves.

@@ -155,7 +155,7 @@ fn check_edges(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
     for id in t.edge_ids() {
         let edge = t.edge(id);
         let paired = edge.coedges.len() >= 2
-            && edge.coedges.len() % 2 == 0
+            && edge.coedges.len().is_multiple_of(2)
             && edge
                 .coedges
                 .chunks(2)

@@ -337,7 +337,8 @@ impl Sorter<'_> {
                 round.upto(turn.abs() * rho),
                 tube.upto((up.abs() * t.minor - 64.0 * self.band).max(0.0)),
             ];
-            if self.follow(ring, arc, p, left, &legs, None) {
+            // The way ends just before the first loop: within its face, or on its other side.
+            if self.follow(ring, arc, p, left, &legs, Some(0)) {
                 return true;
             }
         }

@@ -302,6 +302,9 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
 
 /// The zero of `g` in [a, b] with opposite signs at the ends, to the last double.
 pub fn bisect(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> f64) -> f64 {
+    if ga == 0.0 {
+        return a;
+    }
     for _ in 0..200 {
         let m = 0.5 * (a + b);
         if m <= a || m >= b {
@@ -322,6 +325,9 @@ pub fn bisect(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> f64) -> f64 {
 
 /// The zero of `g` in [a, b] by Newton's steps kept inside a shrinking bracket.
 pub fn bisect_newton(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> (f64, f64)) -> f64 {
+    if ga == 0.0 {
+        return a;
+    }
     let mut t = 0.5 * (a + b);
     let mut last = b - a;
     for _ in 0..200 {

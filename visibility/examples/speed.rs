@@ -1,7 +1,7 @@
-//! How long a view takes: `cargo test --release -p premio-visibility --test speed -- --ignored
-//! --nocapture`.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
+//! How long a view takes: `cargo run --release -p premio-visibility --example speed`.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a measurement")]
 
+#[path = "../tests/parts/mod.rs"]
 mod parts;
 
 use nalgebra::{Point3, Vector3};
@@ -27,9 +27,7 @@ fn time(name: &str, part: &Brep, camera: &Camera, runs: u32) {
     );
 }
 
-#[test]
-#[ignore = "measures"]
-fn views() {
+fn main() {
     let mut b = Builder::default();
     b.block(
         &Frame::world(),

@@ -251,6 +251,8 @@ struct Search<'s, 'a, 'j, 'p> {
     junctions: &'j mut Junctions<'p>,
     /// (strand, split) found so far.
     splits: Vec<(u32, Split)>,
+    /// By strand: the points of the image at which others that fall on it end.
+    asked: Vec<Vec<[f64; 2]>>,
 }
 
 /// Finds all T-junctions and notes them as splits of the farther strands.
@@ -260,6 +262,7 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
         scene,
         junctions,
         splits: Vec::new(),
+        asked: vec![Vec::new(); strands.len()],
     };
     for (i, j) in pairs {
         let (a, b) = (&strands[i as usize], &strands[j as usize]);
@@ -465,7 +468,18 @@ impl Search<'_, '_, '_, '_> {
         stops.extend([lo, hi]);
         for s in stops {
             let q = b.curve.point(s);
+            // In a symmetric view many ends fall on one point.
             let h = self.scene.projection.homogeneous(&q);
+            let asked = &mut self.asked[i as usize];
+            let at = [h.x / h.z, h.y / h.z];
+            let near = self.scene.band * h.z.recip();
+            if asked
+                .iter()
+                .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]) <= near)
+            {
+                continue;
+            }
+            asked.push(at);
             let mut met = Vec::new();
             parameters_at(a, &h, q.into(), self.scene.band, &mut |t| met.push(t));
             for t in met {

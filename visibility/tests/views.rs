@@ -275,7 +275,8 @@ fn constant(brep: &Brep, camera: &Camera, c: &Contours) {
                     true if contour.kind == Kind::Limb => Own::Tangent,
                     true => Own::Through,
                 };
-                let count = scene.count(&p, &own);
+                let along = contour.curve3.tangent(lo + (hi - lo) * part);
+                let count = scene.count(&p, &along, &own);
                 if count.plain {
                     assert_eq!(
                         count.qi, piece.qi,

@@ -52,8 +52,6 @@ struct Sorter<'a> {
     parent: Vec<usize>,
     /// Whether a loop on a torus does not shrink to a point.
     winding: bool,
-    /// Whether walks may start out of the face.
-    outward_walks: bool,
 }
 
 /// The regions of `surface` bounded by `loops`, the region to the left of each, seen from outside.
@@ -73,7 +71,7 @@ pub(super) fn regions<'a>(
         .iter()
         .map(|a| bounds(a.curve, a.range).grown(band))
         .collect();
-    // More than the loops: the fixed points of a sphere, one for each attempt.
+    // More than the loops: the fixed points of a sphere or a cone, one for each attempt.
     let parent = (0..loops.len() + ATTEMPTS).collect();
     let mut sorter = Sorter {
         surface,
@@ -84,15 +82,12 @@ pub(super) fn regions<'a>(
         band,
         parent,
         winding: false,
-        outward_walks: false,
     };
     if let Surface::Torus(_) = surface {
         sorter.winding = loops.iter().any(|ring| sorter.turns(ring).winds);
     }
     if loops.len() > 1 {
-        for i in 0..loops.len() {
-            sorter.connect(i)?;
-        }
+        sorter.connect_all(loops.len())?;
     }
     let mut lists: Vec<Vec<usize>> = vec![Vec::new(); loops.len() + 1];
     for i in 0..loops.len() {
@@ -121,36 +116,40 @@ impl Sorter<'_> {
         self.parent[a.max(b)] = a.min(b);
     }
 
-    /// Joins a loop to those that it bounds a region with.
-    fn connect(&mut self, ring: usize) -> Result<(), RegionError> {
+    /// Joins all loops that bound a region together. They are led to one goal, so that all must
+    /// reach it in one attempt.
+    fn connect_all(&mut self, loops: usize) -> Result<(), RegionError> {
+        let mut failed = None;
+        for attempt in 0..ATTEMPTS {
+            failed = (0..loops).find_map(|ring| self.connect(ring, attempt));
+            if failed.is_none() {
+                break;
+            }
+        }
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// Joins a loop to those that it bounds a region with; none where a walk was clear, else a point
+    /// of the loop.
+    fn connect(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
         let own: Vec<usize> = (0..self.arcs.len())
             .filter(|&a| self.owner[a] == ring)
             .collect();
         let mut place = [0.0; 3];
-        // First into the face; a loop from which every walk leads out of it, as from the upper rim
-        // of a cylinder, is met by the walks of the others.
-        for outward in [false, true] {
-            self.outward_walks = outward;
-            for attempt in 0..ATTEMPTS {
-                for &fraction in &STARTS {
-                    for &arc in &own {
-                        let a = &self.arcs[arc];
-                        let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
-                        let p = a.curve.point(t);
-                        place = p.into();
-                        let tangent = a.curve.tangent(t) * a.sense.sign();
-                        let normal = self.surface.normal(&p) * self.outward.sign();
-                        if self.walk_from(ring, arc, &p, &normal.cross(&tangent), attempt) {
-                            return Ok(());
-                        }
-                    }
+        for &fraction in &STARTS {
+            for &arc in &own {
+                let a = &self.arcs[arc];
+                let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
+                let p = a.curve.point(t);
+                place = p.into();
+                let tangent = a.curve.tangent(t) * a.sense.sign();
+                let normal = self.surface.normal(&p) * self.outward.sign();
+                if self.walk_from(ring, arc, &p, &normal.cross(&tangent), attempt) {
+                    return None;
                 }
             }
-            if let Surface::Torus(_) = self.surface {
-                break;
-            }
         }
-        Err(RegionError { place })
+        Some(RegionError { place })
     }
 
     /// Walks from a point of a loop; false where the walk was unclear.
@@ -162,6 +161,7 @@ impl Sorter<'_> {
         left: &Vector3<f64>,
         attempt: usize,
     ) -> bool {
+        let goal = self.parent.len() - ATTEMPTS + attempt;
         match self.surface {
             Surface::Torus(t) => self.walk_torus(*t, ring, arc, p, left),
             Surface::Sphere(s) => {
@@ -169,20 +169,18 @@ impl Sorter<'_> {
                 let Some(walk) = Walk::great_circle(&s.frame.origin, p, &target) else {
                     return false;
                 };
+                let walk = match walk.direction(p).dot(left) > 0.0 {
+                    true => walk,
+                    false => walk.reversed(),
+                };
                 let walk = walk.upto(walk.at(&target));
-                self.follow(
-                    ring,
-                    arc,
-                    p,
-                    left,
-                    &[walk],
-                    Some(self.parent.len() - ATTEMPTS + attempt),
-                )
+                self.follow(ring, arc, p, left, &[walk], Some(goal))
             }
             Surface::Plane(plane) => {
                 let f = &plane.frame;
                 let angle = 0.7 + 1.9 * attempt as f64;
                 let d = f.x * angle.cos() + f.y * angle.sin();
+                let d = d * d.dot(left).signum();
                 self.follow(ring, arc, p, left, &[Walk::straight(plane, p, d)], None)
             }
             Surface::Cylinder(_) | Surface::Cone(_) => {
@@ -190,7 +188,18 @@ impl Sorter<'_> {
                 let Some(walk) = Walk::ruling(self.surface, p, u, Sense::Along) else {
                     return false;
                 };
-                self.follow(ring, arc, p, left, &[walk], None)
+                if walk.direction(p).dot(left) > 0.0 {
+                    return self.follow(ring, arc, p, left, &[walk], None);
+                }
+                let walk = walk.reversed();
+                // All rulings of a cone end in its apex.
+                match self.surface {
+                    Surface::Cone(c) => {
+                        let walk = walk.upto(walk.at(&c.frame.origin));
+                        self.follow(ring, arc, p, left, &[walk], Some(goal))
+                    }
+                    _ => self.follow(ring, arc, p, left, &[walk], None),
+                }
             }
         }
     }
@@ -207,10 +216,10 @@ impl Sorter<'_> {
         goal: Option<usize>,
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
-        if heading.abs() < SLANT || (heading < 0.0 && !self.outward_walks) {
+        if heading < SLANT {
             return false;
         }
-        let mut inside = (heading > 0.0).then_some(ring);
+        let mut inside = Some(ring);
         let mut pairs = Vec::new();
         for (k, leg) in legs.iter().enumerate() {
             let Some(crossings) = self.crossings(leg, (k == 0).then_some(arc)) else {

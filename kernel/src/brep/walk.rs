@@ -195,6 +195,15 @@ impl Walk {
         Self::circle(start, centre, axis, Branch::Half(f.origin, radial))
     }
 
+    /// The walk from the same point the other way.
+    pub fn reversed(self) -> Self {
+        let track = match self.track {
+            Track::Line(d) => Track::Line(-d),
+            Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),
+        };
+        Self { track, ..self }
+    }
+
     /// The same walk, no longer than `length`.
     pub fn upto(self, length: f64) -> Self {
         Self {

@@ -169,10 +169,7 @@ impl Sorter<'_> {
                 let Some(walk) = Walk::great_circle(&s.frame.origin, p, &target) else {
                     return false;
                 };
-                let walk = match walk.direction(p).dot(left) > 0.0 {
-                    true => walk,
-                    false => walk.reversed(),
-                };
+                let walk = walk.toward(p, left);
                 let walk = walk.upto(walk.at(&target));
                 self.follow(ring, arc, p, left, &[walk], Some(goal))
             }
@@ -180,28 +177,57 @@ impl Sorter<'_> {
                 let f = &plane.frame;
                 let angle = 0.7 + 1.9 * attempt as f64;
                 let d = f.x * angle.cos() + f.y * angle.sin();
-                let d = d * d.dot(left).signum();
-                self.follow(ring, arc, p, left, &[Walk::straight(plane, p, d)], None)
+                let walk = Walk::straight(plane, p, d).toward(p, left);
+                self.follow(ring, arc, p, left, &[walk], None)
             }
             Surface::Cylinder(_) | Surface::Cone(_) => {
-                let [u, _] = self.surface.parameters(p);
-                let Some(walk) = Walk::ruling(self.surface, p, u, Sense::Along) else {
-                    return false;
-                };
-                if walk.direction(p).dot(left) > 0.0 {
-                    return self.follow(ring, arc, p, left, &[walk], None);
-                }
-                let walk = walk.reversed();
-                // All rulings of a cone end in its apex.
-                match self.surface {
-                    Surface::Cone(c) => {
-                        let walk = walk.upto(walk.at(&c.frame.origin));
-                        self.follow(ring, arc, p, left, &[walk], Some(goal))
-                    }
-                    _ => self.follow(ring, arc, p, left, &[walk], None),
-                }
+                self.walk_ruled(ring, arc, p, left, None)
+                    || self.walk_ruled(ring, arc, p, left, Some(0.5 + 0.7 * attempt as f64))
             }
         }
+    }
+
+    /// Walks along a ruling, from the point or after a `turn` along its parallel: an arc may be a
+    /// ruling itself. All rulings of a cone end in its apex.
+    fn walk_ruled(
+        &mut self,
+        ring: usize,
+        arc: usize,
+        p: &Point3<f64>,
+        left: &Vector3<f64>,
+        turn: Option<f64>,
+    ) -> bool {
+        let ruling = |q: &Point3<f64>| {
+            let [u, _] = self.surface.parameters(q);
+            Walk::ruling(self.surface, q, u, Sense::Along)
+        };
+        let mut legs = Vec::new();
+        let mut corner = *p;
+        if let Some(turn) = turn {
+            let Some(round) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
+                return false;
+            };
+            let round = round.toward(p, left);
+            let length = turn * self.surface.frame().coordinates(p).xy().norm();
+            legs.push(round.upto(length));
+            corner = round.point(length);
+        }
+        let Some(mut walk) = ruling(&corner) else {
+            return false;
+        };
+        let mut goal = None;
+        if turn.is_none() {
+            walk = walk.toward(p, left);
+        }
+        if let Surface::Cone(c) = self.surface {
+            let height = walk.at(&c.frame.origin);
+            if height > 0.0 {
+                walk = walk.upto(height);
+                goal = Some(self.parent.len() - 1);
+            }
+        }
+        legs.push(walk);
+        self.follow(ring, arc, p, left, &legs, goal)
     }
 
     /// Follows the legs of a walk and joins the loops passed; `goal` is joined where the walk ends

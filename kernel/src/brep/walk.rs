@@ -195,8 +195,16 @@ impl Walk {
         Self::circle(start, centre, axis, Branch::Half(f.origin, radial))
     }
 
-    /// The walk from the same point the other way.
-    pub fn reversed(self) -> Self {
+    /// The walk from the same point that way round which leads to the side of `left` at `p`.
+    pub(super) fn toward(self, p: &Point3<f64>, left: &Vector3<f64>) -> Self {
+        if self.direction(p).dot(left) < 0.0 {
+            self.reversed()
+        } else {
+            self
+        }
+    }
+
+    fn reversed(self) -> Self {
         let track = match self.track {
             Track::Line(d) => Track::Line(-d),
             Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),

@@ -353,16 +353,23 @@ impl Sorter<'_> {
         let goals: Vec<usize> = (0..self.arcs.len())
             .filter(|&a| self.owner[a] == 0)
             .collect();
+        let heights = [
+            Height::First,
+            Height::Last,
+            Height::At(0.4),
+            Height::At(2.6),
+            Height::At(4.3),
+        ];
         for &fraction in &STARTS {
             for &goal in &goals {
                 let a = &self.arcs[goal];
                 let q = a
                     .curve
                     .point(a.range[0] + fraction * (a.range[1] - a.range[0]));
-                for round_first in [true, false] {
-                    // The way ends just before the first loop: within its face, or on the other
-                    // side of it.
-                    let legs = self.legs(&t, p, &q, round_first);
+                // The way ends just before the first loop: within its face, or on the other side
+                // of it.
+                for height in heights {
+                    let legs = self.legs(&t, p, &q, height);
                     if legs.is_some_and(|l| self.follow(ring, arc, p, left, &l, Some(0))) {
                         return true;
                     }
@@ -372,14 +379,15 @@ impl Sorter<'_> {
         false
     }
 
-    /// A way from `p` almost to `q` along a parallel and a circle of the tube, in either order.
+    /// A way from `p` almost to `q` along a circle of the tube, a parallel and a circle of the tube;
+    /// the parallel at one of their angles about the tube, or at another.
     fn legs(
         &self,
         t: &Torus,
         p: &Point3<f64>,
         q: &Point3<f64>,
-        round_first: bool,
-    ) -> Option<[Walk; 2]> {
+        height: Height,
+    ) -> Option<Vec<Walk>> {
         let ([u, v], [x, y]) = (self.surface.parameters(p), self.surface.parameters(q));
         let toward = |a: f64| {
             if a > 0.0 {
@@ -388,29 +396,30 @@ impl Sorter<'_> {
                 Sense::Against
             }
         };
-        let (turn, rise) = (wrap(x - u), wrap(y - v));
-        let height = if round_first { v } else { y };
-        let around = turn.abs() * (t.major + t.minor * height.cos());
-        let up = rise.abs() * t.minor;
-        let short = 64.0 * self.band;
-        let round = |from: &Point3<f64>, length: f64| {
-            let walk = Walk::parallel(self.surface, from, toward(turn), self.band)?;
-            Some(walk.upto(length.max(0.0)))
+        let turn = wrap(x - u);
+        let round = |w: f64| {
+            let from = self.surface.point(u, w);
+            let walk = Walk::parallel(self.surface, &from, toward(turn), self.band)?;
+            Some((walk, turn.abs() * (t.major + t.minor * w.cos())))
         };
-        let tube = |from: &Point3<f64>, length: f64| {
-            Walk::tube(t, from, toward(rise)).upto(length.max(0.0))
+        let tube = |from: &Point3<f64>, rise: f64| {
+            let walk = Walk::tube(t, from, toward(rise));
+            (walk, rise.abs() * t.minor)
         };
-        Some(if round_first {
-            [
-                round(p, around)?,
-                tube(&self.surface.point(x, v), up - short),
-            ]
-        } else {
-            [
-                tube(p, up),
-                round(&self.surface.point(u, y), around - short)?,
-            ]
-        })
+        let mut legs = match height {
+            Height::First => vec![round(v)?, tube(&self.surface.point(x, v), wrap(y - v))],
+            Height::Last => vec![tube(p, wrap(y - v)), round(y)?],
+            Height::At(w) => vec![
+                tube(p, wrap(w - v)),
+                round(w)?,
+                tube(&self.surface.point(x, w), wrap(y - w)),
+            ],
+        };
+        if let Some((_, length)) = legs.last_mut() {
+            *length -= 64.0 * self.band;
+        }
+        let cut = |(walk, length): (Walk, f64)| walk.upto(length.max(0.0));
+        Some(legs.into_iter().map(cut).collect())
     }
 
     /// The Euler characteristic of a region.
@@ -451,6 +460,16 @@ impl Sorter<'_> {
             area: area * self.outward.sign(),
         }
     }
+}
+
+/// The angle about the tube at which a way on a torus goes around the axis.
+#[derive(Clone, Copy)]
+enum Height {
+    /// Where the way starts.
+    First,
+    /// Where it ends.
+    Last,
+    At(f64),
 }
 
 struct Turns {

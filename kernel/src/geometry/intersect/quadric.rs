@@ -430,24 +430,60 @@ impl Rulings<'_> {
             sweep: Sweep::Round { turns: 1 },
             height,
         };
-        let reach = self.reach();
-        for range in self.bounded_ranges(&quartic, shared, reach) {
-            let curve = Curve::Quartic(Box::new(quartic));
-            for range in self.on_other_nappe(&curve, range, judge) {
-                let branch = Branch {
-                    curve: curve.clone(),
-                    range,
-                    closed: false,
-                    tangent: false,
-                };
-                meeting.branches.push(branch);
-            }
+        match self.single_conic(judge) {
+            Some(w) => self.add_conic(&w, false, judge, &mut meeting),
+            None => self.add_single(quartic, shared, judge, &mut meeting),
         }
         if let Some(u0) = shared {
             self.add_shared(u0, &quartic, judge, &mut meeting);
         }
         self.add_apexes(judge, &mut meeting);
         Ok(meeting)
+    }
+
+    /// w = -C/(2B) where that is of degree one: a planar conic.
+    fn single_conic(&self, judge: &Judge) -> Option<Trig1> {
+        let w = divide(&self.constant, &self.linear).map(|q| -0.5 * q);
+        self.meets_in_conics(judge, |u| vec![trig1(&w, u.sin_cos())])
+            .then_some(w)
+    }
+
+    /// The curve w = -C/(2B), as far as it lies on both surfaces.
+    fn add_single(
+        &self,
+        quartic: Quartic,
+        shared: Option<f64>,
+        judge: &Judge,
+        meeting: &mut Meeting,
+    ) {
+        let whole = [0.0, TAU];
+        for range in self.bounded_ranges(&quartic, shared, self.reach()) {
+            let curve = Curve::Quartic(Box::new(quartic));
+            for range in self.on_other_nappe(&curve, range, judge) {
+                let branch = Branch {
+                    curve: curve.clone(),
+                    range,
+                    closed: shared.is_none() && range == whole,
+                    tangent: false,
+                };
+                meeting.branches.push(branch);
+            }
+        }
+    }
+
+    /// Whether the heights that `conics` gives over each ruling lie on the other surface.
+    fn meets_in_conics(&self, judge: &Judge, conics: impl Fn(f64) -> Vec<f64>) -> bool {
+        let mut worst: f64 = 0.0;
+        let mut asked = false;
+        for i in 0..24 {
+            let u = TAU * (f64::from(i) + 0.3) / 24.0;
+            for w in conics(u).into_iter().filter(|&w| self.is_on_base(w)) {
+                asked = true;
+                worst = worst.max(apart(self.other, &self.world(u, w)));
+            }
+        }
+        let o = surface_of(&self.base).frame().origin;
+        asked && judge.coincide("quadrics meeting in conics", worst, place(&o))
     }
 
     /// The ruling that lies on both surfaces, where k = 0: a common zero of B and C.
@@ -607,21 +643,12 @@ impl Rulings<'_> {
         } else {
             [a0.max(0.0).sqrt(), 0.0, 0.0]
         };
-        let mut worst: f64 = 0.0;
-        let mut asked = false;
-        for i in 0..24 {
-            let u = TAU * (f64::from(i) + 0.3) / 24.0;
+        let both = |u: f64| {
             let s = trig1(&root, u.sin_cos());
             let middle = trig1(&self.linear, u.sin_cos());
-            for w in [(s - middle) / self.lead, (-s - middle) / self.lead] {
-                if self.is_on_base(w) {
-                    asked = true;
-                    worst = worst.max(apart(self.other, &self.world(u, w)));
-                }
-            }
-        }
-        let o = surface_of(&self.base).frame().origin;
-        (asked && judge.coincide("quadrics meeting in conics", worst, place(&o))).then_some(root)
+            vec![(s - middle) / self.lead, (-s - middle) / self.lead]
+        };
+        self.meets_in_conics(judge, both).then_some(root)
     }
 
     fn add_conics(&self, root: &Trig1, judge: &Judge, meeting: &mut Meeting) {

@@ -12,7 +12,7 @@ use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::cut::cut;
 use premio_kernel::geometry::intersect::{Branch, Extent, coincidence, meet};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::roots::{Contact, Root, Zeros};
+use premio_kernel::number::roots::{Contact, Zeros};
 use premio_kernel::number::sign::{Judge, ROUNDING};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -59,7 +59,10 @@ pub(super) struct Corner {
 struct Wide {
     meeting: usize,
     carrier: usize,
-    root: Root,
+    /// The parameter that fits best.
+    t: f64,
+    /// How far from there the points are within the band.
+    reach: f64,
 }
 
 /// The solids' boxes, to be asked for what lies near.
@@ -107,6 +110,8 @@ pub(super) fn arrange(
     for i in 0..found.meetings.len() {
         found.cut_meeting(i, solids, judge, &mut corners, &mut wide);
     }
+    // The best known first: the others are put where they are.
+    wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
     for w in &wide {
         found.place_wide(w, judge, &mut corners);
     }
@@ -325,11 +330,14 @@ impl Arrangement {
                     judge.note("curve on surface", margin, p.coords.into());
                 }
                 let all = [m.carriers[0], m.carriers[1], c];
-                if (m.curve.point(r.lo) - m.curve.point(r.hi)).norm() > CLOSE_CALL * band {
+                let reach = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
+                let reach = reach[0].max(reach[1]);
+                if reach > CLOSE_CALL * band {
                     wide.push(Wide {
                         meeting: index,
                         carrier: c,
-                        root: r,
+                        t: r.t,
+                        reach,
                     });
                     continue;
                 }
@@ -359,12 +367,10 @@ impl Arrangement {
     fn place_wide(&mut self, w: &Wide, judge: &Judge, corners: &mut Corners) {
         let m = &self.meetings[w.meeting];
         let all = [m.carriers[0], m.carriers[1], w.carrier];
-        let middle = m.curve.point(w.root.t);
-        let ends = [w.root.lo, w.root.hi].map(|t| (m.curve.point(t) - middle).norm());
-        let reach = ends[0].max(ends[1]) + judge.band();
+        let middle = m.curve.point(w.t);
         let fits = |v: &usize| {
             let p = corners.all[*v].point;
-            (p - middle).norm() <= reach
+            (p - middle).norm() <= w.reach
                 && all
                     .iter()
                     .all(|&c| judge.within(self.carriers[c].distance(&p)))
@@ -380,7 +386,7 @@ impl Arrangement {
                 let t = in_range(&m.curve, m.range, m.curve.parameter(&p));
                 (t, corners.at(&p, &all, judge))
             }
-            None => (w.root.t, corners.at(&middle, &all, judge)),
+            None => (w.t, corners.at(&middle, &all, judge)),
         };
         self.meetings[w.meeting].cuts.push(Cut { t, vertex });
     }

@@ -10,6 +10,7 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::bisect;
 use crate::number::scalar::Scalar;
+use crate::number::sign::ROUNDING;
 use nalgebra::Point3;
 use std::f64::consts::{PI, TAU};
 
@@ -95,12 +96,15 @@ impl Segment {
         }
     }
 
-    /// The slope at an end that lies at a node, where the partial derivatives vanish.
-    fn end_slope(&self, x: f64) -> f64 {
-        if (x - self.from).abs() < (x - self.to).abs() {
-            self.slopes[0]
-        } else {
-            self.slopes[1]
+    /// The slope at an end, next to which x lies. At a node both partial derivatives vanish, and
+    /// next to it rounding in x is all that is left of them.
+    fn end_slope(&self, x: f64) -> Option<f64> {
+        let reach = ROUNDING.sqrt();
+        let near = |end: f64| self.node.is_some() && (x - end).abs() <= reach;
+        match (near(self.from), near(self.to)) {
+            (true, _) => Some(self.slopes[0]),
+            (_, true) => Some(self.slopes[1]),
+            _ => None,
         }
     }
 
@@ -145,10 +149,10 @@ impl Segment {
 
     fn jet(&self, forms: &Forms<'_>, x: f64) -> [f64; 3] {
         let y = self.solve(forms, x);
-        let p = self.partials(forms, x, y);
-        if p[2] == 0.0 {
-            return [y, self.end_slope(x), 0.0];
+        if let Some(slope) = self.end_slope(x) {
+            return [y, slope, 0.0];
         }
+        let p = self.partials(forms, x, y);
         let d = -p[1] / p[2];
         [y, d, -(p[3] + 2.0 * p[4] * d + p[5] * d * d) / p[2]]
     }

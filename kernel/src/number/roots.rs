@@ -201,13 +201,23 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
         let t = bisect(a, b, da, |t| self.slope(t));
         let extremum = self.value(t);
         if self.sign(extremum) == 0 {
-            let lo = if self.sign(self.value(a)) == 0 { a } else { t };
-            let hi = if self.sign(self.value(b)) == 0 { b } else { t };
+            let (lo, hi) = (self.limit(t, a), self.limit(t, b));
             return self.cluster(lo, hi, t, Kind::Extremum, Some(extremum.abs()));
         }
         self.misses.push((t, extremum));
         self.monotone(a, t);
         self.monotone(t, b);
+    }
+
+    /// How far from an extremum within the band towards `end` the function stays within it.
+    fn limit(&self, extremum: f64, end: f64) -> f64 {
+        let sign = self.value(end).signum();
+        let beyond = |t: f64| sign * self.value(t) - self.band;
+        if beyond(end) <= 0.0 {
+            return end;
+        }
+        let (a, b) = (extremum.min(end), extremum.max(end));
+        bisect(a, b, beyond(a), beyond)
     }
 
     /// The root in [a, b], where the function is monotone with opposite signs at the ends.
@@ -288,17 +298,29 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
     /// The zero of a derivative in or next to a cluster, or where it is least.
     fn balance(&self, lo: f64, hi: f64, part: impl Fn(Jet<Interval>) -> Interval) -> f64 {
         let g = |t: f64| part((self.f)(Interval::point(t))).mid();
-        let w = hi - lo;
-        let marks = [lo - w, lo, 0.5 * (lo + hi), hi, hi + w].map(|t| (t, g(t)));
-        for pair in marks.windows(2) {
-            if pair[0].1 * pair[1].1 < 0.0 {
-                return bisect(pair[0].0, pair[1].0, pair[0].1, g);
+        let middle = (0.5 * (lo + hi), g(0.5 * (lo + hi)));
+        let mut least = middle;
+        let (mut left, mut right) = ((lo, g(lo)), (hi, g(hi)));
+        for _ in 0..WIDER {
+            for pair in [[left, middle], [middle, right]] {
+                let [(a, ga), (b, gb)] = pair;
+                if ga * gb < 0.0 {
+                    return bisect(a, b, ga, g);
+                }
+                least = pair
+                    .into_iter()
+                    .fold(least, |l, m| if m.1.abs() < l.1.abs() { m } else { l });
             }
+            let width = right.0 - left.0;
+            left = (left.0 - width, g(left.0 - width));
+            right = (right.0 + width, g(right.0 + width));
         }
-        let least = marks.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        least.map_or(lo, |m| m.0)
+        least.0
     }
 }
+
+/// How many times the surroundings of a cluster are tripled in search of a derivative's zero.
+const WIDER: u32 = 4;
 
 /// The zero of `g` in [a, b] with opposite signs at the ends, to the last double.
 pub fn bisect(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> f64) -> f64 {

@@ -321,7 +321,7 @@ impl Arrangement {
                 let p = m.curve.point(r.t);
                 let absorbed = special.iter().any(|s| {
                     let at = corners.all[s.vertex].point;
-                    (r.lo <= s.t && s.t <= r.hi) || (at - p).norm() <= CLOSE_CALL * band
+                    m.holds_within(r.lo, r.hi, s.t) || (at - p).norm() <= CLOSE_CALL * band
                 });
                 if absorbed {
                     continue;
@@ -478,6 +478,18 @@ impl Arrangement {
 }
 
 impl Meeting {
+    /// Whether a parameter lies in a range, on a closed curve a turn more or less.
+    fn holds_within(&self, lo: f64, hi: f64, t: f64) -> bool {
+        let period = if self.closed {
+            self.range[1] - self.range[0]
+        } else {
+            0.0
+        };
+        [-period, 0.0, period]
+            .iter()
+            .any(|turn| lo <= t + turn && t + turn <= hi)
+    }
+
     /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, at
     /// both its ends.
     fn pass(&mut self, vertex: usize, p: &Point3<f64>, judge: &Judge) {

@@ -41,6 +41,21 @@ struct Near {
     open: Vec<(usize, Sense)>,
 }
 
+/// What was seen from a point of a piece.
+struct Look {
+    /// The primitives that hold it, by leaf.
+    near: Vec<Near>,
+    /// The distance of the surface that is nearest to changing the answer.
+    margin: f64,
+}
+
+impl Look {
+    /// Whether any surface through the point belongs to a primitive that is there.
+    fn may_have_faces(&self) -> bool {
+        self.near.iter().any(|n| !n.open.is_empty())
+    }
+}
+
 struct Classifier<'a> {
     solids: &'a Solids,
     arrangement: &'a Arrangement,
@@ -103,63 +118,62 @@ impl Classifier<'_> {
     fn wings(&self, piece: &Piece) -> Result<Vec<Wing>, EvaluationError> {
         let curve = &self.arrangement.meetings[piece.meeting].curve;
         let [lo, hi] = piece.range;
-        let mut fallback = None;
+        let mut best: Option<(f64, Look)> = None;
         for look in LOOKS {
             let t = lo + (hi - lo) * look;
-            let p = curve.point(t);
-            let Some((near, clear)) = self.near(&p, &piece.carriers) else {
+            let look = self.look(&curve.point(t), &piece.carriers);
+            if !look.may_have_faces() {
                 return Ok(Vec::new());
-            };
-            if clear {
-                return self.wings_at(piece, &p, &curve.tangent(t), &near);
             }
-            fallback.get_or_insert((t, p, near));
+            let clear = !self.judge.is_close(look.margin);
+            if best.as_ref().is_none_or(|(_, b)| look.margin > b.margin) {
+                best = Some((t, look));
+            }
+            if clear {
+                break;
+            }
         }
-        // A surface stays within the band along the whole piece without holding it: its plain
-        // sign decides, and the close call is listed.
-        match fallback {
-            Some((t, p, near)) => self.wings_at(piece, &p, &curve.tangent(t), &near),
-            None => Ok(Vec::new()),
-        }
+        let Some((t, look)) = best else {
+            return Ok(Vec::new());
+        };
+        // A surface stays close along the whole piece without holding it: its plain sign decides,
+        // and the close call is listed.
+        let p = curve.point(t);
+        self.judge
+            .note("point beside surface", look.margin, p.coords.into());
+        self.wings_at(piece, &p, &curve.tangent(t), &look.near)
     }
 
-    /// The primitives that hold `p` as far as the piece's own carriers leave it open, and whether
-    /// no other surface passes through `p`. None where no two faces can meet.
-    fn near(&self, p: &Point3<f64>, carriers: &[usize]) -> Option<(Vec<Near>, bool)> {
-        let mut all = Vec::new();
-        let mut clear = true;
-        let place = [p.x, p.y, p.z];
-        for s in self.arrangement.tree.locate_all_at_point(place) {
+    /// What is near `p` as far as the piece's own carriers leave it open.
+    fn look(&self, p: &Point3<f64>, carriers: &[usize]) -> Look {
+        let mut near = Vec::new();
+        let mut margin = f64::INFINITY;
+        for s in self.arrangement.tree.locate_all_at_point([p.x, p.y, p.z]) {
             let solid = &self.solids.all[s.data];
             let mut open = Vec::new();
-            let mut held = true;
+            // By how much the point is inside all other sides, and outside one of them.
+            let (mut inside, mut outside) = (f64::INFINITY, f64::NEG_INFINITY);
             for (side, &(c, sense)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
                 if let Ok(at) = carriers.binary_search(&c) {
                     open.push((at, sense));
                     continue;
                 }
                 let distance = side.surface.distance(p);
-                held &= distance < 0.0;
-                if distance < self.judge.band() && self.judge.within(distance) {
-                    clear = false;
-                } else if distance > 0.0 {
-                    self.judge.note("point beside surface", distance, place);
-                    break;
-                } else {
-                    self.judge.note("point inside surface", distance, place);
-                }
+                inside = inside.min(distance.abs());
+                outside = outside.max(distance);
             }
-            if held {
-                all.push(Near {
+            if outside >= 0.0 {
+                margin = margin.min(outside);
+            } else {
+                margin = margin.min(inside);
+                near.push(Near {
                     leaf: solid.leaf,
                     open,
                 });
             }
         }
-        all.sort_by_key(|n| n.leaf);
-        all.iter()
-            .any(|n| !n.open.is_empty())
-            .then_some((all, clear))
+        near.sort_by_key(|n| n.leaf);
+        Look { near, margin }
     }
 
     fn wings_at(
@@ -319,12 +333,16 @@ impl Classifier<'_> {
             // Steps of the golden section spread over the surface.
             let u = f64::from(i) * 2.399_963_229_728_653;
             let v = 1.3 * (f64::from(i) * 0.7).sin();
-            let (near, clear) = self.near(&surface.point(u, v), &[carrier])?;
-            if !clear {
+            let look = self.look(&surface.point(u, v), &[carrier]);
+            if !look.may_have_faces() {
+                return None;
+            }
+            if self.judge.is_close(look.margin) {
                 continue;
             }
             let held = |side: Sense| {
-                let held: Vec<NodeId> = near
+                let held: Vec<NodeId> = look
+                    .near
                     .iter()
                     .filter(|s| s.open.iter().all(|o| o.1 == side))
                     .map(|s| s.leaf)

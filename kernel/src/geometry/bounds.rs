@@ -1,10 +1,10 @@
 //! Boxes around curves.
 
 use super::curve::Curve;
+use super::cut::probes;
 use super::frame::Frame;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::sign::ROUNDING;
 use nalgebra::Point3;
 use std::f64::consts::TAU;
 
@@ -97,6 +97,8 @@ fn turn_bounds(f: &Frame, a: f64, b: f64, [lo, hi]: [f64; 2], mut hull: Box3) ->
 
 /// An enclosure may be larger than the curve by this part of its size.
 const LOOSE: f64 = 1.0 / 16.0;
+/// A tight box may miss this part of the size.
+const TIGHT: f64 = 1.0 / (1_u64 << 38) as f64;
 /// The halvings after which an enclosure is taken as it is.
 const DEPTH: u32 = 40;
 
@@ -104,11 +106,12 @@ fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
     within(curve, range, LOOSE)
 }
 
-/// The box of the arc of a curve, to rounding.
+/// The box of the arc of a curve: exact for lines, circles and ellipses, else to about 4e-12 of
+/// its size.
 pub fn tight_bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
     match curve {
         Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_) => bounds(curve, range),
-        _ => within(curve, range, 4.0 * ROUNDING),
+        _ => within(curve, range, TIGHT),
     }
 }
 
@@ -124,11 +127,13 @@ fn within(curve: &Curve, range: [f64; 2], slack: f64) -> Box3 {
         }
     }
     let mut all = seen;
+    let flat = flat_axes(curve, range, slack.min(TIGHT) * seen.diagonal());
     let mut stack: Vec<(f64, f64, u32)> = breaks.windows(2).map(|p| (p[0], p[1], 0)).collect();
     while let Some((a, b, depth)) = stack.pop() {
-        let part = piece_box(curve, Interval { lo: a, hi: b });
+        let part = piece_box(curve, a, b);
         let far = seen.grown(slack * seen.diagonal());
-        let inside = (0..3).all(|i| part.min[i] >= far.min[i] && part.max[i] <= far.max[i]);
+        let inside =
+            (0..3).all(|i| flat[i] || (part.min[i] >= far.min[i] && part.max[i] <= far.max[i]));
         if inside || depth >= DEPTH {
             all = all.hull(&part);
             continue;
@@ -142,12 +147,38 @@ fn within(curve: &Curve, range: [f64; 2], slack: f64) -> Box3 {
     if slack < LOOSE { seen } else { all }
 }
 
-fn piece_box(curve: &Curve, t: Interval) -> Box3 {
+/// The axes along which the curve does not extend by more than `least`: it lies in a plane across.
+fn flat_axes(curve: &Curve, [lo, hi]: [f64; 2], least: f64) -> [bool; 3] {
+    let first = curve.point(lo);
+    let mut flat = [true; 3];
+    for part in probes() {
+        let p = curve.point(lo + (hi - lo) * part);
+        for i in 0..3 {
+            flat[i] &= (p[i] - first[i]).abs() <= least;
+        }
+        if flat == [false; 3] {
+            break;
+        }
+    }
+    flat
+}
+
+/// A box that holds the piece [a, b]: of its ends where a coordinate only rises or falls.
+fn piece_box(curve: &Curve, a: f64, b: f64) -> Box3 {
+    let t = Interval { lo: a, hi: b };
     let wide = curve.jet_over(t);
     let mid = curve.jet_over(Interval::point(t.mid()));
     let run = t - Interval::point(t.mid());
-    let range = |w: &Jet<Interval>, m: &Jet<Interval>| w.v.meet(m.v + w.d * run);
-    let r: [Interval; 3] = std::array::from_fn(|i| range(&wide[i], &mid[i]));
+    let ends = ends(curve, [a, b]);
+    let range = |i: usize| {
+        let (w, m): (&Jet<Interval>, &Jet<Interval>) = (&wide[i], &mid[i]);
+        if w.d.has_zero() {
+            w.v.meet(m.v + w.d * run)
+        } else {
+            Interval::new(ends.min[i], ends.max[i])
+        }
+    };
+    let r = [0, 1, 2].map(range);
     Box3 {
         min: r.map(|x| x.lo),
         max: r.map(|x| x.hi),

@@ -19,10 +19,11 @@ pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zero
 /// band at all of them is so in between.
 const PROBES: u32 = 67;
 
+/// Fractions of a range: the first few already lie far apart, by steps of the golden section.
+pub(super) fn probes() -> impl Iterator<Item = f64> {
+    (1..=PROBES).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
+}
+
 fn lies_on(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
-    // Steps of the golden section: the first few probes already lie far apart.
-    (1..=PROBES).all(|k| {
-        let part = (f64::from(k) * 0.618_033_988_749_895).fract();
-        surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band
-    })
+    probes().all(|part| surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band)
 }

@@ -109,6 +109,12 @@ impl Judge {
         distance.abs() <= self.band
     }
 
+    /// Whether a decision made on `distance` would be a close call, or coincide: for a search that
+    /// may look elsewhere.
+    pub fn is_close(&self, distance: f64) -> bool {
+        distance.abs() < self.band * CLOSE
+    }
+
     /// Counts one decision made on `distance`.
     pub fn note(&self, question: &'static str, distance: f64, place: [f64; 3]) {
         let size = distance.abs();

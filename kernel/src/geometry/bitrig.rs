@@ -104,6 +104,26 @@ impl BiTrig {
         }
     }
 
+    /// The derivative by the first angle (0) or the second (1).
+    pub fn derivative(&self, angle: usize) -> Self {
+        // 1, cos, sin, cos 2, sin 2.
+        let by = |k: [f64; 5]| [0.0, k[2], -k[1], 2.0 * k[4], -2.0 * k[3]];
+        let mut d = Self::zero();
+        if angle == 0 {
+            for j in 0..5 {
+                let column = by([0, 1, 2, 3, 4].map(|i| self.0[i][j]));
+                for (row, c) in d.0.iter_mut().zip(column) {
+                    row[j] = c;
+                }
+            }
+        } else {
+            for (row, k) in d.0.iter_mut().zip(&self.0) {
+                *row = by(*k);
+            }
+        }
+        d
+    }
+
     /// A bound of the third derivatives in any direction of length one in each angle.
     pub fn third(&self) -> f64 {
         let degree = [0.0, 1.0, 1.0, 2.0, 2.0];

@@ -1,10 +1,10 @@
 //! Boxes around curves.
 
 use super::curve::Curve;
-use super::cut::probes;
 use super::frame::Frame;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::roots::bisect;
 use nalgebra::Point3;
 use std::f64::consts::TAU;
 
@@ -97,27 +97,46 @@ fn turn_bounds(f: &Frame, a: f64, b: f64, [lo, hi]: [f64; 2], mut hull: Box3) ->
 
 /// An enclosure may be larger than the curve by this part of its size.
 const LOOSE: f64 = 1.0 / 16.0;
-/// A tight box may miss this part of the size.
-const TIGHT: f64 = 1.0 / (1_u64 << 38) as f64;
+/// How often a smooth piece is sampled in search of its extremes.
+const SAMPLES: u32 = 16;
 /// The halvings after which an enclosure is taken as it is.
 const DEPTH: u32 = 40;
 
-fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
-    within(curve, range, LOOSE)
-}
-
-/// The box of the arc of a curve: exact for lines, circles and ellipses, else to about 4e-12 of
-/// its size.
+/// The box of the arc of a curve, to rounding.
 pub fn tight_bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
     match curve {
         Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_) => bounds(curve, range),
-        _ => within(curve, range, TIGHT),
+        _ => extremes(curve, range),
     }
 }
 
-/// Branch and bound: pieces are halved until none reaches beyond the points seen by more than
-/// `slack` times their size.
-fn within(curve: &Curve, range: [f64; 2], slack: f64) -> Box3 {
+/// The box of the ends and of the points at which a coordinate turns back: between samples of its
+/// derivative, found by halving.
+fn extremes(curve: &Curve, range: [f64; 2]) -> Box3 {
+    let mut hull = ends(curve, range);
+    for pair in curve.breaks(range[0], range[1]).windows(2) {
+        let step = (pair[1] - pair[0]) / f64::from(SAMPLES);
+        let mut before = (pair[0], curve.derivative(pair[0]));
+        hull = hull.hull(&Box3::of(&curve.point(pair[0])));
+        for k in 1..=SAMPLES {
+            let t = pair[0] + step * f64::from(k);
+            let after = (t, curve.derivative(t));
+            for i in 0..3 {
+                if before.1[i] * after.1[i] < 0.0 {
+                    let turn = |t: f64| curve.derivative(t)[i];
+                    let t = bisect(before.0, after.0, before.1[i], turn);
+                    hull = hull.hull(&Box3::of(&curve.point(t)));
+                }
+            }
+            before = after;
+        }
+    }
+    hull
+}
+
+/// Branch and bound: pieces are halved until none reaches beyond the points seen by more than a
+/// part of their size.
+fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
     let breaks = curve.breaks(range[0], range[1]);
     let mut seen = Box3::EMPTY;
     for pair in breaks.windows(2) {
@@ -127,13 +146,11 @@ fn within(curve: &Curve, range: [f64; 2], slack: f64) -> Box3 {
         }
     }
     let mut all = seen;
-    let flat = flat_axes(curve, range, slack.min(TIGHT) * seen.diagonal());
     let mut stack: Vec<(f64, f64, u32)> = breaks.windows(2).map(|p| (p[0], p[1], 0)).collect();
     while let Some((a, b, depth)) = stack.pop() {
         let part = piece_box(curve, a, b);
-        let far = seen.grown(slack * seen.diagonal());
-        let inside =
-            (0..3).all(|i| flat[i] || (part.min[i] >= far.min[i] && part.max[i] <= far.max[i]));
+        let far = seen.grown(LOOSE * seen.diagonal());
+        let inside = (0..3).all(|i| part.min[i] >= far.min[i] && part.max[i] <= far.max[i]);
         if inside || depth >= DEPTH {
             all = all.hull(&part);
             continue;
@@ -143,24 +160,7 @@ fn within(curve: &Curve, range: [f64; 2], slack: f64) -> Box3 {
         stack.push((a, m, depth + 1));
         stack.push((m, b, depth + 1));
     }
-    // What a piece was allowed to be larger by is no part of a tight box.
-    if slack < LOOSE { seen } else { all }
-}
-
-/// The axes along which the curve does not extend by more than `least`: it lies in a plane across.
-fn flat_axes(curve: &Curve, [lo, hi]: [f64; 2], least: f64) -> [bool; 3] {
-    let first = curve.point(lo);
-    let mut flat = [true; 3];
-    for part in probes() {
-        let p = curve.point(lo + (hi - lo) * part);
-        for i in 0..3 {
-            flat[i] &= (p[i] - first[i]).abs() <= least;
-        }
-        if flat == [false; 3] {
-            break;
-        }
-    }
-    flat
+    all
 }
 
 /// A box that holds the piece [a, b]: of its ends where a coordinate only rises or falls.

@@ -20,7 +20,7 @@ pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zero
 const PROBES: u32 = 67;
 
 /// Fractions of a range: the first few already lie far apart, by steps of the golden section.
-pub(super) fn probes() -> impl Iterator<Item = f64> {
+fn probes() -> impl Iterator<Item = f64> {
     (1..=PROBES).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
 }
 

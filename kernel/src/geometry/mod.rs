@@ -8,6 +8,7 @@ pub mod frame;
 pub mod intersect;
 pub mod quartic;
 pub mod serial;
+mod singular;
 pub mod surface;
 pub mod toric;
 pub mod trace;

@@ -7,6 +7,7 @@
 //! and its gradient vanish within the band, are found first and stand in cells of their own.
 
 use super::bitrig::{BiTrig, Local, Partials};
+use super::singular::{Contact as Kind, SingularPoint, singular_points};
 use super::surface::Torus;
 use super::toric::{Axis, Segment, Toric, wrap};
 use crate::number::interval::Interval;
@@ -43,26 +44,26 @@ pub struct Unresolved {
 
 /// A rectangle of angles.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+pub(super) struct Cell {
     lo: [f64; 2],
     hi: [f64; 2],
 }
 
 impl Cell {
-    fn centre(&self) -> [f64; 2] {
+    pub(super) fn centre(&self) -> [f64; 2] {
         [
             0.5 * (self.lo[0] + self.hi[0]),
             0.5 * (self.lo[1] + self.hi[1]),
         ]
     }
-    fn half(&self) -> [f64; 2] {
+    pub(super) fn half(&self) -> [f64; 2] {
         [
             0.5 * (self.hi[0] - self.lo[0]),
             0.5 * (self.hi[1] - self.lo[1]),
         ]
     }
     /// Both halves across one angle.
-    fn halves(&self, across: usize) -> [Cell; 2] {
+    pub(super) fn halves(&self, across: usize) -> [Cell; 2] {
         let c = self.centre()[across];
         let (mut low, mut high) = (*self, *self);
         low.hi[across] = c;
@@ -72,13 +73,17 @@ impl Cell {
 }
 
 /// Taylor's bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
-struct Bounds {
-    clear: bool,
-    x: [f64; 2],
-    y: [f64; 2],
-    at: Partials<f64>,
+pub(super) struct Bounds {
+    /// F has no zero in the cell.
+    pub clear: bool,
+    /// The least and the greatest |F_x|.
+    pub x: [f64; 2],
+    /// The least and the greatest |F_y|.
+    pub y: [f64; 2],
+    /// At the centre.
+    pub at: Partials<f64>,
     /// The angle along which the form varies more over the cell.
-    wide: usize,
+    pub wide: usize,
 }
 
 #[derive(Default)]
@@ -89,15 +94,17 @@ struct Remainders {
     across: [f64; 2],
 }
 
-struct Tracer<'a> {
-    form: &'a BiTrig,
-    third: f64,
-    slop: f64,
-    band: f64,
+pub(super) struct Tracer<'a> {
+    pub form: &'a BiTrig,
+    /// A bound of the third derivatives.
+    pub third: f64,
+    /// A bound of the rounding error of the form.
+    pub slop: f64,
+    pub band: f64,
 }
 
 /// The depth at which a cell that is still undecided is given up: sides of 1e-7 radians.
-const DEPTH: u32 = 48;
+pub(super) const DEPTH: u32 = 48;
 /// The cells of the first grid along each angle.
 const GRID: usize = 10;
 /// Where the first grid starts, so that symmetric curves do not meet its lines in special points.
@@ -106,7 +113,7 @@ const START: f64 = 0.061_803_4;
 const STEEP: f64 = 2.0;
 
 impl Tracer<'_> {
-    fn bounds(&self, cell: &Cell) -> Bounds {
+    pub(super) fn bounds(&self, cell: &Cell) -> Bounds {
         let [cx, cy] = cell.centre();
         let [hx, hy] = cell.half();
         let p = self.form.partials(cx, cy);
@@ -144,77 +151,6 @@ impl Tracer<'_> {
             }
         }
         r
-    }
-
-    /// The critical points of F at which F is within the band.
-    fn singular_points(&self) -> Result<Vec<[f64; 2]>, Unresolved> {
-        let mut found: Vec<[f64; 2]> = Vec::new();
-        let mut stack: Vec<(Cell, u32)> = grid(&lines(&[], 0.0, 1.0), &lines(&[], 0.0, 1.0))
-            .into_iter()
-            .map(|c| (c, 0))
-            .collect();
-        while let Some((cell, depth)) = stack.pop() {
-            let b = self.bounds(&cell);
-            if b.clear || b.x[0] > 0.0 || b.y[0] > 0.0 {
-                continue;
-            }
-            if let Some(point) = self.only_critical(&cell, &b.at) {
-                let Some(point) = point else { continue };
-                if self.form.value(point[0], point[1]).abs() <= self.band
-                    && !found
-                        .iter()
-                        .any(|q| near(q, &point, 1e3 * self.slop.sqrt()))
-                {
-                    found.push(point);
-                }
-                continue;
-            }
-            if depth >= DEPTH {
-                return Err(Unresolved {
-                    angles: cell.centre(),
-                });
-            }
-            stack.extend(cell.halves(b.wide).map(|c| (c, depth + 1)));
-        }
-        found.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-        Ok(found)
-    }
-
-    /// Where the Hessian cannot vanish over the cell's surroundings: the one critical point there,
-    /// if it lies in the cell. None where that is not known.
-    fn only_critical(&self, cell: &Cell, at: &Partials<f64>) -> Option<Option<[f64; 2]>> {
-        let det = at.xx * at.yy - at.xy * at.xy;
-        let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
-        let [hx, hy] = cell.half();
-        let reach = 2.0 * hx.max(hy);
-        // ‖H⁻¹‖ times the change of H over the surroundings stays below one.
-        if norm * self.third * reach >= 0.25 * det.abs() {
-            return None;
-        }
-        let mut p = cell.centre();
-        for _ in 0..30 {
-            let g = self.form.partials(p[0], p[1]);
-            let det = g.xx * g.yy - g.xy * g.xy;
-            let step = [
-                (g.x * g.yy - g.y * g.xy) / det,
-                (g.y * g.xx - g.x * g.xy) / det,
-            ];
-            p = [p[0] - step[0], p[1] - step[1]];
-            if step[0].abs().max(step[1].abs()) <= 4.0 * f64::EPSILON {
-                break;
-            }
-        }
-        let c = cell.centre();
-        let inside = (p[0] - c[0]).abs() <= 1.01 * hx && (p[1] - c[1]).abs() <= 1.01 * hy;
-        Some(inside.then_some(p))
-    }
-
-    /// How far from a singular point the curve is known to be two crossing branches.
-    fn zone(&self, p: &[f64; 2]) -> f64 {
-        let at = self.form.partials(p[0], p[1]);
-        let det = (at.xx * at.yy - at.xy * at.xy).abs();
-        let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
-        (0.1 * det / (norm * self.third)).min(0.05)
     }
 
     /// The cells that hold a piece of the curve, each with the angle its graph runs over.
@@ -270,27 +206,33 @@ impl Tracer<'_> {
     }
 }
 
-fn near(a: &[f64; 2], b: &[f64; 2], reach: f64) -> bool {
+pub(super) fn near(a: &[f64; 2], b: &[f64; 2], reach: f64) -> bool {
     wrap(a[0] - b[0]).abs() <= reach && wrap(a[1] - b[1]).abs() <= reach
 }
 
+/// The cells of the first grid, without singular points.
+pub(super) fn plain_grid() -> Vec<Cell> {
+    let all = lines(&[], [1.0; 2]);
+    grid(&all, &all)
+}
+
 /// The lines of the first grid along one angle: even ones, but none through a zone, and the sides
-/// of the zones.
-fn lines(centres: &[f64], size: f64, skew: f64) -> Vec<f64> {
+/// of the zones, given as (centre, size). `skew` makes the sides unequal, so that a curve of a
+/// simple slope misses the corners.
+fn lines(zones: &[(f64, f64)], skew: [f64; 2]) -> Vec<f64> {
     let mut all: Vec<f64> = (0..GRID)
         .map(|i| START + TAU * i as f64 / GRID as f64)
         .collect();
-    all.retain(|x| centres.iter().all(|c| wrap(x - c).abs() > size));
-    for c in centres {
-        // Unequal sides: a curve of a simple slope then misses the corners.
-        for side in [c - size * skew, c + size] {
+    all.retain(|x| zones.iter().all(|(c, size)| wrap(x - c).abs() > *size));
+    for &(c, size) in zones {
+        for side in [c - size * skew[0], c + size * skew[1]] {
             let side = START + (side - START).rem_euclid(TAU);
             let same = all.iter().any(|x| wrap(x - side).abs() < size * SAME);
-            let within = |c: &f64| {
+            let within = |(c, size): &(f64, f64)| {
                 let d = wrap(side - c);
-                d > -size * skew * WITHIN && d < size * WITHIN
+                d > -size * skew[0] * WITHIN && d < size * skew[1] * WITHIN
             };
-            if !same && !centres.iter().any(within) {
+            if !same && !zones.iter().any(within) {
                 all.push(side);
             }
         }
@@ -358,35 +300,54 @@ pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolv
         slop,
         band: band.max(slop),
     };
-    let points = tracer.singular_points()?;
+    let points = singular_points(&tracer)?;
     let mut shrink = 1.0;
-    loop {
-        match tracer.assemble(torus, &points, shrink) {
+    let mut failed = None;
+    for attempt in 0..ATTEMPTS {
+        match tracer.assemble(torus, &points, shrink, SKEWS[attempt % SKEWS.len()]) {
             Ok(traced) => return Ok(traced),
-            Err(e) if shrink < 1.0 / 200.0 => return Err(e),
-            Err(_) => shrink *= 0.37,
+            Err(e) => failed = failed.or(Some(e)),
         }
+        shrink *= 0.5;
     }
+    let angles = points.first().map_or([0.0; 2], |p| p.angles);
+    Err(failed.unwrap_or(Unresolved { angles }))
 }
+
+/// How often smaller zones are tried.
+const ATTEMPTS: usize = 9;
+/// How far the sides of a zone lie from its point, as parts of its size: low and high, along both
+/// angles.
+const SKEWS: [[[f64; 2]; 2]; 3] = [
+    [[0.913_7, 1.0], [0.871_3, 0.761_9]],
+    [[0.731_1, 0.653_7], [1.0, 0.941_7]],
+    [[1.0, 0.831_9], [0.537_1, 0.611_3]],
+];
 
 impl Tracer<'_> {
     fn assemble(
         &self,
         torus: &Torus,
-        points: &[[f64; 2]],
+        points: &[SingularPoint],
         shrink: f64,
+        skew: [[f64; 2]; 2],
     ) -> Result<Traced, Unresolved> {
-        let size = points.iter().map(|p| self.zone(p)).fold(0.05, f64::min) * shrink;
-        let centres = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<_>>();
-        let xs = lines(&centres(0), size, 0.913_7);
-        let ys = lines(&centres(1), size, 0.871_3);
+        let zones = |k: usize| -> Vec<(f64, f64)> {
+            let zone = |p: &SingularPoint| (p.angles[k], p.zone * shrink);
+            points.iter().map(zone).collect()
+        };
+        let (xs, ys) = (lines(&zones(0), skew[0]), lines(&zones(1), skew[1]));
         let cells = grid(&xs, &ys);
-        let home = |c: &Cell| points.iter().position(|p| near(&c.centre(), p, 0.9 * size));
+        let home = |c: &Cell| {
+            points
+                .iter()
+                .position(|p| near(&c.centre(), &p.angles, 0.9 * p.zone * shrink))
+        };
         let (own, free): (Vec<Cell>, Vec<Cell>) =
             cells.into_iter().partition(|c| home(c).is_some());
         if own.len() != points.len() {
             return Err(Unresolved {
-                angles: points.first().copied().unwrap_or([0.0; 2]),
+                angles: points.first().map_or([0.0; 2], |p| p.angles),
             });
         }
         let leaves = self.leaves(free)?;
@@ -402,11 +363,16 @@ impl Tracer<'_> {
         for cell in &own {
             let Some(i) = home(cell) else { continue };
             let roots = self.around(cell, &corners, origin, &mut sides)?;
-            let at = self.form.partials(points[i][0], points[i][1]);
-            match (roots.len(), at.xx * at.yy - at.xy * at.xy < 0.0) {
-                (0, false) => isolated.push(i),
-                (4, true) => self.cross(i, &points[i], &at, &roots, &mut pieces)?,
-                _ => return Err(Unresolved { angles: points[i] }),
+            let angles = points[i].angles;
+            match (roots.len(), &points[i].contact) {
+                (0, Kind::Isolated) => isolated.push(i),
+                (4, Kind::Crossing(directions)) => {
+                    self.cross(i, &angles, directions, &roots, &mut pieces)?;
+                }
+                (4, Kind::Tacnode(direction)) => {
+                    self.kiss(i, &angles, direction, &roots, &mut pieces)?;
+                }
+                _ => return Err(Unresolved { angles }),
             }
         }
         chain(torus, self.form, points, pieces)
@@ -496,11 +462,10 @@ impl Tracer<'_> {
         &self,
         index: usize,
         point: &[f64; 2],
-        at: &Partials<f64>,
+        directions: &[[f64; 2]; 2],
         roots: &[(RootId, [f64; 2])],
         pieces: &mut Vec<Piece>,
     ) -> Result<(), Unresolved> {
-        let directions = tangents(at);
         let mut used = [[false; 2]; 2];
         for (root, p) in roots {
             let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
@@ -513,19 +478,7 @@ impl Tracer<'_> {
                 return Err(Unresolved { angles: *point });
             }
             used[b][forward] = true;
-            let k = usize::from(d[1].abs() > d[0].abs());
-            let g = self.form.partials(p[0], p[1]);
-            let slope = if k == 0 { -g.x / g.y } else { -g.y / g.x };
-            let segment = Segment {
-                axis: if k == 0 { Axis::Around } else { Axis::Tube },
-                from: point[k],
-                to: point[k] + away[k],
-                ends: [point[1 - k], point[1 - k] + away[1 - k]],
-                slopes: [d[1 - k] / d[k], slope],
-                steep: 2.0 * STEEP,
-                bracket: [f64::NEG_INFINITY, f64::INFINITY],
-                node: Some(index),
-            };
+            let segment = self.from_node(index, point, &d, p);
             pieces.push(Piece {
                 ends: [End::Pass(index, b), End::Root(*root)],
                 segment,
@@ -533,25 +486,58 @@ impl Tracer<'_> {
         }
         Ok(())
     }
-}
 
-/// The directions in which an indefinite quadratic form vanishes.
-fn tangents(at: &Partials<f64>) -> [[f64; 2]; 2] {
-    let root = (at.xy * at.xy - at.xx * at.yy).max(0.0).sqrt();
-    let unit = |x: f64, y: f64| {
-        let n = x.hypot(y);
-        [x / n, y / n]
-    };
-    // a x² + 2 b x y + c y² = 0, in the form that does not cancel.
-    let q = if at.xy >= 0.0 {
-        -at.xy - root
-    } else {
-        -at.xy + root
-    };
-    if q == 0.0 {
-        return [[1.0, 0.0], [0.0, 1.0]];
+    /// Joins the four roots around a tacnode to its two branches: they keep their order across the
+    /// common `direction`.
+    fn kiss(
+        &self,
+        index: usize,
+        point: &[f64; 2],
+        direction: &[f64; 2],
+        roots: &[(RootId, [f64; 2])],
+        pieces: &mut Vec<Piece>,
+    ) -> Result<(), Unresolved> {
+        let d = direction;
+        let mut sides: [Vec<(f64, usize)>; 2] = Default::default();
+        for (i, (_, p)) in roots.iter().enumerate() {
+            let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
+            let along = away[0] * d[0] + away[1] * d[1];
+            let across = away[1] * d[0] - away[0] * d[1];
+            sides[usize::from(along > 0.0)].push((across, i));
+        }
+        for side in &mut sides {
+            if side.len() != 2 {
+                return Err(Unresolved { angles: *point });
+            }
+            side.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (b, &(_, i)) in side.iter().enumerate() {
+                let (root, p) = &roots[i];
+                pieces.push(Piece {
+                    ends: [End::Pass(index, b), End::Root(*root)],
+                    segment: self.from_node(index, point, d, p),
+                });
+            }
+        }
+        Ok(())
     }
-    [unit(q, at.xx), unit(at.yy, q)]
+
+    /// The graph from a node, left in the direction `d`, to a root around it.
+    fn from_node(&self, index: usize, point: &[f64; 2], d: &[f64; 2], p: &[f64; 2]) -> Segment {
+        let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
+        let k = usize::from(d[1].abs() > d[0].abs());
+        let g = self.form.partials(p[0], p[1]);
+        let slope = if k == 0 { -g.x / g.y } else { -g.y / g.x };
+        Segment {
+            axis: if k == 0 { Axis::Around } else { Axis::Tube },
+            from: point[k],
+            to: point[k] + away[k],
+            ends: [point[1 - k], point[1 - k] + away[1 - k]],
+            slopes: [d[1 - k] / d[k], slope],
+            steep: 2.0 * STEEP,
+            bracket: [f64::NEG_INFINITY, f64::INFINITY],
+            node: Some(index),
+        }
+    }
 }
 
 /// The corners of cells on every line of the grid.
@@ -592,7 +578,7 @@ impl Corners {
 fn chain(
     torus: &Torus,
     form: &BiTrig,
-    points: &[[f64; 2]],
+    points: &[SingularPoint],
     pieces: Vec<Piece>,
 ) -> Result<Traced, Unresolved> {
     let mut at: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
@@ -614,11 +600,14 @@ fn chain(
     let mut singular: Vec<Singular> = points
         .iter()
         .map(|p| Singular {
-            angles: *p,
+            angles: p.angles,
             on: Vec::new(),
         })
         .collect();
-    let locals: Vec<Local> = points.iter().map(|p| Local::about(form, *p)).collect();
+    let locals: Vec<Local> = points
+        .iter()
+        .map(|p| Local::about(form, p.angles))
+        .collect();
     let mut used = vec![false; pieces.len()];
     let mut branches = Vec::new();
     for start in 0..pieces.len() {

@@ -2,4 +2,5 @@
 
 pub mod examine;
 pub mod formula;
+pub mod parts;
 pub mod random;

@@ -5,6 +5,7 @@
 
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 use std::process::{Command, Output};
 
 /// A block with a bore: lines, circles, ellipses.
@@ -120,4 +121,20 @@ fn messages() {
         all += &format!("exit status {status}\n{said}\n");
     }
     insta::assert_snapshot!("messages", all);
+}
+
+/// The README's command, run from the repository's root, draws the README's picture.
+#[test]
+fn the_picture_in_the_readme() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    let command = "cargo run --release -p premio -- ";
+    let line = readme.lines().find_map(|l| l.strip_prefix(command));
+    let (words, picture) = line.unwrap().split_once(" -o ").unwrap();
+    let mut premio = Command::new(env!("CARGO_BIN_EXE_premio"));
+    premio.current_dir(&root).args(words.split_whitespace());
+    let drawn = String::from_utf8(premio.output().unwrap().stdout).unwrap();
+    assert!(readme.contains(&format!("]({picture})")));
+    let kept = fs::read_to_string(root.join(picture)).unwrap();
+    assert!(drawn == kept, "run the README's command again, and look");
 }

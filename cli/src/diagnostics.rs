@@ -145,7 +145,10 @@ impl Message {
         let theme = if io::stderr().is_terminal() {
             GraphicalTheme::default()
         } else {
-            GraphicalTheme::none()
+            // A caret under a single character, too.
+            let mut plain = GraphicalTheme::none();
+            plain.characters.underbar = '^';
+            plain
         };
         let mut text = String::new();
         let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false);
@@ -202,7 +205,7 @@ impl Excerpt {
             .map_or(text.len(), |i| at + i);
         let until = error.span.end.clamp(at, end);
         let [before, found, after] = [&text[start..at], &text[at..until], &text[until..end]]
-            .map(|bytes| String::from_utf8_lossy(bytes).replace(['\r', '\t'], " "));
+            .map(|bytes| printable(&String::from_utf8_lossy(bytes)));
         let before = last(&before);
         let (found, after) = (first(&found), first(&after));
         Self {
@@ -213,6 +216,16 @@ impl Excerpt {
             column: error.column as usize - 1,
         }
     }
+}
+
+/// A text that moves no cursor and sets no colours.
+fn printable(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\r' | '\t' => ' ',
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    text.chars().map(shown).collect()
 }
 
 fn first(text: &str) -> String {

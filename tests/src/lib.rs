@@ -1,4 +1,6 @@
 //! What the tests across crates share: random trees, and what is asked of each.
 
 pub mod examine;
+pub mod formula;
+pub mod parts;
 pub mod random;

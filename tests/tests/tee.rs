@@ -6,6 +6,7 @@ use premio::checks::Checker;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_csg::tree::Tree;
+use premio_tests::parts::tee;
 use premio_visibility::invisibility::Method;
 use premio_visibility::view::contours_by;
 use premio_visibility::{Camera, contours};
@@ -20,18 +21,6 @@ fn branch(i: usize, r: f64, to: f64) -> Value {
     let z = 20.0 + 20.0 * i as f64;
     json!({"prim": "cylinder", "r": r, "h": to,
         "transform": [{"rotate": [[0.0, 1.0, 0.0], 90.0]}, {"translate": [0.0, 0.0, z]}]})
-}
-
-/// The outer cylinders less all bores.
-fn open(k: usize) -> Value {
-    let mut outer = vec![main_tube(50.0, 0.0, 200.0)];
-    outer.extend((0..k).map(|i| branch(i, 6.0, 80.0)));
-    let mut all = vec![
-        json!({"op": "union", "children": outer}),
-        main_tube(48.0, -1.0, 201.0),
-    ];
-    all.extend((0..k).map(|i| branch(i, 5.0, 81.0)));
-    json!({"op": "difference", "children": all})
 }
 
 /// The union of pipes, each hollow by itself.
@@ -124,7 +113,7 @@ fn examine(name: &str, json: &Value) -> Vec<f64> {
 #[test]
 fn open_branches() {
     for k in [1, 4] {
-        examine(&format!("open {k}"), &open(k));
+        examine(&format!("open {k}"), &tee(k));
     }
 }
 

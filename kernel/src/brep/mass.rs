@@ -13,7 +13,7 @@ use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Plane, Sphere, Surface, SurfaceKind, Torus};
 use crate::number::quadrature::{Rule, TWENTY, TWO, adaptive, integral};
-use crate::number::sign::ROUNDING;
+use crate::number::sign::{RELATIVE_RESOLUTION, ROUNDING};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
 
@@ -385,7 +385,10 @@ fn bulge(brep: &Brep, face: FaceId) -> Box3 {
     if points.is_empty() {
         return Box3::EMPTY;
     }
-    let locator = super::locate::FaceLocator::of(brep, face, 0.0);
+    // A band of nothing would miss boundaries by rounding.
+    let size = points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)));
+    let band = RELATIVE_RESOLUTION * size.diagonal();
+    let locator = super::locate::FaceLocator::of(brep, face, band);
     points.retain(|p| locator.place(p) != super::locate::Place::Outside);
     points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)))
 }

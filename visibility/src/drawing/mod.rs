@@ -188,13 +188,27 @@ impl Draft<'_> {
             if !visible && !hidden {
                 continue;
             }
-            if let Some(shape) = self.shape(contour, range) {
+            // Nobody sees what is shorter than the distance, but a whole contour is no dot too many.
+            let part = contour.pieces.len() > 1;
+            let shape = self.shape(contour, range);
+            if let Some(shape) = shape.filter(|s| !part || self.shows(s)) {
                 self.strokes.push(Stroke {
                     shape,
                     layer,
                     visible,
                 });
             }
+        }
+    }
+
+    /// Whether a polyline is as long as the distance within which it follows its curve.
+    fn shows(&self, shape: &Shape) -> bool {
+        match shape {
+            Shape::Path(points) => points
+                .iter()
+                .any(|p| (p - points[0]).norm() > self.distance),
+            Shape::Line([a, b]) => (b - a).norm() > self.distance,
+            Shape::Ellipse { .. } => true,
         }
     }
 

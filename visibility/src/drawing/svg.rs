@@ -10,7 +10,7 @@ const PAGE: f64 = 1000.0;
 /// The margin.
 const MARGIN: f64 = 40.0;
 
-const STYLE: &str = "path{fill:none;stroke:#000;stroke-linecap:round;stroke-linejoin:round}\
+const STYLE: &str = "svg{background:#fff}path{fill:none;stroke:#000;stroke-linecap:round;stroke-linejoin:round}\
 .boundary{stroke-width:2}.limb{stroke-width:2}.smooth{stroke-width:1;stroke:#888}\
 .hidden{stroke-width:1;stroke-dasharray:7 5;stroke:#777}";
 

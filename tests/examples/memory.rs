@@ -1,0 +1,35 @@
+//! The most memory that the boundary and a view of a block with 32 by 32 through holes ask for:
+//! `cargo run --release -p premio-tests --example memory`. Reads VmHWM, so on Linux only.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a report")]
+
+use nalgebra::{Point3, Vector3};
+use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_tests::parts::plate;
+use premio_visibility::{Camera, contours};
+
+/// The most that this process has had in memory so far, in MiB.
+fn peak() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find(|l| l.starts_with("VmHWM:")).unwrap();
+    let kib: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+    kib / 1024.0
+}
+
+fn main() {
+    let n = std::env::args().nth(1).map_or(32, |n| n.parse().unwrap());
+    let text = plate(n, 3.0).to_string();
+    let tree = read("plate", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let part = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
+    println!("boundary of {} holes: {:.0} MiB", n * n, peak());
+    let s = n as f64;
+    let eye = Point3::new(1.3 * s, 1.7 * s, 1.5 * s);
+    let target = Point3::new(0.5 * s, 0.5 * s, 0.0);
+    let camera = Camera::perspective(eye, target, Vector3::z(), 1.0).unwrap();
+    let seen = contours(&part.brep, &camera, part.resolution).unwrap();
+    println!(
+        "with a view of {} contours: {:.0} MiB",
+        seen.contours.len(),
+        peak()
+    );
+}

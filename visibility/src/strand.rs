@@ -2,9 +2,11 @@
 
 use crate::contour::{Junction, JunctionKind};
 use crate::image::Image;
+use crate::image_box::ImageBox;
 use crate::limb::{Limb, cusps, limbs, polar_plane, torus_limb_on};
 use crate::projection::Projection;
 use crate::sight::Scene;
+use crate::stretch::Stretch;
 use nalgebra::Point3;
 use premio_kernel::brep::locate::Place;
 use premio_kernel::brep::topology::{EdgeId, FaceId, Sense, VertexId};
@@ -66,8 +68,44 @@ pub struct Strand<'a> {
     pub limb: bool,
     /// Its image.
     pub image: Image,
+    /// Where the image turns back on itself.
+    pub turns: Vec<f64>,
+    /// The image in stretches, where it is neither a line nor a conic.
+    pub stretches: Vec<Stretch>,
+    /// A box that holds the image.
+    pub hull: ImageBox,
     /// Where it is cut, in no order.
     pub splits: Vec<Split>,
+}
+
+impl Strand<'_> {
+    /// About how long the image is between the first and the last of some parameters.
+    pub fn length_between(&self, t: &[f64]) -> f64 {
+        let (Some(&lo), Some(&hi)) = (t.first(), t.last()) else {
+            return 0.0;
+        };
+        let within = self.stretches.iter();
+        within
+            .filter(|s| s.range[1] > lo && s.range[0] < hi)
+            .map(|s| {
+                let [p, q] = s.ends;
+                (q[0] - p[0]).hypot(q[1] - p[1])
+            })
+            .sum()
+    }
+
+    /// The runs of stretches whose images may meet a box, each by its breaks.
+    pub fn runs_next_to(&self, hull: &ImageBox) -> Vec<Vec<f64>> {
+        let mut runs: Vec<Vec<f64>> = Vec::new();
+        for stretch in self.stretches.iter().filter(|s| s.bounds.meets(hull)) {
+            let [lo, hi] = stretch.range;
+            match runs.last_mut() {
+                Some(run) if run.last() == Some(&lo) => run.push(hi),
+                _ => runs.push(vec![lo, hi]),
+            }
+        }
+        runs
+    }
 }
 
 /// All junctions.

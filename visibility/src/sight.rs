@@ -68,6 +68,13 @@ pub struct Count {
     pub plain: bool,
 }
 
+/// A face turned towards the eye, and how far it is.
+#[derive(Clone, Copy, Debug)]
+struct Layer {
+    at: f64,
+    face: FaceId,
+}
+
 /// How far aside of a contour its sides are looked at, in multiples of the resolution: beyond what
 /// counts as touching.
 const ASIDE: f64 = 64.0;
@@ -462,7 +469,7 @@ impl<'a> Scene<'a> {
         let mut unclear: Vec<Hit> = Vec::new();
         self.hits(&ray, own, &mut |hit| {
             count.plain &= hit.plain;
-            if hit.front && !hit.plain {
+            if !hit.plain {
                 unclear.push(hit);
             } else if hit.front {
                 count.qi += 1;
@@ -472,35 +479,65 @@ impl<'a> Scene<'a> {
                 }
             }
         });
-        if unclear.is_empty() {
+        if !unclear.iter().any(|hit| hit.front) {
             return count;
         }
-        unclear.sort_by(|a, b| b.at.total_cmp(&a.at));
-        let mut most: (u32, Option<Hit>) = (0, None);
+        let mut most: Vec<Layer> = Vec::new();
         for side in sides(&ray.towards, along) {
-            let mut covered: (u32, Option<Hit>) = (0, None);
-            for hit in &unclear {
-                let layers = self.layers_beside(&ray, hit, own(hit.face), &side);
-                if layers > 0 {
-                    covered = (covered.0 + layers, covered.1.or(Some(*hit)));
-                }
-            }
-            if covered.0 > most.0 {
+            let covered = self.layers_beside(&ray, &unclear, own, &side);
+            if covered.len() > most.len() {
                 most = covered;
             }
         }
-        count.qi += most.0;
-        if let Some(hit) = most.1
-            && hit.at > nearest
+        count.qi += most.len() as u32;
+        if let Some(first) = most.iter().max_by(|a, b| a.at.total_cmp(&b.at))
+            && first.at > nearest
         {
-            count.occluder = Some(hit.face);
+            count.occluder = Some(first.face);
         }
         count
     }
 
-    /// How often the line of sight just aside of a hit passes the same face from its front, there
-    /// and not where the line of sight itself meets it elsewhere.
-    fn layers_beside(&self, ray: &Ray, hit: &Hit, own: Own, side: &Vector3<f64>) -> u32 {
+    /// The faces turned towards the eye on the line of sight just aside, of those that the line of
+    /// sight itself does not meet plainly.
+    fn layers_beside(
+        &self,
+        ray: &Ray,
+        unclear: &[Hit],
+        own: &impl Fn(FaceId) -> Own,
+        side: &Vector3<f64>,
+    ) -> Vec<Layer> {
+        let (mut layers, mut backs) = (Vec::new(), Vec::new());
+        for hit in unclear {
+            self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
+                let face = hit.face;
+                if front {
+                    layers.push(Layer { at, face });
+                } else {
+                    backs.push(at);
+                }
+            });
+        }
+        // Faces that touch are no further apart here than the resolution: there is no gap to see.
+        for back in backs {
+            let together = |l: &Layer| (l.at - back).abs() <= ASIDE * self.band;
+            if let Some(i) = layers.iter().position(together) {
+                layers.swap_remove(i);
+            }
+        }
+        layers
+    }
+
+    /// Where the line of sight just aside of a hit passes the same face, and whether from its
+    /// front, there and not where the line of sight itself meets it elsewhere.
+    fn passed_beside(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        own: Own,
+        side: &Vector3<f64>,
+        report: &mut impl FnMut(f64, bool),
+    ) {
         let surface = self.brep.surface(hit.face);
         let beside = ray.origin + ray.towards * hit.at + side * (ASIDE * self.band);
         let (towards, _) = self.projection.towards_eye(&beside);
@@ -520,18 +557,18 @@ impl<'a> Scene<'a> {
                 .all(|other| other == hit.at || (s - other).abs() > away)
         };
         let found = self.meetings(&parallel, surface, Own::No);
-        let mut layers = 0;
         for &(s, touch) in &found.at[..found.count] {
-            if !known(s - back + hit.at) {
+            let at = s - back + hit.at;
+            // Behind the point nothing hides it.
+            if at <= 0.0 || !known(at) {
                 continue;
             }
             let p = parallel.origin + towards * s;
-            let front = touch || self.brep.outward(hit.face, &p).dot(&towards) > 0.0;
-            if front && self.locator.place(hit.face, &p) != Place::Outside {
-                layers += 1;
+            if self.locator.place(hit.face, &p) != Place::Outside {
+                let front = touch || self.brep.outward(hit.face, &p).dot(&towards) > 0.0;
+                report(at, front);
             }
         }
-        layers
     }
 
     /// Whether the eye of a perspective camera lies in the material.

@@ -8,6 +8,12 @@ use std::f64::consts::TAU;
 /// How many neighbours must agree.
 const NEIGHBOURS: usize = 24;
 
+/// A face that lies close is looked at again with lines of sight that run this much closer, and is
+/// the point's own where it has come nearer by the other factor (by the root of the first on a
+/// limb, with room for a mixture of both).
+const CLOSER: f64 = 1.0 / 16.0;
+const DRAWN: f64 = 0.5;
+
 /// How far things must be apart for rays to tell them apart, in the part's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
@@ -47,9 +53,21 @@ impl Material {
         let frame = Frame::about(*point, towards);
         let agree = (0..NEIGHBOURS).all(|k| {
             let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
-            let aside = frame.point(clearance.aside * cos, clearance.aside * sin, 0.0);
-            let (towards, length) = sight(&aside);
-            entries(&self.along(&aside, towards, clearance), depth, length) == count
+            let beside = |by: f64| {
+                let origin = frame.point(by * cos, by * sin, 0.0);
+                let (towards, length) = sight(&origin);
+                (self.along(&origin, towards, clearance), length)
+            };
+            let (aside, length) = beside(clearance.aside);
+            if entries(&aside, depth, length) != count {
+                return false;
+            }
+            // The point's own faces draw near with the line of sight, another one does not.
+            let close = first_exit(&aside, clearance.aside);
+            close >= depth || {
+                let (closer, _) = beside(clearance.aside * CLOSER);
+                first_exit(&closer, 0.0) < close * DRAWN
+            }
         });
         agree.then_some(count)
     }
@@ -66,6 +84,12 @@ impl Material {
         };
         self.intervals(&ray, clearance.sliver)
     }
+}
+
+/// Where the material beyond `from` first ends.
+fn first_exit(intervals: &[[f64; 2]], from: f64) -> f64 {
+    let ends = intervals.iter().map(|i| i[1]).filter(|end| *end > from);
+    ends.fold(f64::INFINITY, f64::min)
 }
 
 fn entries(intervals: &[[f64; 2]], from: f64, to: f64) -> u32 {

@@ -102,7 +102,7 @@ fn ends(piece: &Piece) -> [Option<u32>; 2] {
 }
 
 /// The size of a part: the diagonal of the box of its edges and closed surfaces.
-fn part_size(brep: &Brep) -> f64 {
+pub fn part_size(brep: &Brep) -> f64 {
     use premio_kernel::geometry::surface::Surface;
     let mut hull = Box3::EMPTY;
     for edge in brep.topology.edge_ids() {

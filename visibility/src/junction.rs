@@ -98,6 +98,12 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
             search.overlap((j, b), (i, a));
         }
     }
+    // An image that turns back falls on itself.
+    for (i, a) in strands.iter().enumerate() {
+        if !a.turns.is_empty() {
+            search.overlap((i as u32, a), (i as u32, a));
+        }
+    }
     for (strand, split) in search.splits {
         strands[strand as usize].splits.push(split);
     }

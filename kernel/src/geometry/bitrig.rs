@@ -37,7 +37,50 @@ fn basis<S: Scalar>(angle: S) -> [[S; 5]; 3] {
     ]
 }
 
+/// What is left of a polynomial in two angles where one of them is fixed: the coefficients of the
+/// functions of the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Section {
+    k: [f64; 5],
+    /// The singular point's angle, of a [`Local`].
+    local: Option<f64>,
+}
+
+impl Section {
+    /// Of the coefficients `k`, with the first or the second angle's functions fixed to `fixed`.
+    fn of(k: &[[f64; 5]; 5], first: bool, fixed: &[f64; 5], local: Option<f64>) -> Self {
+        let entry = |i: usize, j: usize| if first { k[i][j] } else { k[j][i] };
+        let sum = |j: usize| (0..5).map(|i| entry(i, j) * fixed[i]).sum();
+        Self {
+            k: std::array::from_fn(sum),
+            local,
+        }
+    }
+
+    /// The value at an angle, and the derivative.
+    pub fn at(&self, angle: f64) -> [f64; 2] {
+        let [value, slope] = match self.local {
+            Some(origin) => {
+                let [value, slope, _] = local_basis(angle - origin);
+                [value, slope]
+            }
+            None => {
+                let (s, c) = angle.sin_cos();
+                let (s2, c2) = (2.0 * s * c, (c - s) * (c + s));
+                [[1.0, c, s, c2, s2], [0.0, -s, c, -2.0 * s2, 2.0 * c2]]
+            }
+        };
+        let sum = |by: [f64; 5]| (0..5).map(|j| self.k[j] * by[j]).sum();
+        [sum(value), sum(slope)]
+    }
+}
+
 impl BiTrig {
+    /// What is left where the first angle, or the second, is fixed to `angle`.
+    pub fn section(&self, first: bool, angle: f64) -> Section {
+        Section::of(&self.0, first, &basis(angle)[0], None)
+    }
+
     /// The zero polynomial.
     pub fn zero() -> Self {
         Self([[0.0; 5]; 5])
@@ -177,6 +220,13 @@ impl Local {
         k[1][0] = 0.0;
         k[0][1] = 0.0;
         Self { origin, k }
+    }
+
+    /// What is left where the first angle, or the second, is fixed to `angle`.
+    pub fn section(&self, first: bool, angle: f64) -> Section {
+        let [a, b] = self.origin;
+        let (fixed, free) = if first { (a, b) } else { (b, a) };
+        Section::of(&self.k, first, &local_basis(angle - fixed)[0], Some(free))
     }
 
     /// The value with its partial derivatives at the angles (x, y).

@@ -8,6 +8,7 @@ use super::Brep;
 use super::topology::{FaceId, Sense};
 use super::walk::{DirectedArc, Passage, Walk};
 use crate::geometry::bounds::{Box3, bounds};
+use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;
 use nalgebra::Point3;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -35,12 +36,35 @@ const WALKS: usize = 48;
 /// The golden section: multiples of it spread over the unit without ever repeating.
 const SPREAD: f64 = 0.618_033_988_749_894_9;
 
+/// A smooth piece of an arc without a closed form.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    range: [f64; 2],
+    bounds: Box3,
+}
+
+/// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
+/// closed form.
+fn parts(arc: &DirectedArc<'_>, band: f64) -> Vec<Part> {
+    let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
+        return Vec::new();
+    };
+    let breaks = arc.curve.breaks(arc.range[0], arc.range[1]);
+    let part = |pair: &[f64]| {
+        let range = [pair[0], pair[1]];
+        let bounds = bounds(arc.curve, range).grown(band);
+        Part { range, bounds }
+    };
+    breaks.windows(2).map(part).collect()
+}
+
 /// Answers for one face where points lie.
 #[derive(Debug)]
 pub struct FaceLocator<'a> {
     surface: &'a Surface,
     side: Sense,
     arcs: Vec<DirectedArc<'a>>,
+    parts: Vec<Vec<Part>>,
     boxes: Vec<Box3>,
     tree: Option<RTree<ArcBox>>,
     /// About how far it is from one arc to the next.
@@ -74,10 +98,12 @@ impl<'a> FaceLocator<'a> {
     /// A locator for the region of `surface` that `arcs` bound; `side` tells whether the outward
     /// normal of the face is the surface's own, `band` is the resolution.
     pub fn new(surface: &'a Surface, side: Sense, arcs: Vec<DirectedArc<'a>>, band: f64) -> Self {
-        let boxes: Vec<Box3> = arcs
-            .iter()
-            .map(|a| bounds(a.curve, a.range).grown(band))
-            .collect();
+        let parts: Vec<Vec<Part>> = arcs.iter().map(|a| parts(a, band)).collect();
+        let hull = |(a, parts): (&DirectedArc<'_>, &Vec<Part>)| match parts.as_slice() {
+            [] => bounds(a.curve, a.range).grown(band),
+            parts => parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.bounds)),
+        };
+        let boxes: Vec<Box3> = arcs.iter().zip(&parts).map(hull).collect();
         let tree = (arcs.len() > FEW).then(|| {
             let leaf = |(i, b): (usize, &Box3)| {
                 GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
@@ -90,6 +116,7 @@ impl<'a> FaceLocator<'a> {
             surface,
             side,
             arcs,
+            parts,
             boxes,
             tree,
             spacing,
@@ -163,6 +190,10 @@ impl<'a> FaceLocator<'a> {
     }
 
     fn on_arc(&self, p: &Point3<f64>, i: usize) -> bool {
+        let parts = &self.parts[i];
+        if !parts.is_empty() && !parts.iter().any(|part| part.bounds.holds(p)) {
+            return false;
+        }
         let DirectedArc { curve, range, .. } = self.arcs[i];
         let [lo, hi] = range;
         let near = |t: f64| (curve.point(t) - p).norm() <= self.band;
@@ -293,6 +324,23 @@ impl<'a> FaceLocator<'a> {
         self.take(walk)
     }
 
+    /// The ranges of an arc that a walk may meet.
+    fn met(&self, walk: &Walk, i: usize) -> Vec<[f64; 2]> {
+        let parts = &self.parts[i];
+        if parts.is_empty() {
+            return vec![self.arcs[i].range];
+        }
+        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        let may = |part: &&Part| walk.may_meet_box(&part.bounds, self.band);
+        for part in parts.iter().filter(may) {
+            match ranges.last_mut() {
+                Some(last) if last[1] == part.range[0] => last[1] = part.range[1],
+                _ => ranges.push(part.range),
+            }
+        }
+        ranges
+    }
+
     fn take(&self, walk: &Walk) -> Outcome {
         let mut nearest = (f64::INFINITY, Passage::Unclear);
         let mut second = f64::INFINITY;
@@ -302,6 +350,7 @@ impl<'a> FaceLocator<'a> {
                 self.surface,
                 self.side,
                 arc,
+                &self.met(walk, i),
                 self.band,
                 &mut |s, _, passage| {
                     if s < nearest.0 {

@@ -75,6 +75,43 @@ impl Section {
     }
 }
 
+/// The sum of the coefficients times the functions of both angles, with its derivatives: each row
+/// is summed over the second angle's functions once.
+fn partials<S: Scalar>(k: &[[f64; 5]; 5], bx: &[[S; 5]; 3], by: &[[S; 5]; 3]) -> Partials<S> {
+    let zero = S::constant(0.0);
+    let [mut f, mut x, mut y, mut xx, mut xy, mut yy] = [zero; 6];
+    for (m, row) in k.iter().enumerate() {
+        if row.iter().all(|&c| c == 0.0) {
+            continue;
+        }
+        let mut inner = [zero; 3];
+        for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
+            inner[0] = inner[0] + by[0][n].scale(c);
+            // The derivatives of the constant vanish.
+            if n > 0 {
+                inner[1] = inner[1] + by[1][n].scale(c);
+                inner[2] = inner[2] + by[2][n].scale(c);
+            }
+        }
+        f = f + inner[0] * bx[0][m];
+        y = y + inner[1] * bx[0][m];
+        yy = yy + inner[2] * bx[0][m];
+        if m > 0 {
+            x = x + inner[0] * bx[1][m];
+            xx = xx + inner[0] * bx[2][m];
+            xy = xy + inner[1] * bx[1][m];
+        }
+    }
+    Partials {
+        f,
+        x,
+        y,
+        xx,
+        xy,
+        yy,
+    }
+}
+
 impl BiTrig {
     /// What is left where the first angle, or the second, is fixed to `angle`.
     pub fn section(&self, first: bool, angle: f64) -> Section {
@@ -136,15 +173,7 @@ impl BiTrig {
 
     /// The value with its partial derivatives.
     pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
-        let (bx, by) = (basis(x), basis(y));
-        Partials {
-            f: self.sum(&bx[0], &by[0]),
-            x: self.sum(&bx[1], &by[0]),
-            y: self.sum(&bx[0], &by[1]),
-            xx: self.sum(&bx[2], &by[0]),
-            xy: self.sum(&bx[1], &by[1]),
-            yy: self.sum(&bx[0], &by[2]),
-        }
+        partials(&self.0, &basis(x), &basis(y))
     }
 
     /// A bound of the third derivatives in any direction of length one in each angle.
@@ -233,26 +262,6 @@ impl Local {
     pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
         let bx = local_basis(x - S::constant(self.origin[0]));
         let by = local_basis(y - S::constant(self.origin[1]));
-        let sum = |a: &[S; 5], b: &[S; 5]| {
-            let mut total = S::constant(0.0);
-            for (row, f) in self.k.iter().zip(a) {
-                let mut inner = S::constant(0.0);
-                for (&c, &g) in row.iter().zip(b) {
-                    if c != 0.0 {
-                        inner = inner + g.scale(c);
-                    }
-                }
-                total = total + inner * *f;
-            }
-            total
-        };
-        Partials {
-            f: sum(&bx[0], &by[0]),
-            x: sum(&bx[1], &by[0]),
-            y: sum(&bx[0], &by[1]),
-            xx: sum(&bx[2], &by[0]),
-            xy: sum(&bx[1], &by[1]),
-            yy: sum(&bx[0], &by[2]),
-        }
+        partials(&self.k, &bx, &by)
     }
 }

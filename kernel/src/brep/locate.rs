@@ -324,12 +324,9 @@ impl<'a> FaceLocator<'a> {
         self.take(walk)
     }
 
-    /// The ranges of an arc that a walk may meet.
+    /// The ranges of an arc in parts that a walk may meet.
     fn met(&self, walk: &Walk, i: usize) -> Vec<[f64; 2]> {
         let parts = &self.parts[i];
-        if parts.is_empty() {
-            return vec![self.arcs[i].range];
-        }
         let mut ranges: Vec<[f64; 2]> = Vec::new();
         let may = |part: &&Part| walk.may_meet_box(&part.bounds, self.band);
         for part in parts.iter().filter(may) {
@@ -342,25 +339,24 @@ impl<'a> FaceLocator<'a> {
     }
 
     fn take(&self, walk: &Walk) -> Outcome {
-        let mut nearest = (f64::INFINITY, Passage::Unclear);
-        let mut second = f64::INFINITY;
+        let mut first = First::default();
         let mut meet = |i: usize| {
             let arc = &self.arcs[i];
-            walk.meet(
-                self.surface,
-                self.side,
-                arc,
-                &self.met(walk, i),
-                self.band,
-                &mut |s, _, passage| {
-                    if s < nearest.0 {
-                        second = nearest.0;
-                        nearest = (s, passage);
-                    } else {
-                        second = second.min(s);
-                    }
-                },
-            );
+            let mut note = |at: f64, _: f64, passage: Passage| {
+                first.note(Met {
+                    at,
+                    passage,
+                    curve: std::ptr::from_ref(arc.curve),
+                });
+            };
+            let mut within = |ranges: &[[f64; 2]]| {
+                walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
+            };
+            if self.parts[i].is_empty() {
+                within(&[arc.range]);
+            } else {
+                within(&self.met(walk, i));
+            }
         };
         match &self.tree {
             Some(tree) => tree
@@ -373,12 +369,58 @@ impl<'a> FaceLocator<'a> {
                 .filter(|&i| walk.may_meet_box(&self.boxes[i], self.band))
                 .for_each(meet),
         }
-        match nearest {
-            (s, _) if s == f64::INFINITY => Outcome::Nothing,
-            (s, _) if second - s <= self.band => Outcome::Unclear,
-            (_, Passage::Entering) => Outcome::Found(Place::Outside),
-            (_, Passage::Leaving) => Outcome::Found(Place::Inside),
-            (_, Passage::Unclear) => Outcome::Unclear,
+        first.outcome(self.band)
+    }
+}
+
+/// Where a walk meets an arc.
+#[derive(Clone, Copy, Debug)]
+struct Met {
+    at: f64,
+    passage: Passage,
+    curve: *const Curve,
+}
+
+/// The first three meetings of a walk, in order.
+#[derive(Clone, Copy, Debug, Default)]
+struct First {
+    met: [Option<Met>; 3],
+}
+
+impl First {
+    fn note(&mut self, mut met: Met) {
+        for slot in &mut self.met {
+            match slot {
+                Some(known) if known.at <= met.at => {}
+                Some(known) => std::mem::swap(known, &mut met),
+                None => {
+                    *slot = Some(met);
+                    return;
+                }
+            }
+        }
+    }
+
+    fn outcome(&self, band: f64) -> Outcome {
+        let [Some(first), second, third] = self.met else {
+            return Outcome::Nothing;
+        };
+        let with_first = |other: Option<Met>| other.filter(|m| m.at - first.at <= band);
+        match (with_first(second), with_first(third)) {
+            (None, _) => match first.passage {
+                Passage::Entering => Outcome::Found(Place::Outside),
+                Passage::Leaving => Outcome::Found(Place::Inside),
+                Passage::Unclear => Outcome::Unclear,
+            },
+            // An edge with the face on both of its sides.
+            (Some(second), None) if first.curve == second.curve => {
+                match (first.passage, second.passage) {
+                    (Passage::Entering, Passage::Leaving)
+                    | (Passage::Leaving, Passage::Entering) => Outcome::Found(Place::Inside),
+                    _ => Outcome::Unclear,
+                }
+            }
+            _ => Outcome::Unclear,
         }
     }
 }

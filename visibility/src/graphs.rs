@@ -15,6 +15,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::roots::{Contact, Zeros, bisect_newton, isolate};
+use premio_kernel::number::sign::ROUNDING;
 
 /// Distances in space within which two roots are one, in multiples of the resolution.
 const SAME: f64 = 16.0;
@@ -93,6 +94,8 @@ struct Graphs<'x> {
     b: &'x Curve,
     projection: &'x Projection,
     of: [&'x Stretch; 2],
+    /// The ranges of both curves.
+    whole: [[f64; 2]; 2],
     courses: [Course; 2],
     /// x and y.
     axes: [[f64; 2]; 2],
@@ -125,6 +128,7 @@ impl<'x> Graphs<'x> {
             b: b.curve,
             projection,
             of: [x, y],
+            whole: [a.range, b.range],
             courses,
             axes: [e, [-e[1], e[0]]],
             scale: projection.scale(&b.curve.point(y.range[0])),
@@ -276,8 +280,11 @@ impl<'x> Graphs<'x> {
             });
             return found(self.gap(s).t, s);
         }
+        // Next to an end that is none of the curve's the neighbour decides, but for rounding.
         for (s, gap) in [(lo, &a), (hi, &b)] {
-            if gap.v.abs() <= band {
+            let last = self.whole[0].contains(&gap.t) || self.whole[1].contains(&s);
+            let within = if last { band } else { ROUNDING * self.scale };
+            if gap.v.abs() <= within {
                 return found(gap.t, s);
             }
         }

@@ -311,6 +311,10 @@ impl<'a> Scene<'a> {
                 let c = (q.norm() - s.radius) * (q.norm() + s.radius);
                 self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, &mut found);
             }
+            // Through the apex the line has a double root wherever it comes from.
+            Surface::Cone(_) if own == Own::No && self.through_apex(&q, &w) => {
+                found.push(-q.dot(&w), true);
+            }
             Surface::Cone(s) => {
                 let (k, m) = (s.cos * s.cos, s.sin * s.sin);
                 let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
@@ -329,6 +333,11 @@ impl<'a> Scene<'a> {
             Surface::Torus(s) => self.torus(s, &q, &w, own, ray.length, &mut found),
         }
         found
+    }
+
+    /// Whether a line passes the origin of its frame.
+    fn through_apex(&self, q: &Vector3<f64>, w: &Vector3<f64>) -> bool {
+        (q - w * q.dot(w)).norm() <= 4.0 * self.band
     }
 
     /// The roots of a s² + 2 b s + c; `gradient` is what turns the value into a distance.

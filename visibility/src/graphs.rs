@@ -19,7 +19,8 @@ use premio_kernel::number::sign::ROUNDING;
 
 /// Distances in space within which two roots are one, in multiples of the resolution.
 const SAME: f64 = 16.0;
-/// Curves that are together over no more than this, in multiples of the resolution, cross there.
+/// Curves that are together over no more than this, in multiples of the resolution, cross there or
+/// touch.
 const SHORT: f64 = 256.0;
 /// Places of a stretch that tell whether it falls on another: graphs over one direction that are
 /// no further from each other at any of them have no room to part between them.
@@ -258,15 +259,14 @@ impl<'x> Graphs<'x> {
         0.0
     }
 
-    /// How long the common part is; too short a one is a crossing.
+    /// How long the common part is; too short a one may be a crossing.
     fn together(&self, [lo, hi]: [f64; 2], band: f64, found: &mut impl FnMut(f64, f64)) -> f64 {
         let [p, q] = [lo, hi].map(|s| self.jet(self.b, s)[0].v);
         let length = (q - p).abs();
         if length * self.scale > SHORT * band {
             return length;
         }
-        let s = 0.5 * (lo + hi);
-        found(self.gap(s).t, s);
+        self.once([lo, hi], band, found);
         0.0
     }
 

@@ -388,7 +388,7 @@ impl<'a> Scene<'a> {
         found: &mut Meetings,
     ) {
         // Beyond the tube's sphere there is nothing; the origin may be far away.
-        let reach = s.major + s.minor;
+        let reach = s.major + s.minor + 4.0 * self.band;
         let nearest = -q.dot(w);
         let half2 = reach * reach - (q + w * nearest).norm_squared();
         if half2 <= 0.0 {
@@ -427,7 +427,10 @@ impl<'a> Scene<'a> {
                     std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
                 surface.level(p)
             };
-            return self.isolated(&f, lo, hi, found);
+            if self.isolated(&f, lo, hi, found) == Zeros::Everywhere {
+                found.push(0.5 * (lo + hi), true);
+            }
+            return;
         }
         // The gradient of the quartic is 8 R r ρ; ρ is at least R - r.
         let size = 8.0 * major * minor * (major - minor) / reach.powi(known as i32);
@@ -449,12 +452,14 @@ impl<'a> Scene<'a> {
         lo: f64,
         hi: f64,
         found: &mut Meetings,
-    ) {
-        if let Zeros::At { roots, .. } = isolate(f, &[lo, hi], self.band) {
+    ) -> Zeros {
+        let zeros = isolate(f, &[lo, hi], self.band);
+        if let Zeros::At { roots, .. } = &zeros {
             for r in roots {
                 found.push(r.t, r.contact == Contact::Touching);
             }
         }
+        zeros
     }
 
     /// The quantitative invisibility of a point of a curve with the unit tangent `along`: the faces

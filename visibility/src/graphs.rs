@@ -81,9 +81,10 @@ fn own_pairs(a: &Strand<'_>, both: &mut impl FnMut(&Stretch, &Stretch)) {
         })
         .collect();
     for i in 0..n {
-        for j in i + 1 + reach[i]..n {
-            if !(a.closed && i + n - j <= reach[j]) {
-                both(&a.stretches[i], &a.stretches[j]);
+        let others = a.stretches.iter().zip(&reach).enumerate();
+        for (j, (other, &back)) in others.skip(i + 1 + reach[i]) {
+            if !(a.closed && i + n - j <= back) {
+                both(&a.stretches[i], other);
             }
         }
     }

@@ -3,16 +3,17 @@
 //! One contour's points are put into the other's cone of sight: a plane through the eye for a
 //! line, a quadric cone for a conic. Line and line, line and conic are closed forms; two conics
 //! give a polynomial of the fourth degree in the tangent of half the angle; other curves against
-//! these are isolated on their parameter, and two other curves by certified subdivision.
+//! these are isolated on their parameter, and two other curves as graphs over a direction.
 
 use crate::edgewise::Edgewise;
-use crate::image::{Basis, Image, line_on_conic, quadratic};
+use crate::graphs::general_pair;
+use crate::image::{Basis, Image, flat_of, line_on_conic, quadratic};
 use crate::polynomial::{Quartic, crossings};
 use crate::projection::Projection;
+use crate::sight::Scene;
 use crate::strand::Strand;
-use crate::subdivide::general_pair;
-use nalgebra::{Matrix3, Rotation3, Vector3};
-use premio_kernel::geometry::curve::Curve;
+use crate::stretch::passes;
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::roots::{Contact, Zeros, isolate};
 use premio_kernel::number::scalar::{Scalar, dot};
@@ -30,6 +31,12 @@ pub enum Overlap {
 /// What the distances between contours in the image may be, in multiples of the resolution, for
 /// them to fall on one another.
 const LOOSE: f64 = 8.0;
+
+/// Places that tell whether a curve falls on a line or a conic.
+const PLACES: usize = 19;
+
+/// Curves on one another are together over more than the whole by this.
+const MOST: f64 = 64.0;
 
 /// A turn without meaning: conics of symmetric parts must not cross at the ends of the halves.
 const TURN: f64 = 0.618_033_988_749_894_9;
@@ -236,11 +243,13 @@ fn general(
     band: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
+    if falls_on(a, b, projection, LOOSE * band) {
+        return Overlap::Yes;
+    }
     let middle = a.curve.point(0.5 * (a.range[0] + a.range[1]));
     let middle = projection.homogeneous(&middle);
-    let breaks = a.curve.breaks(a.range[0], a.range[1]);
     let image = |t: Interval| projection.homogeneous_over(a.curve.jet_over(t));
-    let zeros = match &b.image {
+    let solve = |breaks: &[f64]| match &b.image {
         Image::Conic { conic, .. } => {
             let polar = conic * middle;
             let scale = 0.5 / polar.x.hypot(polar.y);
@@ -249,25 +258,50 @@ fn general(
                 let row = |i: usize| dot(&conic.row(i).transpose(), h);
                 (h[0] * row(0) + h[1] * row(1) + h[2] * row(2)).scale(scale)
             };
-            isolate(&f, &breaks, band)
+            isolate(&f, breaks, band)
         }
         other => {
-            let Some(line) = other.line() else {
-                return Overlap::No;
-            };
+            let line = other.line().copied().unwrap_or_else(Vector3::z);
             let line = line / line.x.hypot(line.y);
-            isolate(&|t: Interval| dot(&line, image(t)), &breaks, band)
+            isolate(&|t: Interval| dot(&line, image(t)), breaks, band)
         }
     };
-    match zeros {
-        Zeros::Everywhere => Overlap::Yes,
-        Zeros::At { roots, .. } => {
-            for r in roots.iter().filter(|r| r.contact != Contact::Touching) {
-                let h = projection.homogeneous(&a.curve.point(r.t));
-                b.image.parameters(&h, b.range, &mut |s| found(r.t, s));
+    let mut together = 0.0;
+    for breaks in a.runs_next_to(&b.hull) {
+        match solve(&breaks) {
+            Zeros::Everywhere => together += a.length_between(&breaks),
+            Zeros::At { roots, .. } => {
+                for r in roots.iter().filter(|r| r.contact != Contact::Touching) {
+                    let h = projection.homogeneous(&a.curve.point(r.t));
+                    b.image.parameters(&h, b.range, &mut |s| found(r.t, s));
+                }
             }
-            Overlap::No
         }
+    }
+    overlap_of(together, a)
+}
+
+/// Whether the image of a curve lies on the line or conic of another: none of the kinds there are
+/// meets one in so many points otherwise.
+fn falls_on(a: &Strand<'_>, b: &Strand<'_>, projection: &Projection, near: f64) -> bool {
+    let [lo, hi] = a.range;
+    let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
+    (0..PLACES).all(|k| {
+        let h = projection.homogeneous(&a.curve.point(at(k)));
+        match (&b.image, b.image.line()) {
+            (Image::Conic { conic, .. }, _) => on_conic(conic, &h, near),
+            (_, Some(line)) => line.dot(&h).abs() <= near * line.x.hypot(line.y),
+            _ => false,
+        }
+    })
+}
+
+/// What being together over so much of the image of `a` means: next to a touch it is little.
+pub fn overlap_of(together: f64, a: &Strand<'_>) -> Overlap {
+    if together * MOST > a.length_between(&a.range) {
+        Overlap::Yes
+    } else {
+        Overlap::No
     }
 }
 
@@ -284,24 +318,25 @@ fn edgewise(
     }
     for s in on.passed_by(b.curve, b.range, band) {
         let p = b.curve.point(s);
-        on.parameters(a.curve, a.range, p.into(), band, &mut |t| found(t, s));
+        on.parameters(a.curve, a.range, p, band, &mut |t| found(t, s));
     }
     Overlap::No
 }
 
-/// The parameters at which a strand's image passes the image point of `h`, where it does.
+/// The parameters at which a strand's image passes that of a point, where it does.
 pub fn parameters_at(
     strand: &Strand<'_>,
-    h: &Vector3<f64>,
-    p: [f64; 3],
-    band: f64,
+    p: &Point3<f64>,
+    scene: &Scene<'_>,
     found: &mut impl FnMut(f64),
 ) {
-    match (&strand.image, strand.curve) {
-        (Image::Edgewise(on), curve) => on.parameters(curve, strand.range, p, band, found),
-        (Image::General, Curve::Quartic(_) | Curve::Toric(_)) => {
-            found(strand.curve.parameter(&p.into()));
+    let projection = scene.projection;
+    match &strand.image {
+        Image::Edgewise(on) => on.parameters(strand.curve, strand.range, *p, scene.band, found),
+        Image::General => {
+            let p = flat_of(projection, p);
+            passes(strand.curve, &strand.stretches, projection, p, found);
         }
-        (image, _) => image.parameters(h, strand.range, found),
+        image => image.parameters(&projection.homogeneous(p), strand.range, found),
     }
 }

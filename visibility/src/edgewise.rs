@@ -6,6 +6,7 @@
 //! surface. So nothing of the image has to be searched in two parameters.
 
 use crate::projection::{Projection, Sight};
+use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::{Cylinder, Surface};
 use premio_kernel::number::interval::Interval;
@@ -81,11 +82,11 @@ impl Edgewise {
         &self,
         curve: &Curve,
         range: [f64; 2],
-        p: [f64; 3],
+        p: Point3<f64>,
         band: f64,
         found: &mut impl FnMut(f64),
     ) {
-        let q = self.carrier.frame.coordinates(&p.into());
+        let q = self.carrier.frame.coordinates(&p);
         let size = q.x.hypot(q.y);
         let (cos, sin) = (q.x / size, q.y / size);
         // On the ray from the axis through the point, not the one opposite.

@@ -58,12 +58,13 @@ impl Basis {
         }
     }
 
-    /// The parameter of the point (u, v, w) of the basis' conic, up to a factor.
-    fn parameter(self, b: &Vector3<f64>) -> f64 {
+    /// The parameter of the point (u, v, w) of the basis' conic, up to a factor; none on the other
+    /// branch of a hyperbola.
+    fn parameter(self, b: &Vector3<f64>) -> Option<f64> {
         match self {
-            Self::Circular => (b.y * b.z.signum()).atan2(b.x * b.z.signum()),
-            Self::Parabolic => b.y / b.z,
-            Self::Hyperbolic => (b.y / b.z).asinh(),
+            Self::Circular => Some((b.y * b.z.signum()).atan2(b.x * b.z.signum())),
+            Self::Parabolic => Some(b.y / b.z),
+            Self::Hyperbolic => (b.x / b.z > 0.0).then(|| (b.y / b.z).asinh()),
         }
     }
 }
@@ -258,7 +259,9 @@ impl Image {
                 found(-m.dot(origin) / m.dot(direction));
             }
             Image::Conic { basis, inverse, .. } => {
-                let t = basis.parameter(&(inverse * h));
+                let Some(t) = basis.parameter(&(inverse * h)) else {
+                    return;
+                };
                 found(match basis {
                     Basis::Circular => range[0] + (t - range[0]).rem_euclid(TAU),
                     _ => t,

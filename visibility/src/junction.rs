@@ -1,200 +1,25 @@
 //! T-junctions: the pairs of contours that can cross in the image, and what a crossing does.
 //!
-//! Candidates come from an R-tree on the boxes of the images; long contours are chains of boxes.
 //! Notation: v is the unit vector towards the eye, T the direction of the nearer contour, U that
 //! of the farther one. A face to the left of T (seen from outside) lies in the image on the side
 //! on which det(T, ·, v) has the sign of N·v: so a face turned towards the eye begins to hide the
-//! farther contour where its loop's sense along T has the sign of det(T, U, v), else it ceases to. The folded sheet of a limb lies towards -N, or towards N where the
-//! surface is hollow along the line of sight.
+//! farther contour where its loop's sense along T has the sign of det(T, U, v), else it ceases to.
+//! The folded sheet of a limb lies towards -N, or towards N where the surface is hollow along the
+//! line of sight.
 
+use crate::candidates::candidates;
 use crate::contour::JunctionKind;
 use crate::crossing::{Overlap, cross, parameters_at};
-use crate::image::{Basis, Image, flat_of, flat_point};
-use crate::projection::{Projection, Sight};
+use crate::image::flat_of;
 use crate::sight::Scene;
 use crate::strand::{Change, Junctions, Passing, Split, Strand};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::interval::Interval;
 use premio_kernel::number::sign::ROUNDING;
-use rstar::RTree;
-use rstar::primitives::{GeomWithData, Rectangle};
-use std::f64::consts::TAU;
 
-/// A link of a chain: its box in the image, and the strand it belongs to.
-type Link = GeomWithData<Rectangle<[f64; 2]>, u32>;
-
-/// A contour is cut into links of about this part of the image's size.
-const LINKS: f64 = 24.0;
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 8.0;
-
-#[derive(Clone, Copy, Debug)]
-struct Box2 {
-    min: [f64; 2],
-    max: [f64; 2],
-}
-
-impl Box2 {
-    const EMPTY: Self = Self {
-        min: [f64::INFINITY; 2],
-        max: [f64::NEG_INFINITY; 2],
-    };
-
-    fn with(self, p: [f64; 2]) -> Self {
-        Self {
-            min: [self.min[0].min(p[0]), self.min[1].min(p[1])],
-            max: [self.max[0].max(p[0]), self.max[1].max(p[1])],
-        }
-    }
-
-    fn sides(&self) -> [f64; 2] {
-        [self.max[0] - self.min[0], self.max[1] - self.min[1]]
-    }
-}
-
-/// The parameters at which the image of a conic runs along x or along y.
-fn extremes(image: &Image) -> ([f64; 4], usize) {
-    let mut found = ([0.0; 4], 0);
-    let Image::Conic { basis, map, .. } = image else {
-        return found;
-    };
-    let q = map.row(2).transpose();
-    for i in 0..2 {
-        let p = map.row(i).transpose();
-        let flat = Image::turns_of(*basis, &p, &q);
-        for t in flat.into_iter().flatten() {
-            found.0[found.1] = t;
-            found.1 += 1;
-        }
-    }
-    found
-}
-
-/// The links of a strand.
-fn links(
-    strand: &Strand<'_>,
-    index: u32,
-    projection: &Projection,
-    step: f64,
-    grow: f64,
-    out: &mut Vec<Link>,
-) {
-    let [lo, hi] = strand.range;
-    let mut push = |b: Box2| {
-        let (min, max) = (b.min.map(|x| x - grow), b.max.map(|x| x + grow));
-        out.push(GeomWithData::new(Rectangle::from_corners(min, max), index));
-    };
-    if let Image::General | Image::Edgewise(_) = strand.image {
-        for pair in strand.curve.breaks(lo, hi).windows(2) {
-            for k in 0..4 {
-                let at = |k: usize| pair[0] + (pair[1] - pair[0]) * (k as f64 / 4.0);
-                push(general_box(
-                    strand,
-                    projection,
-                    Interval::new(at(k), at(k + 1)),
-                ));
-            }
-        }
-        return;
-    }
-    let (turns, count) = extremes(&strand.image);
-    let point = |t: f64| flat_of(projection, &strand.curve.point(t));
-    let chain = |from: f64, to: f64| {
-        let mut b = Box2::EMPTY.with(point(from)).with(point(to));
-        for &t in &turns[..count] {
-            let t = match strand.image {
-                Image::Conic {
-                    basis: Basis::Circular,
-                    ..
-                } => from + (t - from).rem_euclid(TAU),
-                _ => t,
-            };
-            if t > from && t < to {
-                b = b.with(point(t));
-            }
-        }
-        if let Image::Flat { .. } = strand.image {
-            for t in strand.image.turns([from, to]) {
-                b = b.with(point(t));
-            }
-        }
-        b
-    };
-    let whole = chain(lo, hi);
-    let [w, h] = whole.sides();
-    let thick = match strand.image {
-        Image::Line { .. } => w.min(h),
-        _ => w.max(h),
-    };
-    let n = (thick / step).ceil().clamp(1.0, 4.0 * LINKS);
-    if n <= 1.0 {
-        return push(whole);
-    }
-    for k in 0..n as usize {
-        let at = |k: usize| lo + (hi - lo) * (k as f64 / n);
-        push(chain(at(k), at(k + 1)));
-    }
-}
-
-fn general_box(strand: &Strand<'_>, projection: &Projection, t: Interval) -> Box2 {
-    let wide = flat_point(projection, strand.curve.jet_over(t));
-    let middle = flat_point(projection, strand.curve.jet_over(Interval::point(t.mid())));
-    let run = t - Interval::point(t.mid());
-    let side = |i: usize| {
-        let tight = middle[i].v + wide[i].d * run;
-        if tight.width().is_finite() {
-            wide[i].v.meet(tight)
-        } else {
-            wide[i].v
-        }
-    };
-    let (x, y) = (side(0), side(1));
-    Box2 {
-        min: [x.lo, y.lo],
-        max: [x.hi, y.hi],
-    }
-}
-
-/// The pairs of strands whose images may meet, each once and in order.
-fn candidates(strands: &[Strand<'_>], scene: &Scene<'_>) -> Vec<(u32, u32)> {
-    let projection = scene.projection;
-    let mut part = Box2::EMPTY;
-    let mut least = f64::INFINITY;
-    for strand in strands {
-        for t in strand.range {
-            let p = strand.curve.point(t);
-            part = part.with(flat_of(projection, &p));
-            least = least.min(projection.homogeneous(&p).z);
-        }
-    }
-    let [w, h] = part.sides();
-    let step = w.max(h) / LINKS;
-    let grow = LOOSE * scene.band / least.max(scene.band);
-    let mut all = Vec::with_capacity(strands.len() * 2);
-    for (i, strand) in strands.iter().enumerate() {
-        if !matches!(strand.image, Image::Point) {
-            links(strand, i as u32, projection, step, grow.min(step), &mut all);
-        }
-    }
-    let tree = RTree::bulk_load(all);
-    let mut pairs: Vec<(u32, u32)> = tree
-        .intersection_candidates_with_other_tree(&tree)
-        .filter(|(a, b)| a.data < b.data)
-        .map(|(a, b)| (a.data, b.data))
-        .collect();
-    pairs.extend(
-        strands
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| matches!(s.image, Image::General))
-            .map(|(i, _)| (i as u32, i as u32)),
-    );
-    pairs.sort_unstable();
-    pairs.dedup();
-    pairs
-}
 
 /// A parameter on a strand: within it, or at one of its ends.
 #[derive(Clone, Copy, Debug)]
@@ -257,7 +82,7 @@ struct Search<'s, 'a, 'j, 'p> {
 
 /// Finds all T-junctions and notes them as splits of the farther strands.
 pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
-    let pairs = candidates(strands, scene);
+    let pairs = candidates(strands, scene.projection, LOOSE * scene.band);
     let mut search = Search {
         scene,
         junctions,
@@ -273,6 +98,12 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
             search.overlap((j, b), (i, a));
         }
     }
+    // An image that turns back falls on itself.
+    for (i, a) in strands.iter().enumerate() {
+        if !a.turns.is_empty() {
+            search.overlap((i as u32, a), (i as u32, a));
+        }
+    }
     for (strand, split) in search.splits {
         strands[strand as usize].splits.push(split);
     }
@@ -285,21 +116,17 @@ impl Search<'_, '_, '_, '_> {
     fn settle(&self, strand: &Strand<'_>, t: f64) -> Option<Settled> {
         let near = LOOSE * self.scene.band;
         let settled = settle(strand, t, near)?;
-        if let Image::Flat { .. } | Image::Edgewise(_) = strand.image {
+        if !strand.turns.is_empty() {
             // The image stands still at a turn: there little of the image is much of the curve.
             let p = strand.curve.point(settled.t);
-            let mut stops = strand.image.turns(strand.range);
-            stops.extend(
-                (!strand.closed)
-                    .then_some(strand.range)
-                    .into_iter()
-                    .flatten(),
-            );
+            let ends = (!strand.closed).then_some(strand.range);
+            let stops = strand.turns.iter().copied();
+            let stops = stops.chain(ends.into_iter().flatten());
             let stop = |t: &f64| {
                 self.apart(&p, &strand.curve.point(*t)) <= near
                     && self.straight(strand, *t, settled.t)
             };
-            if let Some(t) = stops.into_iter().find(stop) {
+            if let Some(t) = { stops }.find(stop) {
                 return Some(Settled { t, at_end: true });
             }
         }
@@ -310,7 +137,7 @@ impl Search<'_, '_, '_, '_> {
     fn apart(&self, p: &Point3<f64>, q: &Point3<f64>) -> f64 {
         let projection = self.scene.projection;
         let (x, y) = (flat_of(projection, p), flat_of(projection, q));
-        (x[0] - y[0]).hypot(x[1] - y[1]) * depth_scale(projection, p)
+        (x[0] - y[0]).hypot(x[1] - y[1]) * projection.scale(p)
     }
 
     /// Whether the image between two parameters is straight to within the resolution.
@@ -460,13 +287,10 @@ impl Search<'_, '_, '_, '_> {
 
     /// Splits `a` where `b`, which falls on it in the image, begins and ends.
     fn overlap(&mut self, (i, a): (u32, &Strand<'_>), (_, b): (u32, &Strand<'_>)) {
-        if b.closed && b.image.turns(b.range).is_empty() {
+        if b.closed && b.turns.is_empty() {
             return;
         }
-        let [lo, hi] = b.range;
-        let mut stops = b.image.turns(b.range);
-        stops.extend([lo, hi]);
-        for s in stops {
+        for s in b.turns.iter().copied().chain(b.range) {
             let q = b.curve.point(s);
             // In a symmetric view many ends fall on one point.
             let h = self.scene.projection.homogeneous(&q);
@@ -481,7 +305,7 @@ impl Search<'_, '_, '_, '_> {
             }
             asked.push(at);
             let mut met = Vec::new();
-            parameters_at(a, &h, q.into(), self.scene.band, &mut |t| met.push(t));
+            parameters_at(a, &q, self.scene, &mut |t| met.push(t));
             for t in met {
                 let Some(t) = self.settle(a, t) else { continue };
                 let p = a.curve.point(t.t);
@@ -499,13 +323,5 @@ impl Search<'_, '_, '_, '_> {
                 self.splits.push((i, split));
             }
         }
-    }
-}
-
-/// What turns a distance at depth one into one at the point's depth.
-fn depth_scale(projection: &Projection, p: &Point3<f64>) -> f64 {
-    match projection.sight {
-        Sight::Eye(_) => projection.depth(p),
-        Sight::Direction(_) => 1.0,
     }
 }

@@ -2,11 +2,14 @@
 //! drawings.
 
 pub mod camera;
+pub mod candidates;
 pub mod contour;
 pub mod crossing;
 pub mod drawing;
 pub mod edgewise;
+pub mod graphs;
 pub mod image;
+pub mod image_box;
 pub mod invisibility;
 pub mod junction;
 pub mod limb;
@@ -15,7 +18,7 @@ pub mod projection;
 pub mod serial;
 pub mod sight;
 pub mod strand;
-pub mod subdivide;
+pub mod stretch;
 pub mod view;
 
 pub use camera::Camera;

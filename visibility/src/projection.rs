@@ -139,6 +139,14 @@ impl Projection {
         self.axes[2].dot(&(p - self.origin))
     }
 
+    /// What turns a distance in the image at depth one into a distance in space next to a point.
+    pub fn scale(&self, p: &Point3<f64>) -> f64 {
+        match self.sight {
+            Sight::Eye(_) => self.depth(p),
+            Sight::Direction(_) => 1.0,
+        }
+    }
+
     /// The image of a point, in the units of the camera.
     pub fn project(&self, p: &Point3<f64>) -> Point2<f64> {
         self.image(&self.homogeneous(p))

@@ -68,6 +68,13 @@ pub struct Count {
     pub plain: bool,
 }
 
+/// A face turned towards the eye, and how far it is.
+#[derive(Clone, Copy, Debug)]
+struct Layer {
+    at: f64,
+    face: FaceId,
+}
+
 /// How far aside of a contour its sides are looked at, in multiples of the resolution: beyond what
 /// counts as touching.
 const ASIDE: f64 = 64.0;
@@ -304,6 +311,10 @@ impl<'a> Scene<'a> {
                 let c = (q.norm() - s.radius) * (q.norm() + s.radius);
                 self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, &mut found);
             }
+            // Through the apex the line has a double root wherever it comes from.
+            Surface::Cone(_) if own == Own::No && self.through_apex(&q, &w) => {
+                found.push(-q.dot(&w), true);
+            }
             Surface::Cone(s) => {
                 let (k, m) = (s.cos * s.cos, s.sin * s.sin);
                 let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
@@ -322,6 +333,11 @@ impl<'a> Scene<'a> {
             Surface::Torus(s) => self.torus(s, &q, &w, own, ray.length, &mut found),
         }
         found
+    }
+
+    /// Whether a line passes the origin of its frame.
+    fn through_apex(&self, q: &Vector3<f64>, w: &Vector3<f64>) -> bool {
+        (q - w * q.dot(w)).norm() <= 4.0 * self.band
     }
 
     /// The roots of a s² + 2 b s + c; `gradient` is what turns the value into a distance.
@@ -372,7 +388,7 @@ impl<'a> Scene<'a> {
         found: &mut Meetings,
     ) {
         // Beyond the tube's sphere there is nothing; the origin may be far away.
-        let reach = s.major + s.minor;
+        let reach = s.major + s.minor + 4.0 * self.band;
         let nearest = -q.dot(w);
         let half2 = reach * reach - (q + w * nearest).norm_squared();
         if half2 <= 0.0 {
@@ -411,7 +427,10 @@ impl<'a> Scene<'a> {
                     std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
                 surface.level(p)
             };
-            return self.isolated(&f, lo, hi, found);
+            if self.isolated(&f, lo, hi, found) == Zeros::Everywhere {
+                found.push(0.5 * (lo + hi), true);
+            }
+            return;
         }
         // The gradient of the quartic is 8 R r ρ; ρ is at least R - r.
         let size = 8.0 * major * minor * (major - minor) / reach.powi(known as i32);
@@ -433,12 +452,14 @@ impl<'a> Scene<'a> {
         lo: f64,
         hi: f64,
         found: &mut Meetings,
-    ) {
-        if let Zeros::At { roots, .. } = isolate(f, &[lo, hi], self.band) {
+    ) -> Zeros {
+        let zeros = isolate(f, &[lo, hi], self.band);
+        if let Zeros::At { roots, .. } = &zeros {
             for r in roots {
                 found.push(r.t, r.contact == Contact::Touching);
             }
         }
+        zeros
     }
 
     /// The quantitative invisibility of a point of a curve with the unit tangent `along`: the faces
@@ -462,7 +483,7 @@ impl<'a> Scene<'a> {
         let mut unclear: Vec<Hit> = Vec::new();
         self.hits(&ray, own, &mut |hit| {
             count.plain &= hit.plain;
-            if hit.front && !hit.plain {
+            if !hit.plain {
                 unclear.push(hit);
             } else if hit.front {
                 count.qi += 1;
@@ -472,35 +493,65 @@ impl<'a> Scene<'a> {
                 }
             }
         });
-        if unclear.is_empty() {
+        if !unclear.iter().any(|hit| hit.front) {
             return count;
         }
-        unclear.sort_by(|a, b| b.at.total_cmp(&a.at));
-        let mut most: (u32, Option<Hit>) = (0, None);
+        let mut most: Vec<Layer> = Vec::new();
         for side in sides(&ray.towards, along) {
-            let mut covered: (u32, Option<Hit>) = (0, None);
-            for hit in &unclear {
-                let layers = self.layers_beside(&ray, hit, own(hit.face), &side);
-                if layers > 0 {
-                    covered = (covered.0 + layers, covered.1.or(Some(*hit)));
-                }
-            }
-            if covered.0 > most.0 {
+            let covered = self.layers_beside(&ray, &unclear, own, &side);
+            if covered.len() > most.len() {
                 most = covered;
             }
         }
-        count.qi += most.0;
-        if let Some(hit) = most.1
-            && hit.at > nearest
+        count.qi += most.len() as u32;
+        if let Some(first) = most.iter().max_by(|a, b| a.at.total_cmp(&b.at))
+            && first.at > nearest
         {
-            count.occluder = Some(hit.face);
+            count.occluder = Some(first.face);
         }
         count
     }
 
-    /// How often the line of sight just aside of a hit passes the same face from its front, there
-    /// and not where the line of sight itself meets it elsewhere.
-    fn layers_beside(&self, ray: &Ray, hit: &Hit, own: Own, side: &Vector3<f64>) -> u32 {
+    /// The faces turned towards the eye on the line of sight just aside, of those that the line of
+    /// sight itself does not meet plainly.
+    fn layers_beside(
+        &self,
+        ray: &Ray,
+        unclear: &[Hit],
+        own: &impl Fn(FaceId) -> Own,
+        side: &Vector3<f64>,
+    ) -> Vec<Layer> {
+        let (mut layers, mut backs) = (Vec::new(), Vec::new());
+        for hit in unclear {
+            self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
+                let face = hit.face;
+                if front {
+                    layers.push(Layer { at, face });
+                } else {
+                    backs.push(at);
+                }
+            });
+        }
+        // Faces that touch are no further apart here than the resolution: there is no gap to see.
+        for back in backs {
+            let together = |l: &Layer| (l.at - back).abs() <= ASIDE * self.band;
+            if let Some(i) = layers.iter().position(together) {
+                layers.swap_remove(i);
+            }
+        }
+        layers
+    }
+
+    /// Where the line of sight just aside of a hit passes the same face, and whether from its
+    /// front, there and not where the line of sight itself meets it elsewhere.
+    fn passed_beside(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        own: Own,
+        side: &Vector3<f64>,
+        report: &mut impl FnMut(f64, bool),
+    ) {
         let surface = self.brep.surface(hit.face);
         let beside = ray.origin + ray.towards * hit.at + side * (ASIDE * self.band);
         let (towards, _) = self.projection.towards_eye(&beside);
@@ -520,18 +571,18 @@ impl<'a> Scene<'a> {
                 .all(|other| other == hit.at || (s - other).abs() > away)
         };
         let found = self.meetings(&parallel, surface, Own::No);
-        let mut layers = 0;
         for &(s, touch) in &found.at[..found.count] {
-            if !known(s - back + hit.at) {
+            let at = s - back + hit.at;
+            // Behind the point nothing hides it.
+            if at <= 0.0 || !known(at) {
                 continue;
             }
             let p = parallel.origin + towards * s;
-            let front = touch || self.brep.outward(hit.face, &p).dot(&towards) > 0.0;
-            if front && self.locator.place(hit.face, &p) != Place::Outside {
-                layers += 1;
+            if self.locator.place(hit.face, &p) != Place::Outside {
+                let front = touch || self.brep.outward(hit.face, &p).dot(&towards) > 0.0;
+                report(at, front);
             }
         }
-        layers
     }
 
     /// Whether the eye of a perspective camera lies in the material.

@@ -2,9 +2,11 @@
 
 use crate::contour::{Junction, JunctionKind};
 use crate::image::Image;
+use crate::image_box::ImageBox;
 use crate::limb::{Limb, cusps, limbs, polar_plane, torus_limb_on};
 use crate::projection::Projection;
 use crate::sight::Scene;
+use crate::stretch::Stretch;
 use nalgebra::Point3;
 use premio_kernel::brep::locate::Place;
 use premio_kernel::brep::topology::{EdgeId, FaceId, Sense, VertexId};
@@ -66,8 +68,44 @@ pub struct Strand<'a> {
     pub limb: bool,
     /// Its image.
     pub image: Image,
+    /// Where the image turns back on itself.
+    pub turns: Vec<f64>,
+    /// The image in stretches, where it is neither a line nor a conic.
+    pub stretches: Vec<Stretch>,
+    /// A box that holds the image.
+    pub hull: ImageBox,
     /// Where it is cut, in no order.
     pub splits: Vec<Split>,
+}
+
+impl Strand<'_> {
+    /// About how long the image is between the first and the last of some parameters.
+    pub fn length_between(&self, t: &[f64]) -> f64 {
+        let (Some(&lo), Some(&hi)) = (t.first(), t.last()) else {
+            return 0.0;
+        };
+        let within = self.stretches.iter();
+        within
+            .filter(|s| s.range[1] > lo && s.range[0] < hi)
+            .map(|s| {
+                let [p, q] = s.ends;
+                (q[0] - p[0]).hypot(q[1] - p[1])
+            })
+            .sum()
+    }
+
+    /// The runs of stretches whose images may meet a box, each by its breaks.
+    pub fn runs_next_to(&self, hull: &ImageBox) -> Vec<Vec<f64>> {
+        let mut runs: Vec<Vec<f64>> = Vec::new();
+        for stretch in self.stretches.iter().filter(|s| s.bounds.meets(hull)) {
+            let [lo, hi] = stretch.range;
+            match runs.last_mut() {
+                Some(run) if run.last() == Some(&lo) => run.push(hi),
+                _ => runs.push(vec![lo, hi]),
+            }
+        }
+        runs
+    }
 }
 
 /// All junctions.
@@ -186,13 +224,16 @@ impl Trim<'_, '_, '_, '_> {
     fn face(&mut self, face: FaceId, limbs: &[Limb]) {
         let mut ends: Vec<Vec<(f64, u32)>> = vec![Vec::new(); limbs.len()];
         for edge in face_edges(self.scene, face) {
-            for t in self.meets(face, edge) {
+            for t in self.meets(face, edge, limbs) {
                 let p = self.scene.brep.curve(edge).point(t);
-                let Some(which) = nearest_limb(limbs, &p, LOOSE * self.scene.band) else {
+                let met = limbs_through(limbs, &p, LOOSE * self.scene.band);
+                if met.is_empty() {
                     continue;
-                };
+                }
                 let junction = self.end_on(edge, t, &p);
-                ends[which].push((limbs[which].curve.parameter(&p), junction));
+                for which in met {
+                    ends[which].push((limbs[which].curve.parameter(&p), junction));
+                }
             }
         }
         let mut apex = None;
@@ -210,8 +251,8 @@ impl Trim<'_, '_, '_, '_> {
         }
     }
 
-    /// The parameters at which the limb of a face meets an edge of it.
-    fn meets(&self, face: FaceId, edge: EdgeId) -> Vec<f64> {
+    /// The parameters at which the limbs of a face meet an edge of it.
+    fn meets(&self, face: FaceId, edge: EdgeId, limbs: &[Limb]) -> Vec<f64> {
         let brep = self.scene.brep;
         let (curve, range) = (brep.curve(edge), brep.range(edge));
         let sight = &self.scene.projection.sight;
@@ -219,7 +260,14 @@ impl Trim<'_, '_, '_, '_> {
         let mut found = Vec::new();
         match brep.surface(face) {
             Surface::Torus(s) => match torus_limb_on(s, sight, curve, range, band) {
-                Zeros::Everywhere => found.extend(range),
+                // Where the edge runs along one limb, others cross both at the limb's nodes.
+                Zeros::Everywhere => {
+                    found.extend(range);
+                    let nodes = limbs
+                        .iter()
+                        .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
+                    found.extend(nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * band)));
+                }
                 Zeros::At { roots, .. } => found.extend(roots.iter().map(|r: &Root| r.t)),
             },
             surface => {
@@ -340,25 +388,25 @@ fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], plane: &Plane, band: f64) -> bool 
     })
 }
 
-fn nearest_limb(limbs: &[Limb], p: &Point3<f64>, near: f64) -> Option<usize> {
-    let away = |limb: &Limb| (limb.curve.point(limb.curve.parameter(p)) - p).norm();
-    match limbs {
-        [] => None,
-        [_] => Some(0),
-        _ => {
-            let mut best = (f64::INFINITY, 0);
-            for (i, limb) in limbs.iter().enumerate() {
-                let d = away(limb);
-                if d < best.0 {
-                    best = (d, i);
-                }
-                if d <= near {
-                    break;
-                }
-            }
-            Some(best.1)
-        }
+/// The parameter of a point on an arc, within its range.
+fn on_arc(curve: &Curve, [lo, hi]: [f64; 2], p: &Point3<f64>, near: f64) -> Option<f64> {
+    let t = curve.parameter(p);
+    let t = curve
+        .period()
+        .map_or(t, |period| lo + (t - lo).rem_euclid(period));
+    (t <= hi && (curve.point(t) - p).norm() <= near).then_some(t)
+}
+
+/// The limbs through a point of one of them; the nearest where rounding has moved the point.
+fn limbs_through(limbs: &[Limb], p: &Point3<f64>, near: f64) -> Vec<usize> {
+    if limbs.len() <= 1 {
+        return (0..limbs.len()).collect();
     }
+    let away = |limb: &Limb| (limb.curve.point(limb.curve.parameter(p)) - p).norm();
+    let far: Vec<f64> = limbs.iter().map(away).collect();
+    let least = far.iter().copied().fold(f64::INFINITY, f64::min);
+    let close = |i: &usize| far[*i] <= near.max(least);
+    (0..limbs.len()).filter(close).collect()
 }
 
 /// The edges of a face, each once.

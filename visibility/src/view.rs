@@ -4,11 +4,13 @@ use crate::camera::Camera;
 use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece, SCHEMA, Seconds};
 use crate::edgewise::Edgewise;
 use crate::image::{Image, image};
+use crate::image_box::ImageBox;
 use crate::invisibility::{Method, pieces};
 use crate::junction;
 use crate::projection::Projection;
 use crate::sight::Scene;
 use crate::strand::{Change, Junctions, LimbArcs, Split, Strand, limb_arcs};
+use crate::stretch::{self, stretches};
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{FaceId, Sense};
@@ -100,7 +102,7 @@ fn ends(piece: &Piece) -> [Option<u32>; 2] {
 }
 
 /// The size of a part: the diagonal of the box of its edges and closed surfaces.
-fn part_size(brep: &Brep) -> f64 {
+pub fn part_size(brep: &Brep) -> f64 {
     use premio_kernel::geometry::surface::Surface;
     let mut hull = Box3::EMPTY;
     for edge in brep.topology.edge_ids() {
@@ -282,6 +284,16 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             seen = Edgewise::of(source.curve, range, surfaces, projection, band)
                 .map_or(seen, Image::Edgewise);
         }
+        let straight = match seen {
+            Image::General | Image::Edgewise(_) => stretches(source.curve, range, projection, band),
+            _ => Vec::new(),
+        };
+        // Of a limb they are its cusps, which are known.
+        let turns = match seen {
+            Image::General if source.limb => Vec::new(),
+            Image::General => stretch::turns(source.curve, &straight, projection),
+            _ => seen.turns(range),
+        };
         let within = |t: f64| match source.curve.period() {
             Some(period) => lo + (t - lo).rem_euclid(period),
             None => t,
@@ -304,7 +316,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 });
             }
         }
-        for t in seen.turns(range) {
+        for &t in &turns {
             if t > lo && t < hi && !at_end(t) || closed {
                 let junction = self
                     .junctions
@@ -325,6 +337,9 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             faces: source.faces.clone(),
             limb: source.limb,
             image: seen,
+            turns,
+            stretches: straight,
+            hull: ImageBox::EMPTY,
             splits,
         });
     }

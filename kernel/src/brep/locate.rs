@@ -8,6 +8,7 @@ use super::Brep;
 use super::topology::{FaceId, Sense};
 use super::walk::{DirectedArc, Passage, Walk};
 use crate::geometry::bounds::{Box3, bounds};
+use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;
 use nalgebra::Point3;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -35,12 +36,35 @@ const WALKS: usize = 48;
 /// The golden section: multiples of it spread over the unit without ever repeating.
 const SPREAD: f64 = 0.618_033_988_749_894_9;
 
+/// A smooth piece of an arc without a closed form.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    range: [f64; 2],
+    bounds: Box3,
+}
+
+/// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
+/// closed form.
+fn parts(arc: &DirectedArc<'_>, band: f64) -> Vec<Part> {
+    let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
+        return Vec::new();
+    };
+    let breaks = arc.curve.breaks(arc.range[0], arc.range[1]);
+    let part = |pair: &[f64]| {
+        let range = [pair[0], pair[1]];
+        let bounds = bounds(arc.curve, range).grown(band);
+        Part { range, bounds }
+    };
+    breaks.windows(2).map(part).collect()
+}
+
 /// Answers for one face where points lie.
 #[derive(Debug)]
 pub struct FaceLocator<'a> {
     surface: &'a Surface,
     side: Sense,
     arcs: Vec<DirectedArc<'a>>,
+    parts: Vec<Vec<Part>>,
     boxes: Vec<Box3>,
     tree: Option<RTree<ArcBox>>,
     /// About how far it is from one arc to the next.
@@ -74,10 +98,12 @@ impl<'a> FaceLocator<'a> {
     /// A locator for the region of `surface` that `arcs` bound; `side` tells whether the outward
     /// normal of the face is the surface's own, `band` is the resolution.
     pub fn new(surface: &'a Surface, side: Sense, arcs: Vec<DirectedArc<'a>>, band: f64) -> Self {
-        let boxes: Vec<Box3> = arcs
-            .iter()
-            .map(|a| bounds(a.curve, a.range).grown(band))
-            .collect();
+        let parts: Vec<Vec<Part>> = arcs.iter().map(|a| parts(a, band)).collect();
+        let hull = |(a, parts): (&DirectedArc<'_>, &Vec<Part>)| match parts.as_slice() {
+            [] => bounds(a.curve, a.range).grown(band),
+            parts => parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.bounds)),
+        };
+        let boxes: Vec<Box3> = arcs.iter().zip(&parts).map(hull).collect();
         let tree = (arcs.len() > FEW).then(|| {
             let leaf = |(i, b): (usize, &Box3)| {
                 GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
@@ -90,6 +116,7 @@ impl<'a> FaceLocator<'a> {
             surface,
             side,
             arcs,
+            parts,
             boxes,
             tree,
             spacing,
@@ -163,6 +190,10 @@ impl<'a> FaceLocator<'a> {
     }
 
     fn on_arc(&self, p: &Point3<f64>, i: usize) -> bool {
+        let parts = &self.parts[i];
+        if !parts.is_empty() && !parts.iter().any(|part| part.bounds.holds(p)) {
+            return false;
+        }
         let DirectedArc { curve, range, .. } = self.arcs[i];
         let [lo, hi] = range;
         let near = |t: f64| (curve.point(t) - p).norm() <= self.band;
@@ -293,25 +324,39 @@ impl<'a> FaceLocator<'a> {
         self.take(walk)
     }
 
+    /// The ranges of an arc in parts that a walk may meet.
+    fn met(&self, walk: &Walk, i: usize) -> Vec<[f64; 2]> {
+        let parts = &self.parts[i];
+        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        let may = |part: &&Part| walk.may_meet_box(&part.bounds, self.band);
+        for part in parts.iter().filter(may) {
+            match ranges.last_mut() {
+                Some(last) if last[1] == part.range[0] => last[1] = part.range[1],
+                _ => ranges.push(part.range),
+            }
+        }
+        ranges
+    }
+
     fn take(&self, walk: &Walk) -> Outcome {
-        let mut nearest = (f64::INFINITY, Passage::Unclear);
-        let mut second = f64::INFINITY;
+        let mut first = First::default();
         let mut meet = |i: usize| {
             let arc = &self.arcs[i];
-            walk.meet(
-                self.surface,
-                self.side,
-                arc,
-                self.band,
-                &mut |s, _, passage| {
-                    if s < nearest.0 {
-                        second = nearest.0;
-                        nearest = (s, passage);
-                    } else {
-                        second = second.min(s);
-                    }
-                },
-            );
+            let mut note = |at: f64, _: f64, passage: Passage| {
+                first.note(Met {
+                    at,
+                    passage,
+                    curve: std::ptr::from_ref(arc.curve),
+                });
+            };
+            let mut within = |ranges: &[[f64; 2]]| {
+                walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
+            };
+            if self.parts[i].is_empty() {
+                within(&[arc.range]);
+            } else {
+                within(&self.met(walk, i));
+            }
         };
         match &self.tree {
             Some(tree) => tree
@@ -324,12 +369,58 @@ impl<'a> FaceLocator<'a> {
                 .filter(|&i| walk.may_meet_box(&self.boxes[i], self.band))
                 .for_each(meet),
         }
-        match nearest {
-            (s, _) if s == f64::INFINITY => Outcome::Nothing,
-            (s, _) if second - s <= self.band => Outcome::Unclear,
-            (_, Passage::Entering) => Outcome::Found(Place::Outside),
-            (_, Passage::Leaving) => Outcome::Found(Place::Inside),
-            (_, Passage::Unclear) => Outcome::Unclear,
+        first.outcome(self.band)
+    }
+}
+
+/// Where a walk meets an arc.
+#[derive(Clone, Copy, Debug)]
+struct Met {
+    at: f64,
+    passage: Passage,
+    curve: *const Curve,
+}
+
+/// The first three meetings of a walk, in order.
+#[derive(Clone, Copy, Debug, Default)]
+struct First {
+    met: [Option<Met>; 3],
+}
+
+impl First {
+    fn note(&mut self, mut met: Met) {
+        for slot in &mut self.met {
+            match slot {
+                Some(known) if known.at <= met.at => {}
+                Some(known) => std::mem::swap(known, &mut met),
+                None => {
+                    *slot = Some(met);
+                    return;
+                }
+            }
+        }
+    }
+
+    fn outcome(&self, band: f64) -> Outcome {
+        let [Some(first), second, third] = self.met else {
+            return Outcome::Nothing;
+        };
+        let with_first = |other: Option<Met>| other.filter(|m| m.at - first.at <= band);
+        match (with_first(second), with_first(third)) {
+            (None, _) => match first.passage {
+                Passage::Entering => Outcome::Found(Place::Outside),
+                Passage::Leaving => Outcome::Found(Place::Inside),
+                Passage::Unclear => Outcome::Unclear,
+            },
+            // An edge with the face on both of its sides.
+            (Some(second), None) if first.curve == second.curve => {
+                match (first.passage, second.passage) {
+                    (Passage::Entering, Passage::Leaving)
+                    | (Passage::Leaving, Passage::Entering) => Outcome::Found(Place::Inside),
+                    _ => Outcome::Unclear,
+                }
+            }
+            _ => Outcome::Unclear,
         }
     }
 }

@@ -283,6 +283,7 @@ impl Sorter<'_> {
                 self.surface,
                 self.outward,
                 arc,
+                &[arc.range],
                 self.band,
                 &mut |at, t, passage| {
                     // Arcs of both senses run over the starting edge where a face bounds itself.

@@ -305,25 +305,34 @@ impl Walk {
     ) -> Vec<Crossing> {
         let mut found = Vec::new();
         for (i, arc) in arcs.iter().enumerate() {
-            self.meet(surface, side, arc, band, &mut |at, t, passage| {
-                found.push(Crossing {
-                    at,
-                    arc: i,
-                    t,
-                    passage,
-                });
-            });
+            self.meet(
+                surface,
+                side,
+                arc,
+                &[arc.range],
+                band,
+                &mut |at, t, passage| {
+                    found.push(Crossing {
+                        at,
+                        arc: i,
+                        t,
+                        passage,
+                    });
+                },
+            );
         }
         found.sort_by(|a, b| a.at.total_cmp(&b.at));
         found
     }
 
-    /// Reports the crossings with one arc: (length along the walk, parameter, passage).
+    /// Reports the crossings with one arc, of which only some ranges may be met: (length along the
+    /// walk, parameter, passage).
     pub(super) fn meet(
         &self,
         surface: &Surface,
         side: Sense,
         arc: &DirectedArc<'_>,
+        ranges: &[[f64; 2]],
         band: f64,
         found: &mut impl FnMut(f64, f64, Passage),
     ) {
@@ -357,7 +366,9 @@ impl Walk {
             };
             found(s.max(0.0), t, passage);
         };
-        plane_roots(arc.curve, arc.range, &self.plane, band, &mut root);
+        for &range in ranges {
+            plane_roots(arc.curve, range, &self.plane, band, &mut root);
+        }
     }
 }
 

@@ -37,7 +37,87 @@ fn basis<S: Scalar>(angle: S) -> [[S; 5]; 3] {
     ]
 }
 
+/// What is left of a polynomial in two angles where one of them is fixed: the coefficients of the
+/// functions of the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Section {
+    k: [f64; 5],
+    /// The singular point's angle, of a [`Local`].
+    local: Option<f64>,
+}
+
+impl Section {
+    /// Of the coefficients `k`, with the first or the second angle's functions fixed to `fixed`.
+    fn of(k: &[[f64; 5]; 5], first: bool, fixed: &[f64; 5], local: Option<f64>) -> Self {
+        let entry = |i: usize, j: usize| if first { k[i][j] } else { k[j][i] };
+        let sum = |j: usize| (0..5).map(|i| entry(i, j) * fixed[i]).sum();
+        Self {
+            k: std::array::from_fn(sum),
+            local,
+        }
+    }
+
+    /// The value at an angle, and the derivative.
+    pub fn at(&self, angle: f64) -> [f64; 2] {
+        let [value, slope] = match self.local {
+            Some(origin) => {
+                let [value, slope, _] = local_basis(angle - origin);
+                [value, slope]
+            }
+            None => {
+                let (s, c) = angle.sin_cos();
+                let (s2, c2) = (2.0 * s * c, (c - s) * (c + s));
+                [[1.0, c, s, c2, s2], [0.0, -s, c, -2.0 * s2, 2.0 * c2]]
+            }
+        };
+        let sum = |by: [f64; 5]| (0..5).map(|j| self.k[j] * by[j]).sum();
+        [sum(value), sum(slope)]
+    }
+}
+
+/// The sum of the coefficients times the functions of both angles, with its derivatives: each row
+/// is summed over the second angle's functions once.
+fn partials<S: Scalar>(k: &[[f64; 5]; 5], bx: &[[S; 5]; 3], by: &[[S; 5]; 3]) -> Partials<S> {
+    let zero = S::constant(0.0);
+    let [mut f, mut x, mut y, mut xx, mut xy, mut yy] = [zero; 6];
+    for (m, row) in k.iter().enumerate() {
+        if row.iter().all(|&c| c == 0.0) {
+            continue;
+        }
+        let mut inner = [zero; 3];
+        for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
+            inner[0] = inner[0] + by[0][n].scale(c);
+            // The derivatives of the constant vanish.
+            if n > 0 {
+                inner[1] = inner[1] + by[1][n].scale(c);
+                inner[2] = inner[2] + by[2][n].scale(c);
+            }
+        }
+        f = f + inner[0] * bx[0][m];
+        y = y + inner[1] * bx[0][m];
+        yy = yy + inner[2] * bx[0][m];
+        if m > 0 {
+            x = x + inner[0] * bx[1][m];
+            xx = xx + inner[0] * bx[2][m];
+            xy = xy + inner[1] * bx[1][m];
+        }
+    }
+    Partials {
+        f,
+        x,
+        y,
+        xx,
+        xy,
+        yy,
+    }
+}
+
 impl BiTrig {
+    /// What is left where the first angle, or the second, is fixed to `angle`.
+    pub fn section(&self, first: bool, angle: f64) -> Section {
+        Section::of(&self.0, first, &basis(angle)[0], None)
+    }
+
     /// The zero polynomial.
     pub fn zero() -> Self {
         Self([[0.0; 5]; 5])
@@ -93,15 +173,7 @@ impl BiTrig {
 
     /// The value with its partial derivatives.
     pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
-        let (bx, by) = (basis(x), basis(y));
-        Partials {
-            f: self.sum(&bx[0], &by[0]),
-            x: self.sum(&bx[1], &by[0]),
-            y: self.sum(&bx[0], &by[1]),
-            xx: self.sum(&bx[2], &by[0]),
-            xy: self.sum(&bx[1], &by[1]),
-            yy: self.sum(&bx[0], &by[2]),
-        }
+        partials(&self.0, &basis(x), &basis(y))
     }
 
     /// The derivative by the first angle (0) or the second (1).
@@ -199,30 +271,17 @@ impl Local {
         Self { origin, k }
     }
 
+    /// What is left where the first angle, or the second, is fixed to `angle`.
+    pub fn section(&self, first: bool, angle: f64) -> Section {
+        let [a, b] = self.origin;
+        let (fixed, free) = if first { (a, b) } else { (b, a) };
+        Section::of(&self.k, first, &local_basis(angle - fixed)[0], Some(free))
+    }
+
     /// The value with its partial derivatives at the angles (x, y).
     pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
         let bx = local_basis(x - S::constant(self.origin[0]));
         let by = local_basis(y - S::constant(self.origin[1]));
-        let sum = |a: &[S; 5], b: &[S; 5]| {
-            let mut total = S::constant(0.0);
-            for (row, f) in self.k.iter().zip(a) {
-                let mut inner = S::constant(0.0);
-                for (&c, &g) in row.iter().zip(b) {
-                    if c != 0.0 {
-                        inner = inner + g.scale(c);
-                    }
-                }
-                total = total + inner * *f;
-            }
-            total
-        };
-        Partials {
-            f: sum(&bx[0], &by[0]),
-            x: sum(&bx[1], &by[0]),
-            y: sum(&bx[0], &by[1]),
-            xx: sum(&bx[2], &by[0]),
-            xy: sum(&bx[1], &by[1]),
-            yy: sum(&bx[0], &by[2]),
-        }
+        partials(&self.k, &bx, &by)
     }
 }

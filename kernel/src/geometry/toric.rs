@@ -4,7 +4,7 @@
 //! [`BiTrig`]. It is kept as a chain of segments, each a graph of one angle over the other inside a
 //! rectangle where the slope is bounded, so that every point is one well-conditioned root.
 
-use super::bitrig::{BiTrig, Local};
+use super::bitrig::{BiTrig, Local, Section};
 use super::surface::Torus;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
@@ -120,16 +120,26 @@ impl Segment {
         }
     }
 
+    /// F over the other angle, with the running one fixed to x.
+    fn section(&self, forms: &Forms<'_>, x: f64) -> Section {
+        let first = self.axis == Axis::Around;
+        match self.node.and_then(|n| forms.nodes.get(n)) {
+            Some(local) => local.section(first, x),
+            None => forms.form.section(first, x),
+        }
+    }
+
     /// The other angle over x.
     fn solve(&self, forms: &Forms<'_>, x: f64) -> f64 {
         let start = self.hermite(x);
         let [lo, hi] = self.bracket;
         let reach = self.steep.max(1.0) * (self.to - self.from).abs();
         let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
+        let section = self.section(forms, x);
         let mut y = start;
         for _ in 0..12 {
-            let p = self.partials(forms, x, y);
-            let step = p[0] / p[2];
+            let [value, slope] = section.at(y);
+            let step = value / slope;
             if !(y - step >= lo && y - step <= hi) {
                 break;
             }
@@ -139,7 +149,7 @@ impl Segment {
             }
         }
         // Newton left the cell: F is monotone across it, so halving finds the root.
-        let value = |y: f64| self.partials(forms, x, y)[0];
+        let value = |y: f64| section.at(y)[0];
         let (flo, fhi) = (value(self.bracket[0]), value(self.bracket[1]));
         if self.bracket[0].is_finite() && flo * fhi < 0.0 {
             return bisect(self.bracket[0], self.bracket[1], flo, value);

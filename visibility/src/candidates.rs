@@ -1,0 +1,123 @@
+//! The pairs of contours whose images may meet: boxes in an R-tree, long contours as chains of
+//! boxes.
+
+use crate::image::{Basis, Image, flat_of};
+use crate::image_box::ImageBox;
+use crate::projection::Projection;
+use crate::strand::Strand;
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
+use std::f64::consts::TAU;
+
+/// A link of a chain: its box in the image, and the strand it belongs to.
+type Link = GeomWithData<Rectangle<[f64; 2]>, u32>;
+
+/// A contour is cut into links of about this part of the image's size.
+const LINKS: f64 = 24.0;
+
+/// The parameters at which the image of a conic runs along x or along y.
+fn extremes(image: &Image) -> ([f64; 4], usize) {
+    let mut found = ([0.0; 4], 0);
+    let Image::Conic { basis, map, .. } = image else {
+        return found;
+    };
+    let q = map.row(2).transpose();
+    for i in 0..2 {
+        let p = map.row(i).transpose();
+        let flat = Image::turns_of(*basis, &p, &q);
+        for t in flat.into_iter().flatten() {
+            found.0[found.1] = t;
+            found.1 += 1;
+        }
+    }
+    found
+}
+
+/// The boxes of the links of a strand, each about `step` long.
+fn links(strand: &Strand<'_>, projection: &Projection, step: f64, push: &mut impl FnMut(ImageBox)) {
+    if !strand.stretches.is_empty() {
+        return strand.stretches.iter().for_each(|s| push(s.bounds));
+    }
+    let [lo, hi] = strand.range;
+    let (turns, count) = extremes(&strand.image);
+    let point = |t: f64| flat_of(projection, &strand.curve.point(t));
+    let chain = |from: f64, to: f64| {
+        let mut b = ImageBox::EMPTY.with(point(from)).with(point(to));
+        for &t in &turns[..count] {
+            let t = match strand.image {
+                Image::Conic {
+                    basis: Basis::Circular,
+                    ..
+                } => from + (t - from).rem_euclid(TAU),
+                _ => t,
+            };
+            if t > from && t < to {
+                b = b.with(point(t));
+            }
+        }
+        for &t in strand.turns.iter().filter(|t| **t > from && **t < to) {
+            b = b.with(point(t));
+        }
+        b
+    };
+    let whole = chain(lo, hi);
+    let [w, h] = whole.sides();
+    let thick = match strand.image {
+        Image::Line { .. } => w.min(h),
+        _ => w.max(h),
+    };
+    let n = (thick / step).ceil().clamp(1.0, 4.0 * LINKS);
+    if n <= 1.0 {
+        return push(whole);
+    }
+    for k in 0..n as usize {
+        let at = |k: usize| lo + (hi - lo) * (k as f64 / n);
+        push(chain(at(k), at(k + 1)));
+    }
+}
+
+/// The pairs of strands whose images may meet, each once and in order; notes the hull of each
+/// strand's image. `near` is what counts as touching, as a distance in space.
+pub fn candidates(
+    strands: &mut [Strand<'_>],
+    projection: &Projection,
+    near: f64,
+) -> Vec<(u32, u32)> {
+    let mut part = ImageBox::EMPTY;
+    let mut least = f64::INFINITY;
+    for strand in &*strands {
+        for t in strand.range {
+            let p = strand.curve.point(t);
+            part = part.with(flat_of(projection, &p));
+            least = least.min(projection.homogeneous(&p).z);
+        }
+    }
+    let [w, h] = part.sides();
+    let step = w.max(h) / LINKS;
+    let grow = (near / least.max(near)).min(step);
+    let mut all = Vec::with_capacity(strands.len() * 2);
+    for (i, strand) in strands.iter_mut().enumerate() {
+        if matches!(strand.image, Image::Point) {
+            continue;
+        }
+        let mut hull = ImageBox::EMPTY;
+        links(strand, projection, step, &mut |b| {
+            let b = b.grown(grow);
+            hull = hull.hull(&b);
+            all.push(Link::new(Rectangle::from_corners(b.min, b.max), i as u32));
+        });
+        strand.hull = hull;
+    }
+    let tree = RTree::bulk_load(all);
+    let mut pairs: Vec<(u32, u32)> = tree
+        .intersection_candidates_with_other_tree(&tree)
+        .filter(|(a, b)| a.data < b.data)
+        .map(|(a, b)| (a.data, b.data))
+        .collect();
+    let general = |s: &Strand<'_>| matches!(s.image, Image::General);
+    let own = strands.iter().enumerate().filter(|(_, s)| general(s));
+    pairs.extend(own.map(|(i, _)| (i as u32, i as u32)));
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}

@@ -263,6 +263,16 @@ impl Sorter<'_> {
                 }
             }
         }
+        if let (Some(from), [round]) = (inside, legs)
+            && goal.is_none()
+            && round.closes()
+        {
+            // Back at the start from its other side: the face bounds itself there.
+            let Some(twin) = self.twin(arc) else {
+                return false;
+            };
+            pairs.push((from, self.owner[twin]));
+        }
         if let (Some(from), Some(goal)) = (inside, goal) {
             pairs.push((from, goal));
         }
@@ -270,6 +280,14 @@ impl Sorter<'_> {
             self.join(a, b);
         }
         true
+    }
+
+    /// The arc that runs over the same edge the other way.
+    fn twin(&self, arc: usize) -> Option<usize> {
+        let a = &self.arcs[arc];
+        self.arcs.iter().position(|b| {
+            std::ptr::eq(a.curve, b.curve) && a.range == b.range && a.sense != b.sense
+        })
     }
 
     /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.

@@ -220,6 +220,11 @@ impl Walk {
         }
     }
 
+    /// Whether the walk ends where it starts.
+    pub(super) fn closes(&self) -> bool {
+        matches!(self.track, Track::Circle(_, radius) if self.length >= TAU * radius)
+    }
+
     /// The point at the length s.
     pub fn point(&self, s: f64) -> Point3<f64> {
         match &self.track {

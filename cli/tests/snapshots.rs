@@ -43,6 +43,10 @@ fn json(text: &str) -> String {
             Value::Array(all) => all.iter_mut().for_each(clean),
             Value::Object(all) => {
                 all.remove("seconds");
+                // How many questions are asked changes with every better algorithm.
+                for count in ["filtered", "refined", "exact", "coincident"] {
+                    all.entry(count).and_modify(|n| *n = "a count".into());
+                }
                 all.values_mut().for_each(clean);
             }
             _ => {}

@@ -173,7 +173,9 @@ fn piece_box(curve: &Curve, a: f64, b: f64) -> Box3 {
     let range = |i: usize| {
         let (w, m): (&Jet<Interval>, &Jet<Interval>) = (&wide[i], &mid[i]);
         if w.d.has_zero() {
-            w.v.meet(m.v + w.d * run)
+            // To the second order, too: next to an extremum the slope alone tells little.
+            let second = m.v + m.d * run + (w.dd * (run * run)) * Interval::point(0.5);
+            w.v.meet(m.v + w.d * run).meet(second)
         } else {
             Interval::new(ends.min[i], ends.max[i])
         }

@@ -7,12 +7,12 @@ use super::EvaluationError;
 use super::halfspaces::{HalfSpace, Solids};
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
-use premio_kernel::geometry::bounds::{Box3, bounds};
+use premio_kernel::geometry::bounds::{Box3, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
-use premio_kernel::geometry::cut::cut;
+use premio_kernel::geometry::cut::{lies_on, roots};
 use premio_kernel::geometry::intersect::{Branch, Extent, coincidence, meet};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::roots::{Contact, Zeros};
+use premio_kernel::number::roots::{Contact, Root};
 use premio_kernel::number::sign::{Judge, ROUNDING};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -42,6 +42,8 @@ pub(super) struct Meeting {
     pub tangent: Option<[usize; 2]>,
     /// Its box.
     pub bounds: Box3,
+    /// Its smooth pieces with their boxes, in order.
+    pub parts: Vec<([f64; 2], Box3)>,
     /// Where it is cut, in order.
     pub cuts: Vec<Cut>,
 }
@@ -259,7 +261,8 @@ impl Arrangement {
         };
         let mut kept = Vec::new();
         for range in ranges {
-            let b3 = bounds(&branch.curve, range);
+            let parts = pieces(&branch.curve, range);
+            let b3 = parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.1));
             if !supports
                 .iter()
                 .any(|s| common(s, &b3.grown(judge.band())).is_some())
@@ -274,6 +277,7 @@ impl Arrangement {
                 carriers: vec![a, b],
                 tangent: branch.tangent.then_some([a, b]),
                 bounds: b3,
+                parts,
                 cuts: Vec::new(),
             });
         }
@@ -292,30 +296,27 @@ impl Arrangement {
         let band = judge.band();
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
-        let mut near: Vec<usize> = Vec::new();
+        let mut near: Vec<(usize, Box3)> = Vec::new();
         for s in self.tree.locate_in_envelope_intersecting(around) {
             for (k, side) in solids.all[s.data].sides.iter().enumerate() {
                 let c = self.sides[s.data][k].0;
-                if !m.carriers.contains(&c) && common(&side.bounds.grown(band), &m.bounds).is_some()
-                {
-                    near.push(c);
+                let face = side.bounds.grown(band);
+                if !m.carriers.contains(&c) && common(&face, &m.bounds).is_some() {
+                    near.push((c, face));
                 }
             }
         }
-        near.sort_unstable();
-        near.dedup();
+        near.sort_by_key(|n| n.0);
         let known: Vec<Cut> = m.cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
-        for c in near {
+        for faces in near.chunk_by(|a, b| a.0 == b.0) {
+            let c = faces[0].0;
             let special = self.special_points(index, c, &known, judge, corners);
             let m = &self.meetings[index];
-            let (roots, misses) = match cut(&m.curve, m.range, &self.carriers[c], band) {
-                Zeros::Everywhere => {
-                    holding.push(c);
-                    continue;
-                }
-                Zeros::At { roots, misses } => (roots, misses),
+            let Some((roots, misses)) = m.meet(&self.carriers[c], faces, band) else {
+                holding.push(c);
+                continue;
             };
             for r in roots {
                 let p = m.curve.point(r.t);
@@ -477,7 +478,36 @@ impl Arrangement {
     }
 }
 
+/// The roots of a surface along a curve, and the nearest misses.
+type Met = (Vec<Root>, Vec<(f64, f64)>);
+
 impl Meeting {
+    /// Where the curve meets a surface, as far as it runs through the boxes of faces of it; none
+    /// where it lies on the surface.
+    fn meet(&self, surface: &Surface, faces: &[(usize, Box3)], band: f64) -> Option<Met> {
+        if lies_on(&self.curve, self.range, surface, band) {
+            return None;
+        }
+        let mut all = Met::default();
+        let near = |b: &Box3| {
+            // The distance of a surface changes by no more than the way.
+            let away = surface.distance(&b.centre()).abs();
+            away <= 0.5 * b.diagonal() + band
+                && faces.iter().any(|(_, face)| common(face, b).is_some())
+        };
+        let mut parts = self.parts.as_slice();
+        while let Some(first) = parts.iter().position(|p| near(&p.1)) {
+            parts = &parts[first..];
+            let count = parts.iter().take_while(|p| near(&p.1)).count();
+            let range = [parts[0].0[0], parts[count - 1].0[1]];
+            let (found, misses) = roots(&self.curve, range, surface, band);
+            all.0.extend(found);
+            all.1.extend(misses);
+            parts = &parts[count..];
+        }
+        Some(all)
+    }
+
     /// Whether a parameter lies in a range, on a closed curve a turn more or less.
     fn holds_within(&self, lo: f64, hi: f64, t: f64) -> bool {
         let period = if self.closed {

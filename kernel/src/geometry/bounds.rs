@@ -76,6 +76,13 @@ pub fn bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
     }
 }
 
+/// The smooth pieces of a curve over `range`, each with a box that holds it.
+pub fn pieces(curve: &Curve, [lo, hi]: [f64; 2]) -> Vec<([f64; 2], Box3)> {
+    let breaks = curve.breaks(lo, hi);
+    let piece = |p: &[f64]| ([p[0], p[1]], bounds(curve, [p[0], p[1]]));
+    breaks.windows(2).map(piece).collect()
+}
+
 fn ends(curve: &Curve, [lo, hi]: [f64; 2]) -> Box3 {
     Box3::of(&curve.point(lo)).hull(&Box3::of(&curve.point(hi)))
 }

@@ -2,7 +2,25 @@
 
 use super::curve::Curve;
 use super::surface::Surface;
-use crate::number::roots::{Zeros, isolate};
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Contact, Function, Root, Zeros, isolate};
+
+/// How far above a surface a curve runs.
+struct Height<'a> {
+    curve: &'a Curve,
+    surface: &'a Surface,
+}
+
+impl Function for Height<'_> {
+    fn over(&self, t: Interval) -> Jet<Interval> {
+        self.surface.level(self.curve.jet_over(t))
+    }
+
+    fn at(&self, t: f64) -> Jet<f64> {
+        self.surface.level(self.curve.jet(t))
+    }
+}
 
 /// Where the curve, over `range` of its parameter, meets the surface: isolated parameters with
 /// their contact, or everywhere where it lies on the surface. `band` is the resolution.
@@ -11,7 +29,31 @@ pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zero
         return Zeros::Everywhere;
     }
     let breaks = curve.breaks(range[0], range[1]);
-    isolate(&|t| surface.level(curve.jet_over(t)), &breaks, band)
+    isolate(&Height { curve, surface }, &breaks, band)
+}
+
+/// The same over a part of a curve that does not lie on the surface, however short: the roots, and
+/// the nearest misses.
+pub fn roots(
+    curve: &Curve,
+    [lo, hi]: [f64; 2],
+    surface: &Surface,
+    band: f64,
+) -> (Vec<Root>, Vec<(f64, f64)>) {
+    let breaks = curve.breaks(lo, hi);
+    match isolate(&Height { curve, surface }, &breaks, band) {
+        Zeros::At { roots, misses } => (roots, misses),
+        Zeros::Everywhere => {
+            let root = Root {
+                t: 0.5 * (lo + hi),
+                lo,
+                hi,
+                contact: Contact::Touching,
+                margin: Some(0.0),
+            };
+            (vec![root], Vec::new())
+        }
+    }
 }
 
 /// The points at which a curve is asked whether it lies on a surface: more than twice the number
@@ -24,6 +66,7 @@ fn probes() -> impl Iterator<Item = f64> {
     (1..=PROBES).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
 }
 
-fn lies_on(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
+/// Whether the curve lies on the surface, within the band.
+pub fn lies_on(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
     probes().all(|part| surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band)
 }

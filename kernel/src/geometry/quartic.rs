@@ -109,10 +109,14 @@ pub fn trig2<S: Scalar>(k: &Trig2, (sin, cos): (S, S)) -> S {
 }
 
 impl Quartic {
-    /// The parameter's period, where the branch is closed (all but rational ones are).
+    /// The parameter's period, where the branch is closed: all but rational ones with a pole.
     pub fn period(&self) -> Option<f64> {
         match (self.height, self.sweep) {
-            (Height::Rational { .. } | Height::Cubic { .. }, _) => None,
+            (Height::Rational { linear, .. }, _) => {
+                let [mean, cos, sin] = linear;
+                (mean.abs() > cos.hypot(sin)).then_some(std::f64::consts::TAU)
+            }
+            (Height::Cubic { .. }, _) => None,
             (_, Sweep::Round { turns }) => Some(std::f64::consts::TAU * f64::from(turns)),
             (_, Sweep::Oval { .. }) => Some(std::f64::consts::TAU),
         }

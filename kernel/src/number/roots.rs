@@ -73,6 +73,28 @@ enum Kind {
 /// How far beyond its range, as a part of it, the function is asked for its sign.
 const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 
+/// A function whose roots are sought.
+pub trait Function {
+    /// The certified ranges of the value and of two derivatives over an interval.
+    fn over(&self, t: Interval) -> Jet<Interval>;
+
+    /// The value and two derivatives at a point, in doubles.
+    fn at(&self, t: f64) -> Jet<f64> {
+        let j = self.over(Interval::point(t));
+        Jet {
+            v: j.v.mid(),
+            d: j.d.mid(),
+            dd: j.dd.mid(),
+        }
+    }
+}
+
+impl<F: Fn(Interval) -> Jet<Interval>> Function for F {
+    fn over(&self, t: Interval) -> Jet<Interval> {
+        self(t)
+    }
+}
+
 struct Search<'a, F> {
     f: &'a F,
     band: f64,
@@ -83,7 +105,7 @@ struct Search<'a, F> {
 
 /// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
 /// resolution. A closed curve passes its whole period and is wrapped by the caller.
-pub fn isolate<F: Fn(Interval) -> Jet<Interval>>(f: &F, breaks: &[f64], band: f64) -> Zeros {
+pub fn isolate<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
         return Zeros::At {
             roots: Vec::new(),
@@ -104,13 +126,13 @@ pub fn isolate<F: Fn(Interval) -> Jet<Interval>>(f: &F, breaks: &[f64], band: f6
     search.finish(first, last)
 }
 
-impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
+impl<F: Function> Search<'_, F> {
     fn value(&self, t: f64) -> f64 {
-        (self.f)(Interval::point(t)).v.mid()
+        self.f.at(t).v
     }
 
     fn slope(&self, t: f64) -> f64 {
-        (self.f)(Interval::point(t)).d.mid()
+        self.f.at(t).d
     }
 
     fn cluster(&mut self, lo: f64, hi: f64, t: f64, kind: Kind, margin: Option<f64>) {
@@ -129,10 +151,10 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
         while let Some((a, b)) = stack.pop() {
             let m = 0.5 * (a + b);
             let x = Interval { lo: a, hi: b };
-            let jet = (self.f)(x);
+            let jet = self.f.over(x);
             let mut v = jet.v;
-            if v.has_zero() && jet.d.width().is_finite() {
-                let centre = (self.f)(Interval::point(m));
+            if v.has_zero() && jet.d.has_zero() && jet.d.width().is_finite() {
+                let centre = self.f.over(Interval::point(m));
                 v = v.meet(centre.v + jet.d * (x - Interval::point(m)));
             }
             if v.lo > self.band || v.hi < -self.band {
@@ -223,8 +245,8 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
     /// The root in [a, b], where the function is monotone with opposite signs at the ends.
     fn refine(&self, a: f64, b: f64, fa: f64) -> f64 {
         bisect_newton(a, b, fa, |t| {
-            let j = (self.f)(Interval::point(t));
-            (j.v.mid(), j.d.mid())
+            let j = self.f.at(t);
+            (j.v, j.d)
         })
     }
 
@@ -296,8 +318,8 @@ impl<F: Fn(Interval) -> Jet<Interval>> Search<'_, F> {
     }
 
     /// The zero of a derivative in or next to a cluster, or where it is least.
-    fn balance(&self, lo: f64, hi: f64, part: impl Fn(Jet<Interval>) -> Interval) -> f64 {
-        let g = |t: f64| part((self.f)(Interval::point(t))).mid();
+    fn balance(&self, lo: f64, hi: f64, part: impl Fn(Jet<f64>) -> f64) -> f64 {
+        let g = |t: f64| part(self.f.at(t));
         let middle = (0.5 * (lo + hi), g(0.5 * (lo + hi)));
         let mut least = middle;
         let (mut left, mut right) = ((lo, g(lo)), (hi, g(hi)));

@@ -10,12 +10,12 @@ mod torus;
 
 use super::curve::Curve;
 use super::frame::Frame;
-use super::surface::Surface;
+use super::surface::{Cone, Surface};
 use super::trace::Unresolved;
 use crate::brep::topology::Sense;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::{Zeros, isolate};
+use crate::number::roots::{Function, Zeros, isolate};
 use crate::number::sign::{Judge, ROUNDING};
 use nalgebra::{Point3, Vector3};
 
@@ -210,17 +210,12 @@ pub fn coincidence(a: &Surface, b: &Surface, extent: &Extent, judge: &Judge) -> 
 }
 
 /// The parts of a range on which a function along the curve is positive.
-fn positive_parts(
-    curve: &Curve,
-    range: [f64; 2],
-    f: &impl Fn(Interval) -> Jet<Interval>,
-    band: f64,
-) -> Vec<[f64; 2]> {
+fn positive_parts(curve: &Curve, range: [f64; 2], f: &impl Function, band: f64) -> Vec<[f64; 2]> {
     let roots = match isolate(f, &curve.breaks(range[0], range[1]), band) {
         Zeros::Everywhere => return Vec::new(),
         Zeros::At { roots, .. } => roots,
     };
-    let value = |t: f64| f(Interval::point(t)).v.mid();
+    let value = |t: f64| f.at(t).v;
     if roots.is_empty() {
         let middle = range[0] + (range[1] - range[0]) * 0.618;
         return if value(middle) > 0.0 {
@@ -251,8 +246,23 @@ fn nappe_parts(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> 
     let Surface::Cone(c) = surface else {
         return vec![range];
     };
-    let above = |t: Interval| c.frame.local(curve.jet_over(t))[2];
-    positive_parts(curve, range, &above, band)
+    positive_parts(curve, range, &AboveApex { curve, cone: c }, band)
+}
+
+/// How far along a cone's axis from its apex a curve runs.
+struct AboveApex<'a> {
+    curve: &'a Curve,
+    cone: &'a Cone,
+}
+
+impl Function for AboveApex<'_> {
+    fn over(&self, t: Interval) -> Jet<Interval> {
+        self.cone.frame.local(self.curve.jet_over(t))[2]
+    }
+
+    fn at(&self, t: f64) -> Jet<f64> {
+        self.cone.frame.local(self.curve.jet(t))[2]
+    }
 }
 
 fn place(p: &Point3<f64>) -> [f64; 3] {

@@ -15,7 +15,7 @@ use crate::geometry::quartic::{Height, Quartic, Ruled, Sweep, Trig1, Trig2, trig
 use crate::geometry::surface::{Cone, Cylinder, Plane, Surface};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::{Contact, Zeros, bisect, isolate};
+use crate::number::roots::{Contact, Function, Zeros, bisect, isolate};
 use crate::number::scalar::Scalar;
 use crate::number::sign::{Judge, ROUNDING, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -761,11 +761,9 @@ impl Rulings<'_> {
         let Some(period) = curve.period() else { return };
         let mut ranges = vec![[0.0, period]];
         if let Ruled::Cone(_) = self.base {
-            let least = 1.0 / self.reach();
-            let above = |t: Interval| {
-                let w: Jet<Interval> = q.height_at(Jet::variable(t));
-                // Scaled to a length, so that the band means what it says.
-                (w - Jet::constant(least)).scale(self.reach() * self.reach())
+            let above = OnNappe {
+                quartic: &q,
+                reach: self.reach(),
             };
             ranges = ranges
                 .into_iter()
@@ -849,6 +847,30 @@ impl Rulings<'_> {
             }
         }
         Ok(out)
+    }
+}
+
+/// How far the height of a curve on a cone is from where it leaves the nappe's reach, scaled to a
+/// length.
+struct OnNappe<'a> {
+    quartic: &'a Quartic,
+    reach: f64,
+}
+
+impl OnNappe<'_> {
+    fn height<S: Scalar>(&self, t: S) -> S {
+        let w = self.quartic.height_at(t);
+        (w - S::constant(1.0 / self.reach)).scale(self.reach * self.reach)
+    }
+}
+
+impl Function for OnNappe<'_> {
+    fn over(&self, t: Interval) -> Jet<Interval> {
+        self.height(Jet::variable(t))
+    }
+
+    fn at(&self, t: f64) -> Jet<f64> {
+        self.height(Jet::variable(t))
     }
 }
 

@@ -5,14 +5,13 @@
 //! nothing lies outside. An unclear meeting is never decided: another walk is taken.
 
 use super::Brep;
+use super::arcs::Arcs;
 use super::topology::{FaceId, Sense};
 use super::walk::{DirectedArc, Passage, Walk};
-use crate::geometry::bounds::{Box3, bounds};
+use crate::geometry::bounds::Box3;
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;
 use nalgebra::Point3;
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
@@ -27,64 +26,20 @@ pub enum Place {
     Outside,
 }
 
-type ArcBox = GeomWithData<Rectangle<[f64; 3]>, usize>;
-
-/// More arcs than this get a tree of boxes.
-const FEW: usize = 12;
 /// How many walks are tried before a point counts as being on the boundary.
 const WALKS: usize = 48;
 /// The golden section: multiples of it spread over the unit without ever repeating.
 const SPREAD: f64 = 0.618_033_988_749_894_9;
-
-/// A smooth piece of an arc without a closed form.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    range: [f64; 2],
-    bounds: Box3,
-}
-
-/// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
-/// closed form.
-fn parts(arc: &DirectedArc<'_>, band: f64) -> Vec<Part> {
-    let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
-        return Vec::new();
-    };
-    let breaks = arc.curve.breaks(arc.range[0], arc.range[1]);
-    let part = |pair: &[f64]| {
-        let range = [pair[0], pair[1]];
-        let bounds = bounds(arc.curve, range).grown(band);
-        Part { range, bounds }
-    };
-    breaks.windows(2).map(part).collect()
-}
 
 /// Answers for one face where points lie.
 #[derive(Debug)]
 pub struct FaceLocator<'a> {
     surface: &'a Surface,
     side: Sense,
-    arcs: Vec<DirectedArc<'a>>,
-    parts: Vec<Vec<Part>>,
-    boxes: Vec<Box3>,
-    tree: Option<RTree<ArcBox>>,
+    arcs: Arcs<'a>,
     /// About how far it is from one arc to the next.
     spacing: f64,
     band: f64,
-}
-
-struct Along<'w> {
-    walk: &'w Walk,
-    band: f64,
-}
-
-impl SelectionFunction<ArcBox> for Along<'_> {
-    fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
-        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
-    }
-    fn should_unpack_leaf(&self, leaf: &ArcBox) -> bool {
-        let e = leaf.envelope();
-        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
-    }
 }
 
 /// The outcome of one walk.
@@ -98,27 +53,13 @@ impl<'a> FaceLocator<'a> {
     /// A locator for the region of `surface` that `arcs` bound; `side` tells whether the outward
     /// normal of the face is the surface's own, `band` is the resolution.
     pub fn new(surface: &'a Surface, side: Sense, arcs: Vec<DirectedArc<'a>>, band: f64) -> Self {
-        let parts: Vec<Vec<Part>> = arcs.iter().map(|a| parts(a, band)).collect();
-        let hull = |(a, parts): (&DirectedArc<'_>, &Vec<Part>)| match parts.as_slice() {
-            [] => bounds(a.curve, a.range).grown(band),
-            parts => parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.bounds)),
-        };
-        let boxes: Vec<Box3> = arcs.iter().zip(&parts).map(hull).collect();
-        let tree = (arcs.len() > FEW).then(|| {
-            let leaf = |(i, b): (usize, &Box3)| {
-                GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
-            };
-            RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect())
-        });
-        let hull = boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b));
-        let spacing = 2.0 * hull.diagonal() / (arcs.len() as f64).sqrt();
+        let arcs = Arcs::new(arcs, band);
+        let hull = arcs.boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b));
+        let spacing = 2.0 * hull.diagonal() / (arcs.all.len() as f64).sqrt();
         Self {
             surface,
             side,
             arcs,
-            parts,
-            boxes,
-            tree,
             spacing,
             band,
         }
@@ -145,17 +86,17 @@ impl<'a> FaceLocator<'a> {
 
     /// The directed arcs of the boundary.
     pub fn arcs(&self) -> &[DirectedArc<'a>] {
-        &self.arcs
+        &self.arcs.all
     }
 
     /// The boxes of the arcs, in the same order, grown by the resolution.
     pub fn boxes(&self) -> &[Box3] {
-        &self.boxes
+        &self.arcs.boxes
     }
 
     /// Where `p`, a point of the surface, lies.
     pub fn place(&self, p: &Point3<f64>) -> Place {
-        if self.arcs.is_empty() {
+        if self.arcs.all.is_empty() {
             return Place::Inside;
         }
         if self.on_boundary(p) {
@@ -166,7 +107,7 @@ impl<'a> FaceLocator<'a> {
 
     /// Where `p` lies, which is known not to be on the boundary.
     pub fn place_off_boundary(&self, p: &Point3<f64>) -> Place {
-        if self.arcs.is_empty() {
+        if self.arcs.all.is_empty() {
             return Place::Inside;
         }
         for k in 0..WALKS {
@@ -181,20 +122,14 @@ impl<'a> FaceLocator<'a> {
     }
 
     fn on_boundary(&self, p: &Point3<f64>) -> bool {
-        match &self.tree {
-            Some(tree) => tree
-                .locate_in_envelope_intersecting(AABB::from_point([p.x, p.y, p.z]))
-                .any(|leaf| self.on_arc(p, leaf.data)),
-            None => (0..self.arcs.len()).any(|i| self.boxes[i].holds(p) && self.on_arc(p, i)),
-        }
+        self.arcs.around(p).any(|i| self.on_arc(p, i))
     }
 
     fn on_arc(&self, p: &Point3<f64>, i: usize) -> bool {
-        let parts = &self.parts[i];
-        if !parts.is_empty() && !parts.iter().any(|part| part.bounds.holds(p)) {
+        if !self.arcs.may_hold(i, p) {
             return false;
         }
-        let DirectedArc { curve, range, .. } = self.arcs[i];
+        let DirectedArc { curve, range, .. } = self.arcs.all[i];
         let [lo, hi] = range;
         let near = |t: f64| (curve.point(t) - p).norm() <= self.band;
         let mut t = curve.parameter(p);
@@ -303,8 +238,8 @@ impl<'a> FaceLocator<'a> {
 
     /// A point inside some arc of the boundary.
     fn target(&self, k: usize) -> Point3<f64> {
-        let arc = &self.arcs[k % self.arcs.len()];
-        let part = (0.5 + SPREAD * (k / self.arcs.len()) as f64).fract();
+        let arc = &self.arcs.all[k % self.arcs.all.len()];
+        let part = (0.5 + SPREAD * (k / self.arcs.all.len()) as f64).fract();
         let [lo, hi] = arc.range;
         arc.curve.point(lo + (hi - lo) * (0.1 + 0.8 * part))
     }
@@ -313,7 +248,7 @@ impl<'a> FaceLocator<'a> {
     /// crossing is near.
     fn reach(&self, walk: &Walk) -> Outcome {
         let mut length = self.spacing;
-        if self.tree.is_some() {
+        if self.arcs.are_many() {
             for _ in 0..3 {
                 match self.take(&walk.upto(length)) {
                     Outcome::Found(place) => return Outcome::Found(place),
@@ -324,24 +259,10 @@ impl<'a> FaceLocator<'a> {
         self.take(walk)
     }
 
-    /// The ranges of an arc in parts that a walk may meet.
-    fn met(&self, walk: &Walk, i: usize) -> Vec<[f64; 2]> {
-        let parts = &self.parts[i];
-        let mut ranges: Vec<[f64; 2]> = Vec::new();
-        let may = |part: &&Part| walk.may_meet_box(&part.bounds, self.band);
-        for part in parts.iter().filter(may) {
-            match ranges.last_mut() {
-                Some(last) if last[1] == part.range[0] => last[1] = part.range[1],
-                _ => ranges.push(part.range),
-            }
-        }
-        ranges
-    }
-
     fn take(&self, walk: &Walk) -> Outcome {
         let mut first = First::default();
-        let mut meet = |i: usize| {
-            let arc = &self.arcs[i];
+        self.arcs.met_by(walk, self.band, &mut |i, ranges| {
+            let arc = &self.arcs.all[i];
             let mut note = |at: f64, _: f64, passage: Passage| {
                 first.note(Met {
                     at,
@@ -349,26 +270,8 @@ impl<'a> FaceLocator<'a> {
                     curve: std::ptr::from_ref(arc.curve),
                 });
             };
-            let mut within = |ranges: &[[f64; 2]]| {
-                walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
-            };
-            if self.parts[i].is_empty() {
-                within(&[arc.range]);
-            } else {
-                within(&self.met(walk, i));
-            }
-        };
-        match &self.tree {
-            Some(tree) => tree
-                .locate_with_selection_function(Along {
-                    walk,
-                    band: self.band,
-                })
-                .for_each(|leaf| meet(leaf.data)),
-            None => (0..self.arcs.len())
-                .filter(|&i| walk.may_meet_box(&self.boxes[i], self.band))
-                .for_each(meet),
-        }
+            walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
+        });
         first.outcome(self.band)
     }
 }

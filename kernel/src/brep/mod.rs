@@ -4,6 +4,7 @@
 //! three faces, two closed edges and no vertex. An edge that bounds more than two face corners, and
 //! a vertex where several fans of faces meet, are represented as they are.
 
+mod arcs;
 pub mod assemble;
 pub mod check;
 mod inside;

@@ -7,9 +7,9 @@
 //! all loops of a region. On a torus both circles through each loop are walked, and ways to the
 //! first loop.
 
+use super::arcs::Arcs;
 use super::topology::Sense;
 use super::walk::{Crossing, DirectedArc, Passage, Walk};
-use crate::geometry::bounds::{Box3, bounds};
 use crate::geometry::frame::perpendicular;
 use crate::geometry::surface::{Surface, Torus};
 use crate::geometry::toric::wrap;
@@ -45,9 +45,11 @@ const ATTEMPTS: usize = 4;
 struct Sorter<'a> {
     surface: &'a Surface,
     outward: Sense,
-    arcs: Vec<DirectedArc<'a>>,
-    boxes: Vec<Box3>,
+    arcs: Arcs<'a>,
+    /// The loop of each arc.
     owner: Vec<usize>,
+    /// The first arc of each loop, and one beyond the last.
+    firsts: Vec<usize>,
     band: f64,
     parent: Vec<usize>,
     /// Whether a loop on a torus does not shrink to a point.
@@ -63,22 +65,21 @@ pub(super) fn regions<'a>(
 ) -> Result<Vec<Region>, RegionError> {
     let mut owner = Vec::new();
     let mut arcs = Vec::new();
+    let mut firsts = vec![0];
     for (i, ring) in loops.iter().enumerate() {
         owner.extend(ring.iter().map(|_| i));
         arcs.extend(ring.iter().copied());
+        firsts.push(arcs.len());
     }
-    let boxes = arcs
-        .iter()
-        .map(|a| bounds(a.curve, a.range).grown(band))
-        .collect();
+    let arcs = Arcs::new(arcs, band);
     // More than the loops: the fixed points of a sphere or a cone, one for each attempt.
     let parent = (0..loops.len() + ATTEMPTS).collect();
     let mut sorter = Sorter {
         surface,
         outward,
         arcs,
-        boxes,
         owner,
+        firsts,
         band,
         parent,
         winding: false,
@@ -132,13 +133,10 @@ impl Sorter<'_> {
     /// Joins a loop to those that it bounds a region with; none where a walk was clear, else a point
     /// of the loop.
     fn connect(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
-        let own: Vec<usize> = (0..self.arcs.len())
-            .filter(|&a| self.owner[a] == ring)
-            .collect();
         let mut place = [0.0; 3];
         for &fraction in &STARTS {
-            for &arc in &own {
-                let a = &self.arcs[arc];
+            for arc in self.firsts[ring]..self.firsts[ring + 1] {
+                let a = &self.arcs.all[arc];
                 let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
                 let p = a.curve.point(t);
                 place = p.into();
@@ -284,8 +282,8 @@ impl Sorter<'_> {
 
     /// The arc that runs over the same edge the other way.
     fn twin(&self, arc: usize) -> Option<usize> {
-        let a = &self.arcs[arc];
-        self.arcs.iter().position(|b| {
+        let a = &self.arcs.all[arc];
+        self.arcs.all.iter().position(|b| {
             std::ptr::eq(a.curve, b.curve) && a.range == b.range && a.sense != b.sense
         })
     }
@@ -293,34 +291,33 @@ impl Sorter<'_> {
     /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.
     fn crossings(&self, walk: &Walk, start: Option<usize>) -> Option<Vec<Crossing>> {
         let mut found: Vec<Crossing> = Vec::new();
-        for (i, arc) in self.arcs.iter().enumerate() {
-            if !walk.may_meet_box(&self.boxes[i], self.band) {
-                continue;
-            }
+        self.arcs.met_by(walk, self.band, &mut |i, ranges| {
+            let arc = &self.arcs.all[i];
+            let mut note = |at: f64, t: f64, passage: Passage| {
+                // Arcs of both senses run over the starting edge where a face bounds itself.
+                let here = start.is_some() && at <= 64.0 * self.band;
+                if !here && !self.is_full_turn(walk, at, start) {
+                    found.push(Crossing {
+                        at,
+                        arc: i,
+                        t,
+                        passage,
+                    });
+                }
+            };
             walk.meet(
                 self.surface,
                 self.outward,
                 arc,
-                &[arc.range],
+                ranges,
                 self.band,
-                &mut |at, t, passage| {
-                    // Arcs of both senses run over the starting edge where a face bounds itself.
-                    let here = start.is_some() && at <= 64.0 * self.band;
-                    if !here && !self.is_full_turn(walk, at, start) {
-                        found.push(Crossing {
-                            at,
-                            arc: i,
-                            t,
-                            passage,
-                        });
-                    }
-                },
+                &mut note,
             );
-        }
+        });
         if found.iter().any(|c| c.passage == Passage::Unclear) {
             return None;
         }
-        found.sort_by(|a, b| a.at.total_cmp(&b.at));
+        found.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.arc.cmp(&b.arc)));
         // Where faces of one surface share an edge, one is left before the other is entered.
         for k in 1..found.len() {
             let together = found[k].at - found[k - 1].at <= self.band;
@@ -369,9 +366,6 @@ impl Sorter<'_> {
         p: &Point3<f64>,
         left: &Vector3<f64>,
     ) -> bool {
-        let goals: Vec<usize> = (0..self.arcs.len())
-            .filter(|&a| self.owner[a] == 0)
-            .collect();
         let heights = [
             Height::First,
             Height::Last,
@@ -380,8 +374,8 @@ impl Sorter<'_> {
             Height::At(4.3),
         ];
         for &fraction in &STARTS {
-            for &goal in &goals {
-                let a = &self.arcs[goal];
+            for goal in 0..self.firsts[1] {
+                let a = &self.arcs.all[goal];
                 let q = a
                     .curve
                     .point(a.range[0] + fraction * (a.range[1] - a.range[0]));

@@ -1,0 +1,142 @@
+//! The arcs that bound faces of one surface, with their boxes, to be asked which a walk may meet.
+
+use super::walk::{DirectedArc, Walk};
+use crate::geometry::bounds::{Box3, bounds, pieces};
+use crate::geometry::curve::Curve;
+use nalgebra::Point3;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
+
+type ArcBox = GeomWithData<Rectangle<[f64; 3]>, usize>;
+
+/// More arcs than this get a tree of boxes.
+const FEW: usize = 12;
+
+/// A smooth piece of an arc without a closed form.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    range: [f64; 2],
+    bounds: Box3,
+}
+
+/// Directed arcs with their boxes.
+#[derive(Debug)]
+pub(super) struct Arcs<'a> {
+    /// The arcs.
+    pub all: Vec<DirectedArc<'a>>,
+    /// Their boxes, in the same order, grown by the resolution.
+    pub boxes: Vec<Box3>,
+    parts: Vec<Vec<Part>>,
+    tree: Option<RTree<ArcBox>>,
+}
+
+struct Along<'w> {
+    walk: &'w Walk,
+    band: f64,
+}
+
+impl SelectionFunction<ArcBox> for Along<'_> {
+    fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
+        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
+    }
+    fn should_unpack_leaf(&self, leaf: &ArcBox) -> bool {
+        let e = leaf.envelope();
+        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
+    }
+}
+
+/// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
+/// closed form.
+fn parts(arc: &DirectedArc<'_>, band: f64) -> Vec<Part> {
+    let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
+        return Vec::new();
+    };
+    let grown = |(range, b): ([f64; 2], Box3)| Part {
+        range,
+        bounds: b.grown(band),
+    };
+    let all = pieces(arc.curve, arc.range);
+    all.into_iter().map(grown).collect()
+}
+
+impl<'a> Arcs<'a> {
+    /// The arcs with their boxes; `band` is the resolution.
+    pub fn new(all: Vec<DirectedArc<'a>>, band: f64) -> Self {
+        let parts: Vec<Vec<Part>> = all.iter().map(|a| parts(a, band)).collect();
+        let hull = |(a, parts): (&DirectedArc<'_>, &Vec<Part>)| match parts.as_slice() {
+            [] => bounds(a.curve, a.range).grown(band),
+            parts => parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.bounds)),
+        };
+        let boxes: Vec<Box3> = all.iter().zip(&parts).map(hull).collect();
+        let tree = (all.len() > FEW).then(|| {
+            let leaf = |(i, b): (usize, &Box3)| {
+                GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
+            };
+            RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect())
+        });
+        Self {
+            all,
+            boxes,
+            parts,
+            tree,
+        }
+    }
+
+    /// Whether there are so many arcs that a short walk is worth while.
+    pub fn are_many(&self) -> bool {
+        self.tree.is_some()
+    }
+
+    /// The arcs whose boxes hold `p`.
+    pub fn around(&self, p: &Point3<f64>) -> impl Iterator<Item = usize> {
+        let at = AABB::from_point([p.x, p.y, p.z]);
+        let tree = self.tree.iter();
+        let from_tree = tree.flat_map(move |t| t.locate_in_envelope_intersecting(at));
+        let few = match self.tree {
+            Some(_) => 0..0,
+            None => 0..self.all.len(),
+        };
+        let p = *p;
+        let from_few = few.filter(move |&i| self.boxes[i].holds(&p));
+        from_tree.map(|leaf| leaf.data).chain(from_few)
+    }
+
+    /// Whether an arc may pass through `p`.
+    pub fn may_hold(&self, arc: usize, p: &Point3<f64>) -> bool {
+        let parts = &self.parts[arc];
+        parts.is_empty() || parts.iter().any(|part| part.bounds.holds(p))
+    }
+
+    /// Calls `meet` for every arc that a walk may meet, with the ranges of it in which it may.
+    pub fn met_by(&self, walk: &Walk, band: f64, meet: &mut impl FnMut(usize, &[[f64; 2]])) {
+        let mut ask = |i: usize| {
+            if self.parts[i].is_empty() {
+                meet(i, &[self.all[i].range]);
+            } else {
+                meet(i, &self.ranges(walk, i, band));
+            }
+        };
+        match &self.tree {
+            Some(tree) => tree
+                .locate_with_selection_function(Along { walk, band })
+                .for_each(|leaf| ask(leaf.data)),
+            None => (0..self.all.len())
+                .filter(|&i| walk.may_meet_box(&self.boxes[i], band))
+                .for_each(ask),
+        }
+    }
+
+    /// The ranges of an arc in parts that a walk may meet.
+    fn ranges(&self, walk: &Walk, i: usize, band: f64) -> Vec<[f64; 2]> {
+        let parts = &self.parts[i];
+        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        let may = |part: &&Part| walk.may_meet_box(&part.bounds, band);
+        for part in parts.iter().filter(may) {
+            match ranges.last_mut() {
+                Some(last) if last[1] == part.range[0] => last[1] = part.range[1],
+                _ => ranges.push(part.range),
+            }
+        }
+        ranges
+    }
+}

@@ -168,6 +168,12 @@ impl Curve {
         }
     }
 
+    /// The certified range of the point over an interval of t, without derivatives; none for a
+    /// toric curve, which has them anyway.
+    pub fn box_over(&self, t: Interval) -> Option<[Interval; 3]> {
+        self.closed_form(t)
+    }
+
     /// The derivative of the point by t.
     pub fn derivative(&self, t: f64) -> Vector3<f64> {
         let j = self.jet(t);

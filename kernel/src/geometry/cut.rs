@@ -5,6 +5,8 @@ use super::surface::Surface;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{Contact, Function, Root, Zeros, isolate};
+use crate::number::sign::ROUNDING;
+use nalgebra::Point3;
 
 /// How far above a surface a curve runs.
 struct Height<'a> {
@@ -15,6 +17,22 @@ struct Height<'a> {
 impl Function for Height<'_> {
     fn over(&self, t: Interval) -> Jet<Interval> {
         self.surface.level(self.curve.jet_over(t))
+    }
+
+    fn reach(&self, t: Interval) -> Interval {
+        let Some(p) = self.curve.box_over(t) else {
+            return Interval::ENTIRE;
+        };
+        // The distance of a surface changes by no more than the way; a level has its sign, and at
+        // least half of it.
+        let centre = self.surface.distance(&Point3::from(p.map(Interval::mid)));
+        let way = 0.5 * p.iter().map(|x| x.width().powi(2)).sum::<f64>().sqrt();
+        let rounding = ROUNDING * (1.0 + centre.abs());
+        match 0.5 * (centre.abs() - way - rounding) {
+            least if least > 0.0 && centre > 0.0 => Interval::new(least, f64::INFINITY),
+            least if least > 0.0 => Interval::new(f64::NEG_INFINITY, -least),
+            _ => Interval::ENTIRE,
+        }
     }
 
     fn at(&self, t: f64) -> Jet<f64> {

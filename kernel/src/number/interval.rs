@@ -13,12 +13,29 @@ pub struct Interval {
     pub hi: f64,
 }
 
+/// A double below what was rounded to `x`: by one or two units in the last place, which costs less
+/// than the next one. A sum that is rounded to zero is zero; products see to it themselves.
 fn down(x: f64) -> f64 {
-    x.next_down()
+    if x == 0.0 {
+        return 0.0;
+    }
+    let x = if x > f64::MAX { f64::MAX } else { x };
+    x - (x.abs() * f64::EPSILON + f64::MIN_POSITIVE)
 }
 
+/// A double above what was rounded to `x`.
 fn up(x: f64) -> f64 {
-    x.next_up()
+    -down(-x)
+}
+
+/// The lesser of two numbers.
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers.
+fn greatest(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 impl Interval {
@@ -89,6 +106,23 @@ impl Interval {
     /// Whether the two share a point.
     pub fn meets(self, other: Self) -> bool {
         self.lo <= other.hi && other.lo <= self.hi
+    }
+
+    /// Where an end is zero, though no factor is: made wide enough for what was lost.
+    fn after_product(self, x: Self, y: Self) -> Self {
+        let ends = |i: Self| [i.lo, i.hi];
+        let lost = |a: f64| {
+            ends(y)
+                .iter()
+                .any(|&b| a != 0.0 && b != 0.0 && a * b == 0.0)
+        };
+        if (self.lo == 0.0 || self.hi == 0.0) && ends(x).into_iter().any(lost) {
+            return Self {
+                lo: self.lo - f64::MIN_POSITIVE,
+                hi: self.hi + f64::MIN_POSITIVE,
+            };
+        }
+        self
     }
 
     fn clamp_unit(self) -> Self {
@@ -190,12 +224,17 @@ fn times(a: f64, b: f64) -> f64 {
 impl Mul for Interval {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
-        let (a, b) = (times(self.lo, o.lo), times(self.lo, o.hi));
-        let (c, d) = (times(self.hi, o.lo), times(self.hi, o.hi));
-        Self {
-            lo: down(a.min(b).min(c.min(d))),
-            hi: up(a.max(b).max(c.max(d))),
+        let (mut a, mut b) = (self.lo * o.lo, self.lo * o.hi);
+        let (mut c, mut d) = (self.hi * o.lo, self.hi * o.hi);
+        if (a + b + c + d).is_nan() {
+            (a, b) = (times(self.lo, o.lo), times(self.lo, o.hi));
+            (c, d) = (times(self.hi, o.lo), times(self.hi, o.hi));
         }
+        Self {
+            lo: down(least(least(a, b), least(c, d))),
+            hi: up(greatest(greatest(a, b), greatest(c, d))),
+        }
+        .after_product(self, o)
     }
 }
 
@@ -204,10 +243,20 @@ impl Scalar for Interval {
         Self::point(x)
     }
     fn scale(self, k: f64) -> Self {
-        let (a, b) = (times(self.lo, k), times(self.hi, k));
+        let (a, b) = if k >= 0.0 {
+            (self.lo * k, self.hi * k)
+        } else {
+            (self.hi * k, self.lo * k)
+        };
+        if a == 0.0 && b == 0.0 && self.lo == 0.0 && self.hi == 0.0 {
+            return self;
+        }
+        if a == 0.0 || b == 0.0 || (a + b).is_nan() {
+            return self * Self::point(k);
+        }
         Self {
-            lo: down(a.min(b)),
-            hi: up(a.max(b)),
+            lo: down(a),
+            hi: up(b),
         }
     }
     fn square(self) -> Self {
@@ -217,6 +266,7 @@ impl Scalar for Interval {
             lo,
             hi: up(a.max(b)),
         }
+        .after_product(self, self)
     }
     fn over(self, o: Self) -> Self {
         if o.has_zero() {

@@ -78,6 +78,11 @@ pub trait Function {
     /// The certified ranges of the value and of two derivatives over an interval.
     fn over(&self, t: Interval) -> Jet<Interval>;
 
+    /// A certified range of the value alone, where it is had for less.
+    fn reach(&self, _t: Interval) -> Interval {
+        Interval::ENTIRE
+    }
+
     /// The value and two derivatives at a point, in doubles.
     fn at(&self, t: f64) -> Jet<f64> {
         let j = self.over(Interval::point(t));
@@ -151,6 +156,10 @@ impl<F: Function> Search<'_, F> {
         while let Some((a, b)) = stack.pop() {
             let m = 0.5 * (a + b);
             let x = Interval { lo: a, hi: b };
+            let reach = self.f.reach(x);
+            if reach.lo > self.band || reach.hi < -self.band {
+                continue;
+            }
             let jet = self.f.over(x);
             let mut v = jet.v;
             if v.has_zero() && jet.d.has_zero() && jet.d.width().is_finite() {

@@ -522,20 +522,25 @@ impl<'a> Scene<'a> {
         side: &Vector3<f64>,
     ) -> Vec<Layer> {
         let (mut layers, mut backs) = (Vec::new(), Vec::new());
-        for hit in unclear {
+        for hit in unclear.iter().filter(|hit| hit.front) {
+            let face = hit.face;
+            self.passed_beside(ray, hit, own(face), side, &mut |at, front| match front {
+                true => layers.push(Layer { at, face }),
+                false => backs.push(at),
+            });
+        }
+        // Faces that touch are no further apart here than the resolution: there is no gap to see.
+        let near = ASIDE * self.band;
+        let touched = |hit: &&Hit| layers.iter().any(|l| (l.at - hit.at).abs() <= 2.0 * near);
+        for hit in unclear.iter().filter(|hit| !hit.front).filter(touched) {
             self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
-                let face = hit.face;
-                if front {
-                    layers.push(Layer { at, face });
-                } else {
+                if !front {
                     backs.push(at);
                 }
             });
         }
-        // Faces that touch are no further apart here than the resolution: there is no gap to see.
         for back in backs {
-            let together = |l: &Layer| (l.at - back).abs() <= ASIDE * self.band;
-            if let Some(i) = layers.iter().position(together) {
+            if let Some(i) = layers.iter().position(|l| (l.at - back).abs() <= near) {
                 layers.swap_remove(i);
             }
         }

@@ -372,10 +372,59 @@ impl Walk {
             };
             found(s.max(0.0), t, passage);
         };
+        if let (Track::Line(d), Curve::Quartic(curve)) = (&self.track, arc.curve)
+            && line_roots_on(curve, arc, &self.start, d, band, &mut root)
+        {
+            return;
+        }
         for &range in ranges {
             plane_roots(arc.curve, range, &self.plane, band, &mut root);
         }
     }
+}
+
+/// Where a straight walk on one of two quadrics meets an arc of the curve they share: where it
+/// meets the other one, a cylinder. Whether that could be said.
+fn line_roots_on(
+    curve: &Quartic,
+    arc: &DirectedArc<'_>,
+    start: &Point3<f64>,
+    direction: &Vector3<f64>,
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) -> bool {
+    let Ruled::Cylinder(s) = &curve.base else {
+        return false;
+    };
+    let (q, w) = (s.frame.coordinates(start), s.frame.components(direction));
+    let a = w.x * w.x + w.y * w.y;
+    if a <= ROUNDING.sqrt() {
+        return false;
+    }
+    let b = q.x * w.x + q.y * w.y;
+    let rho = q.x.hypot(q.y);
+    let c = (rho - s.radius) * (rho + s.radius);
+    let radicand = b * b - a * c;
+    // Next to a touch the roots are not told from each other.
+    if radicand.abs() <= 16.0 * s.radius * band * a {
+        return false;
+    }
+    if radicand < 0.0 {
+        return true;
+    }
+    let k = -(b + radicand.sqrt().copysign(b));
+    let [lo, hi] = arc.range;
+    for at in [k / a, c / k] {
+        let p = start + direction * at;
+        let t = arc.curve.parameter(&p);
+        let period = arc.curve.period();
+        let t = period.map_or(t, |period| lo + (t - lo).rem_euclid(period));
+        // Else on another branch.
+        if t >= lo && t <= hi && (arc.curve.point(t) - p).norm() <= 64.0 * band {
+            found(t, true);
+        }
+    }
+    true
 }
 
 /// Whether the arc runs over its whole closed curve.

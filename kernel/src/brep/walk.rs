@@ -372,8 +372,8 @@ impl Walk {
             };
             found(s.max(0.0), t, passage);
         };
-        if let (Track::Line(d), Curve::Quartic(curve)) = (&self.track, arc.curve)
-            && line_roots_on(curve, arc, &self.start, d, band, &mut root)
+        if let Track::Line(d) = &self.track
+            && line_meets(arc.curve, arc.range, (&self.start, d), band, &mut root)
         {
             return;
         }
@@ -383,17 +383,20 @@ impl Walk {
     }
 }
 
-/// Where a straight walk on one of two quadrics meets an arc of the curve they share: where it
-/// meets the other one, a cylinder. Whether that could be said.
-fn line_roots_on(
-    curve: &Quartic,
-    arc: &DirectedArc<'_>,
-    start: &Point3<f64>,
-    direction: &Vector3<f64>,
+/// Where a line on one of two quadrics, by a point and its unit direction, meets the curve they
+/// share over a range: where it meets the other one, a cylinder. Reports each parameter, and that
+/// the curve is crossed plainly; false where no more can be said in closed form.
+pub fn line_meets(
+    curve: &Curve,
+    [lo, hi]: [f64; 2],
+    (start, direction): (&Point3<f64>, &Vector3<f64>),
     band: f64,
     found: &mut impl FnMut(f64, bool),
 ) -> bool {
-    let Ruled::Cylinder(s) = &curve.base else {
+    let Curve::Quartic(quartic) = curve else {
+        return false;
+    };
+    let Ruled::Cylinder(s) = &quartic.base else {
         return false;
     };
     let (q, w) = (s.frame.coordinates(start), s.frame.components(direction));
@@ -413,14 +416,14 @@ fn line_roots_on(
         return true;
     }
     let k = -(b + radicand.sqrt().copysign(b));
-    let [lo, hi] = arc.range;
     for at in [k / a, c / k] {
         let p = start + direction * at;
-        let t = arc.curve.parameter(&p);
-        let period = arc.curve.period();
-        let t = period.map_or(t, |period| lo + (t - lo).rem_euclid(period));
+        let t = curve.parameter(&p);
+        let t = curve
+            .period()
+            .map_or(t, |period| lo + (t - lo).rem_euclid(period));
         // Else on another branch.
-        if t >= lo && t <= hi && (arc.curve.point(t) - p).norm() <= 64.0 * band {
+        if t >= lo && t <= hi && (curve.point(t) - p).norm() <= 64.0 * band {
             found(t, true);
         }
     }

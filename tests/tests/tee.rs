@@ -112,14 +112,14 @@ fn examine(name: &str, json: &Value) -> Vec<f64> {
 
 #[test]
 fn open_branches() {
-    for k in [1, 4] {
+    for k in [1, 4, 8] {
         examine(&format!("open {k}"), &tee(k));
     }
 }
 
 #[test]
 fn crossing_pipes() {
-    for k in [1, 4] {
+    for k in [1, 4, 8] {
         examine(&format!("crossing {k}"), &crossing(k));
     }
 }

@@ -7,8 +7,10 @@
 
 use crate::projection::{Projection, Sight};
 use nalgebra::Point3;
+use premio_kernel::brep::walk::{line_meets, plane_roots};
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::geometry::surface::{Cylinder, Surface};
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::roots::{Zeros, isolate};
@@ -89,18 +91,23 @@ impl Edgewise {
         let q = self.carrier.frame.coordinates(&p);
         let size = q.x.hypot(q.y);
         let (cos, sin) = (q.x / size, q.y / size);
-        // On the ray from the axis through the point, not the one opposite.
-        let f = |t: Interval| {
-            let [x, y, _] = self.carrier.frame.local(curve.jet_over(t));
-            y.scale(cos) - x.scale(sin)
-        };
-        if let Zeros::At { roots, .. } = isolate(&f, &curve.breaks(range[0], range[1]), band) {
-            for r in roots {
-                let at = self.carrier.frame.coordinates(&curve.point(r.t));
-                if at.x * cos + at.y * sin > 0.0 {
-                    found(r.t);
-                }
-            }
+        // On the wall the image is that of a ruling.
+        let frame = &self.carrier.frame;
+        let radius = self.carrier.radius;
+        let ruling = frame.point(cos * radius, sin * radius, 0.0);
+        let line = (&ruling, &frame.z);
+        if line_meets(curve, range, line, band, &mut |t, _| found(t)) {
+            return;
         }
+        let plane = Plane {
+            frame: Frame::about(frame.origin, frame.y * cos - frame.x * sin),
+        };
+        plane_roots(curve, range, &plane, band, &mut |t, _| {
+            // On the ray from the axis through the point, not the one opposite.
+            let at = frame.coordinates(&curve.point(t));
+            if at.x * cos + at.y * sin > 0.0 {
+                found(t);
+            }
+        });
     }
 }

@@ -13,6 +13,7 @@ pub mod image_box;
 pub mod invisibility;
 pub mod junction;
 pub mod limb;
+mod meeting;
 pub mod polynomial;
 pub mod projection;
 pub mod serial;

@@ -11,6 +11,7 @@ use crate::geometry::bounds::Box3;
 use crate::geometry::curve::Curve;
 use crate::geometry::cut::cut;
 use crate::geometry::frame::Frame;
+use crate::geometry::quartic::{Quartic, Ruled, Sweep};
 use crate::geometry::surface::{Plane, Surface, Torus};
 use crate::number::roots::{Contact, Zeros};
 use crate::number::sign::ROUNDING;
@@ -371,10 +372,62 @@ impl Walk {
             };
             found(s.max(0.0), t, passage);
         };
+        if let Track::Line(d) = &self.track
+            && line_meets(arc.curve, arc.range, (&self.start, d), band, &mut root)
+        {
+            return;
+        }
         for &range in ranges {
             plane_roots(arc.curve, range, &self.plane, band, &mut root);
         }
     }
+}
+
+/// Where a line on one of two quadrics, by a point and its unit direction, meets the curve they
+/// share over a range: where it meets the other one, a cylinder. Reports each parameter, and that
+/// the curve is crossed plainly; false where no more can be said in closed form.
+pub fn line_meets(
+    curve: &Curve,
+    [lo, hi]: [f64; 2],
+    (start, direction): (&Point3<f64>, &Vector3<f64>),
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) -> bool {
+    let Curve::Quartic(quartic) = curve else {
+        return false;
+    };
+    let Ruled::Cylinder(s) = &quartic.base else {
+        return false;
+    };
+    let (q, w) = (s.frame.coordinates(start), s.frame.components(direction));
+    let a = w.x * w.x + w.y * w.y;
+    if a <= ROUNDING.sqrt() {
+        return false;
+    }
+    let b = q.x * w.x + q.y * w.y;
+    let rho = q.x.hypot(q.y);
+    let c = (rho - s.radius) * (rho + s.radius);
+    let radicand = b * b - a * c;
+    // Next to a touch the roots are not told from each other.
+    if radicand.abs() <= 16.0 * s.radius * band * a {
+        return false;
+    }
+    if radicand < 0.0 {
+        return true;
+    }
+    let k = -(b + radicand.sqrt().copysign(b));
+    for at in [k / a, c / k] {
+        let p = start + direction * at;
+        let t = curve.parameter(&p);
+        let t = curve
+            .period()
+            .map_or(t, |period| lo + (t - lo).rem_euclid(period));
+        // Else on another branch.
+        if t >= lo && t <= hi && (curve.point(t) - p).norm() <= 64.0 * band {
+            found(t, true);
+        }
+    }
+    true
 }
 
 /// Whether the arc runs over its whole closed curve.
@@ -409,6 +462,9 @@ pub fn plane_roots(
             let k = [c.a * c.frame.x.dot(n), c.b * c.frame.y.dot(n)];
             turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
         }
+        Curve::Quartic(c) if through_axis(c, plane, band) => {
+            ruling_roots(c, range, plane, band, found);
+        }
         _ => match cut(curve, range, &Surface::Plane(*plane), band) {
             Zeros::Everywhere => found(0.5 * (range[0] + range[1]), false),
             Zeros::At { roots, .. } => {
@@ -417,6 +473,62 @@ pub fn plane_roots(
                 }
             }
         },
+    }
+}
+
+fn base_frame(curve: &Quartic) -> &Frame {
+    match &curve.base {
+        Ruled::Cylinder(s) => &s.frame,
+        Ruled::Cone(s) => &s.frame,
+    }
+}
+
+/// Whether a plane goes through the axis of the surface whose rulings carry a curve.
+fn through_axis(curve: &Quartic, plane: &Plane, band: f64) -> bool {
+    let axis = base_frame(curve);
+    let n = &plane.frame.z;
+    let away = (axis.origin - plane.frame.origin).dot(n).abs();
+    n.dot(&axis.z).abs() <= ROUNDING && away <= band
+}
+
+/// Where a curve over the rulings of a surface meets a plane through their axis: on two rulings.
+fn ruling_roots(
+    curve: &Quartic,
+    [lo, hi]: [f64; 2],
+    plane: &Plane,
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) {
+    let axis = base_frame(curve);
+    let n = &plane.frame.z;
+    let u = (-n.dot(&axis.x)).atan2(n.dot(&axis.y));
+    let period = curve.period();
+    let mut within = |t: f64, plain: bool| {
+        let t = period.map_or(t, |period| lo + (t - lo).rem_euclid(period));
+        if t >= lo && t <= hi {
+            found(t, plain);
+        }
+    };
+    for u in [u, u + 0.5 * TAU] {
+        match curve.sweep {
+            Sweep::Round { turns } => {
+                let first = lo + (u - lo).rem_euclid(TAU);
+                (0..turns.max(1)).for_each(|k| within(first + TAU * f64::from(k), true));
+            }
+            Sweep::Oval { mid, half } => {
+                let away = (u - mid + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
+                // At the ends of the sweep the curve touches the ruling.
+                let end = if away < 0.0 { 0.0 } else { 0.5 * TAU };
+                let q = axis.coordinates(&curve.at(end).into());
+                if (away.abs() - half).abs() * q.x.hypot(q.y) <= band {
+                    within(end, false);
+                } else if away.abs() < half {
+                    let t = (-away / half).acos();
+                    within(t, true);
+                    within(TAU - t, true);
+                }
+            }
+        }
     }
 }
 

@@ -478,7 +478,7 @@ impl Tracer<'_> {
                 return Err(Unresolved { angles: *point });
             }
             used[b][forward] = true;
-            let segment = self.from_node(index, point, &d, p);
+            let segment = self.node_segment(index, point, &d, p);
             pieces.push(Piece {
                 ends: [End::Pass(index, b), End::Root(*root)],
                 segment,
@@ -514,7 +514,7 @@ impl Tracer<'_> {
                 let (root, p) = &roots[i];
                 pieces.push(Piece {
                     ends: [End::Pass(index, b), End::Root(*root)],
-                    segment: self.from_node(index, point, d, p),
+                    segment: self.node_segment(index, point, d, p),
                 });
             }
         }
@@ -522,7 +522,7 @@ impl Tracer<'_> {
     }
 
     /// The graph from a node, left in the direction `d`, to a root around it.
-    fn from_node(&self, index: usize, point: &[f64; 2], d: &[f64; 2], p: &[f64; 2]) -> Segment {
+    fn node_segment(&self, index: usize, point: &[f64; 2], d: &[f64; 2], p: &[f64; 2]) -> Segment {
         let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
         let k = usize::from(d[1].abs() > d[0].abs());
         let g = self.form.partials(p[0], p[1]);

@@ -42,6 +42,14 @@ const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
 /// How many directions are tried.
 const ATTEMPTS: usize = 4;
 
+/// A point of a loop from which walks start.
+struct Start {
+    arc: usize,
+    point: Point3<f64>,
+    /// The direction into the face.
+    left: Vector3<f64>,
+}
+
 struct Sorter<'a> {
     surface: &'a Surface,
     outward: Sense,
@@ -133,99 +141,116 @@ impl Sorter<'_> {
     /// Joins a loop to those that it bounds a region with; none where a walk was clear, else a point
     /// of the loop.
     fn connect(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
+        if let Surface::Cylinder(_) | Surface::Cone(_) = self.surface {
+            return self.connect_ruled(ring, attempt);
+        }
         let mut place = [0.0; 3];
-        for &fraction in &STARTS {
-            for arc in self.firsts[ring]..self.firsts[ring + 1] {
-                let a = &self.arcs.all[arc];
-                let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
-                let p = a.curve.point(t);
-                place = p.into();
-                let tangent = a.curve.tangent(t) * a.sense.sign();
-                let normal = self.surface.normal(&p) * self.outward.sign();
-                if self.walk_from(ring, arc, &p, &normal.cross(&tangent), attempt) {
-                    return None;
-                }
+        for start in self.starts(ring) {
+            place = start.point.into();
+            if self.walk_from(ring, &start, attempt) {
+                return None;
             }
         }
         Some(RegionError { place })
     }
 
+    /// The points of a loop from which walks may start.
+    fn starts(&self, ring: usize) -> Vec<Start> {
+        let mut starts = Vec::new();
+        for &fraction in &STARTS {
+            for arc in self.firsts[ring]..self.firsts[ring + 1] {
+                let a = &self.arcs.all[arc];
+                let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
+                let point = a.curve.point(t);
+                let tangent = a.curve.tangent(t) * a.sense.sign();
+                let normal = self.surface.normal(&point) * self.outward.sign();
+                let left = normal.cross(&tangent);
+                starts.push(Start { arc, point, left });
+            }
+        }
+        starts
+    }
+
+    /// Walks down the rulings of a cylinder or a cone, all the same way: every loop but the lowest
+    /// of a region has the region somewhere below it. Where the loop's points below which it is are
+    /// unclear, or the loop is of rulings alone, a walk first turns along a parallel.
+    fn connect_ruled(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
+        let starts = self.starts(ring);
+        let (mut below, mut across) = (false, 0);
+        for start in &starts {
+            let Some(walk) = self.down(&start.point) else {
+                continue;
+            };
+            let heading = walk.direction(&start.point).dot(&start.left);
+            below |= heading >= SLANT;
+            across += usize::from(heading.abs() < SLANT);
+            if heading >= SLANT && self.follow_down(ring, start, vec![walk]) {
+                return None;
+            }
+        }
+        if !below && across < starts.len() {
+            return None;
+        }
+        let turn = 0.5 + 0.7 * attempt as f64;
+        let turned = starts.iter().any(|start| self.turn_down(ring, start, turn));
+        let place = starts.first().map_or([0.0; 3], |s| s.point.into());
+        (!turned).then_some(RegionError { place })
+    }
+
+    /// The walk down the ruling through a point: to a cone's apex, or without end.
+    fn down(&self, p: &Point3<f64>) -> Option<Walk> {
+        let [u, _] = self.surface.parameters(p);
+        let walk = Walk::ruling(self.surface, p, u, Sense::Along)?.reversed();
+        Some(match self.surface {
+            Surface::Cone(c) => walk.upto(walk.at(&c.frame.origin)),
+            _ => walk,
+        })
+    }
+
+    /// Follows legs of which the last goes down.
+    fn follow_down(&mut self, ring: usize, start: &Start, legs: Vec<Walk>) -> bool {
+        let apex = matches!(self.surface, Surface::Cone(_)).then(|| self.parent.len() - 1);
+        self.follow(ring, start.arc, &start.point, &start.left, &legs, apex)
+    }
+
+    /// A turn along the parallel into the face, then down.
+    fn turn_down(&mut self, ring: usize, start: &Start, turn: f64) -> bool {
+        let p = &start.point;
+        let Some(round) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
+            return false;
+        };
+        let round = round.toward(p, &start.left);
+        let length = turn * self.surface.frame().coordinates(p).xy().norm();
+        match self.down(&round.point(length)) {
+            Some(down) => self.follow_down(ring, start, vec![round.upto(length), down]),
+            None => false,
+        }
+    }
+
     /// Walks from a point of a loop; false where the walk was unclear.
-    fn walk_from(
-        &mut self,
-        ring: usize,
-        arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
-        attempt: usize,
-    ) -> bool {
-        let goal = self.parent.len() - ATTEMPTS + attempt;
+    fn walk_from(&mut self, ring: usize, start: &Start, attempt: usize) -> bool {
+        let Start { arc, point, left } = start;
         match self.surface {
-            Surface::Torus(t) => self.walk_torus(*t, ring, arc, p, left),
+            Surface::Torus(t) => self.walk_torus(*t, ring, *arc, point, left),
             Surface::Sphere(s) => {
+                let goal = self.parent.len() - ATTEMPTS + attempt;
                 let target = pole(s.frame.origin, s.radius, attempt);
-                let Some(walk) = Walk::great_circle(&s.frame.origin, p, &target) else {
+                let Some(walk) = Walk::great_circle(&s.frame.origin, point, &target) else {
                     return false;
                 };
-                let walk = walk.toward(p, left);
+                let walk = walk.toward(point, left);
                 let walk = walk.upto(walk.at(&target));
-                self.follow(ring, arc, p, left, &[walk], Some(goal))
+                self.follow(ring, *arc, point, left, &[walk], Some(goal))
             }
             Surface::Plane(plane) => {
                 let f = &plane.frame;
                 let angle = 0.7 + 1.9 * attempt as f64;
                 let d = f.x * angle.cos() + f.y * angle.sin();
-                let walk = Walk::straight(plane, p, d).toward(p, left);
-                self.follow(ring, arc, p, left, &[walk], None)
+                let walk = Walk::straight(plane, point, d).toward(point, left);
+                self.follow(ring, *arc, point, left, &[walk], None)
             }
-            Surface::Cylinder(_) | Surface::Cone(_) => {
-                self.walk_ruled(ring, arc, p, left, None)
-                    || self.walk_ruled(ring, arc, p, left, Some(0.5 + 0.7 * attempt as f64))
-            }
+            Surface::Cylinder(_) | Surface::Cone(_) => false,
         }
-    }
-
-    /// Walks along a ruling, from the point or after a `turn` along its parallel: an arc may be a
-    /// ruling itself. All rulings of a cone end in its apex.
-    fn walk_ruled(
-        &mut self,
-        ring: usize,
-        arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
-        turn: Option<f64>,
-    ) -> bool {
-        let ruling = |q: &Point3<f64>| {
-            let [u, _] = self.surface.parameters(q);
-            Walk::ruling(self.surface, q, u, Sense::Along)
-        };
-        let mut legs = Vec::new();
-        let mut corner = *p;
-        if let Some(turn) = turn {
-            let Some(round) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
-                return false;
-            };
-            let round = round.toward(p, left);
-            let length = turn * self.surface.frame().coordinates(p).xy().norm();
-            legs.push(round.upto(length));
-            corner = round.point(length);
-        }
-        let Some(mut walk) = ruling(&corner) else {
-            return false;
-        };
-        let mut goal = None;
-        if turn.is_none() {
-            walk = walk.toward(p, left);
-        }
-        if let Surface::Cone(c) = self.surface {
-            let height = walk.at(&c.frame.origin);
-            if height > 0.0 {
-                walk = walk.upto(height);
-                goal = Some(self.parent.len() - 1);
-            }
-        }
-        legs.push(walk);
-        self.follow(ring, arc, p, left, &legs, goal)
     }
 
     /// Follows the legs of a walk and joins the loops passed; `goal` is joined where the walk ends

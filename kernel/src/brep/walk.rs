@@ -205,7 +205,8 @@ impl Walk {
         }
     }
 
-    fn reversed(self) -> Self {
+    /// The walk from the same point the other way.
+    pub(super) fn reversed(self) -> Self {
         let track = match self.track {
             Track::Line(d) => Track::Line(-d),
             Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),

@@ -101,6 +101,12 @@ impl<'a> Arcs<'a> {
         from_tree.map(|leaf| leaf.data).chain(from_few)
     }
 
+    /// Whether an arc ends at `p`, within the resolution.
+    pub fn ends_at(&self, arc: usize, p: &Point3<f64>, band: f64) -> bool {
+        let DirectedArc { curve, range, .. } = self.all[arc];
+        range.iter().any(|&t| (curve.point(t) - p).norm() <= band)
+    }
+
     /// Whether an arc may pass through `p`.
     pub fn may_hold(&self, arc: usize, p: &Point3<f64>) -> bool {
         let parts = &self.parts[arc];

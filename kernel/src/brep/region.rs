@@ -197,20 +197,37 @@ impl Sorter<'_> {
         (!turned).then_some(RegionError { place })
     }
 
-    /// The walk down the ruling through a point: to a cone's apex, or without end.
+    /// The walk down the ruling through a point, without end.
     fn down(&self, p: &Point3<f64>) -> Option<Walk> {
         let [u, _] = self.surface.parameters(p);
-        let walk = Walk::ruling(self.surface, p, u, Sense::Along)?.reversed();
-        Some(match self.surface {
-            Surface::Cone(c) => walk.upto(walk.at(&c.frame.origin)),
-            _ => walk,
-        })
+        Some(Walk::ruling(self.surface, p, u, Sense::Along)?.reversed())
     }
 
-    /// Follows legs of which the last goes down.
-    fn follow_down(&mut self, ring: usize, start: &Start, legs: Vec<Walk>) -> bool {
-        let apex = matches!(self.surface, Surface::Cone(_)).then(|| self.parent.len() - 1);
-        self.follow(ring, start.arc, &start.point, &start.left, &legs, apex)
+    /// Follows legs of which the last goes down. Where loops pass through a cone's apex it goes
+    /// around just before it, to the loop that bounds the sector it came through.
+    fn follow_down(&mut self, ring: usize, start: &Start, mut legs: Vec<Walk>) -> bool {
+        let mut goal = None;
+        if let Surface::Cone(c) = self.surface
+            && let Some(down) = legs.pop()
+        {
+            let apex = c.frame.origin;
+            let height = down.at(&apex);
+            let around = self.arcs.around(&apex);
+            let passed = around
+                .into_iter()
+                .any(|i| self.arcs.ends_at(i, &apex, self.band));
+            if passed {
+                let height = height - (height * self.band).sqrt();
+                let corner = down.point(height);
+                let round = Walk::parallel(self.surface, &corner, Sense::Along, self.band);
+                legs.push(down.upto(height));
+                legs.extend(round);
+            } else {
+                goal = Some(self.parent.len() - 1);
+                legs.push(down.upto(height));
+            }
+        }
+        self.follow(ring, start.arc, &start.point, &start.left, &legs, goal)
     }
 
     /// A turn along the parallel into the face, then down.

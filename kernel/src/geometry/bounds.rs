@@ -106,8 +106,9 @@ fn turn_bounds(f: &Frame, a: f64, b: f64, [lo, hi]: [f64; 2], mut hull: Box3) ->
 const LOOSE: f64 = 1.0 / 16.0;
 /// How often a smooth piece is sampled in search of its extremes.
 const SAMPLES: u32 = 16;
-/// The halvings after which an enclosure is taken as it is.
-const DEPTH: u32 = 40;
+/// The pieces looked at after which enclosures are taken as they are: those of a curve that is
+/// hardly longer than rounding never get tight.
+const PIECES: usize = 2048;
 
 /// The box of the arc of a curve, to rounding.
 pub fn tight_bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
@@ -153,19 +154,21 @@ fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
         }
     }
     let mut all = seen;
-    let mut stack: Vec<(f64, f64, u32)> = breaks.windows(2).map(|p| (p[0], p[1], 0)).collect();
-    while let Some((a, b, depth)) = stack.pop() {
+    let mut stack: Vec<(f64, f64)> = breaks.windows(2).map(|p| (p[0], p[1])).collect();
+    let mut looked = 0;
+    while let Some((a, b)) = stack.pop() {
+        looked += 1;
         let part = piece_box(curve, a, b);
         let far = seen.grown(LOOSE * seen.diagonal());
         let inside = (0..3).all(|i| part.min[i] >= far.min[i] && part.max[i] <= far.max[i]);
-        if inside || depth >= DEPTH {
+        if inside || looked >= PIECES {
             all = all.hull(&part);
             continue;
         }
         let m = 0.5 * (a + b);
         seen = seen.hull(&Box3::of(&curve.point(m)));
-        stack.push((a, m, depth + 1));
-        stack.push((m, b, depth + 1));
+        stack.push((a, m));
+        stack.push((m, b));
     }
     all
 }

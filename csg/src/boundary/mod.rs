@@ -16,7 +16,7 @@ use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
-use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION};
+use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, ROUNDING};
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,6 +59,18 @@ pub enum EvaluationError {
     /// The description's numbers are too large or too small for doubles.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
+    /// The resolution is finer than doubles are, or wider than the part.
+    #[error(
+        "a resolution of {asked:e} is beyond the range from {least:.1e} to {most:.1e} for a part of this size"
+    )]
+    Resolution {
+        /// What was asked for.
+        asked: f64,
+        /// The least that doubles keep apart.
+        least: f64,
+        /// The greatest: a hundredth of the part's size.
+        most: f64,
+    },
 }
 
 /// The boundary of the solid that a tree describes; empty for an empty solid.
@@ -80,6 +92,14 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     }
     let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
     let resolution = options.resolution.unwrap_or(relative * size);
+    let (least, most) = (ROUNDING * size, COARSEST * size);
+    if !(least..=most).contains(&resolution) {
+        return Err(EvaluationError::Resolution {
+            asked: resolution,
+            least,
+            most,
+        });
+    }
     let judge = Judge::new(resolution);
     let extent = Extent {
         centre: solids.bounds.centre(),
@@ -96,6 +116,9 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
         bounds: solids.bounds,
     })
 }
+
+/// The greatest resolution, in terms of the part's size.
+const COARSEST: f64 = 0.01;
 
 /// Beyond these lengths squares of doubles lose their range.
 const LARGEST: f64 = 1e100;

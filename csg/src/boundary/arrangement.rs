@@ -520,12 +520,13 @@ impl Meeting {
             .any(|turn| lo <= t + turn && t + turn <= hi)
     }
 
-    /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, at
-    /// both its ends.
+    /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, and
+    /// a quartic that runs into an apex, where it has no direction, at its ends, too.
     fn pass(&mut self, vertex: usize, p: &Point3<f64>, judge: &Judge) {
         let [lo, hi] = self.range;
         let t = in_range(&self.curve, self.range, self.curve.parameter(p));
-        let opened = !self.closed && self.curve.period().is_some();
+        let runs_into = matches!(self.curve, Curve::Quartic(_)) || self.curve.period().is_some();
+        let opened = !self.closed && runs_into;
         let ends = if opened {
             [Some(lo), Some(hi)]
         } else {

@@ -53,6 +53,16 @@ pub struct Hit {
     pub plain: bool,
 }
 
+/// Which of the faces on a line of sight are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// All of them.
+    All,
+    /// Those turned towards the eye, and of the others those met on their boundary only: whether
+    /// the line passes through the inside of a face turned away does not count.
+    Hiding,
+}
+
 /// What a line of sight met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Count {
@@ -206,9 +216,15 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// All faces on a line of sight, with what `own` says about those through its origin; the
+    /// The faces on a line of sight, with what `own` says about those through its origin; the
     /// faces seen edge-on are passed over.
-    pub fn hits(&self, ray: &Ray, own: &impl Fn(FaceId) -> Own, report: &mut impl FnMut(Hit)) {
+    pub fn hits(
+        &self,
+        ray: &Ray,
+        asked: Asked,
+        own: &impl Fn(FaceId) -> Own,
+        report: &mut impl FnMut(Hit),
+    ) {
         let pierced = Pierced {
             origin: ray.origin.into(),
             // Finite, so that zero times it is zero: a line in the plane of a side is inside.
@@ -219,11 +235,18 @@ impl<'a> Scene<'a> {
             length: ray.length,
         };
         for leaf in self.tree.locate_with_selection_function(pierced) {
-            self.face_hits(ray, leaf.data, own(leaf.data), report);
+            self.face_hits(ray, leaf.data, asked, own(leaf.data), report);
         }
     }
 
-    fn face_hits(&self, ray: &Ray, face: FaceId, own: Own, report: &mut impl FnMut(Hit)) {
+    fn face_hits(
+        &self,
+        ray: &Ray,
+        face: FaceId,
+        asked: Asked,
+        own: Own,
+        report: &mut impl FnMut(Hit),
+    ) {
         let surface = self.brep.surface(face);
         let meetings = self.meetings(ray, surface, own);
         // What is this near to the origin passes through it.
@@ -236,11 +259,16 @@ impl<'a> Scene<'a> {
                 continue;
             }
             let p = ray.origin + ray.towards * s;
-            let place = self.locator.place(face, &p);
+            let front = touch || self.brep.outward(face, &p).dot(&ray.towards) > 0.0;
+            let locator = self.locator.face(face);
+            let place = match asked {
+                Asked::Hiding if !front && !locator.on_boundary(&p) => continue,
+                Asked::Hiding if !front => Place::On,
+                _ => locator.place(&p),
+            };
             if place == Place::Outside {
                 continue;
             }
-            let front = touch || self.brep.outward(face, &p).dot(&ray.towards) > 0.0;
             report(Hit {
                 at: s,
                 face,
@@ -288,7 +316,7 @@ impl<'a> Scene<'a> {
         };
         let mut nearest = f64::NEG_INFINITY;
         let mut unclear: Vec<Hit> = Vec::new();
-        self.hits(&ray, own, &mut |hit| {
+        self.hits(&ray, Asked::Hiding, own, &mut |hit| {
             count.plain &= hit.plain;
             if !hit.plain {
                 unclear.push(hit);
@@ -418,7 +446,7 @@ impl<'a> Scene<'a> {
                 length: f64::INFINITY,
             };
             let (mut plain, mut nearest) = (true, (f64::INFINITY, true));
-            self.hits(&ray, &|_| Own::No, &mut |hit| {
+            self.hits(&ray, Asked::All, &|_| Own::No, &mut |hit| {
                 plain &= hit.plain;
                 if hit.at < nearest.0 {
                     // A face turned towards where the line runs is left from inside.

@@ -81,6 +81,8 @@ pub struct Walk {
     track: Track,
     branch: Branch,
     length: f64,
+    /// What holds a straight walk of a given length; else without bounds.
+    extent: Box3,
 }
 
 impl Walk {
@@ -97,6 +99,7 @@ impl Walk {
             track,
             branch,
             length,
+            extent: Box3::ALL,
         }
     }
 
@@ -234,13 +237,21 @@ impl Walk {
             Track::Line(d) => Track::Line(-d),
             Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),
         };
-        Self { track, ..self }
+        Self { track, ..self }.upto(self.length)
     }
 
     /// The same walk, no longer than `length`.
     pub fn upto(self, length: f64) -> Self {
+        let length = self.length.min(length);
+        let extent = match &self.track {
+            Track::Line(d) if length.is_finite() => {
+                Box3::of(&self.start).hull(&Box3::of(&(self.start + d * length)))
+            }
+            _ => Box3::ALL,
+        };
         Self {
-            length: self.length.min(length),
+            length,
+            extent,
             ..self
         }
     }
@@ -295,6 +306,10 @@ impl Walk {
 
     /// Whether the walk may pass through a box.
     pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: f64) -> bool {
+        let Box3 { min, max } = &self.extent;
+        if (0..3).any(|i| lo[i] - band > max[i] || hi[i] + band < min[i]) {
+            return false;
+        }
         let above = |o: &Point3<f64>, n: &Vector3<f64>| {
             let mid: f64 = (0..3).map(|i| n[i] * (0.5 * (lo[i] + hi[i]) - o[i])).sum();
             let half: f64 = (0..3).map(|i| n[i].abs() * 0.5 * (hi[i] - lo[i])).sum();

@@ -64,14 +64,27 @@ pub enum Asked {
 }
 
 /// What a line of sight met.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Count {
     /// How many faces turned towards the eye.
     pub qi: u32,
-    /// The one nearest to the eye.
-    pub occluder: Option<FaceId>,
+    /// Those nearest to the eye, the nearest first, as far as their order is known: at least one
+    /// if there are any.
+    pub order: Vec<FaceId>,
     /// Whether all were met plainly.
     pub plain: bool,
+}
+
+impl Count {
+    /// The face nearest to the eye.
+    pub fn occluder(&self) -> Option<FaceId> {
+        self.order.first().copied()
+    }
+
+    /// Whether the order of all faces is known.
+    pub fn is_whole(&self) -> bool {
+        self.order.len() as u32 == self.qi
+    }
 }
 
 /// A face turned towards the eye, and how far it is.
@@ -309,25 +322,23 @@ impl<'a> Scene<'a> {
         own: &impl Fn(FaceId) -> Own,
     ) -> Count {
         let ray = self.ray(p);
-        let mut count = Count {
-            qi: 0,
-            occluder: None,
-            plain: true,
-        };
-        let mut nearest = f64::NEG_INFINITY;
-        let mut unclear: Vec<Hit> = Vec::new();
+        let mut plain = true;
+        let (mut layers, mut unclear): (Vec<Layer>, Vec<Hit>) = (Vec::new(), Vec::new());
         self.hits(&ray, Asked::Hiding, own, &mut |hit| {
-            count.plain &= hit.plain;
+            plain &= hit.plain;
             if !hit.plain {
                 unclear.push(hit);
             } else if hit.front {
-                count.qi += 1;
-                if hit.at > nearest {
-                    nearest = hit.at;
-                    count.occluder = Some(hit.face);
-                }
+                let Hit { at, face, .. } = hit;
+                layers.push(Layer { at, face });
             }
         });
+        layers.sort_by(|a, b| b.at.total_cmp(&a.at));
+        let mut count = Count {
+            qi: layers.len() as u32,
+            order: layers.iter().map(|l| l.face).collect(),
+            plain,
+        };
         if !unclear.iter().any(|hit| hit.front) {
             return count;
         }
@@ -339,10 +350,12 @@ impl<'a> Scene<'a> {
             }
         }
         count.qi += most.len() as u32;
+        // What is met next to boundaries may be as near as the next: only the first is certain.
+        count.order.truncate(1);
         if let Some(first) = most.iter().max_by(|a, b| a.at.total_cmp(&b.at))
-            && first.at > nearest
+            && layers.first().is_none_or(|l| first.at > l.at)
         {
-            count.occluder = Some(first.face);
+            count.order = vec![first.face];
         }
         count
     }

@@ -35,7 +35,8 @@ pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Coun
     // happens to be next to something is outvoted.
     let mut three = [first, at(PLACES[1]), at(PLACES[2])];
     three.sort_by_key(|c| c.qi);
-    three[1]
+    let [_, middle, _] = three;
+    middle
 }
 
 fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
@@ -104,61 +105,106 @@ pub fn pieces(
             .get(k + 1)
             .map_or((end, last), |next| (next.0, next.1));
         let range = [t, until];
-        let known = match (method, change, carried) {
+        let known = match (method, change, carried.take()) {
             (Method::Carried, Change::Pass(passing), Some(before)) => {
                 carry(scene, &strand.curve.point(t), before, &passing)
             }
             _ => None,
         };
         let now = known.unwrap_or_else(|| count(scene, strand, range));
-        carried = Some(now);
         out.push(Piece {
             t: range,
             visible: now.qi == 0,
             qi: now.qi,
-            occluder: now.occluder,
+            occluder: now.occluder(),
             start: junction,
             end: then,
             samples: None,
         });
+        carried = Some(now);
     }
 }
 
 /// The count after a passage behind another contour at `p`, where it follows from the count
 /// before.
+///
+/// Faces meet along edges only, so between passages those that hide keep their order.
 fn carry(scene: &Scene<'_>, p: &Point3<f64>, before: Count, passing: &Passing) -> Option<Count> {
     let qi = before.qi.checked_add_signed(passing.by)?;
-    let occluder = match (qi, before.occluder) {
-        (0, _) => None,
-        (_, None) => Some(passing.entered?),
-        (_, Some(first)) => Some(nearest(scene, p, first, passing)?),
-    };
-    Some(Count {
+    let order = order_after(scene, p, before, passing)?;
+    let known = order.len() as u32;
+    let sound = known <= qi && (known > 0 || qi == 0);
+    sound.then_some(Count {
         qi,
-        occluder,
+        order,
         plain: true,
     })
 }
 
-/// The face nearest to the eye after the passage, if it was `first` before.
-fn nearest(scene: &Scene<'_>, p: &Point3<f64>, first: FaceId, passing: &Passing) -> Option<FaceId> {
-    if passing.left == Some(first) || passing.entered == Some(first) {
-        // A plane is met once, so it is the one that ends here.
-        let plane = matches!(scene.brep.surface(first), Surface::Plane(_));
-        return match (passing.left, passing.entered) {
-            (Some(left), Some(entered)) if plane && left == first => Some(entered),
-            _ => None,
+/// The order of the faces in front after a passage, as far as it is known.
+fn order_after(
+    scene: &Scene<'_>,
+    p: &Point3<f64>,
+    before: Count,
+    passing: &Passing,
+) -> Option<Vec<FaceId>> {
+    let whole = before.is_whole();
+    let mut order = before.order;
+    let last = order.len();
+    let Some(left) = passing.left else {
+        let Some(entered) = passing.entered else {
+            return Some(order);
         };
+        match slot(scene, p, &order, passing.ahead) {
+            Slot::Before(k) if k < last || whole => order.insert(k, entered),
+            Slot::Before(_) => {}
+            Slot::Unclear(k) => order.truncate(k),
+        }
+        return Some(order);
+    };
+    let Some(k) = order.iter().position(|&face| face == left) else {
+        // It is behind all those known.
+        let behind = !whole && slot(scene, p, &order, passing.ahead) == Slot::Before(last);
+        return behind.then_some(order);
+    };
+    // A plane is met once; of another surface a second sheet may hide, and either may end here.
+    let plane = matches!(scene.brep.surface(left), Surface::Plane(_));
+    if !plane && (!whole || order[k + 1..].contains(&left)) {
+        order.truncate(k);
+        return Some(order);
     }
+    match passing.entered {
+        Some(entered) => order[k] = entered,
+        None => {
+            order.remove(k);
+        }
+    }
+    Some(order)
+}
+
+/// Where in an order of faces something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slot {
+    /// Just before the one with this index, behind all others before it.
+    Before(usize),
+    /// Behind those before this index; not plainly before or behind that one.
+    Unclear(usize),
+}
+
+/// Where in the order of the faces before `p` the distance `ahead` belongs.
+fn slot(scene: &Scene<'_>, p: &Point3<f64>, order: &[FaceId], ahead: f64) -> Slot {
     let margin = LOOSE * scene.band;
-    let (mut before, mut behind) = (false, false);
-    scene.depths(p, first, &mut |s| {
-        before |= s > passing.ahead - margin;
-        behind |= s < passing.ahead + margin;
-    });
-    match (before, behind) {
-        (true, false) => Some(first),
-        (false, true) if passing.left.is_none() => passing.entered,
-        _ => None,
+    for (k, &face) in order.iter().enumerate() {
+        let (mut before, mut behind) = (false, false);
+        scene.depths(p, face, &mut |s| {
+            before |= s > ahead - margin;
+            behind |= s < ahead + margin;
+        });
+        match (before, behind) {
+            (true, false) => {}
+            (false, true) => return Slot::Before(k),
+            _ => return Slot::Unclear(k),
+        }
     }
+    Slot::Before(order.len())
 }

@@ -53,15 +53,38 @@ pub struct Hit {
     pub plain: bool,
 }
 
-/// What a line of sight met.
+/// Which of the faces on a line of sight are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// All of them.
+    All,
+    /// Those turned towards the eye, and of the others those met on their boundary only: whether
+    /// the line passes through the inside of a face turned away does not count.
+    Hiding,
+}
+
+/// What a line of sight met.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Count {
     /// How many faces turned towards the eye.
     pub qi: u32,
-    /// The one nearest to the eye.
-    pub occluder: Option<FaceId>,
+    /// Those nearest to the eye, the nearest first, as far as their order is known: at least one
+    /// if there are any.
+    pub order: Vec<FaceId>,
     /// Whether all were met plainly.
     pub plain: bool,
+}
+
+impl Count {
+    /// The face nearest to the eye.
+    pub fn occluder(&self) -> Option<FaceId> {
+        self.order.first().copied()
+    }
+
+    /// Whether the order of all faces is known.
+    pub fn is_whole(&self) -> bool {
+        self.order.len() as u32 == self.qi
+    }
 }
 
 /// A face turned towards the eye, and how far it is.
@@ -206,9 +229,15 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// All faces on a line of sight, with what `own` says about those through its origin; the
+    /// The faces on a line of sight, with what `own` says about those through its origin; the
     /// faces seen edge-on are passed over.
-    pub fn hits(&self, ray: &Ray, own: &impl Fn(FaceId) -> Own, report: &mut impl FnMut(Hit)) {
+    pub fn hits(
+        &self,
+        ray: &Ray,
+        asked: Asked,
+        own: &impl Fn(FaceId) -> Own,
+        report: &mut impl FnMut(Hit),
+    ) {
         let pierced = Pierced {
             origin: ray.origin.into(),
             // Finite, so that zero times it is zero: a line in the plane of a side is inside.
@@ -219,11 +248,18 @@ impl<'a> Scene<'a> {
             length: ray.length,
         };
         for leaf in self.tree.locate_with_selection_function(pierced) {
-            self.face_hits(ray, leaf.data, own(leaf.data), report);
+            self.face_hits(ray, leaf.data, asked, own(leaf.data), report);
         }
     }
 
-    fn face_hits(&self, ray: &Ray, face: FaceId, own: Own, report: &mut impl FnMut(Hit)) {
+    fn face_hits(
+        &self,
+        ray: &Ray,
+        face: FaceId,
+        asked: Asked,
+        own: Own,
+        report: &mut impl FnMut(Hit),
+    ) {
         let surface = self.brep.surface(face);
         let meetings = self.meetings(ray, surface, own);
         // What is this near to the origin passes through it.
@@ -236,11 +272,16 @@ impl<'a> Scene<'a> {
                 continue;
             }
             let p = ray.origin + ray.towards * s;
-            let place = self.locator.place(face, &p);
+            let front = touch || self.brep.outward(face, &p).dot(&ray.towards) > 0.0;
+            let locator = self.locator.face(face);
+            let place = match asked {
+                Asked::Hiding if !front && !locator.on_boundary(&p) => continue,
+                Asked::Hiding if !front => Place::On,
+                _ => locator.place(&p),
+            };
             if place == Place::Outside {
                 continue;
             }
-            let front = touch || self.brep.outward(face, &p).dot(&ray.towards) > 0.0;
             report(Hit {
                 at: s,
                 face,
@@ -281,25 +322,23 @@ impl<'a> Scene<'a> {
         own: &impl Fn(FaceId) -> Own,
     ) -> Count {
         let ray = self.ray(p);
-        let mut count = Count {
-            qi: 0,
-            occluder: None,
-            plain: true,
-        };
-        let mut nearest = f64::NEG_INFINITY;
-        let mut unclear: Vec<Hit> = Vec::new();
-        self.hits(&ray, own, &mut |hit| {
-            count.plain &= hit.plain;
+        let mut plain = true;
+        let (mut layers, mut unclear): (Vec<Layer>, Vec<Hit>) = (Vec::new(), Vec::new());
+        self.hits(&ray, Asked::Hiding, own, &mut |hit| {
+            plain &= hit.plain;
             if !hit.plain {
                 unclear.push(hit);
             } else if hit.front {
-                count.qi += 1;
-                if hit.at > nearest {
-                    nearest = hit.at;
-                    count.occluder = Some(hit.face);
-                }
+                let Hit { at, face, .. } = hit;
+                layers.push(Layer { at, face });
             }
         });
+        layers.sort_by(|a, b| b.at.total_cmp(&a.at));
+        let mut count = Count {
+            qi: layers.len() as u32,
+            order: layers.iter().map(|l| l.face).collect(),
+            plain,
+        };
         if !unclear.iter().any(|hit| hit.front) {
             return count;
         }
@@ -311,10 +350,12 @@ impl<'a> Scene<'a> {
             }
         }
         count.qi += most.len() as u32;
+        // What is met next to boundaries may be as near as the next: only the first is certain.
+        count.order.truncate(1);
         if let Some(first) = most.iter().max_by(|a, b| a.at.total_cmp(&b.at))
-            && first.at > nearest
+            && layers.first().is_none_or(|l| first.at > l.at)
         {
-            count.occluder = Some(first.face);
+            count.order = vec![first.face];
         }
         count
     }
@@ -418,7 +459,7 @@ impl<'a> Scene<'a> {
                 length: f64::INFINITY,
             };
             let (mut plain, mut nearest) = (true, (f64::INFINITY, true));
-            self.hits(&ray, &|_| Own::No, &mut |hit| {
+            self.hits(&ray, Asked::All, &|_| Own::No, &mut |hit| {
                 plain &= hit.plain;
                 if hit.at < nearest.0 {
                     // A face turned towards where the line runs is left from inside.

@@ -121,7 +121,8 @@ impl<'a> FaceLocator<'a> {
         Place::On
     }
 
-    fn on_boundary(&self, p: &Point3<f64>) -> bool {
+    /// Whether `p`, a point of the surface, is on the boundary of the face, within the resolution.
+    pub fn on_boundary(&self, p: &Point3<f64>) -> bool {
         self.arcs.around(p).any(|i| self.on_arc(p, i))
     }
 
@@ -131,6 +132,13 @@ impl<'a> FaceLocator<'a> {
         }
         let DirectedArc { curve, range, .. } = self.arcs.all[i];
         let [lo, hi] = range;
+        if let Curve::Circle(c) = curve {
+            // Most points in the box of a circle are plainly aside of it.
+            let q = c.frame.coordinates(p);
+            if (q.x.hypot(q.y) - c.radius).abs() > 2.0 * self.band {
+                return false;
+            }
+        }
         let near = |t: f64| (curve.point(t) - p).norm() <= self.band;
         let mut t = curve.parameter(p);
         if let Some(period) = curve.period() {
@@ -164,26 +172,23 @@ impl<'a> FaceLocator<'a> {
         } else {
             Sense::Against
         };
-        let [u, _] = self.surface.parameters(p);
-        let direct = |start: &Point3<f64>, u: f64| match Walk::ruling(self.surface, start, u, sense)
-        {
+        let direct = |walk: Option<Walk>| match walk {
             Some(walk) => self.take(&walk),
             None => Outcome::Unclear,
         };
         if k < 2 {
-            return direct(p, u);
+            return direct(Walk::ruling_through(self.surface, p, sense));
         }
         // At the apex the parallel is a point and any ruling starts there.
         let Some(walk) = Walk::parallel(self.surface, p, sense, self.band) else {
-            return direct(p, turn);
+            return direct(Walk::ruling(self.surface, p, turn, sense));
         };
         let radius = self.surface.frame().coordinates(p).xy().norm();
         let leg = walk.upto(turn * radius);
         match self.take(&leg) {
             Outcome::Nothing => {
                 let corner = leg.point(turn * radius);
-                let [u, _] = self.surface.parameters(&corner);
-                direct(&corner, u)
+                direct(Walk::ruling_through(self.surface, &corner, sense))
             }
             decided => decided,
         }

@@ -75,11 +75,14 @@ enum Branch {
 /// A walk on a surface from a point of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
-    plane: Plane,
+    /// Of the plane that the walk lies in.
+    normal: Vector3<f64>,
     start: Point3<f64>,
     track: Track,
     branch: Branch,
     length: f64,
+    /// What holds a straight walk of a given length; else without bounds.
+    extent: Box3,
 }
 
 impl Walk {
@@ -91,13 +94,12 @@ impl Walk {
         length: f64,
     ) -> Self {
         Self {
-            plane: Plane {
-                frame: Frame::about(*start, normal),
-            },
+            normal,
             start: *start,
             track,
             branch,
             length,
+            extent: Box3::ALL,
         }
     }
 
@@ -168,7 +170,31 @@ impl Walk {
     /// without end; along the axis or, on a cylinder, against it.
     pub fn ruling(surface: &Surface, start: &Point3<f64>, u: f64, sense: Sense) -> Option<Self> {
         let f = surface.frame();
-        let radial = f.x * u.cos() + f.y * u.sin();
+        let (sin, cos) = u.sin_cos();
+        Self::ruling_over(surface, start, f.x * cos + f.y * sin, sense)
+    }
+
+    /// The ruling of a cylinder or a cone through a point of it; on the axis, as the one at the
+    /// angle zero.
+    pub fn ruling_through(surface: &Surface, start: &Point3<f64>, sense: Sense) -> Option<Self> {
+        let f = surface.frame();
+        let q = f.coordinates(start);
+        let rho = q.x.hypot(q.y);
+        let radial = match rho > 0.0 {
+            true => f.x * (q.x / rho) + f.y * (q.y / rho),
+            false => f.x,
+        };
+        Self::ruling_over(surface, start, radial, sense)
+    }
+
+    /// The ruling over a unit vector across the axis.
+    fn ruling_over(
+        surface: &Surface,
+        start: &Point3<f64>,
+        radial: Vector3<f64>,
+        sense: Sense,
+    ) -> Option<Self> {
+        let f = surface.frame();
         let direction = match surface {
             Surface::Cylinder(_) => f.z * sense.sign(),
             Surface::Cone(c) => f.z * c.cos + radial * c.sin,
@@ -211,13 +237,21 @@ impl Walk {
             Track::Line(d) => Track::Line(-d),
             Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),
         };
-        Self { track, ..self }
+        Self { track, ..self }.upto(self.length)
     }
 
     /// The same walk, no longer than `length`.
     pub fn upto(self, length: f64) -> Self {
+        let length = self.length.min(length);
+        let extent = match &self.track {
+            Track::Line(d) if length.is_finite() => {
+                Box3::of(&self.start).hull(&Box3::of(&(self.start + d * length)))
+            }
+            _ => Box3::ALL,
+        };
         Self {
-            length: self.length.min(length),
+            length,
+            extent,
             ..self
         }
     }
@@ -272,12 +306,16 @@ impl Walk {
 
     /// Whether the walk may pass through a box.
     pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: f64) -> bool {
+        let Box3 { min, max } = &self.extent;
+        if (0..3).any(|i| lo[i] - band > max[i] || hi[i] + band < min[i]) {
+            return false;
+        }
         let above = |o: &Point3<f64>, n: &Vector3<f64>| {
             let mid: f64 = (0..3).map(|i| n[i] * (0.5 * (lo[i] + hi[i]) - o[i])).sum();
             let half: f64 = (0..3).map(|i| n[i].abs() * 0.5 * (hi[i] - lo[i])).sum();
             (mid, half + band)
         };
-        let (mid, half) = above(&self.start, &self.plane.frame.z);
+        let (mid, half) = above(&self.start, &self.normal);
         if mid.abs() > half {
             return false;
         }
@@ -344,7 +382,7 @@ impl Walk {
         found: &mut impl FnMut(f64, f64, Passage),
     ) {
         let [lo, hi] = arc.range;
-        let n = self.plane.frame.z;
+        let n = self.normal;
         if !closes(arc) {
             for t in [lo, hi] {
                 let p = arc.curve.point(t);
@@ -379,7 +417,7 @@ impl Walk {
             return;
         }
         for &range in ranges {
-            plane_roots(arc.curve, range, &self.plane, band, &mut root);
+            section_roots(arc.curve, range, (&self.start, &n), band, &mut root);
         }
     }
 }
@@ -448,8 +486,21 @@ pub fn plane_roots(
     band: f64,
     found: &mut impl FnMut(f64, bool),
 ) {
-    let n = &plane.frame.z;
-    let o = &plane.frame.origin;
+    let section = (&plane.frame.origin, &plane.frame.z);
+    section_roots(curve, range, section, band, found);
+}
+
+/// The same for the plane through a point with a unit normal.
+fn section_roots(
+    curve: &Curve,
+    range: [f64; 2],
+    (o, n): (&Point3<f64>, &Vector3<f64>),
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) {
+    let plane = || Plane {
+        frame: Frame::about(*o, *n),
+    };
     match curve {
         Curve::Line(c) => {
             let height = (c.origin - o).dot(n);
@@ -463,10 +514,10 @@ pub fn plane_roots(
             let k = [c.a * c.frame.x.dot(n), c.b * c.frame.y.dot(n)];
             turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
         }
-        Curve::Quartic(c) if through_axis(c, plane, band) => {
-            ruling_roots(c, range, plane, band, found);
+        Curve::Quartic(c) if through_axis(c, (o, n), band) => {
+            ruling_roots(c, range, n, band, found);
         }
-        _ => match cut(curve, range, &Surface::Plane(*plane), band) {
+        _ => match cut(curve, range, &Surface::Plane(plane()), band) {
             Zeros::Everywhere => found(0.5 * (range[0] + range[1]), false),
             Zeros::At { roots, .. } => {
                 for r in roots {
@@ -485,23 +536,22 @@ fn base_frame(curve: &Quartic) -> &Frame {
 }
 
 /// Whether a plane goes through the axis of the surface whose rulings carry a curve.
-fn through_axis(curve: &Quartic, plane: &Plane, band: f64) -> bool {
+fn through_axis(curve: &Quartic, (o, n): (&Point3<f64>, &Vector3<f64>), band: f64) -> bool {
     let axis = base_frame(curve);
-    let n = &plane.frame.z;
-    let away = (axis.origin - plane.frame.origin).dot(n).abs();
+    let away = (axis.origin - o).dot(n).abs();
     n.dot(&axis.z).abs() <= ROUNDING && away <= band
 }
 
-/// Where a curve over the rulings of a surface meets a plane through their axis: on two rulings.
+/// Where a curve over the rulings of a surface meets a plane through their axis, with the normal
+/// `n`: on two rulings.
 fn ruling_roots(
     curve: &Quartic,
     [lo, hi]: [f64; 2],
-    plane: &Plane,
+    n: &Vector3<f64>,
     band: f64,
     found: &mut impl FnMut(f64, bool),
 ) {
     let axis = base_frame(curve);
-    let n = &plane.frame.z;
     let u = (-n.dot(&axis.x)).atan2(n.dot(&axis.y));
     let period = curve.period();
     let mut within = |t: f64, plain: bool| {

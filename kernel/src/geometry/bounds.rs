@@ -24,6 +24,12 @@ impl Box3 {
         max: [f64::NEG_INFINITY; 3],
     };
 
+    /// The box that holds everything.
+    pub const ALL: Self = Self {
+        min: [f64::NEG_INFINITY; 3],
+        max: [f64::INFINITY; 3],
+    };
+
     /// The box around one point.
     pub fn of(p: &Point3<f64>) -> Self {
         let c = [p.x, p.y, p.z];

@@ -18,11 +18,6 @@ use std::time::Duration;
 
 /// Models that are wrong today. One that starts to pass must be taken off.
 const KNOWN_FAILURES: &[&str] = &[
-    // A torus cut along one circle is one face with two loops; it is made two, one without area.
-    "ball-inscribed-in-torus",
-    "tori-touching-along-circle",
-    "torus-lying-on-block",
-    "torus-void-touching-top",
     // An edge ends 1.5e-9 from its vertex.
     "cone-apices-1e-5-apart",
 ];

@@ -41,10 +41,10 @@ fn assert_all_right(from: u64, count: u64, views: bool) {
 
 #[test]
 fn solids() {
-    assert_all_right(0, 150, false);
+    assert_all_right(0, 300, false);
 }
 
 #[test]
 fn views() {
-    assert_all_right(0, 7, true);
+    assert_all_right(0, 60, true);
 }

@@ -20,6 +20,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Plane;
 use premio_kernel::geometry::trace::Unresolved;
+use premio_kernel::number::sign::ROUNDING;
 use std::time::Instant;
 
 /// Distances between points found on two ways, in multiples of the resolution.
@@ -31,6 +32,16 @@ pub enum ViewError {
     /// The eye lies in the material.
     #[error("the eye ({}, {}, {}) lies inside the material", .0.x, .0.y, .0.z)]
     EyeInside(Point3<f64>),
+    /// The eye is so far that doubles do not keep apart there what the resolution does.
+    #[error(
+        "the eye is {distance:.3e} away from the part, beyond the limit of {most:.3e} for this resolution"
+    )]
+    EyeFar {
+        /// From the middle of the part.
+        distance: f64,
+        /// The greatest distance.
+        most: f64,
+    },
     /// A limb of a torus could not be resolved.
     #[error("a limb: {0}")]
     Limb(#[from] Unresolved),
@@ -51,6 +62,14 @@ pub fn contours_by(
     let started = Instant::now();
     let projection = Projection::new(camera, part_size(brep));
     let scene = Scene::new(brep, &projection, band);
+    let hull = scene.bounds();
+    let (distance, most) = (
+        (projection.origin() - hull.centre()).norm(),
+        band / ROUNDING,
+    );
+    if hull.diagonal().is_finite() && distance > most {
+        return Err(ViewError::EyeFar { distance, most });
+    }
     if scene.eye_inside() {
         return Err(ViewError::EyeInside(projection.origin()));
     }

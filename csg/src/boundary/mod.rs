@@ -59,6 +59,16 @@ pub enum EvaluationError {
     /// The description's numbers are too large or too small for doubles.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
+    /// The part lies too far from the origin for doubles.
+    #[error(
+        "the part, of size {size:.3e}, lies up to {far:.3e} from the origin: its coordinates are rounded by more than a millionth of its size"
+    )]
+    Far {
+        /// The greatest coordinate.
+        far: f64,
+        /// The diagonal of its box.
+        size: f64,
+    },
     /// The resolution is finer than doubles are, or wider than the part.
     #[error(
         "a resolution of {asked:e} is beyond the range from {least:.1e} to {most:.1e} for a part of this size"
@@ -90,16 +100,7 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     if !(size > 1.0 / LARGEST && size < LARGEST) {
         return Err(EvaluationError::Size);
     }
-    let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
-    let resolution = options.resolution.unwrap_or(relative * size);
-    let (least, most) = (ROUNDING * size, COARSEST * size);
-    if !(least..=most).contains(&resolution) {
-        return Err(EvaluationError::Resolution {
-            asked: resolution,
-            least,
-            most,
-        });
-    }
+    let resolution = resolution_of(&solids.bounds, options)?;
     let judge = Judge::new(resolution);
     let extent = Extent {
         centre: solids.bounds.centre(),
@@ -117,8 +118,33 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     })
 }
 
+/// The resolution that is asked for, or the default: wider where the part lies so far from the
+/// origin that its coordinates are rounded by more.
+fn resolution_of(bounds: &Box3, options: &EvaluationOptions) -> Result<f64, EvaluationError> {
+    let size = bounds.diagonal();
+    let far = bounds.min.iter().chain(&bounds.max);
+    let far = far.fold(size, |far, x| far.max(x.abs()));
+    let (least, most) = (ROUNDING * far, COARSEST * size);
+    if least > size * FARTHEST {
+        return Err(EvaluationError::Far { far, size });
+    }
+    let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
+    let resolution = options.resolution.unwrap_or((relative * size).max(least));
+    if !(least..=most).contains(&resolution) {
+        return Err(EvaluationError::Resolution {
+            asked: resolution,
+            least,
+            most,
+        });
+    }
+    Ok(resolution)
+}
+
 /// The greatest resolution, in terms of the part's size.
 const COARSEST: f64 = 0.01;
+
+/// The greatest rounding of coordinates, in terms of the part's size.
+const FARTHEST: f64 = 1.0 / (1 << 20) as f64;
 
 /// Beyond these lengths squares of doubles lose their range.
 const LARGEST: f64 = 1e100;

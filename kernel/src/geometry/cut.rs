@@ -27,7 +27,8 @@ impl Function for Height<'_> {
         // least half of it.
         let centre = self.surface.distance(&Point3::from(p.map(Interval::mid)));
         let way = 0.5 * p.iter().map(|x| x.width().powi(2)).sum::<f64>().sqrt();
-        let rounding = ROUNDING * (1.0 + centre.abs());
+        let far = p.iter().map(|x| x.magnitude()).fold(0.0, f64::max);
+        let rounding = ROUNDING * (far + self.surface.frame().origin.coords.amax());
         match 0.5 * (centre.abs() - way - rounding) {
             least if least > 0.0 && centre > 0.0 => Interval::new(least, f64::INFINITY),
             least if least > 0.0 => Interval::new(f64::NEG_INFINITY, -least),
@@ -46,8 +47,8 @@ pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zero
     if lies_on(curve, range, surface, band) {
         return Zeros::Everywhere;
     }
-    let breaks = curve.breaks(range[0], range[1]);
-    isolate(&Height { curve, surface }, &breaks, band)
+    let (roots, misses) = roots(curve, range, surface, band);
+    Zeros::At { roots, misses }
 }
 
 /// The same over a part of a curve that does not lie on the surface, however short: the roots, and

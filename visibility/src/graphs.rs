@@ -25,6 +25,8 @@ const SHORT: f64 = 256.0;
 /// Places of a stretch that tell whether it falls on another: graphs over one direction that are
 /// no further from each other at any of them have no room to part between them.
 const PLACES: usize = 9;
+/// Newton's steps that follow a curve beyond the end of a stretch, by far less than the stretch.
+const BEYOND: usize = 3;
 
 /// Reports the crossings of two general curves in the image.
 pub fn general_pair(
@@ -176,12 +178,19 @@ impl<'x> Graphs<'x> {
         self.axes.map(|k| dot2(k, p))
     }
 
-    /// The parameter over `x` on one of the stretches, or its nearer end.
+    /// The parameter over `x` on one of the stretches, or on the curve just beyond its ends.
     fn over(&self, k: usize, curve: &Curve, x: f64) -> f64 {
         let [lo, hi] = self.of[k].range;
         let [from, to] = self.of[k].ends.map(|p| dot2(self.axes[0], p) - x);
         if from * to > 0.0 {
-            return if from.abs() < to.abs() { lo } else { hi };
+            let end = if from.abs() < to.abs() { lo } else { hi };
+            let step = |t: f64| {
+                let [at, _] = self.jet(curve, t);
+                t - (at.v - x) / at.d
+            };
+            let beyond = (0..BEYOND).fold(end, |t, _| step(t));
+            let close = (beyond - end).abs() <= hi - lo;
+            return if close { beyond } else { end };
         }
         bisect_newton(lo, hi, from, |t| {
             let [x_at, _] = self.jet(curve, t);

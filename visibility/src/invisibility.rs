@@ -2,8 +2,9 @@
 //! of the paper).
 
 use crate::contour::Piece;
+use crate::correction::{Corrections, End};
 use crate::sight::{Count, Own, Scene};
-use crate::strand::{Change, Passing, Split, Strand};
+use crate::strand::{Change, Junctions, Passing, Split, Strand};
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
@@ -11,7 +12,7 @@ use premio_kernel::geometry::surface::Surface;
 /// How the quantitative invisibility of the pieces is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
-    /// Counted once for each strand and carried along it.
+    /// Counted once for each connected part of the contours, and carried on from there.
     #[default]
     Carried,
     /// Counted for every piece.
@@ -40,88 +41,297 @@ pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Coun
 }
 
 fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
-    let p = &strand.curve.point(t);
-    let (v, _) = scene.projection.towards_eye(p);
     let own = |face: FaceId| {
         if !strand.faces.iter().any(|f| f.0 == face) {
-            return Own::No;
-        }
-        let surface = scene.brep.surface(face);
-        // A limb that runs along the edge: the surface leaves the line of sight by less than the
-        // band over this length.
-        let bend = surface.normal_curvature(p, &v).abs();
-        let grazing = surface.normal(p).dot(&v).abs() <= 4.0 * (scene.band * bend).sqrt();
-        if strand.limb || grazing {
+            Own::No
+        } else if strand.limb || is_limb_of(scene, strand, face, t) {
             Own::Tangent
         } else {
             Own::Through
         }
     };
-    scene.count(p, &strand.curve.tangent(t), &own)
+    scene.count(&strand.curve.point(t), &strand.curve.tangent(t), &own)
 }
 
-/// The splits of a strand in order, those at one point taken together.
-fn ordered(strand: &mut Strand<'_>, near: f64) -> Vec<Split> {
-    strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
-    let curve = strand.curve;
-    let mut kept: Vec<Split> = Vec::with_capacity(strand.splits.len());
-    for &split in &strand.splits {
-        match kept.last_mut() {
-            Some(last)
-                if last.t == split.t
-                    || (split.t - last.t) * curve.derivative(split.t).norm() <= near =>
-            {
-                last.change = Change::Recount;
+/// Whether a limb of a face runs along a strand: the face leaves the line of sight by less than the
+/// band over as far as it is from facing it, here and not only next to a point.
+fn is_limb_of(scene: &Scene<'_>, strand: &Strand<'_>, face: FaceId, t: f64) -> bool {
+    let surface = scene.brep.surface(face);
+    let [lo, hi] = strand.range;
+    let others = PLACES.iter().map(|part| lo + (hi - lo) * part);
+    std::iter::once(t).chain(others).all(|t| {
+        let p = &strand.curve.point(t);
+        let (v, _) = scene.projection.towards_eye(p);
+        let bend = surface.normal_curvature(p, &v).abs();
+        surface.normal(p).dot(&v).abs() <= 4.0 * (scene.band * bend).sqrt()
+    })
+}
+
+/// A part of a strand between two junctions.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    range: [f64; 2],
+    ends: [Option<u32>; 2],
+}
+
+/// A strand cut into spans, and what happens between each and the next.
+struct Chain {
+    spans: Vec<Span>,
+    between: Vec<Change>,
+}
+
+impl Chain {
+    /// Cuts a strand at its splits; those at one point are taken together, and crowd each other.
+    fn of(strand: &mut Strand<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
+        strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
+        let strand = &*strand;
+        let [lo, hi] = strand.range;
+        let one =
+            |s: f64, t: f64| s == t || (t - s).abs() * strand.curve.derivative(t).norm() <= near;
+        let mut splits: Vec<Split> = Vec::with_capacity(strand.splits.len());
+        for &split in &strand.splits {
+            let end = [0, 1].map(|k| one(strand.range[k], split.t) && !strand.closed);
+            let around = match splits.first() {
+                Some(first) => strand.closed && one(first.t + (hi - lo), split.t),
+                None => false,
+            };
+            let met = match end {
+                [true, _] => strand.ends[0],
+                [_, true] => strand.ends[1],
+                _ => {
+                    let next_to = match splits.last_mut() {
+                        _ if around => splits.first_mut(),
+                        Some(last) if one(last.t, split.t) => Some(last),
+                        _ => None,
+                    };
+                    let Some(other) = next_to else {
+                        splits.push(split);
+                        continue;
+                    };
+                    other.change = Change::Correct;
+                    Some(other.junction)
+                }
+            };
+            for id in met.into_iter().chain([split.junction]) {
+                junctions.crowd(id);
             }
-            _ => kept.push(split),
+        }
+        let mut stops: Vec<(f64, Option<u32>)> = Vec::with_capacity(splits.len() + 2);
+        let mut between: Vec<Change> = splits.iter().map(|s| s.change).collect();
+        let inner = splits.iter().map(|s| (s.t, Some(s.junction)));
+        match splits.first() {
+            Some(first) if strand.closed => {
+                stops.extend(inner);
+                stops.push((first.t + (hi - lo), Some(first.junction)));
+                between.remove(0);
+            }
+            _ => {
+                stops.push((lo, strand.ends[0]));
+                stops.extend(inner);
+                stops.push((hi, strand.ends[1]));
+            }
+        }
+        let span = |w: &[(f64, Option<u32>)]| Span {
+            range: [w[0].0, w[1].0],
+            ends: [w[0].1, w[1].1],
+        };
+        Self {
+            spans: stops.windows(2).map(span).collect(),
+            between,
         }
     }
-    kept
 }
 
-/// Cuts a strand at its splits and finds the quantitative invisibility of each piece.
+/// The pieces of all strands, in order: one count at one piece of each connected part of the
+/// contours, carried on from there where what hides changes plainly.
 pub fn pieces(
     scene: &Scene<'_>,
-    strand: &mut Strand<'_>,
+    strands: &mut [Strand<'_>],
+    junctions: &mut Junctions<'_>,
     method: Method,
-    near: f64,
-    out: &mut Vec<Piece>,
-) {
-    let splits = ordered(strand, near);
-    let [lo, hi] = strand.range;
-    // (start, junction there, what happens on entering).
-    let mut starts: Vec<(f64, Option<u32>, Change)> = Vec::with_capacity(splits.len() + 1);
-    let (end, last) = match (strand.closed, splits.first()) {
-        (true, Some(first)) => (first.t + (hi - lo), Some(first.junction)),
-        _ => {
-            starts.push((lo, strand.ends[0], Change::Recount));
-            (hi, strand.ends[1])
-        }
+) -> Vec<Vec<Piece>> {
+    let near = LOOSE * scene.band;
+    let cut = strands.iter_mut();
+    let chains: Vec<Chain> = cut.map(|s| Chain::of(s, junctions, near)).collect();
+    let strands = &*strands;
+    let carried = match method {
+        Method::Carried => Carrying::new(scene, strands, &chains, junctions).counts(),
+        Method::Counted => None,
     };
-    starts.extend(splits.iter().map(|s| (s.t, Some(s.junction), s.change)));
-    let mut carried: Option<Count> = None;
-    for (k, &(t, junction, change)) in starts.iter().enumerate() {
-        let (until, then) = starts
-            .get(k + 1)
-            .map_or((end, last), |next| (next.0, next.1));
-        let range = [t, until];
-        let known = match (method, change, carried.take()) {
-            (Method::Carried, Change::Pass(passing), Some(before)) => {
-                carry(scene, &strand.curve.point(t), before, &passing)
-            }
-            _ => None,
+    let counted = || {
+        let all = strands.iter().zip(&chains);
+        let of = |(strand, chain): (_, &Chain)| {
+            let spans = chain.spans.iter();
+            spans.map(|s| count(scene, strand, s.range)).collect()
         };
-        let now = known.unwrap_or_else(|| count(scene, strand, range));
-        out.push(Piece {
-            t: range,
-            visible: now.qi == 0,
-            qi: now.qi,
-            occluder: now.occluder(),
-            start: junction,
-            end: then,
-            samples: None,
-        });
-        carried = Some(now);
+        all.map(of).collect()
+    };
+    let counts: Vec<Vec<Count>> = carried.unwrap_or_else(counted);
+    let pieces = chains.iter().zip(counts).map(|(chain, counts)| {
+        let spans = chain.spans.iter().zip(counts);
+        spans.map(|(span, count)| piece(span, &count)).collect()
+    });
+    pieces.collect()
+}
+
+fn piece(span: &Span, count: &Count) -> Piece {
+    Piece {
+        t: span.range,
+        visible: count.qi == 0,
+        qi: count.qi,
+        occluder: count.occluder(),
+        start: span.ends[0],
+        end: span.ends[1],
+        samples: None,
+    }
+}
+
+/// Quantitative invisibility on its way through the connected parts of the contours.
+struct Carrying<'s, 'a> {
+    scene: &'s Scene<'a>,
+    strands: &'s [Strand<'s>],
+    chains: &'s [Chain],
+    junctions: &'s Junctions<'s>,
+    corrections: Corrections<'s, 'a>,
+    /// By junction: what hides all contours there, less the faces through the junction.
+    beyond: Vec<Option<Count>>,
+    /// By junction: the strands through it.
+    through: Vec<Vec<u32>>,
+    /// By strand: what hides each span.
+    counts: Vec<Vec<Option<Count>>>,
+    /// The strands that are connected to what is known.
+    next: Vec<u32>,
+    /// Whether what was carried to a junction on two ways agreed.
+    sound: bool,
+}
+
+impl<'s, 'a> Carrying<'s, 'a> {
+    fn new(
+        scene: &'s Scene<'a>,
+        strands: &'s [Strand<'s>],
+        chains: &'s [Chain],
+        junctions: &'s Junctions<'s>,
+    ) -> Self {
+        let mut through: Vec<Vec<u32>> = vec![Vec::new(); junctions.list.len()];
+        for (i, chain) in chains.iter().enumerate() {
+            for id in chain.spans.iter().flat_map(|s| s.ends).flatten() {
+                if through[id as usize].last() != Some(&(i as u32)) {
+                    through[id as usize].push(i as u32);
+                }
+            }
+        }
+        Self {
+            scene,
+            strands,
+            chains,
+            junctions,
+            corrections: Corrections::new(scene),
+            beyond: vec![None; junctions.list.len()],
+            through,
+            counts: chains.iter().map(|c| vec![None; c.spans.len()]).collect(),
+            next: Vec::new(),
+            sound: true,
+        }
+    }
+
+    /// What hides every span; none where the ways to a junction contradict each other, so that a
+    /// change must have been missed.
+    fn counts(mut self) -> Option<Vec<Vec<Count>>> {
+        for i in 0..self.strands.len() as u32 {
+            self.next.push(i);
+            while let Some(i) = self.next.pop() {
+                if self.counts[i as usize].iter().any(Option::is_none) {
+                    self.strand(i as usize);
+                }
+                if !self.sound {
+                    return None;
+                }
+            }
+        }
+        let whole = |counts: Vec<Option<Count>>| counts.into_iter().collect();
+        self.counts.into_iter().map(whole).collect()
+    }
+
+    /// Counts along a strand, from the end at which something is known.
+    fn strand(&mut self, i: usize) {
+        let n = self.chains[i].spans.len();
+        let enter = |k: usize, which: usize| self.enter(i, k, which);
+        let (first, last) = (enter(0, 0), enter(n - 1, 1));
+        let backward = first.is_none() && last.is_some();
+        let mut known = if backward { last } else { first };
+        for step in 0..n {
+            let k = if backward { n - 1 - step } else { step };
+            let [entry, exit] = if backward { [1, 0] } else { [0, 1] };
+            let span = self.chains[i].spans[k];
+            let found = known.take();
+            let now = found.unwrap_or_else(|| count(self.scene, &self.strands[i], span.range));
+            self.leave(i, k, entry, &now);
+            self.leave(i, k, exit, &now);
+            let between = if backward { k.checked_sub(1) } else { Some(k) };
+            let change = between.and_then(|b| self.chains[i].between.get(b));
+            let then = if backward { k.wrapping_sub(1) } else { k + 1 };
+            known = match change {
+                Some(Change::Pass(passing)) => {
+                    let p = self.strands[i].curve.point(span.range[exit]);
+                    let passing = if backward {
+                        passing.reversed()
+                    } else {
+                        *passing
+                    };
+                    carry(self.scene, &p, now.clone(), &passing)
+                }
+                Some(Change::Correct) => self.enter(i, then, entry),
+                None => None,
+            };
+            self.counts[i][k] = Some(now);
+        }
+    }
+
+    /// The faces at a junction at an end of a span that hide it there, where it is plain that
+    /// these alone make the difference between the contours at the junction.
+    fn local(&self, i: usize, k: usize, which: usize) -> Option<(u32, Vec<FaceId>)> {
+        let Span { range, ends } = self.chains[i].spans[k];
+        let junction = ends[which]?;
+        if self.junctions.is_crowded(junction) {
+            return None;
+        }
+        let end = End {
+            strand: &self.strands[i],
+            t: range[which],
+            middle: 0.5 * (range[0] + range[1]),
+        };
+        let hiding = self.corrections.hiding(self.junctions, junction, &end)?;
+        Some((junction, hiding))
+    }
+
+    /// What hides a span next to one of its ends, by what is known at the junction there.
+    fn enter(&self, i: usize, k: usize, which: usize) -> Option<Count> {
+        let junction = self.chains[i].spans[k].ends[which]?;
+        let beyond = self.beyond[junction as usize].as_ref()?;
+        let (_, hiding) = self.local(i, k, which)?;
+        Some(beyond.before(&hiding))
+    }
+
+    /// Notes what hides a span for the others at the junction at one of its ends.
+    fn leave(&mut self, i: usize, k: usize, which: usize, count: &Count) {
+        if !count.plain {
+            return;
+        }
+        let Some((junction, hiding)) = self.local(i, k, which) else {
+            return;
+        };
+        let Some(beyond) = count.beyond(&hiding) else {
+            self.sound = false;
+            return;
+        };
+        match &self.beyond[junction as usize] {
+            Some(known) => self.sound &= known.qi == beyond.qi,
+            None => {
+                self.beyond[junction as usize] = Some(beyond);
+                let others = self.through[junction as usize].iter().rev();
+                self.next.extend(others.filter(|&&o| o != i as u32));
+            }
+        }
     }
 }
 

@@ -10,9 +10,9 @@
 use crate::candidates::candidates;
 use crate::contour::JunctionKind;
 use crate::crossing::{Overlap, cross, parameters_at};
-use crate::image::flat_of;
+use crate::image::{Image, flat_of};
 use crate::sight::Scene;
-use crate::strand::{Change, Junctions, Passing, Split, Strand};
+use crate::strand::{Change, Junctions, Passing, Site, Split, Strand};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::Surface;
@@ -96,12 +96,17 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
         if overlap == Overlap::Yes && i != j {
             search.overlap((i, a), (j, b));
             search.overlap((j, b), (i, a));
+            search.crowd_all(a);
+            search.crowd_all(b);
         }
     }
     // An image that turns back falls on itself.
     for (i, a) in strands.iter().enumerate() {
         if !a.turns.is_empty() {
             search.overlap((i as u32, a), (i as u32, a));
+        }
+        if !a.turns.is_empty() || matches!(a.image, Image::Point) {
+            search.crowd_all(a);
         }
     }
     for (strand, split) in search.splits {
@@ -174,12 +179,38 @@ impl Search<'_, '_, '_, '_> {
         let (v, _) = self.scene.projection.towards_eye(&p);
         let ahead = (q - p).dot(&v);
         if ahead.abs() <= 2.0 * near {
+            self.crowd(a, t);
+            self.crowd(b, s);
             return;
         }
         if ahead > 0.0 {
             self.junction((j, b, s, q), (i, a, t, p), &v);
         } else {
             self.junction((i, a, t, p), (j, b, s, q), &v);
+        }
+    }
+
+    /// Another contour passes the end of a strand that is at a parameter.
+    fn crowd(&mut self, strand: &Strand<'_>, at: Settled) {
+        if !at.at_end {
+            return;
+        }
+        let [lo, hi] = strand.range;
+        let p = strand.curve.point(at.t);
+        let nearest = usize::from(at.t - lo > hi - at.t);
+        for (k, (id, t)) in strand.ends.iter().zip(strand.range).enumerate() {
+            let near = 2.0 * LOOSE * self.scene.band;
+            let passed = k == nearest || self.apart(&p, &strand.curve.point(t)) <= near;
+            if let (true, &Some(id)) = (passed, id) {
+                self.junctions.crowd(id);
+            }
+        }
+    }
+
+    /// Another contour falls on a strand.
+    fn crowd_all(&mut self, strand: &Strand<'_>) {
+        for (id, _) in junctions_of(strand) {
+            self.junctions.crowd(id);
         }
     }
 
@@ -191,10 +222,10 @@ impl Search<'_, '_, '_, '_> {
         v: &Vector3<f64>,
     ) {
         if t.at_end {
-            return;
+            return self.crowd(far, t);
         }
         let change = if s.at_end {
-            Change::Recount
+            Change::Correct
         } else {
             let along = far.curve.tangent(t.t);
             match self.hidden_by(near, s.t, &q, &along, v) {
@@ -206,10 +237,10 @@ impl Search<'_, '_, '_, '_> {
                     left,
                     ahead: (q - p).dot(v),
                 }),
-                None => Change::Recount,
+                None => Change::Correct,
             }
         };
-        let id = self.junctions.add(JunctionKind::T, &p);
+        let id = self.junctions.add(JunctionKind::T, Site::Alone, &p);
         self.junctions.list[id as usize].contours = vec![near.contour, far.contour];
         let split = Split {
             t: t.t,
@@ -313,12 +344,12 @@ impl Search<'_, '_, '_, '_> {
                 if t.at_end || self.apart(&p, &q) > 4.0 * LOOSE * self.scene.band {
                     continue;
                 }
-                let id = self.junctions.add(JunctionKind::T, &p);
+                let id = self.junctions.add(JunctionKind::T, Site::Alone, &p);
                 self.junctions.list[id as usize].contours = vec![b.contour, a.contour];
                 let split = Split {
                     t: t.t,
                     junction: id,
-                    change: Change::Recount,
+                    change: Change::Correct,
                 };
                 self.splits.push((i, split));
             }

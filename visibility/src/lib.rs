@@ -4,6 +4,7 @@
 pub mod camera;
 pub mod candidates;
 pub mod contour;
+pub mod correction;
 pub mod crossing;
 pub mod drawing;
 pub mod edgewise;

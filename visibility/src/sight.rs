@@ -85,6 +85,29 @@ impl Count {
     pub fn is_whole(&self) -> bool {
         self.order.len() as u32 == self.qi
     }
+
+    /// The same with these faces between all others and the point, the nearest to the eye first.
+    pub fn before(&self, faces: &[FaceId]) -> Self {
+        let mut count = self.clone();
+        if count.is_whole() {
+            count.order.extend(faces);
+        }
+        count.qi += faces.len() as u32;
+        count
+    }
+
+    /// The same without these faces, which lie between all others and the point; none if they do
+    /// not.
+    pub fn beyond(&self, faces: &[FaceId]) -> Option<Self> {
+        let mut count = self.clone();
+        count.qi = count.qi.checked_sub(faces.len() as u32)?;
+        let kept = count.qi as usize;
+        if self.is_whole() && self.order[kept..] != *faces {
+            return None;
+        }
+        count.order.truncate(kept);
+        Some(count)
+    }
 }
 
 /// A face turned towards the eye, and how far it is.

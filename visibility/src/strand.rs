@@ -29,13 +29,25 @@ pub struct Passing {
     pub ahead: f64,
 }
 
+impl Passing {
+    /// The same on the way back.
+    pub fn reversed(&self) -> Self {
+        Self {
+            by: -self.by,
+            entered: self.left,
+            left: self.entered,
+            ahead: self.ahead,
+        }
+    }
+}
+
 /// What a split does to the quantitative invisibility along the strand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// It changes as the other contour says.
     Pass(Passing),
-    /// It has to be counted anew.
-    Recount,
+    /// What hides there has to be told by the faces at the junction, or counted anew.
+    Correct,
 }
 
 /// A point at which a strand is cut.
@@ -62,6 +74,8 @@ pub struct Strand<'a> {
     pub ends: [Option<u32>; 2],
     /// The contour it belongs to.
     pub contour: u32,
+    /// The edge it is of; none for a limb.
+    pub edge: Option<EdgeId>,
     /// The faces along it, each with the sense in which its loop runs.
     pub faces: Vec<(FaceId, Sense)>,
     /// Whether it is a limb, of its only face.
@@ -108,12 +122,26 @@ impl Strand<'_> {
     }
 }
 
+/// What of the boundary a junction lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Site {
+    /// A vertex.
+    Vertex(VertexId),
+    /// The inside of an edge.
+    Edge(EdgeId),
+    /// The inside of a face, or nothing shared.
+    Alone,
+}
+
 /// All junctions.
 #[derive(Debug)]
 pub struct Junctions<'p> {
     projection: &'p Projection,
     /// By their ids.
     pub list: Vec<Junction>,
+    sites: Vec<Site>,
+    /// By junction: whether another contour passes before it or next to it in the image.
+    crowded: Vec<bool>,
     vertices: Vec<Option<u32>>,
 }
 
@@ -123,12 +151,14 @@ impl<'p> Junctions<'p> {
         Self {
             projection,
             list: Vec::new(),
+            sites: Vec::new(),
+            crowded: Vec::new(),
             vertices: vec![None; vertices],
         }
     }
 
     /// A new junction.
-    pub fn add(&mut self, kind: JunctionKind, p: &Point3<f64>) -> u32 {
+    pub fn add(&mut self, kind: JunctionKind, site: Site, p: &Point3<f64>) -> u32 {
         let id = self.list.len() as u32;
         self.list.push(Junction {
             id,
@@ -137,7 +167,29 @@ impl<'p> Junctions<'p> {
             point3: (*p).into(),
             contours: Vec::new(),
         });
+        self.sites.push(site);
+        self.crowded.push(false);
         id
+    }
+
+    /// What a junction lies on.
+    pub fn site(&self, id: u32) -> Site {
+        self.sites[id as usize]
+    }
+
+    /// Its kind.
+    pub fn kind(&self, id: u32) -> JunctionKind {
+        self.list[id as usize].kind
+    }
+
+    /// Notes that another contour passes a junction in the image.
+    pub fn crowd(&mut self, id: u32) {
+        self.crowded[id as usize] = true;
+    }
+
+    /// Whether another contour passes it in the image.
+    pub fn is_crowded(&self, id: u32) -> bool {
+        self.crowded[id as usize]
     }
 
     /// The junction at a vertex.
@@ -145,7 +197,7 @@ impl<'p> Junctions<'p> {
         if let Some(id) = self.vertices[vertex.index()] {
             return id;
         }
-        let id = self.add(JunctionKind::Vertex, p);
+        let id = self.add(JunctionKind::Vertex, Site::Vertex(vertex), p);
         self.vertices[vertex.index()] = Some(id);
         id
     }
@@ -242,8 +294,8 @@ impl Trim<'_, '_, '_, '_> {
                 let p = limb.curve.point(from);
                 let near = LOOSE * self.scene.band;
                 if ends.iter().all(|e| (e.0 - from).abs() > near) {
-                    let id =
-                        *apex.get_or_insert_with(|| self.junctions.add(JunctionKind::Vertex, &p));
+                    let add = || self.junctions.add(JunctionKind::Vertex, Site::Alone, &p);
+                    let id = *apex.get_or_insert_with(add);
                     ends.push((from, id));
                 }
             }
@@ -302,7 +354,7 @@ impl Trim<'_, '_, '_, '_> {
         if let Some(&(_, id)) = known {
             return id;
         }
-        let id = self.junctions.add(JunctionKind::Limb, p);
+        let id = self.junctions.add(JunctionKind::Limb, Site::Edge(edge), p);
         self.found.on_edges[edge.index()].push((t, id));
         id
     }
@@ -361,7 +413,8 @@ impl Trim<'_, '_, '_, '_> {
         if let Surface::Torus(s) = self.scene.brep.surface(face) {
             let sight = &self.scene.projection.sight;
             for t in cusps(s, sight, &arc.curve, range, self.scene.band) {
-                let id = self.junctions.add(JunctionKind::Cusp, &arc.curve.point(t));
+                let p = arc.curve.point(t);
+                let id = self.junctions.add(JunctionKind::Cusp, Site::Alone, &p);
                 arc.marks.push((t, id));
             }
             for &t in &limb.nodes {
@@ -370,7 +423,8 @@ impl Trim<'_, '_, '_, '_> {
                     .period()
                     .map_or(t, |p| lo + (t - lo).rem_euclid(p));
                 if t > lo && t < hi {
-                    let id = self.junctions.add(JunctionKind::Node, &arc.curve.point(t));
+                    let p = arc.curve.point(t);
+                    let id = self.junctions.add(JunctionKind::Node, Site::Alone, &p);
                     arc.marks.push((t, id));
                 }
             }

@@ -9,11 +9,11 @@ use crate::invisibility::{Method, pieces};
 use crate::junction;
 use crate::projection::Projection;
 use crate::sight::Scene;
-use crate::strand::{Change, Junctions, LimbArcs, Split, Strand, limb_arcs};
+use crate::strand::{Change, Junctions, LimbArcs, Site, Split, Strand, limb_arcs};
 use crate::stretch::{self, stretches};
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};
 use premio_kernel::brep::walk::plane_roots;
 use premio_kernel::geometry::bounds::{Box3, bounds};
 use premio_kernel::geometry::curve::Curve;
@@ -92,10 +92,9 @@ pub fn contours_by(
     junction::find(&mut strands, &scene, &mut junctions);
     seconds.junctions = started.elapsed().as_secs_f64();
     let started = Instant::now();
-    let near = LOOSE * band;
-    for strand in &mut strands {
-        let out = &mut contours[strand.contour as usize].pieces;
-        pieces(&scene, strand, method, near, out);
+    let found = pieces(&scene, &mut strands, &mut junctions, method);
+    for (strand, pieces) in strands.iter().zip(found) {
+        contours[strand.contour as usize].pieces.extend(pieces);
     }
     let mut junctions = junctions.list;
     for contour in &contours {
@@ -146,6 +145,7 @@ struct Source<'a> {
     closed: bool,
     ends: [Option<u32>; 2],
     contour: u32,
+    edge: Option<EdgeId>,
     faces: Vec<(FaceId, Sense)>,
     limb: bool,
     marks: Vec<(f64, u32)>,
@@ -176,6 +176,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 closed: entity.ends.is_none(),
                 ends,
                 contour: self.contours.len() as u32,
+                edge: Some(edge),
                 faces: faces.collect(),
                 limb: false,
                 marks: limbs.on_edges[edge.index()].clone(),
@@ -183,7 +184,6 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             let contour = self.contour(&source, Kind::Boundary);
             self.contours.push(Contour {
                 smooth: entity.smooth,
-                edge: Some(edge),
                 ..contour
             });
             self.strand(source);
@@ -198,6 +198,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 closed: arc.closed,
                 ends: arc.ends,
                 contour: self.contours.len() as u32,
+                edge: None,
                 faces: vec![(arc.face, Sense::Along)],
                 limb: true,
                 marks: arc.marks.clone(),
@@ -220,7 +221,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             kind,
             smooth: false,
             faces,
-            edge: None,
+            edge: source.edge,
             curve3: source.curve.clone(),
             curve2: image_curve(&seen, source, projection),
             pieces: Vec::new(),
@@ -268,9 +269,8 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         cuts.sort_by(f64::total_cmp);
         let mut stops: Vec<(f64, Option<u32>)> = Vec::new();
         for t in cuts {
-            let id = self
-                .junctions
-                .add(JunctionKind::Cut, &source.curve.point(t));
+            let p = source.curve.point(t);
+            let id = self.junctions.add(JunctionKind::Cut, Site::Alone, &p);
             stops.push((t, Some(id)));
         }
         let whole = source.closed && stops.is_empty();
@@ -331,19 +331,18 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 splits.push(Split {
                     t,
                     junction,
-                    change: Change::Recount,
+                    change: Change::Correct,
                 });
             }
         }
         for &t in &turns {
             if t > lo && t < hi && !at_end(t) || closed {
-                let junction = self
-                    .junctions
-                    .add(JunctionKind::Turn, &source.curve.point(t));
+                let p = source.curve.point(t);
+                let junction = self.junctions.add(JunctionKind::Turn, Site::Alone, &p);
                 splits.push(Split {
                     t,
                     junction,
-                    change: Change::Recount,
+                    change: Change::Correct,
                 });
             }
         }
@@ -353,6 +352,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             closed,
             ends,
             contour: source.contour,
+            edge: source.edge,
             faces: source.faces.clone(),
             limb: source.limb,
             image: seen,

@@ -1,0 +1,323 @@
+//! What the faces at a junction hide of the contours that run out of it: the correction with which
+//! quantitative invisibility is carried from one contour to another (section 4.1.2 of the paper).
+//!
+//! Next to a vertex a face is a sector of its tangent plane, and a contour its tangent: the line of
+//! sight over P + ε d meets the plane of a face with the normal N at the height s = -ε d·N / v·N,
+//! over the place ε (d + s v) of the sector. Where a limb ends on an edge, or has a cusp, the face
+//! is folded, and the terms of second order decide. An answer is given only where all this is
+//! plain; elsewhere the faces are counted anew.
+
+use crate::contour::JunctionKind;
+use crate::sight::Scene;
+use crate::strand::{Junctions, Site, Strand};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::sign::ROUNDING;
+use std::f64::consts::{PI, TAU};
+
+/// The end of a piece of a strand at a junction.
+#[derive(Clone, Copy, Debug)]
+pub struct End<'s, 'a> {
+    /// The strand.
+    pub strand: &'s Strand<'a>,
+    /// The parameter at the junction.
+    pub t: f64,
+    /// A parameter in the middle of the piece.
+    pub middle: f64,
+}
+
+impl End<'_, '_> {
+    /// The unit direction in which the piece leaves the junction.
+    fn direction(&self) -> Option<Vector3<f64>> {
+        let slope = self.strand.curve.derivative(self.t);
+        let away = self.middle - self.t;
+        let plain = slope.norm() * away.abs() > ROUNDING.sqrt() * self.chord();
+        plain.then(|| slope.normalize() * away.signum())
+    }
+
+    fn chord(&self) -> f64 {
+        let curve = self.strand.curve;
+        (curve.point(self.middle) - curve.point(self.t)).norm()
+    }
+}
+
+/// Distances between points found on two ways, in multiples of the resolution.
+const LOOSE: f64 = 16.0;
+/// Sines and angles less than this are not plain.
+const PLAIN: f64 = 1.0 / 64.0;
+
+/// What a face does to a contour next to a junction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Effect {
+    /// It does not hide it.
+    Clear,
+    /// It hides it, so high above it along the line of sight in terms of the way from the junction.
+    Hides(f64),
+    /// It is not plain.
+    Unclear,
+}
+
+/// A corner of a face at a point of its boundary.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    face: FaceId,
+    /// Where the loop leaves the point.
+    out: Vector3<f64>,
+    /// The angle of the face there, counterclockwise from `out` as seen from outside.
+    angle: f64,
+}
+
+/// The corrections of a view.
+#[derive(Debug)]
+pub struct Corrections<'s, 'a> {
+    scene: &'s Scene<'a>,
+    /// By vertex: the pairs of coedges that come to it and leave it.
+    corners: Vec<Vec<[CoedgeId; 2]>>,
+}
+
+impl<'s, 'a> Corrections<'s, 'a> {
+    /// Those of a scene.
+    pub fn new(scene: &'s Scene<'a>) -> Self {
+        let topology = &scene.brep.topology;
+        let mut corners = vec![Vec::new(); topology.vertices as usize];
+        for ring in &topology.loops {
+            let next = ring.coedges.iter().cycle().skip(1);
+            for (&to, &from) in ring.coedges.iter().zip(next) {
+                if let Some([_, at]) = topology.run(to) {
+                    corners[at.index()].push([to, from]);
+                }
+            }
+        }
+        Self { scene, corners }
+    }
+
+    /// The faces through a junction that hide a piece next to it, the nearest to the eye first;
+    /// none where that is not plain.
+    pub fn hiding(
+        &self,
+        junctions: &Junctions<'_>,
+        junction: u32,
+        end: &End<'_, '_>,
+    ) -> Option<Vec<FaceId>> {
+        match (junctions.site(junction), junctions.kind(junction)) {
+            (Site::Vertex(vertex), _) => self.at_vertex(vertex, end),
+            (Site::Edge(edge), _) => self.on_edge(edge, end),
+            (Site::Alone, JunctionKind::Cusp) => self.at_cusp(end),
+            // The limbs of a cone at its apex touch it along the whole line of sight.
+            (Site::Alone, JunctionKind::Vertex) => Some(Vec::new()),
+            _ => None,
+        }
+    }
+
+    fn at_vertex(&self, vertex: VertexId, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
+        let topology = &self.scene.brep.topology;
+        let p = end.strand.curve.point(end.t);
+        let mut effects = Vec::new();
+        for &[to, from] in &self.corners[vertex.index()] {
+            let face = topology.face_of(from);
+            let back = -self.tangent(to, vertex, 1)?;
+            let out = self.tangent(from, vertex, 0)?;
+            let normal = self.scene.brep.outward(face, &p);
+            let turn = normal.dot(&out.cross(&back)).atan2(out.dot(&back));
+            let angle = turn.rem_euclid(TAU);
+            let own = [to, from].map(|c| topology.coedge(c).edge);
+            let is_own = !end.strand.limb && own.iter().any(|&e| end.strand.edge == Some(e));
+            let corner = Corner { face, out, angle };
+            effects.push((face, self.effect(&corner, is_own, &p, end)));
+        }
+        hiding_of(effects)
+    }
+
+    /// The tangent of a coedge along its run, at a vertex at its start (0) or end (1).
+    fn tangent(&self, coedge: CoedgeId, at: VertexId, which: usize) -> Option<Vector3<f64>> {
+        let brep = self.scene.brep;
+        let use_ = brep.topology.coedge(coedge);
+        if brep.topology.run(coedge)?[which] != at {
+            return None;
+        }
+        let [lo, hi] = brep.range(use_.edge);
+        let first = (which == 0) == (use_.sense == Sense::Along);
+        let (t, length) = (if first { lo } else { hi }, hi - lo);
+        let curve = brep.curve(use_.edge);
+        let slope = curve.derivative(t);
+        let middle = curve.point(lo + 0.5 * length);
+        let plain = slope.norm() * length > ROUNDING.sqrt() * (middle - curve.point(t)).norm();
+        plain.then(|| slope.normalize() * use_.sense.sign())
+    }
+
+    /// Where a limb ends on an edge of two faces.
+    fn on_edge(&self, edge: EdgeId, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
+        let brep = self.scene.brep;
+        let p = end.strand.curve.point(end.t);
+        let along = brep.curve(edge).tangent(brep.curve(edge).parameter(&p));
+        let coedges = &brep.topology.edge(edge).coedges;
+        if coedges.len() != 2 {
+            return None;
+        }
+        let (v, _) = self.scene.projection.towards_eye(&p);
+        let mut effects = Vec::new();
+        for &coedge in coedges {
+            let face = brep.topology.face_of(coedge);
+            let out = along * brep.topology.coedge(coedge).sense.sign();
+            let is_own = !end.strand.limb && end.strand.edge == Some(edge);
+            let corner = Corner {
+                face,
+                out,
+                angle: PI,
+            };
+            let normal = brep.outward(face, &p);
+            let folds = !self.is_plane(face) && normal.dot(&v).abs() <= PLAIN;
+            let effect = match folds && is_own {
+                true => self.fold(&corner, &p, end),
+                false => self.effect(&corner, is_own, &p, end),
+            };
+            effects.push((face, effect));
+        }
+        hiding_of(effects)
+    }
+
+    /// What a face that folds where its limb ends on an edge does to one half of the edge: where
+    /// the line of sight runs over the face, and that bends away from it, the half along which the
+    /// face is turned away lies behind the fold.
+    fn fold(&self, corner: &Corner, p: &Point3<f64>, end: &End<'_, '_>) -> Effect {
+        let scene = self.scene;
+        let (v, _) = scene.projection.towards_eye(p);
+        let inward = scene.brep.outward(corner.face, p).cross(&corner.out);
+        let into = v.dot(&inward);
+        let bend = self.bend(corner.face, p, &v);
+        let middle = end.strand.curve.point(end.middle);
+        let (w, _) = scene.projection.towards_eye(&middle);
+        let facing = scene.brep.outward(corner.face, &middle).dot(&w);
+        if into < -PLAIN {
+            return Effect::Clear;
+        }
+        if into <= PLAIN || facing.abs() <= ROUNDING.sqrt() || bend == 0.0 {
+            return Effect::Unclear;
+        }
+        match bend > 0.0 && facing < 0.0 {
+            true => Effect::Hides(0.0),
+            false => Effect::Clear,
+        }
+    }
+
+    /// The curvature of a face along the line of sight, positive where it bends away from it.
+    fn bend(&self, face: FaceId, p: &Point3<f64>, v: &Vector3<f64>) -> f64 {
+        let sign = if self.scene.along(face) { 1.0 } else { -1.0 };
+        sign * self.scene.brep.surface(face).normal_curvature(p, v)
+    }
+
+    /// At a cusp the line of sight meets the torus three times at once. Next to it the third
+    /// meeting is before the limb on one side and behind it on the other; before it, it hides the
+    /// limb where the line of sight leaves the material there.
+    fn at_cusp(&self, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
+        let &(face, _) = end.strand.faces.first()?;
+        let Surface::Torus(torus) = self.scene.brep.surface(face) else {
+            return None;
+        };
+        let p = end.strand.curve.point(end.t);
+        let (v, _) = self.scene.projection.towards_eye(&p);
+        // A fourth of the third coefficient of the torus's quartic along the line of sight.
+        let rise = (p - torus.frame.origin).dot(&v);
+        if !(rise.abs() > PLAIN * torus.major) {
+            return None;
+        }
+        let middle = end.strand.curve.point(end.middle);
+        let (v, _) = self.scene.projection.towards_eye(&middle);
+        let bend = self.bend(face, &middle, &v);
+        let leaves = self.scene.along(face) == (rise > 0.0);
+        match bend {
+            bend if bend < 0.0 && leaves => Some(vec![face]),
+            bend if bend != 0.0 => Some(Vec::new()),
+            _ => None,
+        }
+    }
+
+    /// Whether a point is the apex of a face's cone, which has no normal there.
+    fn is_apex(&self, face: FaceId, p: &Point3<f64>) -> bool {
+        match self.scene.brep.surface(face) {
+            Surface::Cone(s) => (p - s.frame.origin).norm() <= LOOSE * self.scene.band,
+            _ => false,
+        }
+    }
+
+    fn is_plane(&self, face: FaceId) -> bool {
+        matches!(self.scene.brep.surface(face), Surface::Plane(_))
+    }
+
+    /// What the sector of a face at a point does to a piece that leaves the point; `is_own` if the
+    /// piece runs along the sector's side.
+    fn effect(&self, corner: &Corner, is_own: bool, p: &Point3<f64>, end: &End<'_, '_>) -> Effect {
+        let scene = self.scene;
+        if end.strand.limb && end.strand.faces.iter().any(|f| f.0 == corner.face) {
+            return Effect::Clear;
+        }
+        if self.is_apex(corner.face, p) {
+            return Effect::Unclear;
+        }
+        let (v, _) = scene.projection.towards_eye(p);
+        let normal = scene.brep.outward(corner.face, p);
+        let facing = normal.dot(&v);
+        if !(facing.abs() > PLAIN) {
+            let edge_on = match scene.brep.surface(corner.face) {
+                Surface::Plane(s) => scene.edge_on(&s.frame.origin, &s.frame.z),
+                _ => false,
+            };
+            return if edge_on {
+                Effect::Clear
+            } else {
+                Effect::Unclear
+            };
+        }
+        if is_own || facing < 0.0 {
+            return Effect::Clear;
+        }
+        let Some(d) = end.direction() else {
+            return Effect::Unclear;
+        };
+        let below = -d.dot(&normal);
+        if below < -PLAIN {
+            return Effect::Clear;
+        }
+        let over = d + v * (below / facing);
+        match (corner.holds(&over, &normal), below > PLAIN) {
+            (Some(false), _) => Effect::Clear,
+            (Some(true), true) => Effect::Hides(below / facing),
+            _ => Effect::Unclear,
+        }
+    }
+}
+
+impl Corner {
+    /// Whether a direction in the tangent plane lies in the sector; none next to its sides.
+    fn holds(&self, w: &Vector3<f64>, normal: &Vector3<f64>) -> Option<bool> {
+        if !(w.norm() > PLAIN) {
+            return None;
+        }
+        let turn = normal.dot(&self.out.cross(w)).atan2(self.out.dot(w));
+        let turn = turn.rem_euclid(TAU);
+        let next_to = |side: f64| {
+            let away = (turn - side).rem_euclid(TAU);
+            away.min(TAU - away) <= PLAIN
+        };
+        // A sector of no angle or of all angles is not told from the other.
+        let plain = !next_to(0.0) && !next_to(self.angle);
+        let sharp = self.angle.min(TAU - self.angle) <= PLAIN;
+        (plain && !sharp).then_some(turn < self.angle)
+    }
+}
+
+/// Those that hide, the nearest to the eye first; none if one is not plain, or two are equally near.
+fn hiding_of(effects: Vec<(FaceId, Effect)>) -> Option<Vec<FaceId>> {
+    let mut hiding: Vec<(f64, FaceId)> = Vec::new();
+    for (face, effect) in effects {
+        match effect {
+            Effect::Clear => {}
+            Effect::Hides(height) => hiding.push((height, face)),
+            Effect::Unclear => return None,
+        }
+    }
+    hiding.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let apart = hiding.windows(2).all(|w| w[0].0 - w[1].0 > PLAIN * w[0].0);
+    apart.then(|| hiding.into_iter().map(|h| h.1).collect())
+}

@@ -7,6 +7,7 @@ use crate::strand::{Change, Passing, Split, Strand};
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::sign::ROUNDING;
 
 /// How the quantitative invisibility of the pieces is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -47,10 +48,11 @@ fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
             return Own::No;
         }
         let surface = scene.brep.surface(face);
-        // A limb that runs along the edge: the surface leaves the line of sight by less than the
-        // band over this length.
+        // A limb that runs along the edge is no farther away than points found on two ways are:
+        // over this length the normal turns with the surface's bend.
         let bend = surface.normal_curvature(p, &v).abs();
-        let grazing = surface.normal(p).dot(&v).abs() <= 4.0 * (scene.band * bend).sqrt();
+        let turned = LOOSE * (scene.band * bend + ROUNDING);
+        let grazing = surface.normal(p).dot(&v).abs() <= turned;
         if strand.limb || grazing {
             Own::Tangent
         } else {

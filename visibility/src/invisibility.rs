@@ -66,16 +66,20 @@ fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
 fn ordered(strand: &mut Strand<'_>, near: f64) -> Vec<Split> {
     strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
     let curve = strand.curve;
+    let together = |from: f64, t: f64| from == t || (t - from) * curve.derivative(t).norm() <= near;
     let mut kept: Vec<Split> = Vec::with_capacity(strand.splits.len());
     for &split in &strand.splits {
         match kept.last_mut() {
-            Some(last)
-                if last.t == split.t
-                    || (split.t - last.t) * curve.derivative(split.t).norm() <= near =>
-            {
-                last.change = Change::Recount;
-            }
+            Some(last) if together(last.t, split.t) => last.change = Change::Recount,
             _ => kept.push(split),
+        }
+    }
+    // Round a closed strand the last are next to the first.
+    if let (true, [first, .., last]) = (strand.closed, kept.as_mut_slice()) {
+        let [lo, hi] = strand.range;
+        if together(last.t, first.t + (hi - lo)) {
+            first.change = Change::Recount;
+            kept.pop();
         }
     }
     kept

@@ -47,6 +47,10 @@ const LOOSE: f64 = 16.0;
 /// Sines and angles less than this are not plain.
 const PLAIN: f64 = 1.0 / 64.0;
 
+fn is_plain(x: f64) -> bool {
+    x.abs() > PLAIN
+}
+
 /// What a face does to a contour next to a junction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Effect {
@@ -219,7 +223,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let (v, _) = self.scene.projection.towards_eye(&p);
         // A fourth of the third coefficient of the torus's quartic along the line of sight.
         let rise = (p - torus.frame.origin).dot(&v);
-        if !(rise.abs() > PLAIN * torus.major) {
+        if !is_plain(rise / torus.major) {
             return None;
         }
         let middle = end.strand.curve.point(end.middle);
@@ -258,7 +262,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let (v, _) = scene.projection.towards_eye(p);
         let normal = scene.brep.outward(corner.face, p);
         let facing = normal.dot(&v);
-        if !(facing.abs() > PLAIN) {
+        if !is_plain(facing) {
             let edge_on = match scene.brep.surface(corner.face) {
                 Surface::Plane(s) => scene.edge_on(&s.frame.origin, &s.frame.z),
                 _ => false,
@@ -291,7 +295,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
 impl Corner {
     /// Whether a direction in the tangent plane lies in the sector; none next to its sides.
     fn holds(&self, w: &Vector3<f64>, normal: &Vector3<f64>) -> Option<bool> {
-        if !(w.norm() > PLAIN) {
+        if !is_plain(w.norm()) {
             return None;
         }
         let turn = normal.dot(&self.out.cross(w)).atan2(self.out.dot(w));

@@ -11,6 +11,7 @@ use crate::image::flat_point;
 use crate::projection::Projection;
 use crate::strand::Strand;
 use crate::stretch::{Course, Stretch, dot2, simple_run};
+use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
@@ -28,6 +29,27 @@ const PLACES: usize = 9;
 /// Newton's steps that follow a curve beyond the end of a stretch, by far less than the stretch.
 const BEYOND: usize = 3;
 
+/// Stretches of two curves whose images fall on one another.
+#[derive(Clone, Copy)]
+struct Shared {
+    /// The ranges of both curves.
+    on: [[f64; 2]; 2],
+    /// Their ends.
+    ends: [[Point3<f64>; 2]; 2],
+    /// Whether it may as well be a crossing or a touch.
+    short: bool,
+}
+
+/// What two general curves have in common in the image.
+#[derive(Default)]
+struct Common {
+    /// The parameters of crossings on both.
+    roots: Vec<(f64, f64)>,
+    shared: Vec<Shared>,
+    /// How long the images are together.
+    together: f64,
+}
+
 /// Reports the crossings of two general curves in the image.
 pub fn general_pair(
     a: &Strand<'_>,
@@ -37,39 +59,79 @@ pub fn general_pair(
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
     let same = std::ptr::eq(a, b);
-    let mut roots: Vec<(f64, f64)> = Vec::new();
-    let mut together = 0.0;
-    let mut report = |t: f64, s: f64| {
-        let apart = |c: &Curve, u: f64, v: f64| (c.point(u) - c.point(v)).norm() > SAME * band;
-        if roots
-            .iter()
-            .all(|r| apart(a.curve, r.0, t) || apart(b.curve, r.1, s))
-        {
-            roots.push((t, s));
-            found(t, s);
-        }
-    };
+    let mut common = Common::default();
     let mut both = |x: &Stretch, y: &Stretch| {
         if x.bounds.meets(&y.bounds)
             && let Some(graphs) = Graphs::of((a, x), (b, y), projection)
         {
-            together += graphs.cross(band, &mut report);
+            graphs.cross(band, &mut common);
         }
     };
     if same {
         own_pairs(a, &mut both);
-        return Overlap::No;
-    }
-    for x in a.stretches.iter().filter(|x| x.bounds.meets(&b.hull)) {
-        for y in &b.stretches {
-            both(x, y);
+    } else {
+        for x in a.stretches.iter().filter(|x| x.bounds.meets(&b.hull)) {
+            for y in &b.stretches {
+                both(x, y);
+            }
         }
     }
-    let whole = [a, b].map(|c| overlap_of(together, c));
-    whole
-        .into_iter()
-        .find(|o| *o == Overlap::Yes)
-        .unwrap_or(Overlap::No)
+    let overlap = [a, b].map(|c| overlap_of(common.together, c));
+    let overlaps = overlap.contains(&Overlap::Yes);
+    if overlaps {
+        common.leave_out_shared([a.curve, b.curve], SAME * band);
+    }
+    let apart = |c: &Curve, u: f64, v: f64| (c.point(u) - c.point(v)).norm() > SAME * band;
+    let mut known: Vec<(f64, f64)> = Vec::with_capacity(common.roots.len());
+    for (t, s) in common.roots {
+        let mut all = known.iter();
+        if all.all(|r| apart(a.curve, r.0, t) || apart(b.curve, r.1, s)) {
+            known.push((t, s));
+            found(t, s);
+        }
+    }
+    match overlaps && !same {
+        true => Overlap::Yes,
+        false => Overlap::No,
+    }
+}
+
+impl Common {
+    /// Where stretches of curves on one another only meet at an end, that is no crossing.
+    fn leave_out_shared(&mut self, curves: [&Curve; 2], near: f64) {
+        // Short ones go on from the long ones, one after the other.
+        let (mut short, mut long): (Vec<Shared>, Vec<Shared>) =
+            self.shared.iter().partition(|x| x.short);
+        let mut next = 0;
+        while next < long.len() {
+            let from = long[next];
+            long.extend(short.extract_if(.., |x| x.touches(&from, near)));
+            next += 1;
+        }
+        self.roots.retain(|&(t, s)| {
+            let at = [(t, curves[0].point(t)), (s, curves[1].point(s))];
+            !long.iter().any(|x| x.holds(&at, near))
+        });
+    }
+}
+
+impl Shared {
+    /// Whether a point of either curve, with its parameter, is in the range.
+    fn holds(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
+        (0..2).all(|k| {
+            let ([lo, hi], (t, p)) = (self.on[k], at[k]);
+            (lo..=hi).contains(&t) || self.ends[k].iter().any(|q| (p - q).norm() <= near)
+        })
+    }
+
+    /// Whether both ranges go on in the other's.
+    fn touches(&self, other: &Self, near: f64) -> bool {
+        (0..2).all(|k| {
+            let (these, those) = (self.ends[k], other.ends[k]);
+            let all = these.iter().flat_map(|p| those.map(|q| (p - q).norm()));
+            all.fold(f64::INFINITY, f64::min) <= near
+        })
+    }
 }
 
 /// The pairs of stretches of one curve that may cross.
@@ -241,43 +303,51 @@ impl<'x> Graphs<'x> {
         Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
     }
 
-    /// Reports the crossings; about how long the two are together in the image.
-    fn cross(&self, band: f64, found: &mut impl FnMut(f64, f64)) -> f64 {
+    /// Notes the crossings, or that the two are together in the image.
+    fn cross(&self, band: f64, common: &mut Common) {
         if self.apart(band / self.scale) {
-            return 0.0;
+            return;
         }
         let Some([lo, hi]) = self.common() else {
-            return 0.0;
+            return;
         };
+        let mut found = |t: f64, s: f64| common.roots.push((t, s));
         if self.transversal() {
-            self.once([lo, hi], band, found);
-            return 0.0;
+            return self.once([lo, hi], band, &mut found);
         }
         // Isolation would have to narrow everything down to the resolution.
         let at = |k: usize| lo + (hi - lo) * (k as f64 / (PLACES - 1) as f64);
         if (0..PLACES).all(|k| self.gap(at(k)).v.abs() <= band) {
-            return self.together([lo, hi], band, found);
+            return self.together([lo, hi], band, common);
         }
         match isolate(&|s: Interval| self.gap_over(s), &[lo, hi], band) {
-            Zeros::Everywhere => return self.together([lo, hi], band, found),
+            Zeros::Everywhere => self.together([lo, hi], band, common),
             Zeros::At { roots, .. } => {
                 for r in roots.iter().filter(|r| r.contact != Contact::Touching) {
                     found(self.gap(r.t).t, r.t);
                 }
             }
         }
-        0.0
     }
 
-    /// How long the common part is; too short a one may be a crossing.
-    fn together(&self, [lo, hi]: [f64; 2], band: f64, found: &mut impl FnMut(f64, f64)) -> f64 {
-        let [p, q] = [lo, hi].map(|s| self.jet(self.b, s)[0].v);
-        let length = (q - p).abs();
-        if length * self.scale > SHORT * band {
-            return length;
+    /// Notes the common part; too short a one may be a crossing.
+    fn together(&self, [lo, hi]: [f64; 2], band: f64, common: &mut Common) {
+        let x = [lo, hi].map(|s| self.jet(self.b, s)[0].v);
+        let length = (x[1] - x[0]).abs();
+        let short = length * self.scale <= SHORT * band;
+        if short {
+            let mut found = |t: f64, s: f64| common.roots.push((t, s));
+            self.once([lo, hi], band, &mut found);
+        } else {
+            common.together += length;
         }
-        self.once([lo, hi], band, found);
-        0.0
+        let [t, u] = x.map(|x| self.over(0, self.a, x));
+        let on = [[t.min(u), t.max(u)], [lo, hi]];
+        let ends = [
+            on[0].map(|t| self.a.point(t)),
+            on[1].map(|s| self.b.point(s)),
+        ];
+        common.shared.push(Shared { on, ends, short });
     }
 
     /// The crossing of stretches that cross once or not at all.

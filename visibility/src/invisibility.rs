@@ -8,6 +8,7 @@ use crate::strand::{Change, Junctions, Passing, Split, Strand};
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::sign::ROUNDING;
 
 /// How the quantitative invisibility of the pieces is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -41,30 +42,25 @@ pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Coun
 }
 
 fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
+    let p = &strand.curve.point(t);
+    let (v, _) = scene.projection.towards_eye(p);
     let own = |face: FaceId| {
         if !strand.faces.iter().any(|f| f.0 == face) {
-            Own::No
-        } else if strand.limb || is_limb_of(scene, strand, face, t) {
+            return Own::No;
+        }
+        let surface = scene.brep.surface(face);
+        // A limb that runs along the edge is no farther away than points found on two ways are:
+        // over this length the normal turns with the surface's bend.
+        let bend = surface.normal_curvature(p, &v).abs();
+        let turned = LOOSE * (scene.band * bend + ROUNDING);
+        let grazing = surface.normal(p).dot(&v).abs() <= turned;
+        if strand.limb || grazing {
             Own::Tangent
         } else {
             Own::Through
         }
     };
-    scene.count(&strand.curve.point(t), &strand.curve.tangent(t), &own)
-}
-
-/// Whether a limb of a face runs along a strand: the face leaves the line of sight by less than the
-/// band over as far as it is from facing it, here and not only next to a point.
-fn is_limb_of(scene: &Scene<'_>, strand: &Strand<'_>, face: FaceId, t: f64) -> bool {
-    let surface = scene.brep.surface(face);
-    let [lo, hi] = strand.range;
-    let others = PLACES.iter().map(|part| lo + (hi - lo) * part);
-    std::iter::once(t).chain(others).all(|t| {
-        let p = &strand.curve.point(t);
-        let (v, _) = scene.projection.towards_eye(p);
-        let bend = surface.normal_curvature(p, &v).abs();
-        surface.normal(p).dot(&v).abs() <= 4.0 * (scene.band * bend).sqrt()
-    })
+    scene.count(p, &strand.curve.tangent(t), &own)
 }
 
 /// A part of a strand between two junctions.

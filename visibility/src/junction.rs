@@ -124,18 +124,25 @@ impl Search<'_, '_, '_, '_> {
         if !strand.turns.is_empty() {
             // The image stands still at a turn: there little of the image is much of the curve.
             let p = strand.curve.point(settled.t);
-            let ends = (!strand.closed).then_some(strand.range);
-            let stops = strand.turns.iter().copied();
-            let stops = stops.chain(ends.into_iter().flatten());
-            let stop = |t: &f64| {
-                self.apart(&p, &strand.curve.point(*t)) <= near
-                    && self.straight(strand, *t, settled.t)
-            };
-            if let Some(t) = { stops }.find(stop) {
+            if let Some(t) = self.stop_next_to(strand, settled.t, &p, near) {
                 return Some(Settled { t, at_end: true });
             }
         }
         Some(settled)
+    }
+
+    /// The turn or end of a strand that is straight on from `t` and in the image no farther than
+    /// `near` from `q`.
+    fn stop_next_to(&self, strand: &Strand<'_>, t: f64, q: &Point3<f64>, near: f64) -> Option<f64> {
+        let ends = (!strand.closed).then_some(strand.range);
+        let mut stops = strand
+            .turns
+            .iter()
+            .copied()
+            .chain(ends.into_iter().flatten());
+        stops.find(|&stop| {
+            self.apart(q, &strand.curve.point(stop)) <= near && self.straight(strand, stop, t)
+        })
     }
 
     /// How far two points are apart in the image, as a distance in space.
@@ -341,7 +348,13 @@ impl Search<'_, '_, '_, '_> {
                 let Some(t) = self.settle(a, t) else { continue };
                 let p = a.curve.point(t.t);
                 // Where a curve without a closed form is not met, its nearest point is no end.
-                if t.at_end || self.apart(&p, &q) > 4.0 * LOOSE * self.scene.band {
+                let apart = self.apart(&p, &q);
+                if t.at_end || apart > 4.0 * LOOSE * self.scene.band {
+                    continue;
+                }
+                // Next to a turn or an end, where no stretch has a direction, that is meant.
+                let nearest = apart.max(LOOSE * self.scene.band);
+                if self.stop_next_to(a, t.t, &q, nearest).is_some() {
                     continue;
                 }
                 let id = self.junctions.add(JunctionKind::T, Site::Alone, &p);

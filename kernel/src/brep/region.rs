@@ -60,8 +60,8 @@ struct Sorter<'a> {
     firsts: Vec<usize>,
     band: f64,
     parent: Vec<usize>,
-    /// Whether a loop on a torus does not shrink to a point.
-    winding: bool,
+    /// Whether a loop on a torus winds around the axis, and around the tube.
+    winding: [bool; 2],
 }
 
 /// The regions of `surface` bounded by `loops`, the region to the left of each, seen from outside.
@@ -90,10 +90,14 @@ pub(super) fn regions<'a>(
         firsts,
         band,
         parent,
-        winding: false,
+        winding: [false; 2],
     };
     if let Surface::Torus(_) = surface {
-        sorter.winding = loops.iter().any(|ring| sorter.turns(ring).winds);
+        for ring in loops {
+            let [around, along] = sorter.turns(ring).winds;
+            sorter.winding[0] |= around;
+            sorter.winding[1] |= along;
+        }
     }
     if loops.len() > 1 {
         sorter.connect_all(loops.len())?;
@@ -387,16 +391,21 @@ impl Sorter<'_> {
         p: &Point3<f64>,
         left: &Vector3<f64>,
     ) -> bool {
-        let mut walked = 0;
+        let (mut tubes, mut rounds) = (false, false);
         for sense in [Sense::Along, Sense::Against] {
             let tube = Walk::tube(&t, p, sense);
-            walked += usize::from(self.follow(ring, arc, p, left, &[tube], None));
+            tubes |= self.follow(ring, arc, p, left, &[tube], None);
             if let Some(round) = Walk::parallel(self.surface, p, sense, self.band) {
-                walked += usize::from(self.follow(ring, arc, p, left, &[round], None));
+                rounds |= self.follow(ring, arc, p, left, &[round], None);
             }
         }
-        // A loop that winds around is met by one of the circles: then no other way is needed.
-        walked > 0 && (ring == 0 || self.winding || self.way_to_first(t, ring, arc, p, left))
+        // A loop that winds around the axis is met by every circle of the tube, one that winds
+        // around the tube by every parallel: then no other way is needed.
+        let [around, along] = self.winding;
+        if around || along {
+            return (around && tubes) || (along && rounds);
+        }
+        (tubes || rounds) && (ring == 0 || self.way_to_first(t, ring, arc, p, left))
     }
 
     /// A way around the axis, then around the tube, to a point of the first loop.
@@ -486,7 +495,7 @@ impl Sorter<'_> {
         // With a loop that does not shrink to a point the region is an annulus with holes; with
         // one that runs counterclockwise, a disc with holes; else a torus with holes.
         let turns: Vec<Turns> = list.iter().map(|&i| self.turns(&loops[i])).collect();
-        let is_part_of_sphere = turns.iter().any(|t| t.winds || t.area > 0.0);
+        let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area > 0.0);
         if is_part_of_sphere { 2 - n } else { -n }
     }
 
@@ -509,9 +518,8 @@ impl Sorter<'_> {
             x += dx;
             y += dy;
         }
-        let winds = x.abs() > TAU / 2.0 || y.abs() > TAU / 2.0;
         Turns {
-            winds,
+            winds: [x, y].map(|turn| turn.abs() > TAU / 2.0),
             area: area * self.outward.sign(),
         }
     }
@@ -528,8 +536,15 @@ enum Height {
 }
 
 struct Turns {
-    winds: bool,
+    /// Around the axis, and around the tube.
+    winds: [bool; 2],
     area: f64,
+}
+
+impl Turns {
+    fn winds(&self) -> bool {
+        self.winds.contains(&true)
+    }
 }
 
 /// A point of a sphere where nothing is likely to be: another for each attempt.

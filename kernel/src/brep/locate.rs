@@ -205,7 +205,8 @@ impl<'a> FaceLocator<'a> {
                 decided => return decided,
             }
         }
-        let target = self.target(k);
+        // Each target is walked to on both ways.
+        let target = self.target(k / 2);
         let tube_first = k % 2 == 1;
         let (first, second) = if tube_first {
             let walk = Walk::tube(torus, p, Sense::Along);
@@ -372,6 +373,7 @@ mod tests {
     use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere, Torus};
     use nalgebra::Vector3;
     use proptest::prelude::*;
+    use std::f64::consts::PI;
 
     const BAND: f64 = 1e-10;
 
@@ -517,6 +519,35 @@ mod tests {
             ];
             let locator = FaceLocator::new(&surface, Sense::Along, patch, BAND);
             prop_assert_eq!(locator.place(&p), expect(u > 1.0 && u < 4.0 && v > 0.5 && v < 2.5));
+        }
+    }
+
+    #[test]
+    fn circles_that_run_into_the_boundary_do_not_decide() {
+        // A torus without a quarter of its upper half: of the circle p lies on, a quarter is an
+        // edge, and the circle of the tube meets nothing.
+        let torus = Torus {
+            frame: tilted(),
+            major: 2.0,
+            minor: 0.75,
+        };
+        let surface = Surface::Torus(torus);
+        let f = &torus.frame;
+        let (inner, outer) = (circle_at(f, 0.0, 1.25), circle_at(f, 0.0, 2.75));
+        let (a, b) = (tube(&torus, 1.0), tube(&torus, 4.0));
+        let arcs = vec![
+            arc(&outer, [1.0, 4.0], Sense::Against),
+            arc(&a, [0.0, PI], Sense::Along),
+            arc(&inner, [1.0, 4.0], Sense::Along),
+            arc(&b, [0.0, PI], Sense::Against),
+        ];
+        for turn in 0..4 {
+            let mut arcs = arcs.clone();
+            arcs.rotate_left(turn);
+            let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
+            assert_eq!(locator.place(&surface.point(5.0, PI)), Place::Inside);
+            assert_eq!(locator.place(&surface.point(2.0, PI)), Place::On);
+            assert_eq!(locator.place(&surface.point(2.0, 1.5)), Place::Outside);
         }
     }
 

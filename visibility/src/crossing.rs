@@ -17,6 +17,7 @@ use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::roots::{Contact, Zeros, isolate};
 use premio_kernel::number::scalar::{Scalar, dot};
+use premio_kernel::number::sign::ROUNDING;
 use std::f64::consts::TAU;
 
 /// How two contours meet in the image.
@@ -120,10 +121,12 @@ fn line_parameters(a: &Strand<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)
     }
 }
 
-/// Whether a point in a conic's image is within `near` of it, as a distance in space.
+/// Whether a point in a conic's image is within `near` of it, as a distance in space, or as near as
+/// rounding tells: next to a flat conic, that of a circle seen almost edge-on, its form is small.
 fn on_conic(conic: &Matrix3<f64>, h: &Vector3<f64>, near: f64) -> bool {
     let polar = conic * h;
-    h.dot(&polar).abs() <= near * 2.0 * polar.x.hypot(polar.y)
+    let rounding = ROUNDING * h.abs().dot(&(conic.abs() * h.abs()));
+    h.dot(&polar).abs() <= near * 2.0 * polar.x.hypot(polar.y) + rounding
 }
 
 fn line_and_conic(

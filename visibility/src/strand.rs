@@ -444,10 +444,7 @@ fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], plane: &Plane, band: f64) -> bool 
 
 /// The parameter of a point on an arc, within its range.
 fn on_arc(curve: &Curve, [lo, hi]: [f64; 2], p: &Point3<f64>, near: f64) -> Option<f64> {
-    let t = curve.parameter(p);
-    let t = curve
-        .period()
-        .map_or(t, |period| lo + (t - lo).rem_euclid(period));
+    let t = curve.in_cycle(curve.parameter(p), lo);
     (t <= hi && (curve.point(t) - p).norm() <= near).then_some(t)
 }
 

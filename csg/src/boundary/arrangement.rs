@@ -545,12 +545,9 @@ impl Meeting {
     }
 }
 
-/// The parameter of a closed curve brought into a range that starts where it does.
+/// A parameter brought into the cycle that starts with a range.
 fn in_range(curve: &Curve, range: [f64; 2], t: f64) -> f64 {
-    match curve.period() {
-        Some(period) => range[0] + (t - range[0]).rem_euclid(period),
-        None => t,
-    }
+    curve.in_cycle(t, range[0])
 }
 
 /// What two boxes share.

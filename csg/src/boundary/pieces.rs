@@ -93,10 +93,7 @@ fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
 
 /// Whether a curve passes through a point within a range.
 fn passes(curve: &Curve, range: [f64; 2], p: &Point3<f64>, judge: &Judge) -> bool {
-    let mut t = curve.parameter(p);
-    if let Some(period) = curve.period() {
-        t = range[0] + (t - range[0]).rem_euclid(period);
-    }
+    let t = curve.in_cycle(curve.parameter(p), range[0]);
     // Two pieces between the same corners in the same carriers are one or far apart.
     t >= range[0] && t <= range[1] && (curve.point(t) - p).norm() <= 64.0 * judge.band()
 }
@@ -130,11 +127,9 @@ fn reparameterise(arrangement: &Arrangement, all: &mut [Piece], judge: &Judge) {
                     (lo, hi) = (hi, lo);
                     piece.ends = Some([b, a]);
                 }
-                if let Some(period) = curve.period() {
-                    hi = lo + (hi - lo).rem_euclid(period);
-                    if hi == lo {
-                        hi += period;
-                    }
+                hi = curve.in_cycle(hi, lo);
+                if let (true, Some(cycle)) = (hi == lo, curve.cycle()) {
+                    hi += cycle;
                 }
                 piece.range = [lo, hi];
                 piece.meeting = h;

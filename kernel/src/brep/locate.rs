@@ -140,10 +140,7 @@ impl<'a> FaceLocator<'a> {
             }
         }
         let near = |t: f64| (curve.point(t) - p).norm() <= self.band;
-        let mut t = curve.parameter(p);
-        if let Some(period) = curve.period() {
-            t = lo + (t - lo).rem_euclid(period);
-        }
+        let t = curve.in_cycle(curve.parameter(p), lo);
         ((lo..=hi).contains(&t) && near(t)) || near(lo) || near(hi)
     }
 

@@ -360,7 +360,8 @@ pub fn bounds(brep: &Brep) -> Box3 {
     all
 }
 
-/// The box of the points of a face whose normal is along an axis: where it bulges.
+/// The box of the points of a face whose normal is along an axis, where it bulges, and of a cone's
+/// apex.
 fn bulge(brep: &Brep, face: FaceId) -> Box3 {
     let surface = brep.surface(face);
     let f = surface.frame();
@@ -379,14 +380,19 @@ fn bulge(brep: &Brep, face: FaceId) -> Box3 {
                     points.push(f.origin + out * (k * t.major) + axis * (l * t.minor));
                 }
             }
-            _ => {}
+            Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {}
         }
+    }
+    if let Surface::Cone(c) = surface {
+        points.push(c.frame.origin);
     }
     if points.is_empty() {
         return Box3::EMPTY;
     }
     // A band of nothing would miss boundaries by rounding.
     let size = points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)));
+    let arcs = super::locate::FaceLocator::of(brep, face, 0.0);
+    let size = arcs.boxes().iter().fold(size, |a, b| a.hull(b));
     let band = RELATIVE_RESOLUTION * size.diagonal();
     let locator = super::locate::FaceLocator::of(brep, face, band);
     points.retain(|p| locator.place(p) != super::locate::Place::Outside);

@@ -457,10 +457,7 @@ pub fn line_meets(
     let k = -(b + radicand.sqrt().copysign(b));
     for at in [k / a, c / k] {
         let p = start + direction * at;
-        let t = curve.parameter(&p);
-        let t = curve
-            .period()
-            .map_or(t, |period| lo + (t - lo).rem_euclid(period));
+        let t = curve.in_cycle(curve.parameter(&p), lo);
         // Else on another branch.
         if t >= lo && t <= hi && (curve.point(t) - p).norm() <= 64.0 * band {
             found(t, true);

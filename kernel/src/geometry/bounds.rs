@@ -131,10 +131,11 @@ fn extremes(curve: &Curve, range: [f64; 2]) -> Box3 {
     for pair in curve.breaks(range[0], range[1]).windows(2) {
         let step = (pair[1] - pair[0]) / f64::from(SAMPLES);
         let mut before = (pair[0], curve.derivative(pair[0]));
-        hull = hull.hull(&Box3::of(&curve.point(pair[0])));
         for k in 1..=SAMPLES {
             let t = pair[0] + step * f64::from(k);
             let after = (t, curve.derivative(t));
+            // A sample may be an extreme itself.
+            hull = hull.hull(&Box3::of(&curve.point(t)));
             for i in 0..3 {
                 if before.1[i] * after.1[i] < 0.0 {
                     let turn = |t: f64| curve.derivative(t)[i];
@@ -208,6 +209,15 @@ mod tests {
     use super::super::curve::{Circle, Parabola};
     use super::*;
     use nalgebra::Vector3;
+
+    #[test]
+    fn an_extreme_in_the_middle_of_a_range_is_in_the_tight_box() {
+        let frame = Frame::about(Point3::origin(), Vector3::z());
+        let parabola = Curve::Parabola(Parabola { frame, focal: 0.25 });
+        let b = tight_bounds(&parabola, [-1.5, 1.5]);
+        assert!(b.holds(&parabola.point(0.0)), "{b:?}");
+        assert!(!b.grown(-1e-9).holds(&parabola.point(0.0)), "{b:?}");
+    }
 
     #[test]
     fn boxes_hold_their_arcs() {

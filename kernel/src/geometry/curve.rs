@@ -110,6 +110,21 @@ impl Curve {
         }
     }
 
+    /// The least shift of the parameter that leads back to the same point: the period of a closed
+    /// curve, and a turn of the angle where poles keep a quartic from closing.
+    pub fn cycle(&self) -> Option<f64> {
+        match (self, self.period()) {
+            (Self::Quartic(_), None) => Some(TAU),
+            (_, period) => period,
+        }
+    }
+
+    /// The parameter of the same point in the cycle that starts at `lo`.
+    pub fn in_cycle(&self, t: f64, lo: f64) -> f64 {
+        self.cycle()
+            .map_or(t, |cycle| lo + (t - lo).rem_euclid(cycle))
+    }
+
     /// The point at t, over any scalar; a toric curve has its own ways.
     fn closed_form<S: Scalar>(&self, t: S) -> Option<[S; 3]> {
         Some(match self {

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::bounds::{Box3, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
-use premio_kernel::geometry::cut::{lies_on, roots};
+use premio_kernel::geometry::cut::{comes_near, lies_on, roots};
 use premio_kernel::geometry::intersect::{Branch, Extent, coincidence, meet};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::roots::{Contact, Root};
@@ -490,10 +490,8 @@ impl Meeting {
         }
         let mut all = Met::default();
         let near = |b: &Box3| {
-            // The distance of a surface changes by no more than the way.
-            let away = surface.distance(&b.centre()).abs();
-            away <= 0.5 * b.diagonal() + band
-                && faces.iter().any(|(_, face)| common(face, b).is_some())
+            faces.iter().any(|(_, face)| common(face, b).is_some())
+                && comes_near(surface, b, CLOSE_CALL * band)
         };
         let mut parts = self.parts.as_slice();
         while let Some(first) = parts.iter().position(|p| near(&p.1)) {

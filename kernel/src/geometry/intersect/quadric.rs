@@ -804,8 +804,7 @@ impl Rulings<'_> {
 
     /// The zeros of Δ by kind.
     fn structure(&self, judge: &Judge) -> Result<Structure, IntersectionError> {
-        let [_, c1, s1, c2, s2] = self.radicand;
-        let slope: Trig2 = [0.0, s1, -c1, 2.0 * s2, -2.0 * c2];
+        let slope = derivative(&self.radicand);
         let flat = slope.iter().map(|c| c.abs()).sum::<f64>() <= ROUNDING * self.scale;
         let extrema = if flat { Vec::new() } else { zeros_of(&slope) };
         let mut out = Structure::default();
@@ -869,8 +868,16 @@ impl Function for OnNappe<'_> {
         self.height(Jet::variable(t))
     }
 
+    fn reach(&self, t: Interval) -> Interval {
+        self.height(t)
+    }
+
     fn at(&self, t: f64) -> Jet<f64> {
         self.height(Jet::variable(t))
+    }
+
+    fn value(&self, t: f64) -> f64 {
+        self.height(t)
     }
 }
 
@@ -892,13 +899,44 @@ fn same_turn(a: f64, b: f64) -> bool {
     d.min(TAU - d) < 1.0 / f64::from(1 << 20)
 }
 
+/// A trigonometric polynomial of degree two with its derivatives, which are such, too.
+struct Trigonometric([Trig2; 3]);
+
+impl Trigonometric {
+    fn new(k: &Trig2) -> Self {
+        let slope = derivative(k);
+        Self([*k, slope, derivative(&slope)])
+    }
+
+    fn jet<S: Scalar>(&self, u: S) -> Jet<S> {
+        let at = u.sin_cos();
+        let [v, d, dd] = [0, 1, 2].map(|i| trig2(&self.0[i], at));
+        Jet { v, d, dd }
+    }
+}
+
+impl Function for Trigonometric {
+    fn over(&self, u: Interval) -> Jet<Interval> {
+        self.jet(u)
+    }
+
+    fn at(&self, u: f64) -> Jet<f64> {
+        self.jet(u)
+    }
+
+    fn value(&self, u: f64) -> f64 {
+        trig2(&self.0[0], u.sin_cos())
+    }
+}
+
+fn derivative([_, c1, s1, c2, s2]: &Trig2) -> Trig2 {
+    [0.0, *s1, -c1, 2.0 * s2, -2.0 * c2]
+}
+
 /// The zeros of a trigonometric polynomial in [0, 2π), in order, and whether it changes sign there.
 fn zeros_of(k: &Trig2) -> Vec<(f64, bool)> {
     let scale: f64 = k.iter().map(|c| c.abs()).sum();
-    let f = |t: Interval| {
-        let (s, c) = Jet::variable(t).sin_cos();
-        trig2(k, (s, c))
-    };
+    let f = Trigonometric::new(k);
     // Started off the axes, where symmetric polynomials have their zeros.
     let start = 0.1;
     let breaks: Vec<f64> = (0..=8).map(|i| start + TAU * f64::from(i) / 8.0).collect();

@@ -7,6 +7,7 @@ pub mod cut;
 pub mod frame;
 pub mod intersect;
 pub mod quartic;
+pub mod section;
 pub mod serial;
 mod singular;
 pub mod surface;

@@ -13,3 +13,4 @@ mod singular;
 pub mod surface;
 pub mod toric;
 pub mod trace;
+pub mod trigonometric;

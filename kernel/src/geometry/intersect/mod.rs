@@ -5,6 +5,7 @@
 
 mod plane;
 mod quadric;
+mod rulings;
 mod sphere;
 mod torus;
 

@@ -392,7 +392,8 @@ pub fn bisect(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> f64) -> f64 {
 
 /// The zero of `g` in [a, b] by Newton's steps kept inside a shrinking bracket. `g` gives the value
 /// and the derivative. It ends where the next step would be less than rounding: a step of length s
-/// leaves |g''/2g'| s^2, with the second derivative from the last two points.
+/// leaves |g''/2g'| s^2, with the second derivative from the last two points. Next to zero, where
+/// rounding is not relative, it ends where that would be so and steps are no longer shorter.
 pub fn bisect_newton(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> (f64, f64)) -> f64 {
     if ga == 0.0 {
         return a;
@@ -415,7 +416,11 @@ pub fn bisect_newton(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> (f64, f
         let newton = t - step;
         let inside = newton > a && newton < b;
         let left = before.map(|(t0, d0)| ((d - d0) / (t - t0) * step * step / (2.0 * d)).abs());
-        if inside && left.is_some_and(|left| left <= rounding) {
+        let done = |left: f64| {
+            let noise = left <= rounding && step.abs() >= 0.75 * last;
+            noise || left <= 0.25 * f64::EPSILON * newton.abs()
+        };
+        if inside && left.is_some_and(done) {
             return newton;
         }
         before = Some((t, d));

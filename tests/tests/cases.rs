@@ -17,10 +17,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Models that are wrong today. One that starts to pass must be taken off.
-const KNOWN_FAILURES: &[&str] = &[
-    // An edge ends 1.5e-9 from its vertex.
-    "cone-apices-1e-5-apart",
-];
+const KNOWN_FAILURES: &[&str] = &[];
 
 /// Volumes and areas are right to this part of themselves.
 const PRECISION: f64 = 1e-9;

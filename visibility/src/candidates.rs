@@ -1,5 +1,5 @@
-//! The pairs of contours whose images may meet: boxes in an R-tree, long contours as chains of
-//! boxes.
+//! The pairs of contours whose images may meet: boxes in an R-tree where there are many, long
+//! contours as chains of boxes.
 
 use crate::image::{Basis, Image, flat_of};
 use crate::image_box::ImageBox;
@@ -10,7 +10,10 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use std::f64::consts::TAU;
 
 /// A link of a chain: its box in the image, and the strand it belongs to.
-type Link = GeomWithData<Rectangle<[f64; 2]>, u32>;
+type Link = (ImageBox, u32);
+
+/// So few links are compared each with each in less time than a tree of them takes to build.
+const FEW: usize = 192;
 
 /// A contour is cut into links of about this part of the image's size.
 const LINKS: f64 = 24.0;
@@ -95,7 +98,7 @@ pub fn candidates(
     let [w, h] = part.sides();
     let step = w.max(h) / LINKS;
     let grow = (near / least.max(near)).min(step);
-    let mut all = Vec::with_capacity(strands.len() * 2);
+    let mut all: Vec<Link> = Vec::with_capacity(strands.len() * 2);
     for (i, strand) in strands.iter_mut().enumerate() {
         if matches!(strand.image, Image::Point) {
             continue;
@@ -104,20 +107,45 @@ pub fn candidates(
         links(strand, projection, step, &mut |b| {
             let b = b.grown(grow);
             hull = hull.hull(&b);
-            all.push(Link::new(Rectangle::from_corners(b.min, b.max), i as u32));
+            all.push((b, i as u32));
         });
         strand.hull = hull;
     }
-    let tree = RTree::bulk_load(all);
-    let mut pairs: Vec<(u32, u32)> = tree
-        .intersection_candidates_with_other_tree(&tree)
-        .filter(|(a, b)| a.data < b.data)
-        .map(|(a, b)| (a.data, b.data))
-        .collect();
+    let mut pairs = if all.len() <= FEW {
+        few_meeting(&all)
+    } else {
+        many_meeting(&all)
+    };
     let general = |s: &Strand<'_>| matches!(s.image, Image::General);
     let own = strands.iter().enumerate().filter(|(_, s)| general(s));
     pairs.extend(own.map(|(i, _)| (i as u32, i as u32)));
     pairs.sort_unstable();
     pairs.dedup();
     pairs
+}
+
+/// The pairs of strands whose links meet, by comparing all.
+fn few_meeting(links: &[Link]) -> Vec<(u32, u32)> {
+    let mut pairs = Vec::new();
+    for (k, (a, i)) in links.iter().enumerate() {
+        for (b, j) in &links[k + 1..] {
+            if i != j && a.meets(b) {
+                pairs.push((*i, *j));
+            }
+        }
+    }
+    pairs
+}
+
+/// The same by an R-tree.
+fn many_meeting(links: &[Link]) -> Vec<(u32, u32)> {
+    let boxes = links.iter().map(|(b, i)| {
+        let corners = Rectangle::from_corners(b.min, b.max);
+        GeomWithData::new(corners, *i)
+    });
+    let tree = RTree::bulk_load(boxes.collect());
+    tree.intersection_candidates_with_other_tree(&tree)
+        .filter(|(a, b)| a.data < b.data)
+        .map(|(a, b)| (a.data, b.data))
+        .collect()
 }

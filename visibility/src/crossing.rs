@@ -87,13 +87,14 @@ fn lines(
     let (Some(la), Some(lb)) = (a.image.line(), b.image.line()) else {
         return Overlap::No;
     };
-    let off = |s: &Strand<'_>, l: &Vector3<f64>| {
-        let size = l.x.hypot(l.y);
-        let away = |t: f64| (l.dot(&projection.homogeneous(&s.curve.point(t))) / size).abs();
-        let middle = 0.5 * (s.range[0] + s.range[1]);
-        away(s.range[0]).max(away(s.range[1])).max(away(middle))
+    let on = |s: &Strand<'_>, l: &Vector3<f64>| {
+        let [lo, hi] = s.range;
+        let most = near * l.x.hypot(l.y);
+        [lo, hi, 0.5 * (lo + hi)]
+            .iter()
+            .all(|t| l.dot(&projection.homogeneous(&s.curve.point(*t))).abs() <= most)
     };
-    if off(a, lb) <= near && off(b, la) <= near {
+    if on(a, lb) && on(b, la) {
         return Overlap::Yes;
     }
     line_parameters(a, lb, &mut |t| {

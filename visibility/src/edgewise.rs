@@ -7,9 +7,9 @@
 
 use crate::projection::{Projection, Sight};
 use nalgebra::Point3;
-use premio_kernel::brep::walk::{line_meets, plane_roots};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::section::{line_meets, plane_roots};
 use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;

@@ -1,11 +1,15 @@
 //! The boundary of a tree: generate and classify (Requicha and Voelcker 1985).
 //!
-//! `halfspaces` gives the distinct carriers and every primitive as half spaces of them;
-//! `arrangement` the curves in which carriers meet, cut at their common points into pieces;
-//! `membership` asks the tree whether a choice of sides is material; `wings` decides which
-//! pieces are edges, and where their faces lie. The kernel assembles the rest.
+//! `halfspaces` gives every primitive as half spaces, `carriers` the distinct surfaces of these,
+//! `arrangement` the curves in which they meet, `cuts` the common points of these, which `corners`
+//! makes one, and `pieces` what lies between. `membership` asks the tree whether a choice of sides
+//! is material; `wings` decides which pieces are edges, and where their faces lie. The kernel
+//! assembles the rest.
 
 mod arrangement;
+mod carriers;
+mod corners;
+mod cuts;
 mod halfspaces;
 mod membership;
 mod pieces;

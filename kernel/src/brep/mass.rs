@@ -7,10 +7,10 @@
 
 use super::Brep;
 use super::topology::{CoedgeId, FaceId};
-use super::walk::plane_roots;
 use crate::geometry::bounds::{self, Box3};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
+use crate::geometry::section::plane_roots;
 use crate::geometry::surface::{Plane, Sphere, Surface, SurfaceKind, Torus};
 use crate::number::quadrature::{Rule, TWENTY, TWO, adaptive, integral};
 use crate::number::sign::{RELATIVE_RESOLUTION, ROUNDING};

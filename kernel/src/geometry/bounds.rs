@@ -5,6 +5,7 @@ use super::frame::Frame;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::bisect;
+use crate::number::scalar::Scalar;
 use nalgebra::Point3;
 use std::f64::consts::TAU;
 
@@ -82,11 +83,23 @@ pub fn bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
     }
 }
 
-/// The smooth pieces of a curve over `range`, each with a box that holds it.
+/// Consecutive pieces of a curve over `range`, each smooth and with a box that holds it.
 pub fn pieces(curve: &Curve, [lo, hi]: [f64; 2]) -> Vec<([f64; 2], Box3)> {
     let breaks = curve.breaks(lo, hi);
-    let piece = |p: &[f64]| ([p[0], p[1]], bounds(curve, [p[0], p[1]]));
-    breaks.windows(2).map(piece).collect()
+    let smooth = breaks.windows(2).map(|p| [p[0], p[1]]);
+    if has_exact_bounds(curve) {
+        return smooth.map(|p| (p, bounds(curve, p))).collect();
+    }
+    let mut all = Vec::new();
+    for p in smooth {
+        enclosed(curve, &[p[0], p[1]], |piece, part| all.push((piece, part)));
+    }
+    all
+}
+
+/// Whether the box of every arc is known in closed form.
+fn has_exact_bounds(curve: &Curve) -> bool {
+    matches!(curve, Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_))
 }
 
 fn ends(curve: &Curve, [lo, hi]: [f64; 2]) -> Box3 {
@@ -118,9 +131,10 @@ const PIECES: usize = 2048;
 
 /// The box of the arc of a curve, to rounding.
 pub fn tight_bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
-    match curve {
-        Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_) => bounds(curve, range),
-        _ => extremes(curve, range),
+    if has_exact_bounds(curve) {
+        bounds(curve, range)
+    } else {
+        extremes(curve, range)
     }
 }
 
@@ -149,10 +163,17 @@ fn extremes(curve: &Curve, range: [f64; 2]) -> Box3 {
     hull
 }
 
-/// Branch and bound: pieces are halved until none reaches beyond the points seen by more than a
-/// part of their size.
 fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
-    let breaks = curve.breaks(range[0], range[1]);
+    let mut all = Box3::EMPTY;
+    enclosed(curve, &curve.breaks(range[0], range[1]), |_, part| {
+        all = all.hull(&part);
+    });
+    all
+}
+
+/// Branch and bound: pieces are halved until none reaches beyond the points seen by more than a
+/// part of their size; each is handed over with its box, in order.
+fn enclosed(curve: &Curve, breaks: &[f64], mut give: impl FnMut([f64; 2], Box3)) {
     let mut seen = Box3::EMPTY;
     for pair in breaks.windows(2) {
         for k in 0..=4 {
@@ -160,8 +181,7 @@ fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
             seen = seen.hull(&Box3::of(&curve.point(t)));
         }
     }
-    let mut all = seen;
-    let mut stack: Vec<(f64, f64)> = breaks.windows(2).map(|p| (p[0], p[1])).collect();
+    let mut stack: Vec<(f64, f64)> = breaks.windows(2).rev().map(|p| (p[0], p[1])).collect();
     let mut looked = 0;
     while let Some((a, b)) = stack.pop() {
         looked += 1;
@@ -169,30 +189,31 @@ fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
         let far = seen.grown(LOOSE * seen.diagonal());
         let inside = (0..3).all(|i| part.min[i] >= far.min[i] && part.max[i] <= far.max[i]);
         if inside || looked >= PIECES {
-            all = all.hull(&part);
+            give([a, b], part);
             continue;
         }
         let m = 0.5 * (a + b);
         seen = seen.hull(&Box3::of(&curve.point(m)));
-        stack.push((a, m));
         stack.push((m, b));
+        stack.push((a, m));
     }
-    all
 }
 
-/// A box that holds the piece [a, b]: of its ends where a coordinate only rises or falls.
+/// A box that holds the piece [a, b], to rounding: of its ends where a coordinate only rises or
+/// falls.
 fn piece_box(curve: &Curve, a: f64, b: f64) -> Box3 {
     let t = Interval { lo: a, hi: b };
     let wide = curve.jet_over(t);
-    let mid = curve.jet_over(Interval::point(t.mid()));
+    let mid = curve.jet(t.mid());
     let run = t - Interval::point(t.mid());
     let ends = ends(curve, [a, b]);
     let range = |i: usize| {
-        let (w, m): (&Jet<Interval>, &Jet<Interval>) = (&wide[i], &mid[i]);
+        let (w, m): (&Jet<Interval>, &Jet<f64>) = (&wide[i], &mid[i]);
+        let (v, d) = (Interval::point(m.v), Interval::point(m.d));
         if w.d.has_zero() {
             // To the second order, too: next to an extremum the slope alone tells little.
-            let second = m.v + m.d * run + (w.dd * (run * run)) * Interval::point(0.5);
-            w.v.meet(m.v + w.d * run).meet(second)
+            let second = v + d * run + (w.dd * run.square()).scale(0.5);
+            w.v.meet(v + w.d * run).meet(second)
         } else {
             Interval::new(ends.min[i], ends.max[i])
         }

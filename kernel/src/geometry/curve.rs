@@ -191,6 +191,9 @@ impl Curve {
 
     /// The derivative of the point by t.
     pub fn derivative(&self, t: f64) -> Vector3<f64> {
+        if let Self::Line(c) = self {
+            return c.direction;
+        }
         let j = self.jet(t);
         Vector3::new(j[0].d, j[1].d, j[2].d)
     }

@@ -1,12 +1,11 @@
 //! Where a curve meets a surface.
 
+use super::bounds::Box3;
 use super::curve::Curve;
 use super::surface::Surface;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{Contact, Function, Root, Zeros, isolate};
-use crate::number::sign::ROUNDING;
-use nalgebra::Point3;
 
 /// How far above a surface a curve runs.
 struct Height<'a> {
@@ -20,24 +19,18 @@ impl Function for Height<'_> {
     }
 
     fn reach(&self, t: Interval) -> Interval {
-        let Some(p) = self.curve.box_over(t) else {
-            return Interval::ENTIRE;
-        };
-        // The distance of a surface changes by no more than the way; a level has its sign, and at
-        // least half of it.
-        let centre = self.surface.distance(&Point3::from(p.map(Interval::mid)));
-        let way = 0.5 * p.iter().map(|x| x.width().powi(2)).sum::<f64>().sqrt();
-        let far = p.iter().map(|x| x.magnitude()).fold(0.0, f64::max);
-        let rounding = ROUNDING * (far + self.surface.frame().origin.coords.amax());
-        match 0.5 * (centre.abs() - way - rounding) {
-            least if least > 0.0 && centre > 0.0 => Interval::new(least, f64::INFINITY),
-            least if least > 0.0 => Interval::new(f64::NEG_INFINITY, -least),
-            _ => Interval::ENTIRE,
+        match self.curve.box_over(t) {
+            Some(p) => self.surface.level(p),
+            None => Interval::ENTIRE,
         }
     }
 
     fn at(&self, t: f64) -> Jet<f64> {
         self.surface.level(self.curve.jet(t))
+    }
+
+    fn value(&self, t: f64) -> f64 {
+        self.surface.level(self.curve.point(t).into())
     }
 }
 
@@ -73,6 +66,16 @@ pub fn roots(
             (vec![root], Vec::new())
         }
     }
+}
+
+/// Whether a point of a box can be within `margin` of a surface, by its distance and by its level.
+pub fn comes_near(surface: &Surface, b: &Box3, margin: f64) -> bool {
+    // The distance of a surface changes by no more than the way.
+    if surface.distance(&b.centre()).abs() > 0.5 * b.diagonal() + margin {
+        return false;
+    }
+    let level = surface.level([0, 1, 2].map(|i| Interval::new(b.min[i], b.max[i])));
+    level.lo <= margin && level.hi >= -margin
 }
 
 /// The points at which a curve is asked whether it lies on a surface: more than twice the number

@@ -9,12 +9,8 @@
 //! a change of sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
 
 use super::surface::{Cone, Cylinder};
+use super::trigonometric::{Trig1, Trig2, trig1, trig2};
 use crate::number::scalar::Scalar;
-
-/// A trigonometric polynomial of degree one: constant, cosine, sine.
-pub type Trig1 = [f64; 3];
-/// A trigonometric polynomial of degree two: constant, cos, sin, cos 2u, sin 2u.
-pub type Trig2 = [f64; 5];
 
 /// The surface whose rulings carry the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,18 +90,6 @@ pub struct Quartic {
     pub sweep: Sweep,
     /// The height over the angle.
     pub height: Height,
-}
-
-/// The value of a trigonometric polynomial of degree one.
-pub fn trig1<S: Scalar>(k: &Trig1, (sin, cos): (S, S)) -> S {
-    S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2])
-}
-
-/// The value of a trigonometric polynomial of degree two.
-pub fn trig2<S: Scalar>(k: &Trig2, (sin, cos): (S, S)) -> S {
-    let cos2 = cos.square().scale(2.0) - S::constant(1.0);
-    let sin2 = (sin * cos).scale(2.0);
-    S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])
 }
 
 impl Quartic {

@@ -7,7 +7,8 @@
 //! Anything worse is refused.
 
 use super::bitrig::{BiTrig, Partials};
-use super::trace::{Bounds, Cell, DEPTH, Tracer, Unresolved, near, plain_grid};
+use super::trace::grid::{Cell, plain_grid};
+use super::trace::{Bounds, DEPTH, Tracer, Unresolved, near};
 
 /// How the curve meets itself at a singular point.
 #[derive(Clone, Debug, PartialEq)]

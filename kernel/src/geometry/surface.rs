@@ -161,7 +161,7 @@ impl Surface {
         let q = self.frame().coordinates(p);
         match self {
             Self::Plane(_) => q.z,
-            Self::Cylinder(s) => q.x.hypot(q.y) - s.radius,
+            Self::Cylinder(s) => beyond_circle(q.x, q.y, s.radius),
             Self::Cone(s) => q.x.hypot(q.y) * s.cos - q.z * s.sin,
             Self::Sphere(s) => q.norm() - s.radius,
             Self::Torus(s) => (q.x.hypot(q.y) - s.major).hypot(q.z) - s.minor,
@@ -275,6 +275,14 @@ impl Surface {
         }
         q
     }
+}
+
+/// How far (x, y) lies outside the circle of radius r about the origin: (x² + y² - r²)/(ρ + r), with
+/// the differences taken so that next to an axis, where planes are tangent, no digits cancel.
+fn beyond_circle(x: f64, y: f64, r: f64) -> f64 {
+    let (x, y) = (x.abs(), y.abs());
+    let (least, most) = if x < y { (x, y) } else { (y, x) };
+    (least * least + (most - r) * (most + r)) / ((x * x + y * y).sqrt() + r)
 }
 
 /// The angle brought into [0, 2 pi).

@@ -243,6 +243,13 @@ impl Scalar for Interval {
         Self::point(x)
     }
     fn scale(self, k: f64) -> Self {
+        // The axes of most frames are those of the world.
+        if k == 0.0 {
+            return Self::point(0.0);
+        }
+        if k.abs() == 1.0 {
+            return if k > 0.0 { self } else { -self };
+        }
         let (a, b) = if k >= 0.0 {
             (self.lo * k, self.hi * k)
         } else {

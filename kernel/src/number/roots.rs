@@ -92,6 +92,11 @@ pub trait Function {
             dd: j.dd.mid(),
         }
     }
+
+    /// The value at a point, in doubles.
+    fn value(&self, t: f64) -> f64 {
+        self.at(t).v
+    }
 }
 
 impl<F: Fn(Interval) -> Jet<Interval>> Function for F {
@@ -133,7 +138,17 @@ pub fn isolate<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
 
 impl<F: Function> Search<'_, F> {
     fn value(&self, t: f64) -> f64 {
-        self.f.at(t).v
+        self.f.value(t)
+    }
+
+    /// A certified range of the value at a point.
+    fn value_over(&self, t: f64) -> Interval {
+        let reach = self.f.reach(Interval::point(t));
+        if reach.width().is_finite() {
+            reach
+        } else {
+            self.f.over(Interval::point(t)).v
+        }
     }
 
     fn slope(&self, t: f64) -> f64 {
@@ -163,8 +178,7 @@ impl<F: Function> Search<'_, F> {
             let jet = self.f.over(x);
             let mut v = jet.v;
             if v.has_zero() && jet.d.has_zero() && jet.d.width().is_finite() {
-                let centre = self.f.over(Interval::point(m));
-                v = v.meet(centre.v + jet.d * (x - Interval::point(m)));
+                v = v.meet(self.value_over(m) + jet.d * (x - Interval::point(m)));
             }
             if v.lo > self.band || v.hi < -self.band {
                 continue;
@@ -376,13 +390,18 @@ pub fn bisect(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> f64) -> f64 {
     0.5 * (a + b)
 }
 
-/// The zero of `g` in [a, b] by Newton's steps kept inside a shrinking bracket.
+/// The zero of `g` in [a, b] by Newton's steps kept inside a shrinking bracket. `g` gives the value
+/// and the derivative. It ends where the next step would be less than rounding: a step of length s
+/// leaves |g''/2g'| s^2, with the second derivative from the last two points. Next to zero, where
+/// rounding is not relative, it ends where that would be so and steps are no longer shorter.
 pub fn bisect_newton(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> (f64, f64)) -> f64 {
     if ga == 0.0 {
         return a;
     }
+    let rounding = 0.25 * f64::EPSILON * a.abs().max(b.abs());
     let mut t = 0.5 * (a + b);
     let mut last = b - a;
+    let mut before: Option<(f64, f64)> = None;
     for _ in 0..200 {
         let (v, d) = g(t);
         if v == 0.0 {
@@ -395,7 +414,17 @@ pub fn bisect_newton(mut a: f64, mut b: f64, ga: f64, g: impl Fn(f64) -> (f64, f
         }
         let step = v / d;
         let newton = t - step;
-        let next = if newton > a && newton < b && step.abs() < 0.75 * last {
+        let inside = newton > a && newton < b;
+        let left = before.map(|(t0, d0)| ((d - d0) / (t - t0) * step * step / (2.0 * d)).abs());
+        let done = |left: f64| {
+            let noise = left <= rounding && step.abs() >= 0.75 * last;
+            noise || left <= 0.25 * f64::EPSILON * newton.abs()
+        };
+        if inside && left.is_some_and(done) {
+            return newton;
+        }
+        before = Some((t, d));
+        let next = if inside && step.abs() < 0.75 * last {
             last = step.abs();
             newton
         } else {

@@ -5,6 +5,7 @@
 
 mod plane;
 mod quadric;
+mod rulings;
 mod sphere;
 mod torus;
 
@@ -260,8 +261,19 @@ impl Function for AboveApex<'_> {
         self.cone.frame.local(self.curve.jet_over(t))[2]
     }
 
+    fn reach(&self, t: Interval) -> Interval {
+        match self.curve.box_over(t) {
+            Some(p) => self.cone.frame.local(p)[2],
+            None => Interval::ENTIRE,
+        }
+    }
+
     fn at(&self, t: f64) -> Jet<f64> {
         self.cone.frame.local(self.curve.jet(t))[2]
+    }
+
+    fn value(&self, t: f64) -> f64 {
+        self.cone.frame.local(self.curve.point(t).into())[2]
     }
 }
 

@@ -7,6 +7,7 @@ use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Plane, Surface, Torus};
 use crate::geometry::trace::trace;
+use crate::geometry::trigonometric::divide;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{Zeros, isolate};
@@ -376,7 +377,7 @@ fn without_meridian(form: &BiTrig, theta: f64) -> BiTrig {
     let mut rest = BiTrig::zero();
     for j in 0..5 {
         let column = [0, 1, 2, 3, 4].map(|i| form.0[i][j]);
-        let q = super::quadric::divide(&column, &factor);
+        let q = divide(&column, &factor);
         for (i, c) in q.into_iter().enumerate() {
             rest.0[i][j] = c;
         }

@@ -1,0 +1,54 @@
+//! The carriers: the distinct surfaces of all half spaces.
+
+use super::halfspaces::{HalfSpace, Solids};
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::intersect::{Extent, coincidence};
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::sign::{Judge, ROUNDING};
+
+/// The distinct surfaces, and each half space's carrier.
+pub(super) fn merge(
+    solids: &Solids,
+    extent: &Extent,
+    judge: &Judge,
+) -> (Vec<Surface>, Vec<Vec<(usize, Sense)>>) {
+    // Equal surfaces have nearly the same point next to the extent's centre: sorted by it, only
+    // neighbours are compared.
+    let foot = |s: &Surface| {
+        let f = s.frame();
+        let away = extent.centre - f.origin;
+        match s {
+            Surface::Plane(_) => extent.centre - f.z * f.z.dot(&away),
+            Surface::Cylinder(_) => f.origin + f.z * f.z.dot(&away),
+            Surface::Cone(_) | Surface::Sphere(_) | Surface::Torus(_) => f.origin,
+        }
+    };
+    let mut list: Vec<(f64, usize, usize, &HalfSpace)> = Vec::new();
+    for (i, s) in solids.all.iter().enumerate() {
+        for (k, side) in s.sides.iter().enumerate() {
+            list.push((foot(&side.surface).x, i, k, side));
+        }
+    }
+    list.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let window = 4.0 * judge.band() + ROUNDING * extent.radius;
+    let mut sides: Vec<Vec<(usize, Sense)>> = solids
+        .all
+        .iter()
+        .map(|s| vec![(usize::MAX, Sense::Along); s.sides.len()])
+        .collect();
+    let mut carriers: Vec<Surface> = Vec::new();
+    // The carriers that may still be met, by the place of their foot.
+    let mut recent: Vec<(f64, usize)> = Vec::new();
+    for (x, i, k, side) in list {
+        recent.retain(|(y, _)| x - y <= window);
+        let known = recent.iter().find_map(|&(_, c)| {
+            coincidence(&carriers[c], &side.surface, extent, judge).map(|sense| (c, sense))
+        });
+        sides[i][k] = known.unwrap_or_else(|| {
+            carriers.push(side.surface);
+            recent.push((x, carriers.len() - 1));
+            (carriers.len() - 1, Sense::Along)
+        });
+    }
+    (carriers, sides)
+}

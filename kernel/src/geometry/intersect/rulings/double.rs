@@ -1,0 +1,294 @@
+//! Two points on each ruling where Δ is positive: two conics where Δ is a square, else the quartic.
+//!
+//! The number and kind of the zeros of Δ tell everything: a double zero means a node, none a pair
+//! of closed branches. A zero is decided as the distance of the ruling from the other surface.
+
+use super::{Rulings, apart};
+use crate::geometry::curve::Curve;
+use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place, positive_parts};
+use crate::geometry::quartic::{Height, Quartic, Ruled, Sweep};
+use crate::geometry::trigonometric::{Trig1, between, derivative, divide, trig1, zeros_of};
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Function, bisect};
+use crate::number::scalar::Scalar;
+use crate::number::sign::{Judge, ROUNDING, Side};
+use std::f64::consts::TAU;
+
+impl Rulings<'_> {
+    /// k ≠ 0: two points on each ruling where Δ > 0.
+    pub(in crate::geometry::intersect) fn double(
+        &self,
+        judge: &Judge,
+    ) -> Result<Meeting, IntersectionError> {
+        let mut meeting = Meeting::nothing();
+        if let Some(root) = self.square_root(judge) {
+            self.add_conics(&root, judge, &mut meeting);
+        } else {
+            self.add_quartic(judge, &mut meeting)?;
+        }
+        self.add_apexes(judge, &mut meeting);
+        Ok(meeting)
+    }
+
+    /// The s of degree one with Δ = s², if within the band there is one.
+    fn square_root(&self, judge: &Judge) -> Option<Trig1> {
+        let [a0, c1, s1, c2, s2] = self.radicand;
+        let rho = (2.0 * c2.hypot(s2)).sqrt();
+        let noise = (ROUNDING * self.scale).sqrt();
+        let (sin, cos) = (0.5 * s2.atan2(c2)).sin_cos();
+        let root = if rho > noise {
+            [(c1 * cos + s1 * sin) / (2.0 * rho), rho * cos, rho * sin]
+        } else {
+            [a0.max(0.0).sqrt(), 0.0, 0.0]
+        };
+        let both = |u: f64| {
+            let s = trig1(&root, u.sin_cos());
+            let middle = trig1(&self.linear, u.sin_cos());
+            vec![(s - middle) / self.lead, (-s - middle) / self.lead]
+        };
+        self.meets_in_conics(judge, both).then_some(root)
+    }
+
+    fn add_conics(&self, root: &Trig1, judge: &Judge, meeting: &mut Meeting) {
+        let w = |sign: f64| {
+            let part = |i: usize| (sign * root[i] - self.linear[i]) / self.lead;
+            [part(0), part(1), part(2)]
+        };
+        // Tangent all along where both conics are one.
+        let gap = (0..8)
+            .map(|i| TAU * f64::from(i) / 8.0)
+            .map(|u| (u, self.middle(u)))
+            .filter(|(_, m)| self.is_on_base(*m))
+            .map(|(u, m)| apart(self.other, &self.world(u, m)))
+            .reduce(f64::max);
+        if gap.is_some_and(|g| judge.within(g)) {
+            return self.add_conic(&w(0.0), true, judge, meeting);
+        }
+        self.add_conic(&w(1.0), false, judge, meeting);
+        self.add_conic(&w(-1.0), false, judge, meeting);
+        // Where they cross, s vanishes.
+        let whole = [root[0], root[1], root[2], 0.0, 0.0];
+        for (u, _) in zeros_of(&whole) {
+            let m = self.middle(u);
+            let p = self.world(u, m);
+            if self.is_on_base(m) && judge.within(self.other.distance(&p)) {
+                meeting.cross_at(p);
+            }
+        }
+    }
+
+    fn add_quartic(&self, judge: &Judge, meeting: &mut Meeting) -> Result<(), IntersectionError> {
+        let structure = self.structure(judge)?;
+        for &u in &structure.isolated {
+            let p = self.world(u, self.middle(u));
+            if self.is_on_base(self.middle(u)) && judge.within(self.other.distance(&p)) {
+                meeting.nodes.push(Node {
+                    point: p,
+                    on: Vec::new(),
+                });
+            }
+        }
+        let mut curves: Vec<(Quartic, Vec<(f64, f64)>)> = Vec::new();
+        let make = |sweep, height| Quartic {
+            base: self.base,
+            sweep,
+            height,
+        };
+        let (lead, linear) = (self.lead, self.linear);
+        if structure.arcs.is_empty() && structure.positive {
+            match structure.nodes.first() {
+                None => {
+                    for sign in [1.0, -1.0] {
+                        let radicand = self.radicand;
+                        let height = Height::Whole {
+                            lead,
+                            linear,
+                            radicand,
+                            sign,
+                        };
+                        curves.push((make(Sweep::Round { turns: 1 }, height), Vec::new()));
+                    }
+                }
+                Some(&node) => {
+                    let half = between(node, node).map(|k| -k);
+                    let rest = divide(&self.radicand, &half);
+                    let height = Height::Deflated {
+                        lead,
+                        linear,
+                        rest,
+                        node: Some(node),
+                        sign: 1.0,
+                    };
+                    let at = vec![(node, node), (node, node + TAU)];
+                    curves.push((make(Sweep::Round { turns: 2 }, height), at));
+                }
+            }
+        }
+        for &[a, b] in &structure.arcs {
+            let mut rest = divide(&self.radicand, &between(a, b));
+            let node = structure.nodes.iter().copied().find_map(|n| {
+                let n = a + (n - a).rem_euclid(TAU);
+                (n < b).then_some(n)
+            });
+            let (mid, half) = (0.5 * (a + b), 0.5 * (b - a));
+            let mut at = Vec::new();
+            if let Some(n) = node {
+                // rest = K sin²((u - n)/2): only K is wanted.
+                rest = [2.0 * rest[0], 0.0, 0.0];
+                let t = ((mid - n) / half).clamp(-1.0, 1.0).acos();
+                at = vec![(n, t), (n, TAU - t)];
+            }
+            let height = Height::Deflated {
+                lead,
+                linear,
+                rest,
+                node,
+                sign: 1.0,
+            };
+            curves.push((make(Sweep::Oval { mid, half }, height), at));
+        }
+        for (quartic, nodes) in curves {
+            self.add_clipped(quartic, &nodes, judge, meeting);
+        }
+        Ok(())
+    }
+
+    /// Adds a branch, as far as it lies on the base's nappe and on the other's.
+    fn add_clipped(&self, q: Quartic, nodes: &[(f64, f64)], judge: &Judge, meeting: &mut Meeting) {
+        let curve = Curve::Quartic(Box::new(q));
+        let Some(period) = curve.period() else { return };
+        let mut ranges = vec![[0.0, period]];
+        if let Ruled::Cone(_) = self.base {
+            let above = OnNappe {
+                quartic: &q,
+                reach: self.reach(),
+            };
+            ranges = ranges
+                .into_iter()
+                .flat_map(|r| positive_parts(&curve, r, &above, judge.band()))
+                .collect();
+        }
+        for r in ranges {
+            for range in self.on_other_nappe(&curve, r, judge) {
+                let closed = range == [0.0, period];
+                let index = meeting.branches.len();
+                meeting.branches.push(Branch {
+                    curve: curve.clone(),
+                    range,
+                    closed,
+                    tangent: false,
+                });
+                for &(u, t) in nodes {
+                    let point = self.world(u, self.middle(u));
+                    let t = range[0] + (t - range[0]).rem_euclid(period);
+                    if t > range[1] {
+                        continue;
+                    }
+                    let known = meeting
+                        .nodes
+                        .iter_mut()
+                        .find(|n| judge.within((n.point - point).norm()));
+                    match known {
+                        Some(node) => node.on.push((index, t)),
+                        None => meeting.nodes.push(Node {
+                            point,
+                            on: vec![(index, t)],
+                        }),
+                    }
+                }
+            }
+        }
+    }
+
+    /// The zeros of Δ by kind.
+    fn structure(&self, judge: &Judge) -> Result<Structure, IntersectionError> {
+        let slope = derivative(&self.radicand);
+        let flat = slope.iter().map(|c| c.abs()).sum::<f64>() <= ROUNDING * self.scale;
+        let extrema = if flat { Vec::new() } else { zeros_of(&slope) };
+        let mut out = Structure::default();
+        if extrema.is_empty() {
+            out.positive = self.state(0.0, judge) == Side::Inside;
+            return Ok(out);
+        }
+        let states: Vec<(f64, Side)> = extrema
+            .iter()
+            .map(|&(u, _)| (u, self.state(u, judge)))
+            .collect();
+        let n = states.len();
+        let mut roots: Vec<(f64, bool)> = Vec::new();
+        for i in 0..n {
+            let (u, s) = states[i];
+            let (v, t) = states[(i + 1) % n];
+            let v = if i + 1 == n { v + TAU } else { v };
+            if (s == Side::Inside) != (t == Side::Inside) && s != Side::On && t != Side::On {
+                let root = bisect(u, v, self.delta(u), |u| self.delta(u));
+                roots.push((root, t == Side::Inside));
+            }
+            if s == Side::On {
+                let (_, before) = states[(i + n - 1) % n];
+                match (before, t) {
+                    (Side::Inside, Side::Inside) => out.nodes.push(u),
+                    (Side::Outside, Side::Outside) => out.isolated.push(u),
+                    _ => {
+                        let p = self.world(u, self.middle(u));
+                        return Err(IntersectionError::Cusp { place: place(&p) });
+                    }
+                }
+            }
+        }
+        out.positive = roots.is_empty() && states.iter().any(|s| s.1 == Side::Inside);
+        for (i, &(a, rising)) in roots.iter().enumerate() {
+            if rising {
+                let (b, _) = roots[(i + 1) % roots.len()];
+                out.arcs.push([a, if b < a { b + TAU } else { b }]);
+            }
+        }
+        Ok(out)
+    }
+}
+
+/// The zeros of Δ by kind.
+#[derive(Default)]
+struct Structure {
+    /// Δ is nowhere negative.
+    positive: bool,
+    /// The arcs of angles between simple zeros on which Δ is positive.
+    arcs: Vec<[f64; 2]>,
+    /// Double zeros with Δ positive on both sides.
+    nodes: Vec<f64>,
+    /// Double zeros with Δ negative on both sides.
+    isolated: Vec<f64>,
+}
+
+/// How far the height of a curve on a cone is from where it leaves the nappe's reach, scaled to a
+/// length.
+struct OnNappe<'a> {
+    quartic: &'a Quartic,
+    reach: f64,
+}
+
+impl OnNappe<'_> {
+    fn height<S: Scalar>(&self, t: S) -> S {
+        let w = self.quartic.height_at(t);
+        (w - S::constant(1.0 / self.reach)).scale(self.reach * self.reach)
+    }
+}
+
+impl Function for OnNappe<'_> {
+    fn over(&self, t: Interval) -> Jet<Interval> {
+        self.height(Jet::variable(t))
+    }
+
+    fn reach(&self, t: Interval) -> Interval {
+        self.height(t)
+    }
+
+    fn at(&self, t: f64) -> Jet<f64> {
+        self.height(Jet::variable(t))
+    }
+
+    fn value(&self, t: f64) -> f64 {
+        self.height(t)
+    }
+}

@@ -1,0 +1,268 @@
+//! A quadric along the rulings of a cylinder or a cone.
+//!
+//! Notation as in [`quartic`](crate::geometry::quartic): along the rulings of the base, the other
+//! quadric is k w² + 2 B(u) w + C(u), and Δ = B² − k C. Where k = 0 a ruling has a single point of
+//! it, else two, none or a double one.
+
+mod double;
+mod single;
+
+use super::plane::{plane_cone, plane_cylinder};
+use super::{Branch, Extent, Meeting, Node, nappe_parts, place};
+use crate::geometry::curve::Curve;
+use crate::geometry::frame::Frame;
+use crate::geometry::quartic::Ruled;
+use crate::geometry::surface::{Plane, Surface};
+use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1, trig2};
+use crate::number::sign::{Judge, Side};
+use nalgebra::{Matrix3, Point3, Vector3};
+use std::f64::consts::TAU;
+
+/// pᵀ A p + 2 b·p + c in the frame of the base.
+struct Quadric {
+    a: Matrix3<f64>,
+    b: Vector3<f64>,
+    c: f64,
+}
+
+impl Quadric {
+    /// The quadric that a surface lies on, seen in `frame`; to first order twice the distance
+    /// times a length.
+    fn of(surface: &Surface, frame: &Frame) -> Self {
+        let g = surface.frame();
+        let mut q = Self {
+            a: Matrix3::zeros(),
+            b: Vector3::zeros(),
+            c: 0.0,
+        };
+        let (weights, constant) = match surface {
+            Surface::Cylinder(s) => ([1.0, 1.0, 0.0], -s.radius * s.radius),
+            Surface::Cone(s) => ([s.cos * s.cos, s.cos * s.cos, -s.sin * s.sin], 0.0),
+            Surface::Sphere(s) => ([1.0, 1.0, 1.0], -s.radius * s.radius),
+            Surface::Plane(_) | Surface::Torus(_) => ([0.0; 3], 0.0),
+        };
+        q.c = constant;
+        for (axis, weight) in [g.x, g.y, g.z].into_iter().zip(weights) {
+            let k = frame.components(&axis);
+            let offset = axis.dot(&(frame.origin - g.origin));
+            q.a += k * k.transpose() * weight;
+            q.b += k * (offset * weight);
+            q.c += offset * offset * weight;
+        }
+        q
+    }
+}
+
+/// The distance of a point from the whole quadric of a surface: a cone with both nappes.
+pub(super) fn apart(surface: &Surface, p: &Point3<f64>) -> f64 {
+    match surface {
+        Surface::Cone(c) => {
+            let q = c.frame.coordinates(p);
+            (q.x.hypot(q.y) * c.cos - q.z.abs() * c.sin).abs()
+        }
+        _ => surface.distance(p).abs(),
+    }
+}
+
+/// The other quadric along the rulings of the base.
+pub(super) struct Rulings<'a> {
+    base: Ruled,
+    other: &'a Surface,
+    pub lead: f64,
+    linear: Trig1,
+    constant: Trig2,
+    radicand: Trig2,
+    /// The size of the terms that cancel in the radicand.
+    scale: f64,
+    extent: &'a Extent,
+}
+
+fn surface_of(base: &Ruled) -> Surface {
+    match base {
+        Ruled::Cylinder(c) => Surface::Cylinder(*c),
+        Ruled::Cone(c) => Surface::Cone(*c),
+    }
+}
+
+impl<'a> Rulings<'a> {
+    pub(super) fn new(base: Ruled, other: &'a Surface, extent: &'a Extent) -> Self {
+        let surface = surface_of(&base);
+        let q = Quadric::of(other, surface.frame());
+        let (a, b) = (&q.a, &q.b);
+        // The ruling's point is m (cos, sin, 0) + ... with m the radius or the slope.
+        let (lead, linear, constant) = match &base {
+            Ruled::Cylinder(s) => {
+                let r = s.radius;
+                let linear = [b.z, r * a[(0, 2)], r * a[(1, 2)]];
+                let half = 0.5 * r * r;
+                let constant = [
+                    q.c + half * (a[(0, 0)] + a[(1, 1)]),
+                    2.0 * r * b.x,
+                    2.0 * r * b.y,
+                    half * (a[(0, 0)] - a[(1, 1)]),
+                    2.0 * half * a[(0, 1)],
+                ];
+                (a[(2, 2)], linear, constant)
+            }
+            Ruled::Cone(s) => {
+                let m = s.sin / s.cos;
+                let linear = [b.z, m * b.x, m * b.y];
+                let half = 0.5 * m * m;
+                let constant = [
+                    a[(2, 2)] + half * (a[(0, 0)] + a[(1, 1)]),
+                    2.0 * m * a[(0, 2)],
+                    2.0 * m * a[(1, 2)],
+                    half * (a[(0, 0)] - a[(1, 1)]),
+                    2.0 * half * a[(0, 1)],
+                ];
+                (q.c, linear, constant)
+            }
+        };
+        let square = product(&linear, &linear);
+        let radicand = std::array::from_fn(|i| square[i] - lead * constant[i]);
+        let sum = |k: &[f64]| k.iter().map(|c| c.abs()).sum::<f64>();
+        let scale = sum(&square) + lead.abs() * sum(&constant);
+        Self {
+            base,
+            other,
+            lead,
+            linear,
+            constant,
+            radicand,
+            scale,
+            extent,
+        }
+    }
+
+    /// The point on the ruling u at height w, in the base's frame.
+    fn local(&self, u: f64, w: f64) -> Vector3<f64> {
+        match &self.base {
+            Ruled::Cylinder(s) => Vector3::new(s.radius * u.cos(), s.radius * u.sin(), w),
+            Ruled::Cone(s) => {
+                let rho = s.sin / s.cos / w;
+                Vector3::new(rho * u.cos(), rho * u.sin(), 1.0 / w)
+            }
+        }
+    }
+
+    fn world(&self, u: f64, w: f64) -> Point3<f64> {
+        let p = self.local(u, w);
+        surface_of(&self.base).frame().point(p.x, p.y, p.z)
+    }
+
+    /// The height of the point of a ruling that is next to the other surface.
+    fn middle(&self, u: f64) -> f64 {
+        -trig1(&self.linear, u.sin_cos()) / self.lead
+    }
+
+    fn delta(&self, u: f64) -> f64 {
+        trig2(&self.radicand, u.sin_cos())
+    }
+
+    /// Whether a height lies on the base and in the extent.
+    fn is_on_base(&self, w: f64) -> bool {
+        match &self.base {
+            Ruled::Cylinder(_) => true,
+            Ruled::Cone(_) => w > 0.0 && 1.0 / w <= self.reach(),
+        }
+    }
+
+    /// The greatest absolute height that can lie in the extent.
+    fn reach(&self) -> f64 {
+        let f = *surface_of(&self.base).frame();
+        (f.origin - self.extent.centre).dot(&f.z).abs() + self.extent.radius
+    }
+
+    /// Whether Δ is positive, zero or negative at an angle, decided as the signed distance of the
+    /// ruling from the other surface.
+    fn state(&self, u: f64, judge: &Judge) -> Side {
+        let w = self.middle(u);
+        if !self.is_on_base(w) {
+            // The decision concerns the other nappe or lies far off: the plain sign will do.
+            return if self.delta(u) >= 0.0 {
+                Side::Inside
+            } else {
+                Side::Outside
+            };
+        }
+        let distance = apart(self.other, &self.world(u, w));
+        let signed = if self.delta(u) >= 0.0 {
+            -distance
+        } else {
+            distance
+        };
+        judge.side("ruling on quadric", signed, place(&self.world(u, w)))
+    }
+
+    /// The planar conic w = plane(u), where it lies on the base and on the other surface.
+    fn add_conic(&self, w: &Trig1, tangent: bool, judge: &Judge, meeting: &mut Meeting) {
+        let surface = surface_of(&self.base);
+        let frame = surface.frame();
+        let (normal, offset) = match &self.base {
+            Ruled::Cylinder(s) => (Vector3::new(-w[1] / s.radius, -w[2] / s.radius, 1.0), w[0]),
+            Ruled::Cone(s) => {
+                let m = s.sin / s.cos;
+                (Vector3::new(w[1] / m, w[2] / m, w[0]), 1.0)
+            }
+        };
+        let size = normal.norm();
+        if size * self.reach() * self.reach() < offset.abs() * judge.band() {
+            return;
+        }
+        let n = frame.vector(&(normal / size));
+        let origin = frame.origin + n * (offset / size);
+        let plane = Plane {
+            frame: Frame::about(origin, n),
+        };
+        let part = match &self.base {
+            Ruled::Cylinder(s) => plane_cylinder(&plane, s, self.extent, judge),
+            Ruled::Cone(s) => plane_cone(&plane, s, self.extent, judge),
+        };
+        for branch in part.branches {
+            for range in self.on_other_nappe(&branch.curve, branch.range, judge) {
+                let closed = branch.closed && range == branch.range;
+                meeting.branches.push(Branch {
+                    range,
+                    closed,
+                    tangent,
+                    ..branch.clone()
+                });
+            }
+        }
+    }
+
+    /// The parts of a curve that lie on the other surface's own nappe, where it is a cone.
+    fn on_other_nappe(&self, curve: &Curve, range: [f64; 2], judge: &Judge) -> Vec<[f64; 2]> {
+        nappe_parts(curve, range, self.other, judge.band())
+    }
+
+    /// Whether the heights that `conics` gives over each ruling lie on the other surface.
+    fn meets_in_conics(&self, judge: &Judge, conics: impl Fn(f64) -> Vec<f64>) -> bool {
+        let mut worst: f64 = 0.0;
+        let mut asked = false;
+        for i in 0..24 {
+            let u = TAU * (f64::from(i) + 0.3) / 24.0;
+            for w in conics(u).into_iter().filter(|&w| self.is_on_base(w)) {
+                asked = true;
+                worst = worst.max(apart(self.other, &self.world(u, w)));
+            }
+        }
+        let o = surface_of(&self.base).frame().origin;
+        asked && judge.coincide("quadrics meeting in conics", worst, place(&o))
+    }
+
+    /// The apexes through which branches pass: singular points.
+    fn add_apexes(&self, judge: &Judge, meeting: &mut Meeting) {
+        let surface = surface_of(&self.base);
+        for (s, o) in [(&surface, self.other), (self.other, &surface)] {
+            if let Surface::Cone(c) = s
+                && judge.within(o.distance(&c.frame.origin))
+            {
+                meeting.nodes.push(Node {
+                    point: c.frame.origin,
+                    on: Vec::new(),
+                });
+            }
+        }
+    }
+}

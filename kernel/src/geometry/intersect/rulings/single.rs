@@ -1,0 +1,200 @@
+//! One point on each ruling: the other quadric holds the direction of the rulings, or the apex.
+
+use super::{Rulings, apart, surface_of};
+use crate::geometry::curve::{Curve, Line};
+use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node};
+use crate::geometry::quartic::{Height, Quartic, Ruled, Sweep};
+use crate::geometry::surface::Surface;
+use crate::geometry::trigonometric::{Trig1, Trig2, divide, divide_half, trig1, zeros_of};
+use crate::number::sign::Judge;
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::{PI, TAU};
+
+impl Rulings<'_> {
+    /// k = 0: one point on each ruling, w = -C/(2B).
+    pub(in crate::geometry::intersect) fn single(
+        &self,
+        judge: &Judge,
+    ) -> Result<Meeting, IntersectionError> {
+        let mut meeting = Meeting::nothing();
+        let shared = self.shared_ruling(judge);
+        let height = match shared {
+            Some(u0) => {
+                let (linear, constant) = divide_half(&self.linear, &self.constant, u0);
+                Height::Cubic { linear, constant }
+            }
+            None => Height::Rational {
+                linear: self.linear,
+                constant: self.constant,
+            },
+        };
+        let quartic = Quartic {
+            base: self.base,
+            sweep: Sweep::Round { turns: 1 },
+            height,
+        };
+        match self.single_conic(judge) {
+            Some(w) => self.add_conic(&w, false, judge, &mut meeting),
+            None => self.add_single(quartic, shared, judge, &mut meeting),
+        }
+        if let Some(u0) = shared {
+            self.add_shared(u0, &quartic, judge, &mut meeting);
+        }
+        self.add_apexes(judge, &mut meeting);
+        Ok(meeting)
+    }
+
+    /// w = -C/(2B) where that is of degree one: a planar conic.
+    fn single_conic(&self, judge: &Judge) -> Option<Trig1> {
+        let w = divide(&self.constant, &self.linear).map(|q| -0.5 * q);
+        self.meets_in_conics(judge, |u| vec![trig1(&w, u.sin_cos())])
+            .then_some(w)
+    }
+
+    /// The curve w = -C/(2B), as far as it lies on both surfaces.
+    fn add_single(
+        &self,
+        quartic: Quartic,
+        shared: Option<f64>,
+        judge: &Judge,
+        meeting: &mut Meeting,
+    ) {
+        let whole = [0.0, TAU];
+        for range in self.bounded_ranges(&quartic, shared, self.reach()) {
+            let curve = Curve::Quartic(Box::new(quartic));
+            for range in self.on_other_nappe(&curve, range, judge) {
+                let branch = Branch {
+                    curve: curve.clone(),
+                    range,
+                    closed: shared.is_none() && range == whole,
+                    tangent: false,
+                };
+                meeting.branches.push(branch);
+            }
+        }
+    }
+
+    /// The ruling that lies on both surfaces, where k = 0: a common zero of B and C.
+    fn shared_ruling(&self, judge: &Judge) -> Option<f64> {
+        if let Ruled::Cylinder(_) = self.base {
+            let Surface::Cone(c) = self.other else {
+                return None;
+            };
+            let f = surface_of(&self.base);
+            if !judge.within(f.distance(&c.frame.origin)) {
+                return None;
+            }
+            let q = f.frame().coordinates(&c.frame.origin);
+            return Some(q.y.atan2(q.x));
+        }
+        let Surface::Cone(c) = self.other else {
+            return None;
+        };
+        let q = surface_of(&self.base).frame().coordinates(&c.frame.origin);
+        let w = 1.0 / q.z;
+        let u = q.y.atan2(q.x);
+        let u = if q.z < 0.0 { u + PI } else { u };
+        let on = judge.within(apart(&surface_of(&self.base), &c.frame.origin));
+        (w.is_finite() && on).then_some(u)
+    }
+
+    /// The ranges of u over which the single point of a ruling is on the base within reach.
+    fn bounded_ranges(&self, q: &Quartic, shared: Option<f64>, reach: f64) -> Vec<[f64; 2]> {
+        // |w| = reach, w = 1/reach and the poles, as signs of N - x D with w = N/D.
+        let quotient = |u: f64| q.height_at(u);
+        let inside = |u: f64| match &self.base {
+            Ruled::Cylinder(_) => quotient(u).abs() <= reach,
+            Ruled::Cone(_) => quotient(u) * reach >= 1.0,
+        };
+        let bound = |x: f64| -> Trig2 {
+            let mut k = self.constant;
+            for (c, b) in k.iter_mut().zip(&self.linear) {
+                *c += 2.0 * x * b;
+            }
+            k
+        };
+        let limits = match &self.base {
+            Ruled::Cylinder(_) => vec![bound(reach), bound(-reach)],
+            Ruled::Cone(_) => {
+                vec![
+                    bound(1.0 / reach),
+                    [self.linear[0], self.linear[1], self.linear[2], 0.0, 0.0],
+                ]
+            }
+        };
+        let mut marks: Vec<f64> = shared.into_iter().collect();
+        for k in &limits {
+            marks.extend(zeros_of(k).into_iter().map(|r| r.0));
+        }
+        let mut marks: Vec<f64> = marks.into_iter().map(|u| u.rem_euclid(TAU)).collect();
+        marks.sort_by(f64::total_cmp);
+        marks.dedup_by(|a, b| (*a - *b).abs() < 1.0 / f64::from(1 << 24));
+        let Some(&first) = marks.first() else {
+            return if inside(0.5) {
+                vec![[0.0, TAU]]
+            } else {
+                Vec::new()
+            };
+        };
+        marks.push(first + TAU);
+        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        for m in marks.windows(2) {
+            if inside(0.5 * (m[0] + m[1])) {
+                match ranges.last_mut() {
+                    // The shared ruling is no end of the curve: it passes over it.
+                    Some(last) if last[1] == m[0] && shared.is_some_and(|s| same_turn(s, m[0])) => {
+                        last[1] = m[1];
+                    }
+                    _ => ranges.push([m[0], m[1]]),
+                }
+            }
+        }
+        ranges
+    }
+
+    /// The ruling common to both surfaces, with the point where the rest of the curve crosses it.
+    fn add_shared(&self, u0: f64, q: &Quartic, judge: &Judge, meeting: &mut Meeting) {
+        let surface = surface_of(&self.base);
+        let frame = surface.frame();
+        let (origin, direction) = match &self.base {
+            Ruled::Cylinder(s) => (
+                frame.point(s.radius * u0.cos(), s.radius * u0.sin(), 0.0),
+                frame.z,
+            ),
+            Ruled::Cone(s) => {
+                let local = Vector3::new(s.sin * u0.cos(), s.sin * u0.sin(), s.cos);
+                (frame.origin, frame.vector(&local))
+            }
+        };
+        let curve = Curve::Line(Line { origin, direction });
+        let Some([lo, hi]) = curve.range_within(&self.extent.centre, self.extent.radius) else {
+            return;
+        };
+        let lo = if matches!(self.base, Ruled::Cone(_)) {
+            lo.max(0.0)
+        } else {
+            lo
+        };
+        for range in self.on_other_nappe(&curve, [lo, hi], judge) {
+            let branch = Branch {
+                curve: curve.clone(),
+                range,
+                closed: false,
+                tangent: false,
+            };
+            meeting.branches.push(branch);
+        }
+        let crossing = Point3::from(q.at(u0));
+        if (crossing - self.extent.centre).norm() <= self.extent.radius {
+            meeting.nodes.push(Node {
+                point: crossing,
+                on: Vec::new(),
+            });
+        }
+    }
+}
+
+fn same_turn(a: f64, b: f64) -> bool {
+    let d = (a - b).rem_euclid(TAU);
+    d.min(TAU - d) < 1.0 / f64::from(1 << 20)
+}

@@ -1,0 +1,309 @@
+//! The branches of F(θ, φ) = 0 on the parameter torus, all of them, with their singular points.
+//!
+//! The square of both angles is divided until in every cell F has no zero, or one of its partial
+//! derivatives dominates the other, so that the curve in the cell is a graph of bounded slope
+//! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor's with a global bound of the
+//! third derivatives. Cells are joined through the roots on their sides. Singular points, where F
+//! and its gradient vanish within the band, are found first and stand in cells of their own.
+
+pub(super) mod grid;
+mod join;
+
+use super::bitrig::{BiTrig, Partials};
+use super::singular::singular_points;
+use super::surface::Torus;
+use super::toric::{Axis, Toric, wrap};
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Contact, Zeros, isolate};
+use grid::Cell;
+
+/// A point where the curve crosses or touches itself, by its angles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Singular {
+    /// (θ, φ).
+    pub angles: [f64; 2],
+    /// Where the branches pass: (index of the branch, parameter). Empty for an isolated point.
+    pub on: Vec<(usize, f64)>,
+}
+
+/// The zero set of F.
+#[derive(Clone, Debug, Default)]
+pub struct Traced {
+    /// The branches, all closed.
+    pub branches: Vec<Toric>,
+    /// The singular points.
+    pub singular: Vec<Singular>,
+}
+
+/// The curve has a singular point worse than a crossing, or one that cannot be told from it.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a curve on a torus could not be resolved near the angles ({:.6}, {:.6})", angles[0], angles[1])]
+pub struct Unresolved {
+    /// (θ, φ).
+    pub angles: [f64; 2],
+}
+
+/// Taylor's bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
+pub(super) struct Bounds {
+    /// F has no zero in the cell.
+    pub clear: bool,
+    /// The least and the greatest |F_x|.
+    pub x: [f64; 2],
+    /// The least and the greatest |F_y|.
+    pub y: [f64; 2],
+    /// At the centre.
+    pub at: Partials<f64>,
+    /// The angle along which the form varies more over the cell.
+    pub wide: usize,
+}
+
+#[derive(Default)]
+struct Remainders {
+    third: f64,
+    x: f64,
+    y: f64,
+    across: [f64; 2],
+}
+
+pub(super) struct Tracer<'a> {
+    pub form: &'a BiTrig,
+    /// A bound of the third derivatives.
+    pub third: f64,
+    /// A bound of the rounding error of the form.
+    pub slop: f64,
+    pub band: f64,
+}
+
+/// The depth at which a cell that is still undecided is given up: sides of 1e-7 radians.
+pub(super) const DEPTH: u32 = 48;
+
+/// A graph's slope is at most this in an accepted cell.
+const STEEP: f64 = 2.0;
+
+impl Tracer<'_> {
+    pub(super) fn bounds(&self, cell: &Cell) -> Bounds {
+        let [cx, cy] = cell.centre();
+        let [hx, hy] = cell.half();
+        let p = self.form.partials(cx, cy);
+        let r = self.remainders(hx, hy);
+        let spread = p.x.abs() * hx
+            + p.y.abs() * hy
+            + 0.5 * (p.xx.abs() * hx * hx + 2.0 * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy)
+            + r.third / 6.0
+            + self.slop;
+        let rx = p.xx.abs() * hx + p.xy.abs() * hy + 0.5 * r.x + self.slop;
+        let ry = p.xy.abs() * hx + p.yy.abs() * hy + 0.5 * r.y + self.slop;
+        Bounds {
+            clear: p.f.abs() > spread,
+            x: [p.x.abs() - rx, p.x.abs() + rx],
+            y: [p.y.abs() - ry, p.y.abs() + ry],
+            at: p,
+            wide: usize::from(r.across[1] > r.across[0]),
+        }
+    }
+
+    /// Bounds of the third derivatives in the direction (hx, hy), of those of both first partial
+    /// derivatives, and how much the form varies along each angle.
+    fn remainders(&self, hx: f64, hy: f64) -> Remainders {
+        let degree = [0.0, 1.0, 1.0, 2.0, 2.0];
+        let mut r = Remainders::default();
+        for (row, dx) in self.form.0.iter().zip(degree) {
+            for (c, dy) in row.iter().zip(degree) {
+                let d: f64 = dx * hx + dy * hy;
+                let c = c.abs() * d * d;
+                r.third += c * d;
+                r.x += c * dx;
+                r.y += c * dy;
+                r.across[0] += c * dx * hx;
+                r.across[1] += c * dy * hy;
+            }
+        }
+        r
+    }
+
+    /// The cells that hold a piece of the curve, each with the angle its graph runs over.
+    fn leaves(&self, cells: Vec<Cell>) -> Result<Vec<(Cell, Axis)>, Unresolved> {
+        let mut leaves = Vec::new();
+        let mut stack: Vec<(Cell, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
+        while let Some((cell, depth)) = stack.pop() {
+            let b = self.bounds(&cell);
+            if b.clear {
+                continue;
+            }
+            if b.y[0] > 0.0 && b.x[1] <= STEEP * b.y[0] {
+                leaves.push((cell, Axis::Around));
+            } else if b.x[0] > 0.0 && b.y[1] <= STEEP * b.x[0] {
+                leaves.push((cell, Axis::Tube));
+            } else if depth >= DEPTH {
+                return Err(Unresolved {
+                    angles: cell.centre(),
+                });
+            } else {
+                stack.extend(cell.halves(b.wide).map(|c| (c, depth + 1)));
+            }
+        }
+        Ok(leaves)
+    }
+
+    /// The roots of F on a side of a cell: the angle that is `fixed` on it, and its ends.
+    fn roots_on(&self, fixed: usize, at: f64, lo: f64, hi: f64) -> Option<Vec<f64>> {
+        let f = |t: Interval| {
+            let c = Interval::point(at);
+            if fixed == 0 {
+                let p = self.form.partials(c, t);
+                Jet {
+                    v: p.f,
+                    d: p.y,
+                    dd: p.yy,
+                }
+            } else {
+                let p = self.form.partials(t, c);
+                Jet {
+                    v: p.f,
+                    d: p.x,
+                    dd: p.xx,
+                }
+            }
+        };
+        match isolate(&f, &[lo, hi], self.slop) {
+            Zeros::At { roots, .. } if roots.iter().all(|r| r.contact == Contact::Simple) => {
+                Some(roots.into_iter().map(|r| r.t).collect())
+            }
+            _ => None,
+        }
+    }
+}
+
+pub(super) fn near(a: &[f64; 2], b: &[f64; 2], reach: f64) -> bool {
+    wrap(a[0] - b[0]).abs() <= reach && wrap(a[1] - b[1]).abs() <= reach
+}
+
+/// All branches of `form` = 0 on the torus, where `form` is a distance to first order and `band`
+/// the resolution.
+pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolved> {
+    let slop = form.bound() * f64::EPSILON * 64.0;
+    let tracer = Tracer {
+        form,
+        third: form.third(),
+        slop,
+        band: band.max(slop),
+    };
+    let points = singular_points(&tracer)?;
+    let mut shrink = 1.0;
+    let mut failed = None;
+    for attempt in 0..ATTEMPTS {
+        match tracer.assemble(torus, &points, shrink, SKEWS[attempt % SKEWS.len()]) {
+            Ok(traced) => return Ok(traced),
+            Err(e) => failed = failed.or(Some(e)),
+        }
+        shrink *= 0.5;
+    }
+    let angles = points.first().map_or([0.0; 2], |p| p.angles);
+    Err(failed.unwrap_or(Unresolved { angles }))
+}
+
+/// How often smaller zones are tried.
+const ATTEMPTS: usize = 9;
+
+/// How far the sides of a zone lie from its point, as parts of its size: low and high, along both
+/// angles.
+const SKEWS: [[[f64; 2]; 2]; 3] = [
+    [[0.913_7, 1.0], [0.871_3, 0.761_9]],
+    [[0.731_1, 0.653_7], [1.0, 0.941_7]],
+    [[1.0, 0.831_9], [0.537_1, 0.611_3]],
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::frame::Frame;
+    use crate::geometry::surface::{Cylinder, Plane, Surface};
+    use nalgebra::{Point3, Vector3};
+
+    fn traced(surface: &Surface, major: f64, minor: f64) -> Traced {
+        let torus = Torus {
+            frame: Frame::world(),
+            major,
+            minor,
+        };
+        let form = BiTrig::interpolate(|x, y| {
+            let p = Surface::Torus(torus).point(x, y);
+            surface.level([p.x, p.y, p.z])
+        });
+        let traced = trace(&torus, &form, 1e-11).unwrap();
+        for b in &traced.branches {
+            for i in 0..(10 * b.segments.len()) {
+                let p = b.point(i as f64 / 10.0);
+                assert!(
+                    surface.distance(&p).abs() < 1e-12,
+                    "{}",
+                    surface.distance(&p)
+                );
+            }
+            for i in 0..b.segments.len() {
+                let t = i as f64;
+                let gap = (b.point(t + 1e-12) - b.point(t - 1e-12)).norm();
+                assert!(gap < 1e-9, "gap {gap} at {t}");
+            }
+        }
+        traced
+    }
+
+    fn plane(n: Vector3<f64>, d: f64) -> Surface {
+        let n = n.normalize();
+        Surface::Plane(Plane {
+            frame: Frame::about(Point3::from(n * d), n),
+        })
+    }
+
+    #[test]
+    fn a_spiric_section_has_one_or_two_ovals_or_a_node() {
+        // x = d across a torus (3, 1): two ovals for d < 2, a lemniscate at 2, one oval above.
+        for (d, branches, singular) in [(0.7, 2, 0), (2.0, 1, 1), (2.5, 1, 0), (3.999, 1, 0)] {
+            let t = traced(&plane(Vector3::x(), d), 3.0, 1.0);
+            assert_eq!(
+                (t.branches.len(), t.singular.len()),
+                (branches, singular),
+                "d = {d}"
+            );
+        }
+        assert_eq!(
+            traced(&plane(Vector3::x(), 4.0), 3.0, 1.0).singular.len(),
+            1
+        );
+        assert!(
+            traced(&plane(Vector3::x(), 4.001), 3.0, 1.0)
+                .branches
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn a_near_node_splits_on_either_side() {
+        assert_eq!(
+            traced(&plane(Vector3::x(), 2.0 - 1e-9), 3.0, 1.0)
+                .branches
+                .len(),
+            2
+        );
+        assert_eq!(
+            traced(&plane(Vector3::x(), 2.0 + 1e-9), 3.0, 1.0)
+                .branches
+                .len(),
+            1
+        );
+    }
+
+    #[test]
+    fn a_cylinder_through_the_ring() {
+        // Along x through the whole ring: into and out of the tube twice.
+        let frame = Frame::about(Point3::origin(), Vector3::x());
+        let c = Surface::Cylinder(Cylinder { frame, radius: 0.5 });
+        assert_eq!(traced(&c, 3.0, 1.0).branches.len(), 4);
+        // Parallel to the axis, as wide as the tube and centred on the spine: nodes on both equators.
+        let frame = Frame::about(Point3::new(5.0, 0.0, 0.0), Vector3::z());
+        let c = Surface::Cylinder(Cylinder { frame, radius: 1.5 });
+        assert_eq!(traced(&c, 5.0, 1.5).singular.len(), 2);
+    }
+}

@@ -202,7 +202,8 @@ impl<'a> FaceLocator<'a> {
                 decided => return decided,
             }
         }
-        let target = self.target(k);
+        // Every target is reached both ways.
+        let target = self.target(k / 2);
         let tube_first = k % 2 == 1;
         let (first, second) = if tube_first {
             let walk = Walk::tube(torus, p, Sense::Along);
@@ -514,6 +515,36 @@ mod tests {
             ];
             let locator = FaceLocator::new(&surface, Sense::Along, patch, BAND);
             prop_assert_eq!(locator.place(&p), expect(u > 1.0 && u < 4.0 && v > 0.5 && v < 2.5));
+        }
+    }
+
+    #[test]
+    fn on_a_torus_no_order_of_the_arcs_hides_a_way() {
+        // A piece between two equators and two circles of the tube, seen from a point of an equator
+        // beside it: along the equator every walk runs into an arc.
+        let f = tilted();
+        let torus = Torus {
+            frame: f,
+            major: 2.0,
+            minor: 0.75,
+        };
+        let surface = Surface::Torus(torus);
+        let (outer, inner) = (circle_at(&f, 0.0, 2.75), circle_at(&f, 0.0, 1.25));
+        let (a, b) = (tube(&torus, 1.0), tube(&torus, 4.0));
+        let half = 0.5 * TAU;
+        let upper = [
+            arc(&outer, [1.0, 4.0], Sense::Along),
+            arc(&b, [0.0, half], Sense::Along),
+            arc(&inner, [1.0, 4.0], Sense::Against),
+            arc(&a, [0.0, half], Sense::Against),
+        ];
+        for turn in 0..4 {
+            let arcs: Vec<_> = (0..4).map(|k| upper[(turn + k) % 4]).collect();
+            let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
+            let place = |u: f64, v: f64| locator.place(&surface.point(u, v));
+            assert_eq!(place(5.0, half), Place::Outside);
+            assert_eq!(place(5.0, 0.0), Place::Outside);
+            assert_eq!(place(2.0, 1.0), Place::Inside);
         }
     }
 

@@ -403,9 +403,46 @@ impl Sorter<'_> {
         // around the tube by every parallel: then no other way is needed.
         let [around, along] = self.winding;
         if around || along {
-            return (around && tubes) || (along && rounds);
+            let direct = (around && tubes) || (along && rounds);
+            return direct || self.turn_to_winding(&t, ring, arc, p, left);
         }
         (tubes || rounds) && (ring == 0 || self.way_to_first(t, ring, arc, p, left))
+    }
+
+    /// Along one circle to another that meets the winding loops, where those through the point
+    /// itself run along edges.
+    fn turn_to_winding(
+        &mut self,
+        t: &Torus,
+        ring: usize,
+        arc: usize,
+        p: &Point3<f64>,
+        left: &Vector3<f64>,
+    ) -> bool {
+        let [around, along] = self.winding;
+        for turn in [0.4, 2.6, 4.3] {
+            for sense in [Sense::Along, Sense::Against] {
+                let leg = Walk::tube(t, p, sense).upto(turn * t.minor);
+                let corner = leg.point(turn * t.minor);
+                if let (true, Some(round)) = (
+                    along,
+                    Walk::parallel(self.surface, &corner, sense, self.band),
+                ) && self.follow(ring, arc, p, left, &[leg, round], None)
+                {
+                    return true;
+                }
+                let Some(round) = Walk::parallel(self.surface, p, sense, self.band) else {
+                    continue;
+                };
+                let radius = t.frame.coordinates(p).xy().norm();
+                let leg = round.upto(turn * radius);
+                let tube = Walk::tube(t, &leg.point(turn * radius), sense);
+                if around && self.follow(ring, arc, p, left, &[leg, tube], None) {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// A way around the axis, then around the tube, to a point of the first loop.

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Cases that are wrong today. One that starts to pass must be taken off.
-const KNOWN_FAILURES: &[&str] = &["own-cone-apex--1e-5"];
+const KNOWN_FAILURES: &[&str] = &[];
 
 /// Cases that the reader refuses, with a piece of what it expects.
 const REFUSED: &[(&str, &str)] = &[("oscad-4001", "minor radius")];

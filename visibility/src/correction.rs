@@ -14,7 +14,8 @@ use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::sign::ROUNDING;
-use std::f64::consts::{PI, TAU};
+use std::cell::OnceCell;
+use std::f64::consts::TAU;
 
 /// The end of a piece of a strand at a junction.
 #[derive(Clone, Copy, Debug)]
@@ -62,14 +63,28 @@ enum Effect {
     Unclear,
 }
 
-/// A corner of a face at a point of its boundary.
+/// A corner of a face at a point of its boundary, of a face that is not turned away.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     face: FaceId,
+    /// The edges of its two sides.
+    sides: [EdgeId; 2],
+    /// The outward normal.
+    normal: Vector3<f64>,
+    /// The cosine between the normal and the line of sight; none where the face has no normal, or
+    /// its limb passes.
+    facing: Option<f64>,
     /// Where the loop leaves the point.
     out: Vector3<f64>,
     /// The angle of the face there, counterclockwise from `out` as seen from outside.
     angle: f64,
+}
+
+/// The corners at a vertex, and the unit vector from there to the eye.
+#[derive(Clone, Debug)]
+struct Seen {
+    towards: Vector3<f64>,
+    corners: Vec<Corner>,
 }
 
 /// The corrections of a view.
@@ -78,13 +93,16 @@ pub struct Corrections<'s, 'a> {
     scene: &'s Scene<'a>,
     /// By vertex: the pairs of coedges that come to it and leave it.
     corners: Vec<Vec<[CoedgeId; 2]>>,
+    /// By vertex: what is seen there, once it was asked for.
+    seen: Vec<OnceCell<Seen>>,
 }
 
 impl<'s, 'a> Corrections<'s, 'a> {
     /// Those of a scene.
     pub fn new(scene: &'s Scene<'a>) -> Self {
         let topology = &scene.brep.topology;
-        let mut corners = vec![Vec::new(); topology.vertices as usize];
+        let vertices = topology.vertices as usize;
+        let mut corners = vec![Vec::new(); vertices];
         for ring in &topology.loops {
             let next = ring.coedges.iter().cycle().skip(1);
             for (&to, &from) in ring.coedges.iter().zip(next) {
@@ -93,7 +111,11 @@ impl<'s, 'a> Corrections<'s, 'a> {
                 }
             }
         }
-        Self { scene, corners }
+        Self {
+            scene,
+            corners,
+            seen: (0..vertices).map(|_| OnceCell::new()).collect(),
+        }
     }
 
     /// The faces through a junction that hide a piece next to it, the nearest to the eye first;
@@ -115,22 +137,76 @@ impl<'s, 'a> Corrections<'s, 'a> {
     }
 
     fn at_vertex(&self, vertex: VertexId, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
+        let seen = self.seen[vertex.index()].get_or_init(|| self.see(vertex));
+        let effect = |corner: &Corner| (corner.face, corner.effect(&seen.towards, end));
+        hiding_of(seen.corners.iter().map(effect))
+    }
+
+    fn see(&self, vertex: VertexId) -> Seen {
         let topology = &self.scene.brep.topology;
-        let p = end.strand.curve.point(end.t);
-        let mut effects = Vec::new();
-        for &[to, from] in &self.corners[vertex.index()] {
+        let p = self.scene.brep.point(vertex);
+        let (towards, _) = self.scene.projection.towards_eye(&p);
+        let corner = |&[to, from]: &[CoedgeId; 2]| {
             let face = topology.face_of(from);
-            let back = -self.tangent(to, vertex, 1)?;
-            let out = self.tangent(from, vertex, 0)?;
-            let normal = self.scene.brep.outward(face, &p);
-            let turn = normal.dot(&out.cross(&back)).atan2(out.dot(&back));
-            let angle = turn.rem_euclid(TAU);
-            let own = [to, from].map(|c| topology.coedge(c).edge);
-            let is_own = !end.strand.limb && own.iter().any(|&e| end.strand.edge == Some(e));
-            let corner = Corner { face, out, angle };
-            effects.push((face, self.effect(&corner, is_own, &p, end)));
+            let sides = [to, from].map(|c| topology.coedge(c).edge);
+            let directions = || {
+                let back = -self.tangent(to, vertex, 1)?;
+                Some([self.tangent(from, vertex, 0)?, back])
+            };
+            self.corner(face, sides, &p, &towards, directions)
+        };
+        Seen {
+            towards,
+            corners: self.corners[vertex.index()]
+                .iter()
+                .filter_map(corner)
+                .collect(),
         }
-        hiding_of(effects)
+    }
+
+    /// The corner of a face at a point, between the directions in which its loop leaves and has
+    /// come; none of a face that hides nothing there.
+    fn corner(
+        &self,
+        face: FaceId,
+        sides: [EdgeId; 2],
+        p: &Point3<f64>,
+        towards: &Vector3<f64>,
+        directions: impl FnOnce() -> Option<[Vector3<f64>; 2]>,
+    ) -> Option<Corner> {
+        let scene = self.scene;
+        let normal = scene.brep.outward(face, p);
+        let unclear = Corner {
+            face,
+            sides,
+            normal,
+            facing: None,
+            out: normal,
+            angle: 0.0,
+        };
+        let facing = normal.dot(towards);
+        if self.is_apex(face, p) {
+            return Some(unclear);
+        }
+        if !is_plain(facing) {
+            return match scene.brep.surface(face) {
+                Surface::Plane(s) if scene.edge_on(&s.frame.origin, &s.frame.z) => None,
+                _ => Some(unclear),
+            };
+        }
+        if facing < 0.0 {
+            return None;
+        }
+        let Some([out, back]) = directions() else {
+            return Some(unclear);
+        };
+        let turn = normal.dot(&out.cross(&back)).atan2(out.dot(&back));
+        Some(Corner {
+            facing: Some(facing),
+            out,
+            angle: turn.rem_euclid(TAU),
+            ..unclear
+        })
     }
 
     /// The tangent of a coedge along its run, at a vertex at its start (0) or end (1).
@@ -160,39 +236,33 @@ impl<'s, 'a> Corrections<'s, 'a> {
             return None;
         }
         let (v, _) = self.scene.projection.towards_eye(&p);
-        let mut effects = Vec::new();
-        for &coedge in coedges {
+        let effect = |&coedge: &CoedgeId| {
             let face = brep.topology.face_of(coedge);
             let out = along * brep.topology.coedge(coedge).sense.sign();
-            let is_own = !end.strand.limb && end.strand.edge == Some(edge);
-            let corner = Corner {
-                face,
-                out,
-                angle: PI,
+            let effect = match self.corner(face, [edge; 2], &p, &v, || Some([out, -out])) {
+                None => Effect::Clear,
+                Some(c) if c.facing.is_none() && end.strand.edge == Some(edge) => {
+                    self.fold(face, &out, &p, end)
+                }
+                Some(corner) => corner.effect(&v, end),
             };
-            let normal = brep.outward(face, &p);
-            let folds = !self.is_plane(face) && normal.dot(&v).abs() <= PLAIN;
-            let effect = match folds && is_own {
-                true => self.fold(&corner, &p, end),
-                false => self.effect(&corner, is_own, &p, end),
-            };
-            effects.push((face, effect));
-        }
-        hiding_of(effects)
+            (face, effect)
+        };
+        hiding_of(coedges.iter().map(effect))
     }
 
     /// What a face that folds where its limb ends on an edge does to one half of the edge: where
     /// the line of sight runs over the face, and that bends away from it, the half along which the
     /// face is turned away lies behind the fold.
-    fn fold(&self, corner: &Corner, p: &Point3<f64>, end: &End<'_, '_>) -> Effect {
+    fn fold(&self, face: FaceId, out: &Vector3<f64>, p: &Point3<f64>, end: &End<'_, '_>) -> Effect {
         let scene = self.scene;
         let (v, _) = scene.projection.towards_eye(p);
-        let inward = scene.brep.outward(corner.face, p).cross(&corner.out);
+        let inward = scene.brep.outward(face, p).cross(out);
         let into = v.dot(&inward);
-        let bend = self.bend(corner.face, p, &v);
+        let bend = self.bend(face, p, &v);
         let middle = end.strand.curve.point(end.middle);
         let (w, _) = scene.projection.towards_eye(&middle);
-        let facing = scene.brep.outward(corner.face, &middle).dot(&w);
+        let facing = scene.brep.outward(face, &middle).dot(&w);
         if into < -PLAIN {
             return Effect::Clear;
         }
@@ -244,61 +314,42 @@ impl<'s, 'a> Corrections<'s, 'a> {
             _ => false,
         }
     }
+}
 
-    fn is_plane(&self, face: FaceId) -> bool {
-        matches!(self.scene.brep.surface(face), Surface::Plane(_))
-    }
-
-    /// What the sector of a face at a point does to a piece that leaves the point; `is_own` if the
-    /// piece runs along the sector's side.
-    fn effect(&self, corner: &Corner, is_own: bool, p: &Point3<f64>, end: &End<'_, '_>) -> Effect {
-        let scene = self.scene;
-        if end.strand.limb && end.strand.faces.iter().any(|f| f.0 == corner.face) {
+impl Corner {
+    /// What the face does to a piece that leaves its corner.
+    fn effect(&self, towards: &Vector3<f64>, end: &End<'_, '_>) -> Effect {
+        let strand = end.strand;
+        if strand.limb && strand.faces.iter().any(|f| f.0 == self.face) {
             return Effect::Clear;
         }
-        if self.is_apex(corner.face, p) {
+        let Some(facing) = self.facing else {
             return Effect::Unclear;
-        }
-        let (v, _) = scene.projection.towards_eye(p);
-        let normal = scene.brep.outward(corner.face, p);
-        let facing = normal.dot(&v);
-        if !is_plain(facing) {
-            let edge_on = match scene.brep.surface(corner.face) {
-                Surface::Plane(s) => scene.edge_on(&s.frame.origin, &s.frame.z),
-                _ => false,
-            };
-            return if edge_on {
-                Effect::Clear
-            } else {
-                Effect::Unclear
-            };
-        }
-        if is_own || facing < 0.0 {
+        };
+        if strand.edge.is_some_and(|e| self.sides.contains(&e)) {
             return Effect::Clear;
         }
         let Some(d) = end.direction() else {
             return Effect::Unclear;
         };
-        let below = -d.dot(&normal);
+        let below = -d.dot(&self.normal);
         if below < -PLAIN {
             return Effect::Clear;
         }
-        let over = d + v * (below / facing);
-        match (corner.holds(&over, &normal), below > PLAIN) {
+        let over = d + towards * (below / facing);
+        match (self.holds(&over), below > PLAIN) {
             (Some(false), _) => Effect::Clear,
             (Some(true), true) => Effect::Hides(below / facing),
             _ => Effect::Unclear,
         }
     }
-}
 
-impl Corner {
     /// Whether a direction in the tangent plane lies in the sector; none next to its sides.
-    fn holds(&self, w: &Vector3<f64>, normal: &Vector3<f64>) -> Option<bool> {
+    fn holds(&self, w: &Vector3<f64>) -> Option<bool> {
         if !is_plain(w.norm()) {
             return None;
         }
-        let turn = normal.dot(&self.out.cross(w)).atan2(self.out.dot(w));
+        let turn = self.normal.dot(&self.out.cross(w)).atan2(self.out.dot(w));
         let turn = turn.rem_euclid(TAU);
         let next_to = |side: f64| {
             let away = (turn - side).rem_euclid(TAU);
@@ -312,7 +363,7 @@ impl Corner {
 }
 
 /// Those that hide, the nearest to the eye first; none if one is not plain, or two are equally near.
-fn hiding_of(effects: Vec<(FaceId, Effect)>) -> Option<Vec<FaceId>> {
+fn hiding_of(effects: impl Iterator<Item = (FaceId, Effect)>) -> Option<Vec<FaceId>> {
     let mut hiding: Vec<(f64, FaceId)> = Vec::new();
     for (face, effect) in effects {
         match effect {

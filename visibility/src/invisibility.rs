@@ -259,9 +259,11 @@ impl<'s, 'a> Carrying<'s, 'a> {
             let k = if backward { n - 1 - step } else { step };
             let [entry, exit] = if backward { [1, 0] } else { [0, 1] };
             let span = self.chains[i].spans[k];
-            let found = known.take();
-            let now = found.unwrap_or_else(|| count(self.scene, &self.strands[i], span.range));
-            self.leave(i, k, entry, &now);
+            let now = known.take().unwrap_or_else(|| {
+                let now = count(self.scene, &self.strands[i], span.range);
+                self.leave(i, k, entry, &now);
+                now
+            });
             self.leave(i, k, exit, &now);
             let between = if backward { k.checked_sub(1) } else { Some(k) };
             let change = between.and_then(|b| self.chains[i].between.get(b));

@@ -590,3 +590,79 @@ fn pole(centre: Point3<f64>, radius: f64, attempt: usize) -> Point3<f64> {
     let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);
     centre + Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d * radius
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::curve::{Circle, Curve};
+    use crate::geometry::frame::Frame;
+
+    fn torus() -> Torus {
+        Torus {
+            frame: Frame::world(),
+            major: 2.0,
+            minor: 0.75,
+        }
+    }
+
+    fn parallel(phi: f64) -> Curve {
+        let Torus {
+            frame: f,
+            major,
+            minor,
+        } = torus();
+        Curve::Circle(Circle {
+            frame: f.at(f.point(0.0, 0.0, minor * phi.sin())),
+            radius: major + minor * phi.cos(),
+        })
+    }
+
+    fn tube(theta: f64) -> Curve {
+        let Torus {
+            frame: f,
+            major,
+            minor: radius,
+        } = torus();
+        let radial = f.x * theta.cos() + f.y * theta.sin();
+        let frame = Frame {
+            origin: f.origin + radial * major,
+            x: radial,
+            y: f.z,
+            z: radial.cross(&f.z),
+        };
+        Curve::Circle(Circle { frame, radius })
+    }
+
+    /// The loops of all but a part of the torus between two angles about its axis, and the hole with
+    /// these angles.
+    #[test]
+    fn a_hole_in_a_torus_that_is_cut_through_belongs_to_what_is_left() {
+        let arc = |curve, range, sense| DirectedArc {
+            curve,
+            range,
+            sense,
+        };
+        let (start, end) = (tube(1.0), tube(5.0));
+        let (low, high, a, b) = (parallel(0.4), parallel(1.2), tube(2.0), tube(3.0));
+        let left = [
+            vec![arc(&start, [0.0, TAU], Sense::Against)],
+            vec![arc(&end, [0.0, TAU], Sense::Along)],
+            vec![
+                arc(&low, [2.0, 3.0], Sense::Against),
+                arc(&a, [0.4, 1.2], Sense::Along),
+                arc(&high, [2.0, 3.0], Sense::Along),
+                arc(&b, [0.4, 1.2], Sense::Against),
+            ],
+        ];
+        let surface = Surface::Torus(torus());
+        for turn in 0..3 {
+            let loops: Vec<_> = (0..3).map(|k| left[(turn + k) % 3].clone()).collect();
+            let found = regions(&surface, Sense::Along, &loops, 1e-10).unwrap();
+            let whole = Region {
+                loops: vec![0, 1, 2],
+                euler: -1,
+            };
+            assert_eq!(found, [whole]);
+        }
+    }
+}

@@ -73,6 +73,10 @@ enum Kind {
 /// How far beyond its range, as a part of it, the function is asked for its sign.
 const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 
+/// A function that leaves the band by no more than this has not left it: next to the band's edge
+/// rounding takes it in and out.
+const FRINGE: f64 = 1.0 + 1.0 / 64.0;
+
 /// A function whose roots are sought.
 pub trait Function {
     /// The certified ranges of the value and of two derivatives over an interval.
@@ -273,11 +277,18 @@ impl<F: Function> Search<'_, F> {
         })
     }
 
+    /// Whether two clusters are one: they touch, or rounding alone takes the function out of the
+    /// band between them.
+    fn is_one(&self, before: &Cluster, after: &Cluster) -> bool {
+        before.hi >= after.lo
+            || self.value(0.5 * (before.hi + after.lo)).abs() <= FRINGE * self.band
+    }
+
     fn finish(self, first: f64, last: f64) -> Zeros {
         let mut merged: Vec<Vec<Cluster>> = Vec::new();
         for c in &self.clusters {
             match merged.last_mut() {
-                Some(group) if group.last().is_some_and(|p| p.hi >= c.lo) => group.push(*c),
+                Some(group) if group.last().is_some_and(|p| self.is_one(p, c)) => group.push(*c),
                 _ => merged.push(vec![*c]),
             }
         }
@@ -489,6 +500,23 @@ mod tests {
         // The extremum is 1e-10: no root.
         let r = roots(|t| (t - k(0.3)).square() + k(1e-10), &[0.0, 1.0]);
         assert!(r.is_empty());
+    }
+
+    #[test]
+    fn rounding_at_the_edge_of_the_band_makes_no_roots() {
+        // A triple root, and noise of a thousandth of the band.
+        let noise = |t: Interval| Interval::point(1e-14 * (t.mid() * 1e9).sin());
+        let f = |t: Interval| {
+            let x = Jet::variable(t) - k(0.3);
+            let mut y = x.square() * x;
+            y.v = y.v + noise(t);
+            y
+        };
+        let Zeros::At { roots, .. } = isolate(&f, &[0.0, 1.0], 1e-11) else {
+            panic!("everywhere");
+        };
+        assert_eq!(roots.len(), 1);
+        assert!(roots[0].lo < 0.3 && roots[0].hi > 0.3);
     }
 
     #[test]

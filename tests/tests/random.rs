@@ -9,7 +9,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 9] = [
+const MENDED: [(u64, &str); 13] = [
+    (586, "a slit along a parallel of a torus"),
+    (
+        1878,
+        "a line parallel to a hyperbola's asymptote in the image",
+    ),
+    (
+        2474,
+        "a limb that touches another in the image where it ends",
+    ),
+    (
+        6530,
+        "a plane that leaves a torus along a direction without curvature",
+    ),
     (893, "an edge passes close to where a limb ends on it"),
     (1200, "junctions on both sides of a closed contour's seam"),
     (

@@ -150,9 +150,12 @@ fn line_and_conic(
             let k2 = direction.dot(&(conic * direction));
             let k1 = 2.0 * origin.dot(&(conic * direction));
             let k0 = origin.dot(&(conic * origin));
-            // A tangent: its two roots are one, and no crossing.
+            // A tangent: its two roots are one, and no crossing. A line along an asymptote touches
+            // at infinity only.
             let touch = -0.5 * k1 / k2;
-            let tangent = touch.is_finite() && on_conic(conic, &(origin + direction * touch), near);
+            let [lo, hi] = a.range;
+            let close = touch >= 2.0 * lo - hi && touch <= 2.0 * hi - lo;
+            let tangent = close && on_conic(conic, &(origin + direction * touch), near);
             if !tangent {
                 quadratic([k0, k1, k2], &mut both);
             }

@@ -93,6 +93,8 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
         let (a, b) = (&strands[i as usize], &strands[j as usize]);
         let mut found = |t: f64, s: f64| search.crossing((i, a, t), (j, b, s));
         let overlap = cross(a, b, scene.projection, scene.band, &mut found);
+        search.crowd_passed(a, b);
+        search.crowd_passed(b, a);
         if overlap == Overlap::Yes && i != j {
             search.overlap((i, a), (j, b));
             search.overlap((j, b), (i, a));
@@ -209,6 +211,28 @@ impl Search<'_, '_, '_, '_> {
             let near = 2.0 * LOOSE * self.scene.band;
             let passed = k == nearest || self.apart(&p, &strand.curve.point(t)) <= near;
             if let (true, &Some(id)) = (passed, id) {
+                self.junctions.crowd(id);
+            }
+        }
+    }
+
+    /// Notes the junctions of `far` that `near` passes before in the image, be it by a touch that is
+    /// no crossing.
+    fn crowd_passed(&mut self, far: &Strand<'_>, near: &Strand<'_>) {
+        let margin = 2.0 * LOOSE * self.scene.band;
+        for (id, t) in junctions_of(far) {
+            let p = far.curve.point(t);
+            let at = flat_of(self.scene.projection, &p);
+            if self.junctions.is_crowded(id) || !near.hull.holds(at) {
+                continue;
+            }
+            let (v, _) = self.scene.projection.towards_eye(&p);
+            let mut passed = false;
+            parameters_at(near, &p, self.scene, &mut |s| {
+                let q = near.curve.point(s);
+                passed |= (q - p).dot(&v) > margin && self.apart(&p, &q) <= margin;
+            });
+            if passed {
                 self.junctions.crowd(id);
             }
         }

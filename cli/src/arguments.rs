@@ -49,6 +49,9 @@ pub struct DescriptionOptions {
     /// Refuse the part where a decision was closer than a hundred to one
     #[arg(long)]
     pub strict: bool,
+    /// Let coincide only what is proven to [not there yet: refused with status 3]
+    #[arg(long)]
+    pub exact: bool,
     /// The part of a .padl file to take [default: the last solid assigned]
     #[arg(long, value_name = "NAME")]
     pub part: Option<String>,

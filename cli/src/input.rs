@@ -4,6 +4,7 @@ use crate::arguments::{CameraOptions, DescriptionOptions};
 use crate::diagnostics::{self, Failure};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{self, Description, Format, Options};
+use premio_kernel::number::sign::Zeros;
 use premio_visibility::Camera;
 use std::path::Path;
 use std::time::Instant;
@@ -33,6 +34,11 @@ pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
     let how = EvaluationOptions {
         resolution: options.resolution,
         noise: description.digits,
+        zeros: if options.exact {
+            Zeros::Proven
+        } else {
+            Zeros::ByResolution
+        },
     };
     let evaluation =
         evaluate(&description.tree, &how).map_err(|e| Failure::evaluation(&name, &e))?;

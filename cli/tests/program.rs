@@ -130,6 +130,7 @@ fn wrong_input_ends_with_2() {
         "info part.padl --resolution -1",
         "contours part.padl --format json",
         "contours part.padl --format json --eye 0,0,0 --target 0,0,0",
+        "contours part.padl --format json --eye 9,9,9 --target 0,0,0 --up 0,0,0",
         "export part.padl --format json -o no/such/folder/out.json",
     ] {
         let out = premio(folder.path(), words);
@@ -148,6 +149,15 @@ fn a_close_call_ends_with_3_under_strict() {
     assert_eq!(strict.status.code(), Some(3));
     assert!(strict.stdout.is_empty());
     assert!(String::from_utf8_lossy(&strict.stderr).contains("apart at"));
+}
+
+#[test]
+fn proofs_are_refused() {
+    let folder = folder();
+    let exact = premio(folder.path(), "info part.padl --exact");
+    assert_eq!(exact.status.code(), Some(3));
+    assert!(exact.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&exact.stderr).contains("cannot be proven yet"));
 }
 
 #[test]

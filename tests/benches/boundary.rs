@@ -13,7 +13,7 @@ fn tree(text: &[u8], format: Format) -> (Tree, EvaluationOptions) {
     let description = read("part", text, format, &Options::default()).unwrap();
     let how = EvaluationOptions {
         noise: description.digits,
-        resolution: None,
+        ..EvaluationOptions::default()
     };
     (description.tree, how)
 }

@@ -81,7 +81,7 @@ fn wrong(
     let description = read(name, text, format, &options).map_err(|e| e.to_string())?;
     let how = EvaluationOptions {
         noise: description.digits,
-        resolution: None,
+        ..EvaluationOptions::default()
     };
     let evaluation = evaluate(&description.tree, &how).map_err(|e| e.to_string())?;
     if let Some((volume, slack)) = expected {

@@ -311,6 +311,9 @@ fn validate_sight(
     if !all.into_iter().all(|x| x.is_finite()) {
         return Err(CameraError::Value("eye", "target or up is not finite"));
     }
+    if up.iter().all(|&x| x == 0.0) {
+        return Err(CameraError::Value("up", "is zero"));
+    }
     let size = eye.coords.norm().max(target.coords.norm());
     if (target - eye).norm() <= size * ROUNDING || eye == target {
         return Err(CameraError::Value("target", "is the eye"));

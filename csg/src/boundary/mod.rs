@@ -20,7 +20,7 @@ use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
-use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, ROUNDING};
+use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, ROUNDING, Zeros};
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,6 +30,8 @@ pub struct EvaluationOptions {
     pub resolution: Option<f64>,
     /// The relative noise of the description's coordinates, where it has any.
     pub noise: Option<f64>,
+    /// What coincides.
+    pub zeros: Zeros,
 }
 
 /// The boundary of a tree, and how it was decided.
@@ -63,6 +65,9 @@ pub enum EvaluationError {
     /// The description's numbers are too large or too small for doubles.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
+    /// Coincidence cannot be proven yet.
+    #[error("coincidence cannot be proven yet, only decided by the resolution")]
+    Unproven,
     /// The part lies too far from the origin for doubles.
     #[error(
         "the part, of size {size:.3e}, lies up to {far:.3e} from the origin: its coordinates are rounded by more than a millionth of its size"
@@ -89,6 +94,9 @@ pub enum EvaluationError {
 
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
+    if options.zeros == Zeros::Proven {
+        return Err(EvaluationError::Unproven);
+    }
     let solids = halfspaces::Solids::of(tree);
     let size = solids.bounds.diagonal();
     if tree.is_empty() {

@@ -38,6 +38,16 @@ impl Side {
     }
 }
 
+/// What counts as zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Zeros {
+    /// What lies within the resolution.
+    #[default]
+    ByResolution,
+    /// What is proven to be zero by exact arithmetic, and nothing else.
+    Proven,
+}
+
 /// A decision that was closer than a hundred to one.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct CloseCall {

@@ -120,6 +120,8 @@ struct Layer {
 /// How far aside of a contour its sides are looked at, in multiples of the resolution: beyond what
 /// counts as touching.
 const ASIDE: f64 = 64.0;
+/// How far apart on a line of sight faces that touch may be, in multiples of the resolution.
+const TOUCHING: f64 = 4.0;
 
 /// The directions in which a curve seen along `towards` has its two sides in the image; all around
 /// where it is seen end-on.
@@ -401,8 +403,12 @@ impl<'a> Scene<'a> {
             });
         }
         // Faces that touch are no further apart here than the resolution: there is no gap to see.
-        let near = ASIDE * self.band;
-        let touched = |hit: &&Hit| layers.iter().any(|l| (l.at - hit.at).abs() <= 2.0 * near);
+        // A wedge of material, or of nothing, next to an edge is as thick here as the way aside.
+        let near = TOUCHING * self.band;
+        let touched = |hit: &&Hit| {
+            let reach = 2.0 * ASIDE * self.band;
+            layers.iter().any(|l| (l.at - hit.at).abs() <= reach)
+        };
         for hit in unclear.iter().filter(|hit| !hit.front).filter(touched) {
             self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
                 if !front {

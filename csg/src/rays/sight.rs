@@ -52,6 +52,7 @@ impl Material {
         }
         let count = entries(&own, depth, length);
         let frame = Frame::about(*point, towards);
+        let least = clearance.size * ROUNDING;
         let agree = (0..NEIGHBOURS).all(|k| {
             let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
             let beside = |by: f64| {
@@ -65,8 +66,9 @@ impl Material {
             if entries(&aside, depth, length) != count {
                 return false;
             }
-            // The point's own faces draw near with the line of sight, another one does not.
-            let close = first_exit(&aside, clearance.aside);
+            // The point's own faces draw near with the line of sight, another one does not, however
+            // close it lies.
+            let close = first_exit(&aside, least);
             close >= depth
                 || beside(clearance.aside * CLOSER)
                     .is_some_and(|(closer, _)| first_exit(&closer, 0.0) < close * DRAWN)

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 13] = [
+const MENDED: [(u64, &str); 20] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -44,6 +44,19 @@ const MENDED: [(u64, &str); 13] = [
         229,
         "mouths of tori that fall on one another along the axis",
     ),
+    (2804, "an edge below the sharp edge of an overhang"),
+    (7115, "an edge below a narrow gap's edge"),
+    (
+        4515,
+        "limbs that touch in space and evenly in the image, and change places there",
+    ),
+    (
+        2582,
+        "a circle seen edge-on whose image ends on another contour",
+    ),
+    (7382, "a limb that runs along the edge on which it ends"),
+    (3052, "an edge below a touch of a plane and a torus"),
+    (3081, "a limb below a touch of tori"),
 ];
 
 /// Examines the trees of some seeds on two threads.

@@ -15,7 +15,7 @@ use crate::strand::Strand;
 use crate::stretch::passes;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use premio_kernel::number::interval::Interval;
-use premio_kernel::number::roots::{Contact, Zeros, isolate};
+use premio_kernel::number::roots::{Contact, Root, Zeros, bisect, isolate};
 use premio_kernel::number::scalar::{Scalar, dot};
 use premio_kernel::number::sign::ROUNDING;
 use std::f64::consts::TAU;
@@ -278,14 +278,56 @@ fn general(
         match solve(&breaks) {
             Zeros::Everywhere => together += a.length_between(&breaks),
             Zeros::At { roots, .. } => {
-                for r in roots.iter().filter(|r| r.contact != Contact::Touching) {
-                    let h = projection.homogeneous(&a.curve.point(r.t));
-                    b.image.parameters(&h, b.range, &mut |s| found(r.t, s));
+                for r in &roots {
+                    let Some(t) = place_of(r, [a, b], |t| ahead(a, b, projection, t)) else {
+                        continue;
+                    };
+                    let h = projection.homogeneous(&a.curve.point(t));
+                    b.image.parameters(&h, b.range, &mut |s| found(t, s));
                 }
             }
         }
     }
     overlap_of(together, a)
+}
+
+/// Where a root on `a` is a crossing. One that only touches is where the curves meet in space, so
+/// that the other is in front from there on; else it is none. One that is not told from a junction
+/// of both is there: they touch, and its best place may be a long way off.
+pub fn place_of(
+    root: &Root,
+    [a, b]: [&Strand<'_>; 2],
+    ahead: impl Fn(f64) -> Option<f64>,
+) -> Option<f64> {
+    let within = |t: &f64| (root.lo..=root.hi).contains(t);
+    let shared = |id: u32| b.junctions().any(|other| other.0 == id);
+    let mut known = a.junctions().filter(|(id, t)| within(t) && shared(*id));
+    if let Some((_, t)) = known.next() {
+        return Some(t);
+    }
+    if root.contact != Contact::Touching {
+        return Some(root.t);
+    }
+    let (from, to) = (ahead(root.lo)?, ahead(root.hi)?);
+    let nearer = |t: f64| ahead(t).unwrap_or(from);
+    ((from < 0.0) != (to < 0.0)).then(|| bisect(root.lo, root.hi, from, nearer))
+}
+
+/// How far a line or conic lies before the point of another curve with the same image.
+fn ahead(a: &Strand<'_>, b: &Strand<'_>, projection: &Projection, t: f64) -> Option<f64> {
+    let p = a.curve.point(t);
+    let (v, _) = projection.towards_eye(&p);
+    let mut nearest: Option<(f64, f64)> = None;
+    b.image
+        .parameters(&projection.homogeneous(&p), b.range, &mut |s| {
+            let apart = b.curve.point(s) - p;
+            let along = apart.dot(&v);
+            let aside = (apart - v * along).norm();
+            if nearest.is_none_or(|n| aside < n.0) {
+                nearest = Some((aside, along));
+            }
+        });
+    nearest.map(|n| n.1)
 }
 
 /// Whether the image of a curve lies on the line or conic of another: none of the kinds there are

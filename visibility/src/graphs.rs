@@ -6,7 +6,7 @@
 //! monotone and its ends decide; else its roots are isolated with their multiplicity, so a touch
 //! is told from two crossings, and curves that fall on one another are seen to do so.
 
-use crate::crossing::{Overlap, overlap_of};
+use crate::crossing::{Overlap, overlap_of, place_of};
 use crate::image::flat_point;
 use crate::projection::Projection;
 use crate::strand::Strand;
@@ -15,7 +15,7 @@ use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::roots::{Contact, Zeros, bisect_newton, isolate};
+use premio_kernel::number::roots::{Root, Zeros, bisect_newton, isolate};
 use premio_kernel::number::sign::ROUNDING;
 
 /// Distances in space within which two roots are one, in multiples of the resolution.
@@ -156,6 +156,7 @@ fn own_pairs(a: &Strand<'_>, both: &mut impl FnMut(&Stretch, &Stretch)) {
 
 /// Two stretches as graphs over a common direction.
 struct Graphs<'x> {
+    strands: [&'x Strand<'x>; 2],
     a: &'x Curve,
     b: &'x Curve,
     projection: &'x Projection,
@@ -179,8 +180,8 @@ struct Gap {
 impl<'x> Graphs<'x> {
     /// None where one of them is a dot.
     fn of(
-        (a, x): (&Strand<'x>, &'x Stretch),
-        (b, y): (&Strand<'x>, &'x Stretch),
+        (a, x): (&'x Strand<'x>, &'x Stretch),
+        (b, y): (&'x Strand<'x>, &'x Stretch),
         projection: &'x Projection,
     ) -> Option<Self> {
         let courses = [x.course?, y.course?];
@@ -190,6 +191,7 @@ impl<'x> Graphs<'x> {
         let size = sum[0].hypot(sum[1]);
         let e = [sum[0] / size, sum[1] / size];
         Some(Self {
+            strands: [a, b],
             a: a.curve,
             b: b.curve,
             projection,
@@ -271,6 +273,13 @@ impl<'x> Graphs<'x> {
         }
     }
 
+    /// How far the first curve lies before the point of the second with the same image.
+    fn ahead(&self, s: f64) -> Option<f64> {
+        let p = self.b.point(s);
+        let (v, _) = self.projection.towards_eye(&p);
+        Some((self.a.point(self.gap(s).t) - p).dot(&v))
+    }
+
     fn gap_over(&self, s: Interval) -> Jet<Interval> {
         use premio_kernel::number::scalar::Scalar;
         let [x, y] = self.jet_over(self.b, s);
@@ -323,8 +332,10 @@ impl<'x> Graphs<'x> {
         match isolate(&|s: Interval| self.gap_over(s), &[lo, hi], band) {
             Zeros::Everywhere => self.together([lo, hi], band, common),
             Zeros::At { roots, .. } => {
-                for r in roots.iter().filter(|r| r.contact != Contact::Touching) {
-                    found(self.gap(r.t).t, r.t);
+                let [a, b] = self.strands;
+                let place = |r: &Root| place_of(r, [b, a], |s| self.ahead(s));
+                for s in roots.iter().filter_map(place) {
+                    found(self.gap(s).t, s);
                 }
             }
         }

@@ -56,13 +56,6 @@ fn settle(strand: &Strand<'_>, t: f64, near: f64) -> Option<Settled> {
     })
 }
 
-/// The junctions known on a strand, with their parameters.
-fn junctions_of<'x>(strand: &'x Strand<'_>) -> impl Iterator<Item = (u32, f64)> + 'x {
-    let ends = strand.ends.iter().zip(strand.range);
-    let ends = ends.filter_map(|(id, t)| id.map(|id| (id, t)));
-    ends.chain(strand.splits.iter().map(|split| (split.junction, split.t)))
-}
-
 /// Of the parameters of one point of a closed curve, the one nearest to `t`.
 fn nearest_turn(strand: &Strand<'_>, from: f64, t: f64) -> f64 {
     match strand.curve.period() {
@@ -95,6 +88,10 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
         let overlap = cross(a, b, scene.projection, scene.band, &mut found);
         search.crowd_passed(a, b);
         search.crowd_passed(b, a);
+        if i != j {
+            search.turns((i, a), (j, b));
+            search.turns((j, b), (i, a));
+        }
         if overlap == Overlap::Yes && i != j {
             search.overlap((i, a), (j, b));
             search.overlap((j, b), (i, a));
@@ -166,8 +163,8 @@ impl Search<'_, '_, '_, '_> {
     /// long way. Up to the junction both images are straight to within the resolution, so nothing
     /// tells them from each other.
     fn at_shared(&self, a: &Strand<'_>, t: f64, b: &Strand<'_>, s: f64) -> bool {
-        junctions_of(a).any(|(id, from)| {
-            junctions_of(b)
+        a.junctions().any(|(id, from)| {
+            b.junctions()
                 .filter(|other| other.0 == id)
                 .any(|(_, other)| {
                     self.straight(a, nearest_turn(a, from, t), t)
@@ -190,12 +187,48 @@ impl Search<'_, '_, '_, '_> {
         if ahead.abs() <= 2.0 * near {
             self.crowd(a, t);
             self.crowd(b, s);
+            if !t.at_end && !s.at_end {
+                self.meeting([(i, a, t.t), (j, b, s.t)], &p);
+            }
             return;
         }
         if ahead > 0.0 {
             self.junction((j, b, s, q), (i, a, t, p), &v);
         } else {
             self.junction((i, a, t, p), (j, b, s, q), &v);
+        }
+    }
+
+    /// Contours of faces that touch meet in space: which is in front may change, and what hides
+    /// them is told by neither.
+    fn meeting(&mut self, both: [At<'_, '_>; 2], p: &Point3<f64>) {
+        let junction = self.junctions.add(JunctionKind::T, Site::Alone, p);
+        self.junctions.list[junction as usize].contours =
+            both.iter().map(|(_, strand, _)| strand.contour).collect();
+        self.junctions.crowd(junction);
+        let change = Change::Correct;
+        self.splits.extend(both.map(|(i, _, t)| {
+            let split = Split {
+                t,
+                junction,
+                change,
+            };
+            (i, split)
+        }));
+    }
+
+    /// The turns of a strand's image that touch another contour, where their images do not cross.
+    fn turns(&mut self, (i, a): (u32, &Strand<'_>), (j, b): (u32, &Strand<'_>)) {
+        let near = LOOSE * self.scene.band;
+        for &t in &a.turns {
+            let p = a.curve.point(t);
+            let mut met = Vec::new();
+            parameters_at(b, &p, self.scene, &mut |s| met.push(s));
+            for s in met {
+                if self.apart(&p, &b.curve.point(s)) <= near {
+                    self.crossing((i, a, t), (j, b, s));
+                }
+            }
         }
     }
 
@@ -220,7 +253,7 @@ impl Search<'_, '_, '_, '_> {
     /// no crossing.
     fn crowd_passed(&mut self, far: &Strand<'_>, near: &Strand<'_>) {
         let margin = 2.0 * LOOSE * self.scene.band;
-        for (id, t) in junctions_of(far) {
+        for (id, t) in far.junctions() {
             let p = far.curve.point(t);
             let at = flat_of(self.scene.projection, &p);
             if self.junctions.is_crowded(id) || !near.hull.holds(at) {
@@ -240,7 +273,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// Another contour falls on a strand.
     fn crowd_all(&mut self, strand: &Strand<'_>) {
-        for (id, _) in junctions_of(strand) {
+        for (id, _) in strand.junctions() {
             self.junctions.crowd(id);
         }
     }

@@ -93,6 +93,13 @@ pub struct Strand<'a> {
 }
 
 impl Strand<'_> {
+    /// The junctions known on it, with their parameters.
+    pub fn junctions(&self) -> impl Iterator<Item = (u32, f64)> {
+        let ends = self.ends.iter().zip(self.range);
+        let ends = ends.filter_map(|(id, t)| id.map(|id| (id, t)));
+        ends.chain(self.splits.iter().map(|split| (split.junction, split.t)))
+    }
+
     /// About how long the image is between the first and the last of some parameters.
     pub fn length_between(&self, t: &[f64]) -> f64 {
         let (Some(&lo), Some(&hi)) = (t.first(), t.last()) else {

@@ -52,7 +52,8 @@ impl Material {
         }
         let count = entries(&own, depth, length);
         let frame = Frame::about(*point, towards);
-        let least = clearance.size * ROUNDING;
+        // What is nearer than this is rounding on the point's own faces.
+        let least = clearance.sliver * CLOSER * CLOSER;
         let agree = (0..NEIGHBOURS).all(|k| {
             let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
             let beside = |by: f64| {

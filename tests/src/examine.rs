@@ -1,5 +1,5 @@
 //! What is asked of every tree: it is evaluated without a refusal, a panic or a close call, the
-//! boundary keeps its rules, the volume is the rays', and no piece of a view is wrong.
+//! boundary keeps its rules, the volume is the rays', no piece of a view is wrong, and no contour is missing.
 
 use premio::checks::{Checker, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
@@ -11,12 +11,21 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
 
+/// The views that are looked at: along the axes limbs lie on edges and on one another.
+const VIEWS: [&str; 5] = [
+    "perspective 3",
+    "orthographic 1",
+    "along x",
+    "along y",
+    "along z",
+];
+
 /// What to look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Depth {
     /// How many rays measure the volume.
     pub rays: usize,
-    /// Whether a perspective, a general orthographic and an axis view are counted again.
+    /// Whether a perspective, a general orthographic and the axis views are counted again.
     pub views: bool,
 }
 
@@ -73,9 +82,8 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     let mut report = checker.solid(depth.rays);
     if depth.views && report.holds() {
         let all = views::around(&evaluation.bounds);
-        for name in ["perspective 3", "orthographic 1", "along z"] {
-            let view = all.iter().filter(|v| v.name == name);
-            for v in view {
+        for name in VIEWS {
+            for v in all.iter().filter(|v| v.name == name) {
                 report.checks.extend(checker.view(&v.name, &v.camera));
                 wrong.extend(differences(&evaluation, &v.name, &v.camera));
             }

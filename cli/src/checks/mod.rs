@@ -192,7 +192,7 @@ impl<'a> Checker<'a> {
         vec![
             Check {
                 subject,
-                holds: counted.wrong.is_empty(),
+                holds: counted.holds(),
                 detail: counted.to_string(),
             },
             Check {

@@ -22,7 +22,7 @@ struct Arguments {
     /// How many seeds.
     #[arg(long, default_value_t = 1000)]
     count: u64,
-    /// Count the pieces of three views again.
+    /// Count the pieces of five views again, and look for missing contours.
     #[arg(long)]
     views: bool,
     /// How many rays measure each volume.

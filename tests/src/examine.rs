@@ -1,22 +1,31 @@
 //! What is asked of every tree: it is evaluated without a refusal, a panic or a close call, the
-//! boundary keeps its rules, the volume is the rays', and no piece of a view is wrong.
+//! boundary keeps its rules, the volume is the rays', no piece of a view is wrong, and no contour is missing.
 
 use premio::checks::{Checker, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_visibility::Camera;
 use premio_visibility::invisibility::Method;
 use premio_visibility::view::contours_by;
+use premio_visibility::{Camera, Contours};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
+
+/// The views that are looked at: along the axes limbs lie on edges and on one another.
+const VIEWS: [&str; 5] = [
+    "perspective 3",
+    "orthographic 1",
+    "along x",
+    "along y",
+    "along z",
+];
 
 /// What to look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Depth {
     /// How many rays measure the volume.
     pub rays: usize,
-    /// Whether a perspective, a general orthographic and an axis view are counted again.
+    /// Whether a perspective, a general orthographic and the axis views are counted again.
     pub views: bool,
 }
 
@@ -73,10 +82,9 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     let mut report = checker.solid(depth.rays);
     if depth.views && report.holds() {
         let all = views::around(&evaluation.bounds);
-        for name in ["perspective 3", "orthographic 1", "along z"] {
-            let view = all.iter().filter(|v| v.name == name);
-            for v in view {
-                report.checks.push(checker.view(&v.name, &v.camera));
+        for name in VIEWS {
+            for v in all.iter().filter(|v| v.name == name) {
+                report.checks.extend(checker.view(&v.name, &v.camera));
                 wrong.extend(differences(&evaluation, &v.name, &v.camera));
             }
         }
@@ -93,14 +101,21 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
 pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Option<String> {
     let of = |method| contours_by(&evaluation.brep, camera, evaluation.resolution, method).ok();
     let (carried, counted) = (of(Method::Carried)?, of(Method::Counted)?);
+    let pieces = |seen: &Contours| -> Vec<usize> {
+        let each = seen.contours.iter();
+        each.map(|c| c.pieces.len()).collect()
+    };
+    if pieces(&carried) != pieces(&counted) {
+        return Some(format!("methods in {name}: not the same pieces"));
+    }
     let both = carried.contours.iter().zip(&counted.contours);
     both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(|pair| (a.id, pair)))
-        .find(|(_, (a, b))| a.qi != b.qi)
+        .find(|(_, (a, b))| a.qi != b.qi || a.t != b.t)
         .map(|(id, (a, b))| {
             let [from, to] = a.t;
             format!(
-                "methods in {name}: contour {id} from {from} to {to}: carried {}, counted {}",
-                a.qi, b.qi
+                "methods in {name}: contour {id} from {from} to {to}: carried {}, counted {} from {} to {}",
+                a.qi, b.qi, b.t[0], b.t[1]
             )
         })
 }

@@ -90,10 +90,11 @@ fn examine(name: &str, json: &Value) -> Vec<f64> {
     let mut wrong = Vec::new();
     let mut times = Vec::new();
     for (view, camera) in cameras() {
-        let check = checker.view(view, &camera);
-        println!("{name}: {check}");
-        if !check.holds {
-            wrong.push(check.to_string());
+        for check in checker.view(view, &camera) {
+            println!("{name}: {check}");
+            if !check.holds {
+                wrong.push(check.to_string());
+            }
         }
         let seen = |method| contours_by(&part.brep, &camera, part.resolution, method).unwrap();
         let (a, b) = (seen(Method::Carried), seen(Method::Counted));

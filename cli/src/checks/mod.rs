@@ -1,9 +1,13 @@
 //! The self-checks that cross crates: the boundary and the contours against the tree, which rays
 //! ask directly.
 
+mod images;
+mod outlines;
 mod recount;
 pub mod views;
+mod window;
 
+pub use outlines::{Lack, Missing, Outlines};
 pub use recount::{Recount, WrongPiece};
 
 use premio_csg::boundary::Evaluation;
@@ -11,6 +15,7 @@ use premio_csg::rays::{Clearance, Estimate, Material};
 use premio_csg::tree::Tree;
 use premio_kernel::brep::check::check;
 use premio_kernel::brep::mass::mass;
+use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::{Camera, contours};
 use std::fmt;
@@ -21,6 +26,9 @@ pub const DEVIATIONS: f64 = 5.0;
 /// How many times more rays decide where few rays disagree.
 const AGAIN: usize = 16;
 
+/// How many rays look for material outside the box.
+const AROUND: usize = 2000;
+
 /// What a check is about.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
@@ -28,8 +36,12 @@ pub enum Subject {
     Topology,
     /// The volume of the boundary against the tree's by rays.
     Volume,
+    /// The box of the boundary against the places where rays meet the tree.
+    Bounds,
     /// The quantitative invisibility of every piece of a view against rays on the tree.
     View(String),
+    /// The contours of a view against the changes between neighbouring lines of sight.
+    Contours(String),
 }
 
 /// The outcome of one check.
@@ -82,16 +94,18 @@ impl<'a> Checker<'a> {
     pub fn all(&self, rays: usize) -> Report {
         let mut report = self.solid(rays);
         let around = views::around(&self.evaluation.bounds);
-        report
-            .checks
-            .extend(around.into_iter().map(|v| self.view(&v.name, &v.camera)));
+        report.checks.extend(
+            around
+                .into_iter()
+                .flat_map(|v| self.view(&v.name, &v.camera)),
+        );
         report
     }
 
     /// The checks of the solid alone.
     pub fn solid(&self, rays: usize) -> Report {
         Report {
-            checks: vec![self.topology(), self.volume(rays)],
+            checks: vec![self.topology(), self.volume(rays), self.bounds()],
         }
     }
 
@@ -131,6 +145,23 @@ impl<'a> Checker<'a> {
         }
     }
 
+    fn bounds(&self) -> Check {
+        let (given, met) = (&self.evaluation.bounds, self.material.extent(AROUND));
+        let slack = self.clearance().sliver;
+        let beyond = |i: usize| (given.min[i] - met.min[i]).max(met.max[i] - given.max[i]);
+        // Of nothing met by rays the box is empty, and no difference a number or positive.
+        let off = (0..3).map(beyond).fold(f64::NEG_INFINITY, f64::max);
+        Check {
+            subject: Subject::Bounds,
+            holds: off <= slack || met == Box3::EMPTY,
+            detail: if off <= slack || met == Box3::EMPTY {
+                format!("{AROUND} rays meet nothing outside the box")
+            } else {
+                format!("rays meet material {off:e} outside the box")
+            },
+        }
+    }
+
     fn deviation(&self, estimate: &Estimate, volume: f64) -> f64 {
         let size = self.evaluation.bounds.diagonal();
         // What lies within the resolution over the whole surface is no difference.
@@ -139,27 +170,37 @@ impl<'a> Checker<'a> {
         estimate.deviation(volume, if rounding.is_finite() { rounding } else { 0.0 })
     }
 
-    /// Counts the faces before every piece that a camera sees.
-    pub fn view(&self, name: &str, camera: &Camera) -> Check {
+    /// Counts the faces before every piece that a camera sees, and looks for missing contours.
+    pub fn view(&self, name: &str, camera: &Camera) -> Vec<Check> {
         let subject = Subject::View(name.to_owned());
         let Evaluation {
             brep, resolution, ..
         } = self.evaluation;
-        match contours(brep, camera, *resolution) {
-            Ok(seen) => {
-                let counted = Recount::of(&self.material, &seen, &self.clearance());
-                Check {
+        let seen = match contours(brep, camera, *resolution) {
+            Ok(seen) => seen,
+            Err(error) => {
+                return vec![Check {
                     subject,
-                    holds: counted.wrong.is_empty(),
-                    detail: counted.to_string(),
-                }
+                    holds: false,
+                    detail: error.to_string(),
+                }];
             }
-            Err(error) => Check {
+        };
+        let clearance = self.clearance();
+        let counted = Recount::of(&self.material, &seen, &clearance);
+        let outlines = Outlines::of(&self.material, &seen, &clearance);
+        vec![
+            Check {
                 subject,
-                holds: false,
-                detail: error.to_string(),
+                holds: counted.holds(),
+                detail: counted.to_string(),
             },
-        }
+            Check {
+                subject: Subject::Contours(name.to_owned()),
+                holds: outlines.missing.is_empty(),
+                detail: outlines.to_string(),
+            },
+        ]
     }
 
     fn clearance(&self) -> Clearance {
@@ -179,7 +220,9 @@ impl fmt::Display for Subject {
         match self {
             Self::Topology => f.write_str("topology"),
             Self::Volume => f.write_str("volume"),
+            Self::Bounds => f.write_str("bounds"),
             Self::View(name) => write!(f, "view {name}"),
+            Self::Contours(name) => write!(f, "contours in {name}"),
         }
     }
 }

@@ -17,6 +17,13 @@ const NEAR: f64 = 10.0;
 /// What disagrees is looked at again with rays that run this much closer.
 const CLOSER: f64 = 1.0 / 16.0;
 
+/// The least share of samples that must be counted: along an axis, where pieces are seen end-on and
+/// on one another, it is a third.
+const COUNTED: f64 = 1.0 / 8.0;
+
+/// Of fewer samples nothing is said about the share.
+const FEW: usize = 24;
+
 /// A piece whose invisibility is not what rays say.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrongPiece {
@@ -50,6 +57,17 @@ pub struct Recount {
 }
 
 impl Recount {
+    /// Whether enough samples could be counted, and none is wrong.
+    pub fn holds(&self) -> bool {
+        self.wrong.is_empty() && self.suffices()
+    }
+
+    /// Whether the samples that could be counted say something about the view.
+    fn suffices(&self) -> bool {
+        let samples = self.pieces * SAMPLES.len();
+        samples < FEW || self.ambiguous as f64 <= (1.0 - COUNTED) * samples as f64
+    }
+
     /// Counts every piece again.
     pub fn of(material: &Material, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
@@ -131,6 +149,9 @@ impl fmt::Display for Recount {
             f,
             "{pieces} pieces, {agreed} samples agree, {ambiguous} too close to another contour"
         )?;
+        if !self.suffices() {
+            f.write_str(", too few to tell")?;
+        }
         if !wrong.is_empty() {
             write!(f, ", {} pieces wrong", wrong.len())?;
         }
@@ -143,5 +164,25 @@ impl fmt::Display for Recount {
             )?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_few_samples_are_no_proof() {
+        let of = |pieces: usize, ambiguous: usize| Recount {
+            pieces,
+            agreed: 3 * pieces - ambiguous,
+            ambiguous,
+            wrong: Vec::new(),
+        };
+        assert!(Recount::default().holds());
+        assert!(of(7, 21).holds());
+        assert!(of(40, 80).holds());
+        assert!(!of(40, 120).holds() && !of(40, 106).holds());
+        assert!(of(40, 120).to_string().ends_with("too few to tell"));
     }
 }

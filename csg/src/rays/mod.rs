@@ -3,10 +3,12 @@
 //! Every primitive answers a line with closed-form intervals in doubles, and the intervals are
 //! combined up the tree. Nothing here is certified: it is what the boundary is checked against.
 
+mod crossing;
 mod shape;
 mod sight;
 mod volume;
 
+pub use crossing::{Crossing, Surfaces};
 pub use sight::Clearance;
 pub use volume::Estimate;
 
@@ -62,7 +64,7 @@ struct Held {
 #[derive(Clone, Copy, Debug)]
 struct Event {
     at: f64,
-    node: NodeId,
+    leaf: usize,
     enters: bool,
 }
 
@@ -184,6 +186,11 @@ impl Material {
 
     /// Hands the intervals of material along a line to `found`, in order.
     fn cross(&self, ray: &Ray, scratch: &mut Scratch, mut found: impl FnMut([f64; 2])) {
+        self.cross_leaves(ray, scratch, |ends| found(ends.map(|e| e.at)));
+    }
+
+    /// The same with the primitives in which the intervals end.
+    fn cross_leaves(&self, ray: &Ray, scratch: &mut Scratch, mut found: impl FnMut([Event; 2])) {
         let Scratch {
             held,
             spans,
@@ -195,21 +202,21 @@ impl Material {
             spans.clear();
             leaf.spans(ray, spans);
             for &[lo, hi] in spans.iter() {
-                let node = leaf.node;
+                let leaf = near.data;
                 for (at, enters) in [(lo, true), (hi, false)] {
-                    events.push(Event { at, node, enters });
+                    events.push(Event { at, leaf, enters });
                 }
             }
         }
         events.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let mut since = None;
+        let mut since: Option<Event> = None;
         for event in events.iter() {
-            if self.flip(held, event.node, event.enters) {
+            if self.flip(held, self.leaves[event.leaf].node, event.enters) {
                 since = match since {
-                    None => Some(event.at),
+                    None => Some(*event),
                     Some(start) => {
-                        if event.at > start {
-                            found([start, event.at]);
+                        if event.at > start.at {
+                            found([start, *event]);
                         }
                         None
                     }

@@ -76,7 +76,7 @@ impl Shape {
     }
 
     /// Whether a point of its box is in it: negative where it is.
-    fn level(&self, p: &Vector3<f64>) -> f64 {
+    pub fn level(&self, p: &Vector3<f64>) -> f64 {
         match *self {
             Self::Block(_) => -1.0,
             Self::Wedge([x, _, z]) => p.x / x + p.z / z - 1.0,

@@ -2,6 +2,7 @@
 
 use super::{Material, Ray};
 use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::frame::Frame;
 use std::f64::consts::{PI, SQRT_2};
 
@@ -60,6 +61,29 @@ impl Material {
             value,
             standard_error: (scatter / (n * (n - 1.0))).sqrt(),
         }
+    }
+}
+
+impl Material {
+    /// The box around all places where about `rays` parallel rays enter or leave material: no
+    /// larger than the part's own.
+    pub fn extent(&self, rays: usize) -> Box3 {
+        let mut extent = Box3::EMPTY;
+        if self.bounds.min[0] > self.bounds.max[0] {
+            return extent;
+        }
+        let window = Window::around(self);
+        let mut scratch = self.scratch();
+        for k in 0..rays {
+            let [u, v] = STEPS.map(|step| ((k as f64 + 0.5) * step).fract());
+            let ray = window.ray(u, v);
+            self.cross(&ray, &mut scratch, |span| {
+                for at in span {
+                    extent = extent.hull(&Box3::of(&(ray.origin + ray.direction * at)));
+                }
+            });
+        }
+        extent
     }
 }
 

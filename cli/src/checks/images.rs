@@ -1,0 +1,134 @@
+//! Which pieces of contours pass close to a point of the image: found by halving, with no formula
+//! for the image of a curve.
+
+use super::window::{Seen, Window};
+use premio_kernel::geometry::curve::Curve;
+use premio_visibility::Contours;
+
+/// Into how many parts each smooth stretch of a curve is cut before anything is asked.
+const PARTS: usize = 16;
+
+/// The images of the pieces of a view.
+#[derive(Debug)]
+pub(super) struct Images<'a> {
+    window: &'a Window,
+    cells: Vec<Cell<'a>>,
+}
+
+/// What passes close to a point of the image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Passing {
+    /// The least and the greatest depth of the piece there.
+    pub depth: [f64; 2],
+    /// Whether the piece is visible.
+    pub visible: bool,
+}
+
+/// A stretch of a curve with the images of its ends and of its middle.
+#[derive(Clone, Copy, Debug)]
+struct Cell<'a> {
+    curve: &'a Curve,
+    visible: bool,
+    t: [f64; 3],
+    seen: [Seen; 3],
+}
+
+impl<'a> Cell<'a> {
+    /// The longer side of the box around the three points.
+    fn size(&self) -> f64 {
+        let [a, b] = self.corners();
+        (b[0] - a[0]).max(b[1] - a[1])
+    }
+
+    fn corners(&self) -> [[f64; 2]; 2] {
+        let over = |pick: fn(f64, f64) -> f64| {
+            let [a, b, c] = self.seen;
+            [0, 1].map(|i| pick(pick(a.at[i], b.at[i]), c.at[i]))
+        };
+        [over(f64::min), over(f64::max)]
+    }
+
+    /// Whether the stretch may come closer to `at` than `near`: it leaves the box of its three
+    /// points by less than the box's size.
+    fn may_pass(&self, at: [f64; 2], near: f64) -> bool {
+        let reach = near + self.size();
+        let [lo, hi] = self.corners();
+        (0..2).all(|i| lo[i] - reach <= at[i] && at[i] <= hi[i] + reach)
+    }
+
+    fn halves(&self, window: &Window) -> Option<[Self; 2]> {
+        let [a, m, b] = self.t;
+        let [first, second] = [0.5 * (a + m), 0.5 * (m + b)];
+        if first <= a || first >= m || second <= m || second >= b {
+            return None;
+        }
+        let half = |t: [f64; 3], from: Seen, to: Seen| Cell {
+            t,
+            seen: [from, window.image(&self.curve.point(t[1])), to],
+            ..*self
+        };
+        let [start, middle, end] = self.seen;
+        Some([
+            half([a, first, m], start, middle),
+            half([m, second, b], middle, end),
+        ])
+    }
+
+    fn passing(&self) -> Passing {
+        let depths = self.seen.map(|s| s.depth);
+        Passing {
+            depth: [
+                depths.into_iter().fold(f64::INFINITY, f64::min),
+                depths.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            ],
+            visible: self.visible,
+        }
+    }
+}
+
+impl<'a> Images<'a> {
+    /// The images of all pieces.
+    pub fn of(seen: &'a Contours, window: &'a Window) -> Self {
+        let mut cells = Vec::new();
+        for contour in &seen.contours {
+            for piece in &contour.pieces {
+                let breaks = contour.curve3.breaks(piece.t[0], piece.t[1]);
+                for ends in breaks.windows(2) {
+                    let at = |k: usize| {
+                        let part = k as f64 / (2 * PARTS) as f64;
+                        let t = ends[0] + (ends[1] - ends[0]) * part;
+                        (t, window.image(&contour.curve3.point(t)))
+                    };
+                    let points: Vec<(f64, Seen)> = (0..=2 * PARTS).map(at).collect();
+                    cells.extend(points.windows(3).step_by(2).map(|p| Cell {
+                        curve: &contour.curve3,
+                        visible: piece.visible,
+                        t: [p[0].0, p[1].0, p[2].0],
+                        seen: [p[0].1, p[1].1, p[2].1],
+                    }));
+                }
+            }
+        }
+        Self { window, cells }
+    }
+
+    /// Whether a piece that suits passes `at` closer than `near` (up to a factor of about four).
+    pub fn any(&self, at: [f64; 2], near: f64, suits: impl Fn(&Passing) -> bool) -> bool {
+        let mut todo: Vec<Cell<'_>> = Vec::new();
+        for cell in &self.cells {
+            todo.push(*cell);
+            while let Some(cell) = todo.pop() {
+                if !cell.may_pass(at, near) {
+                    continue;
+                }
+                let small = cell.size() <= near;
+                match cell.halves(self.window).filter(|_| !small) {
+                    Some(halves) => todo.extend(halves),
+                    None if suits(&cell.passing()) => return true,
+                    None => {}
+                }
+            }
+        }
+        false
+    }
+}

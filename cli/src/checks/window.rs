@@ -1,0 +1,92 @@
+//! The lines of sight of a camera, and the image they make, without the projection's own formulas.
+//!
+//! Image coordinates are those in the plane at depth one (in the part's unit for an orthographic
+//! camera), in any turn about the optical axis: enough to tell what is near what.
+
+use nalgebra::Point3;
+use premio_csg::rays::Ray;
+use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::geometry::frame::Frame;
+use premio_visibility::projection::{Projection, Sight};
+
+/// How far from the optical axis, in multiples of the depth, a perspective image reaches at most.
+const WIDEST: f64 = 2.0;
+
+/// A point of the image with its depth along the optical axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Seen {
+    pub at: [f64; 2],
+    pub depth: f64,
+}
+
+/// A round window of the image that the whole part is behind.
+#[derive(Debug)]
+pub(super) struct Window {
+    frame: Frame,
+    central: bool,
+    /// The least depth that is seen.
+    pub near: f64,
+    /// The middle.
+    pub centre: [f64; 2],
+    /// The radius.
+    pub radius: f64,
+}
+
+impl Window {
+    /// The window that shows a box.
+    pub fn around(projection: &Projection, bounds: &Box3) -> Self {
+        let mut window = Self {
+            frame: Frame::about(projection.origin(), projection.axis().normalize()),
+            central: matches!(projection.sight, Sight::Eye(_)),
+            near: projection.near,
+            centre: [0.0; 2],
+            radius: WIDEST,
+        };
+        let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in 0..8 {
+            let pick = |i: usize| [bounds.min[i], bounds.max[i]][corner >> i & 1];
+            let seen = window.image(&Point3::new(pick(0), pick(1), pick(2)));
+            if window.central && seen.depth <= window.near.max(0.0) {
+                // The box reaches round the eye: a cone about the optical axis is looked at.
+                return window;
+            }
+            for i in 0..2 {
+                lo[i] = lo[i].min(seen.at[i]);
+                hi[i] = hi[i].max(seen.at[i]);
+            }
+        }
+        window.centre = [0, 1].map(|i| 0.5 * (lo[i] + hi[i]));
+        window.radius = 0.5 * (hi[0] - lo[0]).hypot(hi[1] - lo[1]);
+        window
+    }
+
+    /// The image of a point.
+    pub fn image(&self, p: &Point3<f64>) -> Seen {
+        let d = p - self.frame.origin;
+        let depth = self.frame.z.dot(&d);
+        let scale = if self.central { depth } else { 1.0 };
+        let at = [self.frame.x, self.frame.y].map(|axis| axis.dot(&d) / scale);
+        Seen { at, depth }
+    }
+
+    /// The line of sight of an image point, with the depth as its parameter.
+    pub fn ray(&self, [x, y]: [f64; 2]) -> Ray {
+        let aside = self.frame.x * x + self.frame.y * y;
+        if self.central {
+            Ray {
+                origin: self.frame.origin,
+                direction: self.frame.z + aside,
+            }
+        } else {
+            Ray {
+                origin: self.frame.origin + aside,
+                direction: self.frame.z,
+            }
+        }
+    }
+
+    /// What turns a distance in the image into one in space, at some depth.
+    pub fn scale(&self, depth: f64) -> f64 {
+        if self.central { depth.abs() } else { 1.0 }
+    }
+}

@@ -3,7 +3,7 @@
 //! `cargo run --release -p premio-tests --example trees -- --from 0 --count 10000 --views`
 
 use clap::Parser;
-use premio_tests::examine::{Depth, examine};
+use premio_tests::examine::{Depth, VIEWS, examine};
 use premio_tests::random::{simpler, tree};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -189,7 +189,7 @@ fn run(mut command: Command, limit: Duration) -> io::Result<Vec<String>> {
 fn one(tree: &str, arguments: &Arguments) -> ExitCode {
     let depth = Depth {
         rays: arguments.rays,
-        views: arguments.views,
+        views: if arguments.views { &VIEWS } else { &[] },
     };
     for text in examine(tree, depth) {
         // One line each; a pipe holds that much.

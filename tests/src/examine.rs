@@ -11,8 +11,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// The views that are looked at: along the axes limbs lie on edges and on one another.
-const VIEWS: [&str; 5] = [
+/// A perspective, a general orthographic and the axis views: along the axes limbs lie on edges and
+/// on one another.
+pub const VIEWS: [&str; 5] = [
     "perspective 3",
     "orthographic 1",
     "along x",
@@ -25,8 +26,8 @@ const VIEWS: [&str; 5] = [
 pub struct Depth {
     /// How many rays measure the volume.
     pub rays: usize,
-    /// Whether a perspective, a general orthographic and the axis views are counted again.
-    pub views: bool,
+    /// The names of the views that are examined.
+    pub views: &'static [&'static str],
 }
 
 /// The outcome of some work; none where it takes longer than `limit`, and then goes on unheeded.
@@ -80,9 +81,9 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     }
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(depth.rays);
-    if depth.views && report.holds() {
+    if !depth.views.is_empty() && report.holds() {
         let all = views::around(&evaluation.bounds);
-        for name in VIEWS {
+        for &name in depth.views {
             for v in all.iter().filter(|v| v.name == name) {
                 report.checks.extend(checker.view(&v.name, &v.camera));
                 wrong.extend(differences(&evaluation, &v.name, &v.camera));

@@ -1,7 +1,7 @@
 //! Random trees: none may be wrong in any way that can be told from outside.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_tests::examine::{Depth, examine_within};
+use premio_tests::examine::{Depth, VIEWS, examine_within};
 use premio_tests::random::tree;
 use std::fmt::Write;
 use std::sync::Mutex;
@@ -59,8 +59,11 @@ const MENDED: [(u64, &str); 20] = [
     (3081, "a limb below a touch of tori"),
 ];
 
+/// The views in which they were wrong.
+const MENDED_IN: [&str; 3] = ["perspective 3", "orthographic 1", "along z"];
+
 /// Examines the trees of some seeds on two threads.
-fn assert_all_right(seeds: &[u64], views: bool) {
+fn assert_all_right(seeds: &[u64], views: &'static [&'static str]) {
     let depth = Depth {
         rays: 20_000,
         views,
@@ -91,15 +94,15 @@ fn assert_all_right(seeds: &[u64], views: bool) {
 
 #[test]
 fn solids() {
-    assert_all_right(&Vec::from_iter(0..300), false);
+    assert_all_right(&Vec::from_iter(0..300), &[]);
 }
 
 #[test]
 fn views() {
-    assert_all_right(&Vec::from_iter(0..60), true);
+    assert_all_right(&Vec::from_iter(0..60), &VIEWS);
 }
 
 #[test]
 fn mended() {
-    assert_all_right(&MENDED.map(|(seed, _)| seed), true);
+    assert_all_right(&MENDED.map(|(seed, _)| seed), &MENDED_IN);
 }

@@ -254,11 +254,14 @@ impl Search<'_, '_, '_, '_> {
     fn crowd_passed(&mut self, far: &Strand<'_>, near: &Strand<'_>) {
         let margin = 2.0 * LOOSE * self.scene.band;
         for (id, t) in far.junctions() {
-            let p = far.curve.point(t);
-            let at = flat_of(self.scene.projection, &p);
-            if self.junctions.is_crowded(id) || !near.hull.holds(at) {
+            // A straight image passes its own junctions once.
+            let own = matches!(near.image, Image::Line { .. })
+                && near.junctions().any(|(other, _)| other == id);
+            let known = own || self.junctions.is_crowded(id);
+            if known || !near.hull.holds(self.junctions.image(id)) {
                 continue;
             }
+            let p = far.curve.point(t);
             let (v, _) = self.scene.projection.towards_eye(&p);
             let mut passed = false;
             parameters_at(near, &p, self.scene, &mut |s| {

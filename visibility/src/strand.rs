@@ -1,7 +1,7 @@
 //! Contours before they are cut at junctions: edges, and limbs trimmed by their faces.
 
 use crate::contour::{Junction, JunctionKind};
-use crate::image::Image;
+use crate::image::{Image, flat_of};
 use crate::image_box::ImageBox;
 use crate::limb::{Limb, cusps, limbs, polar_plane, torus_limb_on};
 use crate::projection::Projection;
@@ -147,6 +147,8 @@ pub struct Junctions<'p> {
     /// By their ids.
     pub list: Vec<Junction>,
     sites: Vec<Site>,
+    /// By junction: its image at depth one.
+    images: Vec<[f64; 2]>,
     /// By junction: whether another contour passes before it or next to it in the image.
     crowded: Vec<bool>,
     vertices: Vec<Option<u32>>,
@@ -159,6 +161,7 @@ impl<'p> Junctions<'p> {
             projection,
             list: Vec::new(),
             sites: Vec::new(),
+            images: Vec::new(),
             crowded: Vec::new(),
             vertices: vec![None; vertices],
         }
@@ -175,6 +178,7 @@ impl<'p> Junctions<'p> {
             contours: Vec::new(),
         });
         self.sites.push(site);
+        self.images.push(flat_of(self.projection, p));
         self.crowded.push(false);
         id
     }
@@ -182,6 +186,11 @@ impl<'p> Junctions<'p> {
     /// What a junction lies on.
     pub fn site(&self, id: u32) -> Site {
         self.sites[id as usize]
+    }
+
+    /// Its image at depth one.
+    pub fn image(&self, id: u32) -> [f64; 2] {
+        self.images[id as usize]
     }
 
     /// Its kind.

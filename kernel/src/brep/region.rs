@@ -7,14 +7,15 @@
 //! all loops of a region. On a torus both circles through each loop are walked, and ways to the
 //! first loop.
 
+mod torus;
+
 use super::arcs::Arcs;
 use super::topology::Sense;
 use super::walk::{Crossing, DirectedArc, Passage, Walk};
 use crate::geometry::frame::perpendicular;
-use crate::geometry::surface::{Surface, Torus};
-use crate::geometry::toric::wrap;
+use crate::geometry::surface::Surface;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
-use std::f64::consts::TAU;
+use torus::Turns;
 
 /// A region: the loops that bound it, by index, and its Euler characteristic.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -382,147 +383,6 @@ impl Sorter<'_> {
         start.is_some() && (walk.point(at) - walk.point(0.0)).norm() <= 64.0 * self.band
     }
 
-    /// Both circles through a loop's point, and a way to the first loop.
-    fn walk_torus(
-        &mut self,
-        t: Torus,
-        ring: usize,
-        arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
-    ) -> bool {
-        let (mut tubes, mut rounds) = (false, false);
-        for sense in [Sense::Along, Sense::Against] {
-            let tube = Walk::tube(&t, p, sense);
-            tubes |= self.follow(ring, arc, p, left, &[tube], None);
-            if let Some(round) = Walk::parallel(self.surface, p, sense, self.band) {
-                rounds |= self.follow(ring, arc, p, left, &[round], None);
-            }
-        }
-        // A loop that winds around the axis is met by every circle of the tube, one that winds
-        // around the tube by every parallel: then no other way is needed.
-        let [around, along] = self.winding;
-        if around || along {
-            let direct = (around && tubes) || (along && rounds);
-            return direct || self.turn_to_winding(&t, ring, arc, p, left);
-        }
-        (tubes || rounds) && (ring == 0 || self.way_to_first(t, ring, arc, p, left))
-    }
-
-    /// Along one circle to another that meets the winding loops, where those through the point
-    /// itself run along edges.
-    fn turn_to_winding(
-        &mut self,
-        t: &Torus,
-        ring: usize,
-        arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
-    ) -> bool {
-        let [around, along] = self.winding;
-        for turn in [0.4, 2.6, 4.3] {
-            for sense in [Sense::Along, Sense::Against] {
-                let leg = Walk::tube(t, p, sense).upto(turn * t.minor);
-                let corner = leg.point(turn * t.minor);
-                if let (true, Some(round)) = (
-                    along,
-                    Walk::parallel(self.surface, &corner, sense, self.band),
-                ) && self.follow(ring, arc, p, left, &[leg, round], None)
-                {
-                    return true;
-                }
-                let Some(round) = Walk::parallel(self.surface, p, sense, self.band) else {
-                    continue;
-                };
-                let radius = t.frame.coordinates(p).xy().norm();
-                let leg = round.upto(turn * radius);
-                let tube = Walk::tube(t, &leg.point(turn * radius), sense);
-                if around && self.follow(ring, arc, p, left, &[leg, tube], None) {
-                    return true;
-                }
-            }
-        }
-        false
-    }
-
-    /// A way around the axis, then around the tube, to a point of the first loop.
-    fn way_to_first(
-        &mut self,
-        t: Torus,
-        ring: usize,
-        arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
-    ) -> bool {
-        let heights = [
-            Height::First,
-            Height::Last,
-            Height::At(0.4),
-            Height::At(2.6),
-            Height::At(4.3),
-        ];
-        for &fraction in &STARTS {
-            for goal in 0..self.firsts[1] {
-                let a = &self.arcs.all[goal];
-                let q = a
-                    .curve
-                    .point(a.range[0] + fraction * (a.range[1] - a.range[0]));
-                // The way ends just before the first loop: within its face, or on the other side
-                // of it.
-                for height in heights {
-                    let legs = self.legs(&t, p, &q, height);
-                    if legs.is_some_and(|l| self.follow(ring, arc, p, left, &l, Some(0))) {
-                        return true;
-                    }
-                }
-            }
-        }
-        false
-    }
-
-    /// A way from `p` almost to `q` along a circle of the tube, a parallel and a circle of the tube;
-    /// the parallel at one of their angles about the tube, or at another.
-    fn legs(
-        &self,
-        t: &Torus,
-        p: &Point3<f64>,
-        q: &Point3<f64>,
-        height: Height,
-    ) -> Option<Vec<Walk>> {
-        let ([u, v], [x, y]) = (self.surface.parameters(p), self.surface.parameters(q));
-        let toward = |a: f64| {
-            if a > 0.0 {
-                Sense::Along
-            } else {
-                Sense::Against
-            }
-        };
-        let turn = wrap(x - u);
-        let round = |w: f64| {
-            let from = self.surface.point(u, w);
-            let walk = Walk::parallel(self.surface, &from, toward(turn), self.band)?;
-            Some((walk, turn.abs() * (t.major + t.minor * w.cos())))
-        };
-        let tube = |from: &Point3<f64>, rise: f64| {
-            let walk = Walk::tube(t, from, toward(rise));
-            (walk, rise.abs() * t.minor)
-        };
-        let mut legs = match height {
-            Height::First => vec![round(v)?, tube(&self.surface.point(x, v), wrap(y - v))],
-            Height::Last => vec![tube(p, wrap(y - v)), round(y)?],
-            Height::At(w) => vec![
-                tube(p, wrap(w - v)),
-                round(w)?,
-                tube(&self.surface.point(x, w), wrap(y - w)),
-            ],
-        };
-        if let Some((_, length)) = legs.last_mut() {
-            *length -= 64.0 * self.band;
-        }
-        let cut = |(walk, length): (Walk, f64)| walk.upto(length.max(0.0));
-        Some(legs.into_iter().map(cut).collect())
-    }
-
     /// The Euler characteristic of a region.
     fn euler(&self, loops: &[Vec<DirectedArc<'_>>], list: &[usize]) -> i32 {
         let n = list.len() as i32;
@@ -535,53 +395,6 @@ impl Sorter<'_> {
         let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area > 0.0);
         if is_part_of_sphere { 2 - n } else { -n }
     }
-
-    /// How a loop runs in the two angles of a torus.
-    fn turns(&self, ring: &[DirectedArc<'_>]) -> Turns {
-        let mut points: Vec<[f64; 2]> = Vec::new();
-        for a in ring {
-            for k in 0..32 {
-                let s = f64::from(k) / 32.0;
-                let s = if a.sense == Sense::Along { s } else { 1.0 - s };
-                let p = a.curve.point(a.range[0] + s * (a.range[1] - a.range[0]));
-                points.push(self.surface.parameters(&p));
-            }
-        }
-        let (mut x, mut y, mut area) = (0.0, 0.0, 0.0);
-        for (i, p) in points.iter().enumerate() {
-            let q = points[(i + 1) % points.len()];
-            let (dx, dy) = (wrap(q[0] - p[0]), wrap(q[1] - p[1]));
-            area += x * dy - y * dx;
-            x += dx;
-            y += dy;
-        }
-        Turns {
-            winds: [x, y].map(|turn| turn.abs() > TAU / 2.0),
-            area: area * self.outward.sign(),
-        }
-    }
-}
-
-/// The angle about the tube at which a way on a torus goes around the axis.
-#[derive(Clone, Copy)]
-enum Height {
-    /// Where the way starts.
-    First,
-    /// Where it ends.
-    Last,
-    At(f64),
-}
-
-struct Turns {
-    /// Around the axis, and around the tube.
-    winds: [bool; 2],
-    area: f64,
-}
-
-impl Turns {
-    fn winds(&self) -> bool {
-        self.winds.contains(&true)
-    }
 }
 
 /// A point of a sphere where nothing is likely to be: another for each attempt.
@@ -589,80 +402,4 @@ fn pole(centre: Point3<f64>, radius: f64, attempt: usize) -> Point3<f64> {
     let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).normalize();
     let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);
     centre + Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d * radius
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::curve::{Circle, Curve};
-    use crate::geometry::frame::Frame;
-
-    fn torus() -> Torus {
-        Torus {
-            frame: Frame::world(),
-            major: 2.0,
-            minor: 0.75,
-        }
-    }
-
-    fn parallel(phi: f64) -> Curve {
-        let Torus {
-            frame: f,
-            major,
-            minor,
-        } = torus();
-        Curve::Circle(Circle {
-            frame: f.at(f.point(0.0, 0.0, minor * phi.sin())),
-            radius: major + minor * phi.cos(),
-        })
-    }
-
-    fn tube(theta: f64) -> Curve {
-        let Torus {
-            frame: f,
-            major,
-            minor: radius,
-        } = torus();
-        let radial = f.x * theta.cos() + f.y * theta.sin();
-        let frame = Frame {
-            origin: f.origin + radial * major,
-            x: radial,
-            y: f.z,
-            z: radial.cross(&f.z),
-        };
-        Curve::Circle(Circle { frame, radius })
-    }
-
-    /// The loops of all but a part of the torus between two angles about its axis, and the hole with
-    /// these angles.
-    #[test]
-    fn a_hole_in_a_torus_that_is_cut_through_belongs_to_what_is_left() {
-        let arc = |curve, range, sense| DirectedArc {
-            curve,
-            range,
-            sense,
-        };
-        let (start, end) = (tube(1.0), tube(5.0));
-        let (low, high, a, b) = (parallel(0.4), parallel(1.2), tube(2.0), tube(3.0));
-        let left = [
-            vec![arc(&start, [0.0, TAU], Sense::Against)],
-            vec![arc(&end, [0.0, TAU], Sense::Along)],
-            vec![
-                arc(&low, [2.0, 3.0], Sense::Against),
-                arc(&a, [0.4, 1.2], Sense::Along),
-                arc(&high, [2.0, 3.0], Sense::Along),
-                arc(&b, [0.4, 1.2], Sense::Against),
-            ],
-        ];
-        let surface = Surface::Torus(torus());
-        for turn in 0..3 {
-            let loops: Vec<_> = (0..3).map(|k| left[(turn + k) % 3].clone()).collect();
-            let found = regions(&surface, Sense::Along, &loops, 1e-10).unwrap();
-            let whole = Region {
-                loops: vec![0, 1, 2],
-                euler: -1,
-            };
-            assert_eq!(found, [whole]);
-        }
-    }
 }

@@ -1,8 +1,9 @@
 //! The topological object model (`premio.object/1`): five levels and two relations.
 //!
 //! World, objects, faces, each with its surface and its boundaries, and arcs; the edge relation
-//! (faces that share an arc) and the vertex relation (arcs that meet at a vertex). Every entity is
-//! named by its place in its list.
+//! (faces that share an arc) and the vertex relation (arcs that meet at a vertex); beside them the
+//! touches, where the boundary meets itself in a point and is no manifold. Every entity is named by
+//! its place in its list.
 
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{
@@ -131,6 +132,8 @@ pub struct Relations {
     pub edge: Vec<EdgeRelation>,
     /// The arcs that end at each vertex.
     pub vertex: Vec<VertexRelation>,
+    /// What meets in each point at which the boundary touches itself.
+    pub touch: Vec<TouchRelation>,
 }
 
 /// The faces that share an arc.
@@ -151,6 +154,22 @@ pub struct VertexRelation {
     pub arcs: Vec<EdgeId>,
 }
 
+/// A point at which the boundary touches itself: two or more of a fan of faces around a vertex, the
+/// inside of an arc and the inside of a face.
+#[derive(Clone, Debug, Serialize)]
+pub struct TouchRelation {
+    /// Where it is.
+    pub point: [f64; 3],
+    /// The vertex there; null where no arc ends.
+    pub vertex: Option<VertexId>,
+    /// How many fans of faces meet in the vertex.
+    pub fans: usize,
+    /// The arcs that run through the point.
+    pub arcs: Vec<EdgeId>,
+    /// The faces that hold the point inside.
+    pub faces: Vec<FaceId>,
+}
+
 impl Model {
     /// The model of a boundary.
     pub fn of(brep: &Brep) -> Self {
@@ -165,6 +184,7 @@ impl Model {
             relations: Relations {
                 edge: edge_relation(brep),
                 vertex: vertex_relation(brep),
+                touch: touch_relation(brep),
             },
         }
     }
@@ -268,4 +288,17 @@ fn vertex_relation(brep: &Brep) -> Vec<VertexRelation> {
         }
     }
     relation
+}
+
+fn touch_relation(brep: &Brep) -> Vec<TouchRelation> {
+    let touches = brep.topology.touches.iter().zip(&brep.geometry.touches);
+    touches
+        .map(|(touch, &point)| TouchRelation {
+            point: point.into(),
+            vertex: touch.vertex,
+            fans: touch.fans,
+            arcs: touch.edges.clone(),
+            faces: touch.faces.clone(),
+        })
+        .collect()
 }

@@ -57,6 +57,12 @@ struct Answer {
     edges: Option<usize>,
     loops: Option<usize>,
     vertices: Option<usize>,
+    /// The edges that bound more than two face corners.
+    #[serde(default)]
+    edges_of_many_faces: usize,
+    /// The points at which the boundary touches itself.
+    #[serde(default)]
+    touches: usize,
     /// Of each shell, in ascending order.
     genus: Option<Vec<i32>>,
     /// Whether a decision is closer than a hundred to one.
@@ -168,6 +174,12 @@ fn counts(answer: &Answer, evaluation: &Evaluation) -> Vec<String> {
         ("edges", t.edges.len(), answer.edges),
         ("loops", t.loops.len(), answer.loops),
         ("vertices", t.vertices as usize, answer.vertices),
+        (
+            "edges of many faces",
+            t.edges_of_many_faces(),
+            Some(answer.edges_of_many_faces),
+        ),
+        ("touches", t.touches.len(), Some(answer.touches)),
     ] {
         if expected.is_some_and(|e| e != found) {
             wrong.push(format!("{found} {what} for {}", expected.unwrap()));

@@ -25,6 +25,7 @@ struct Info {
     loops: usize,
     vertices: u32,
     genus: Vec<i32>,
+    non_manifold: NonManifold,
     faces_by_surface: BTreeMap<&'static str, usize>,
     decisions: Counts,
     resolution: f64,
@@ -35,6 +36,15 @@ struct Info {
 struct Bounds {
     min: [f64; 3],
     max: [f64; 3],
+}
+
+/// Where the boundary is no manifold.
+#[derive(Debug, Serialize)]
+struct NonManifold {
+    /// Edges that bound more than two face corners.
+    edges: usize,
+    /// Points at which the boundary touches itself, vertices or not.
+    points: usize,
 }
 
 #[derive(Debug, Serialize)]
@@ -87,6 +97,10 @@ impl Info {
             loops: topology.loops.len(),
             vertices: topology.vertices,
             genus: topology.shells.iter().map(|s| s.genus).collect(),
+            non_manifold: NonManifold {
+                edges: topology.edges_of_many_faces(),
+                points: topology.touches.len(),
+            },
             faces_by_surface,
             decisions: Counts::of(&part.evaluation.decisions),
             resolution: part.evaluation.resolution,
@@ -145,6 +159,10 @@ impl fmt::Display for Info {
         writeln!(f, "loops       {}", self.loops)?;
         writeln!(f, "edges       {}", self.edges)?;
         writeln!(f, "vertices    {}", self.vertices)?;
+        let NonManifold { edges, points } = self.non_manifold;
+        if edges + points > 0 {
+            writeln!(f, "non-manifold along {edges} edges, in {points} points")?;
+        }
         let Counts {
             filtered,
             refined,

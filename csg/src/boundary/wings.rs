@@ -9,12 +9,13 @@
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;
+use super::corners::Corner;
 use super::halfspaces::Solids;
 use super::membership::Membership;
 use super::pieces::{Piece, pieces};
 use crate::tree::{NodeId, Tree};
 use nalgebra::{Point3, Vector3};
-use premio_kernel::brep::assemble::{RawBoundary, RawEdge, Wing};
+use premio_kernel::brep::assemble::{RawBoundary, RawEdge, RawPoint, Wing};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::frame::perpendicular;
 use premio_kernel::geometry::surface::Surface;
@@ -89,21 +90,22 @@ pub(super) fn boundary(
     }
     let joined = join(edges, &arrangement);
     let whole = classifier.whole_surfaces(&joined);
-    let smooth = |e: &(Piece, Vec<Wing>)| classifier.is_smooth(e);
-    let raw = joined
-        .iter()
-        .map(|e| RawEdge {
-            curve: e.0.meeting,
-            range: e.0.range,
-            ends: e.0.ends,
-            smooth: smooth(e),
-            wings: e.1.clone(),
-        })
-        .collect();
+    let raw = |e: Joined| RawEdge {
+        curve: e.piece.meeting,
+        range: e.piece.range,
+        ends: e.piece.ends,
+        smooth: classifier.is_smooth(&e.piece, &e.wings),
+        wings: e.wings,
+        passes: e.passes,
+    };
+    let point = |c: &Corner| RawPoint {
+        place: c.point,
+        surfaces: c.carriers.clone(),
+    };
     Ok(RawBoundary {
-        edges: raw,
+        edges: joined.into_iter().map(raw).collect(),
         whole,
-        points: arrangement.corners.iter().map(|c| c.point).collect(),
+        points: arrangement.corners.iter().map(point).collect(),
         curves: arrangement.meetings.into_iter().map(|m| m.curve).collect(),
         surfaces: arrangement.carriers,
     })
@@ -295,8 +297,8 @@ impl Classifier<'_> {
     }
 
     /// Whether the two faces of an edge continue one another smoothly.
-    fn is_smooth(&self, (piece, wings): &(Piece, Vec<Wing>)) -> bool {
-        let [a, b] = wings[..] else { return false };
+    fn is_smooth(&self, piece: &Piece, wings: &[Wing]) -> bool {
+        let [a, b] = *wings else { return false };
         let told = piece
             .tangent
             .iter()
@@ -310,9 +312,9 @@ impl Classifier<'_> {
     }
 
     /// The closed carriers without any edge that are faces as a whole.
-    fn whole_surfaces(&self, edges: &[(Piece, Vec<Wing>)]) -> Vec<(usize, Sense)> {
+    fn whole_surfaces(&self, edges: &[Joined]) -> Vec<(usize, Sense)> {
         let mut bounded = vec![false; self.arrangement.carriers.len()];
-        for wing in edges.iter().flat_map(|e| &e.1) {
+        for wing in edges.iter().flat_map(|e| &e.wings) {
             bounded[wing.surface] = true;
         }
         let mut whole = Vec::new();
@@ -359,8 +361,18 @@ impl Classifier<'_> {
     }
 }
 
+/// An edge: pieces of one curve, one after the other.
+struct Joined {
+    /// All of it.
+    piece: Piece,
+    /// The faces around it.
+    wings: Vec<Wing>,
+    /// The corners inside it.
+    passes: Vec<usize>,
+}
+
 /// Joins the pieces of one curve at corners where nothing else ends and the faces stay the same.
-fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<(Piece, Vec<Wing>)> {
+fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<Joined> {
     let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, (piece, _)) in edges.iter().enumerate() {
         for v in piece.ends.iter().flatten() {
@@ -397,8 +409,10 @@ fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<(Piece
         }
         done[start] = true;
         let (mut piece, wings) = edges[start].clone();
+        let mut passes = Vec::new();
         let mut last = start;
         while let Some(j) = next[last] {
+            passes.extend(edges[last].0.ends.map(|e| e[1]));
             if j == start {
                 piece.ends = None;
                 break;
@@ -415,7 +429,11 @@ fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<(Piece
         {
             piece.range[1] = piece.range[0] + period;
         }
-        joined.push((piece, wings));
+        joined.push(Joined {
+            piece,
+            wings,
+            passes,
+        });
     }
     joined
 }

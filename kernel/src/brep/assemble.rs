@@ -2,15 +2,14 @@
 //!
 //! Loops: at a vertex a coedge is followed by the next one clockwise, seen from outside, so that
 //! the face stays to the left. Faces: loops of one surface that bound one region (`region`).
-//! Shells: faces that enclose material together along an edge. Solids: shells around shells.
+//! Shells and solids: `shells`. Where all these touch: `touches`.
 
-use super::inside::shell_holds;
-use super::mass::shell_volume;
 use super::region::{RegionError, regions};
+use super::shells::{bind_shells, fans};
 use super::topology::{
-    Coedge, CoedgeId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Sense, Shell, ShellId, Solid,
-    SolidId, Topology, VertexId,
+    Coedge, CoedgeId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Sense, ShellId, Topology, VertexId,
 };
+use super::touches::touches;
 use super::walk::DirectedArc;
 use super::{Arc, Brep, Geometry, Patch};
 use crate::geometry::curve::Curve;
@@ -18,7 +17,7 @@ use crate::geometry::frame::Frame;
 use crate::geometry::surface::Surface;
 use crate::number::roots::bisect;
 use crate::number::sign::{Judge, ROUNDING};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
 
@@ -46,6 +45,17 @@ pub struct RawEdge {
     pub wings: Vec<Wing>,
     /// Whether two faces meet smoothly.
     pub smooth: bool,
+    /// The points (by index) that it runs through.
+    pub passes: Vec<usize>,
+}
+
+/// A point where curves end, cross or touch a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RawPoint {
+    /// The place.
+    pub place: Point3<f64>,
+    /// The indices of all surfaces through it.
+    pub surfaces: Vec<usize>,
 }
 
 /// All edges of a boundary, and the closed surfaces that are faces without an edge.
@@ -56,7 +66,7 @@ pub struct RawBoundary {
     /// The curves.
     pub curves: Vec<Curve>,
     /// The points.
-    pub points: Vec<Point3<f64>>,
+    pub points: Vec<RawPoint>,
     /// The edges.
     pub edges: Vec<RawEdge>,
     /// Whole surfaces, with the sense of their outward normal.
@@ -113,10 +123,24 @@ pub fn assemble(raw: RawBoundary, judge: &Judge) -> Result<Brep, AssemblyError> 
     assembler.link()?;
     let rings = assembler.rings();
     let faces = assembler.faces(&rings)?;
-    let (mut brep, halves) = assembler.brep(&rings, &faces);
-    let fans = fans(&brep.topology, &halves);
+    let (mut brep, names) = assembler.brep(&rings, &faces);
+    let fans = fans(&brep.topology, &names.partner);
     bind_shells(&mut brep, &fans, judge)?;
+    for (place, touch) in touches(&brep, &raw, &names, &fans, judge) {
+        brep.geometry.touches.push(place);
+        brep.topology.touches.push(touch);
+    }
     Ok(brep)
+}
+
+/// What the entities are called that came of raw ones.
+pub(super) struct Names {
+    /// The partner of each coedge across its edge's material.
+    pub partner: Vec<CoedgeId>,
+    /// The vertex of a point.
+    pub vertex_of: HashMap<usize, VertexId>,
+    /// The index of a surface.
+    pub surface_of: HashMap<usize, usize>,
 }
 
 /// A face: its group and its loops.
@@ -169,7 +193,7 @@ impl<'a> Assembler<'a> {
         for ((vertex, group), [into, out]) in meeting {
             if into.len() != out.len() {
                 return Err(AssemblyError::Open {
-                    place: self.raw.points[vertex].into(),
+                    place: self.raw.points[vertex].place.into(),
                 });
             }
             match (&into[..], &out[..]) {
@@ -206,7 +230,7 @@ impl<'a> Assembler<'a> {
         followers.dedup();
         if followers.len() != into.len() {
             return Err(AssemblyError::Order {
-                place: self.raw.points[vertex].into(),
+                place: self.raw.points[vertex].place.into(),
             });
         }
         Ok(())
@@ -227,7 +251,7 @@ impl<'a> Assembler<'a> {
         into: &[usize],
         out: &[usize],
     ) -> Result<HashMap<(usize, bool), f64>, AssemblyError> {
-        let v = self.raw.points[vertex];
+        let v = self.raw.points[vertex].place;
         let mut ends: Vec<(usize, bool)> = into
             .iter()
             .map(|&i| (self.halves[i].edge, self.at_first_end(i, true)))
@@ -358,9 +382,8 @@ impl<'a> Assembler<'a> {
         Ok(faces)
     }
 
-    /// The entities but for shells and solids, and the partner of each coedge across its edge's
-    /// material.
-    fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep, Vec<CoedgeId>) {
+    /// The entities but for shells, solids and touches, and how they are called.
+    fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep, Names) {
         let raw = self.raw;
         let mut topology = Topology::default();
         let mut geometry = Geometry::default();
@@ -370,7 +393,7 @@ impl<'a> Assembler<'a> {
         for e in &raw.edges {
             let mut vertex = |v: usize| {
                 *vertex_of.entry(v).or_insert_with(|| {
-                    geometry.points.push(raw.points[v]);
+                    geometry.points.push(raw.points[v].place);
                     VertexId(geometry.points.len() as u32 - 1)
                 })
             };
@@ -431,168 +454,11 @@ impl<'a> Assembler<'a> {
             let place = i - self.first[self.halves[i].edge];
             CoedgeId((self.first[self.halves[i].edge] + (place ^ 1)) as u32)
         });
-        (Brep { topology, geometry }, partner.collect())
-    }
-}
-
-/// Sets joined by pairs.
-struct Union(Vec<usize>);
-
-impl Union {
-    fn new(n: usize) -> Self {
-        Self((0..n).collect())
-    }
-    fn find(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.find(a), self.find(b));
-        let (lo, hi) = (a.min(b), a.max(b));
-        self.0[hi] = lo;
-    }
-}
-
-/// Who is connected: the shell number of each face, and the Euler characteristic of each shell.
-struct Fans {
-    shell_of: Vec<usize>,
-    euler: Vec<i32>,
-}
-
-fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
-    let mut faces = Union::new(topology.faces.len());
-    for (i, p) in partner.iter().enumerate() {
-        let (a, b) = (topology.face_of(CoedgeId(i as u32)), topology.face_of(*p));
-        faces.join(a.index(), b.index());
-    }
-    let mut number: HashMap<usize, usize> = HashMap::new();
-    let mut shell_of = Vec::new();
-    for f in 0..topology.faces.len() {
-        let n = number.len();
-        shell_of.push(*number.entry(faces.find(f)).or_insert(n));
-    }
-    let mut euler = vec![0; number.len()];
-    for (f, face) in topology.faces.iter().enumerate() {
-        euler[shell_of[f]] += face.euler;
-    }
-    // A corner is where a coedge ends and the next begins; corners that share an edge end are one
-    // fan around the vertex. Named by the coedge that ends there.
-    let mut corners = Union::new(topology.coedges.len());
-    let mut ends_before = vec![usize::MAX; topology.coedges.len()];
-    for ring in &topology.loops {
-        for (k, c) in ring.coedges.iter().enumerate() {
-            let previous = ring.coedges[(k + ring.coedges.len() - 1) % ring.coedges.len()];
-            ends_before[c.index()] = previous.index();
-        }
-    }
-    for (i, p) in partner.iter().enumerate() {
-        let open = topology
-            .edge(topology.coedge(CoedgeId(i as u32)).edge)
-            .ends
-            .is_some();
-        if open {
-            // Partners run oppositely: the end of one is the start of the other.
-            corners.join(i, ends_before[p.index()]);
-            if i < p.index() {
-                let shell = shell_of[topology.face_of(CoedgeId(i as u32)).index()];
-                euler[shell] -= 1;
-            }
-        }
-    }
-    for i in 0..topology.coedges.len() {
-        let id = CoedgeId(i as u32);
-        let open = topology.edge(topology.coedge(id).edge).ends.is_some();
-        if open && corners.find(i) == i {
-            euler[shell_of[topology.face_of(id).index()]] += 1;
-        }
-    }
-    Fans { shell_of, euler }
-}
-
-/// Names the shells, tells voids from outer shells, and gives every void to its solid.
-fn bind_shells(brep: &mut Brep, fans: &Fans, judge: &Judge) -> Result<(), AssemblyError> {
-    for (f, &s) in fans.shell_of.iter().enumerate() {
-        brep.topology.faces[f].shell = ShellId(s as u32);
-    }
-    let mut members: Vec<Vec<FaceId>> = vec![Vec::new(); fans.euler.len()];
-    for (f, &s) in fans.shell_of.iter().enumerate() {
-        members[s].push(FaceId(f as u32));
-    }
-    for (s, faces) in members.iter().enumerate() {
-        // One shell alone is an outer one.
-        let volume = if members.len() == 1 {
-            1.0
-        } else {
-            shell_volume(brep, faces)
+        let names = Names {
+            partner: partner.collect(),
+            vertex_of,
+            surface_of,
         };
-        if volume == 0.0 || !volume.is_finite() {
-            return Err(AssemblyError::Flat {
-                place: point_of(brep, faces[0]).into(),
-            });
-        }
-        brep.topology.shells.push(Shell {
-            faces: faces.clone(),
-            solid: SolidId(u32::MAX),
-            void: volume < 0.0,
-            genus: (2 - fans.euler[s]).div_euclid(2),
-            odd: fans.euler[s].rem_euclid(2) == 1,
-        });
-    }
-    let shells = brep.topology.shells.len();
-    let outer: Vec<usize> = (0..shells)
-        .filter(|&s| !brep.topology.shells[s].void)
-        .collect();
-    for &s in &outer {
-        let id = SolidId(brep.topology.solids.len() as u32);
-        brep.topology.solids.push(Solid {
-            shells: vec![ShellId(s as u32)],
-        });
-        brep.topology.shells[s].solid = id;
-    }
-    for s in 0..shells {
-        if brep.topology.shells[s].void {
-            let home = home_of(brep, s, &outer, judge);
-            let solid = brep.topology.shells[home].solid;
-            brep.topology.shells[s].solid = solid;
-            brep.topology.solids[solid.index()]
-                .shells
-                .push(ShellId(s as u32));
-        }
-    }
-    Ok(())
-}
-
-/// The smallest outer shell around a void.
-fn home_of(brep: &Brep, void: usize, outer: &[usize], judge: &Judge) -> usize {
-    if let [only] = outer {
-        return *only;
-    }
-    let faces = &brep.topology.shells[void].faces;
-    let p = point_of(brep, faces[0]);
-    let around = outer
-        .iter()
-        .copied()
-        .filter(|&s| shell_holds(brep, &brep.topology.shells[s].faces, &p, judge.band()));
-    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces);
-    let home = around.min_by(|a, b| volume(a).total_cmp(&volume(b)));
-    home.or(outer.first().copied()).unwrap_or(void)
-}
-
-/// A point of a face's boundary, or of the face where it has none.
-pub(super) fn point_of(brep: &Brep, face: FaceId) -> Point3<f64> {
-    let topology = &brep.topology;
-    match topology.face(face).loops.first() {
-        Some(&l) => {
-            let edge = topology.coedge(topology.ring(l).coedges[0]).edge;
-            let [lo, hi] = brep.range(edge);
-            brep.curve(edge).point(lo + 0.37 * (hi - lo))
-        }
-        None => {
-            let s = brep.surface(face);
-            s.point(0.3, 0.4) + Vector3::zeros()
-        }
+        (Brep { topology, geometry }, names)
     }
 }

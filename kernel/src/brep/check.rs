@@ -2,7 +2,7 @@
 
 use super::Brep;
 use super::mass::{face_areas, shell_volume};
-use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, VertexId};
+use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use super::welch;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -49,6 +49,14 @@ pub enum Violation {
         /// How far, in the part's unit.
         distance: f64,
     },
+    /// A point at which the boundary touches itself lies off what meets there.
+    #[error("touch {} lies {distance:e} off what meets there", touch.0)]
+    TouchOff {
+        /// The touch.
+        touch: TouchId,
+        /// How far, in the part's unit.
+        distance: f64,
+    },
     /// The entities of a shell do not add up (Euler-Poincaré).
     #[error("shell {} has the Euler characteristic {euler}", shell.0)]
     Euler {
@@ -84,6 +92,7 @@ pub fn check(brep: &Brep, band: f64) -> Vec<Violation> {
     let mut found = Vec::new();
     check_loops(brep, &mut found);
     check_edges(brep, band, &mut found);
+    check_touches(brep, band, &mut found);
     check_shells(brep, &mut found);
     for (i, area) in face_areas(brep).into_iter().enumerate() {
         if area.is_nan() || area <= 0.0 {
@@ -190,6 +199,26 @@ fn check_edges(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
                     distance,
                 });
             }
+        }
+    }
+}
+
+fn check_touches(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
+    let touches = brep.topology.touches.iter().zip(&brep.geometry.touches);
+    for (i, (touch, place)) in touches.enumerate() {
+        let vertices = touch.vertex.iter().map(|&v| brep.point(v));
+        let edges = touch.edges.iter().map(|&e| {
+            let curve = brep.curve(e);
+            curve.point(curve.parameter(place))
+        });
+        let points = vertices.chain(edges).map(|p| (p - place).norm());
+        let faces = touch.faces.iter();
+        let faces = faces.map(|&f| brep.surface(f).distance(place).abs());
+        let distance = points.chain(faces).fold(0.0, f64::max);
+        let meeting = touch.fans + touch.edges.len() + touch.faces.len();
+        if meeting < 2 || distance.is_nan() || distance > PLAY * band {
+            let touch = TouchId(i as u32);
+            found.push(Violation::TouchOff { touch, distance });
         }
     }
 }

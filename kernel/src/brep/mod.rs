@@ -1,8 +1,9 @@
 //! The boundary representation: topology as ids in one arena, geometry hung on the ids.
 //!
 //! Faces are maximal and there are no seams: a sphere is one face without a loop, a cylinder has
-//! three faces, two closed edges and no vertex. An edge that bounds more than two face corners, and
-//! a vertex where several fans of faces meet, are represented as they are.
+//! three faces, two closed edges and no vertex. Where the boundary is no manifold it is represented
+//! as it is: an edge may bound more than two face corners, and a point at which the boundary touches
+//! itself, in a vertex, along an edge or within a face, is a touch.
 
 mod arcs;
 pub mod assemble;
@@ -11,7 +12,9 @@ mod inside;
 pub mod locate;
 pub mod mass;
 mod region;
+mod shells;
 pub mod topology;
+mod touches;
 pub mod walk;
 pub mod welch;
 
@@ -35,6 +38,8 @@ pub struct Geometry {
     /// Each face's surface (an index into `surfaces`) and whether the face's outward normal is the
     /// surface's own, by [`FaceId`].
     pub patches: Vec<Patch>,
+    /// The place of each touch, by [`TouchId`](topology::TouchId).
+    pub touches: Vec<Point3<f64>>,
 }
 
 /// The geometry of an edge.

@@ -56,7 +56,9 @@ ids! {
     /// A connected shell of faces.
     ShellId,
     /// A solid: an outer shell and its voids.
-    SolidId
+    SolidId,
+    /// A point at which the boundary touches itself.
+    TouchId
 }
 
 /// An edge: a piece of a curve where faces meet.
@@ -124,6 +126,20 @@ pub struct Solid {
     pub shells: Vec<ShellId>,
 }
 
+/// A point at which the boundary touches itself: the faces around it make no disc. What meets there
+/// is two or more of: a fan of faces around a vertex, the inside of an edge, the inside of a face.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Touch {
+    /// The vertex there, where edges end.
+    pub vertex: Option<VertexId>,
+    /// How many fans of faces meet in the vertex; none without one.
+    pub fans: usize,
+    /// The edges that run through the point.
+    pub edges: Vec<EdgeId>,
+    /// The faces that hold the point inside.
+    pub faces: Vec<FaceId>,
+}
+
 /// The entities of a boundary.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topology {
@@ -141,6 +157,8 @@ pub struct Topology {
     pub shells: Vec<Shell>,
     /// The solids, by id.
     pub solids: Vec<Solid>,
+    /// The points at which the boundary touches itself, by id.
+    pub touches: Vec<Touch>,
 }
 
 impl Topology {
@@ -172,6 +190,11 @@ impl Topology {
     /// The faces around an edge, in order.
     pub fn faces_of(&self, id: EdgeId) -> impl Iterator<Item = FaceId> + '_ {
         self.edge(id).coedges.iter().map(|&c| self.face_of(c))
+    }
+
+    /// How many edges bound more than two face corners: along them the boundary is no manifold.
+    pub fn edges_of_many_faces(&self) -> usize {
+        self.edges.iter().filter(|e| e.coedges.len() > 2).count()
     }
 
     /// Where a coedge starts and ends; none for a closed edge.

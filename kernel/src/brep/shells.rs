@@ -1,0 +1,186 @@
+//! Shells and solids: faces that enclose material together along an edge are one shell, shells
+//! around shells one solid.
+
+use super::Brep;
+use super::assemble::AssemblyError;
+use super::inside::shell_holds;
+use super::mass::shell_volume;
+use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
+use crate::number::sign::Judge;
+use nalgebra::{Point3, Vector3};
+use std::collections::HashMap;
+
+/// Sets joined by pairs.
+struct Union(Vec<usize>);
+
+impl Union {
+    fn new(n: usize) -> Self {
+        Self((0..n).collect())
+    }
+    fn find(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        let (lo, hi) = (a.min(b), a.max(b));
+        self.0[hi] = lo;
+    }
+}
+
+/// Who is connected: the shell number of each face, and the Euler characteristic of each shell.
+pub(super) struct Fans {
+    shell_of: Vec<usize>,
+    euler: Vec<i32>,
+    /// How many fans of faces meet in each vertex.
+    pub at_vertex: Vec<usize>,
+}
+
+pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
+    let mut faces = Union::new(topology.faces.len());
+    for (i, p) in partner.iter().enumerate() {
+        let (a, b) = (topology.face_of(CoedgeId(i as u32)), topology.face_of(*p));
+        faces.join(a.index(), b.index());
+    }
+    let mut number: HashMap<usize, usize> = HashMap::new();
+    let mut shell_of = Vec::new();
+    for f in 0..topology.faces.len() {
+        let n = number.len();
+        shell_of.push(*number.entry(faces.find(f)).or_insert(n));
+    }
+    let mut euler = vec![0; number.len()];
+    for (f, face) in topology.faces.iter().enumerate() {
+        euler[shell_of[f]] += face.euler;
+    }
+    // A corner is where a coedge ends and the next begins; corners that share an edge end are one
+    // fan around the vertex. Named by the coedge that ends there.
+    let mut corners = Union::new(topology.coedges.len());
+    let mut ends_before = vec![usize::MAX; topology.coedges.len()];
+    for ring in &topology.loops {
+        for (k, c) in ring.coedges.iter().enumerate() {
+            let previous = ring.coedges[(k + ring.coedges.len() - 1) % ring.coedges.len()];
+            ends_before[c.index()] = previous.index();
+        }
+    }
+    for (i, p) in partner.iter().enumerate() {
+        let open = topology
+            .edge(topology.coedge(CoedgeId(i as u32)).edge)
+            .ends
+            .is_some();
+        if open {
+            // Partners run oppositely: the end of one is the start of the other.
+            corners.join(i, ends_before[p.index()]);
+            if i < p.index() {
+                let shell = shell_of[topology.face_of(CoedgeId(i as u32)).index()];
+                euler[shell] -= 1;
+            }
+        }
+    }
+    let mut at_vertex = vec![0; topology.vertices as usize];
+    for i in 0..topology.coedges.len() {
+        let id = CoedgeId(i as u32);
+        if let Some([_, end]) = topology.run(id)
+            && corners.find(i) == i
+        {
+            euler[shell_of[topology.face_of(id).index()]] += 1;
+            at_vertex[end.index()] += 1;
+        }
+    }
+    Fans {
+        shell_of,
+        euler,
+        at_vertex,
+    }
+}
+
+/// Names the shells, tells voids from outer shells, and gives every void to its solid.
+pub(super) fn bind_shells(
+    brep: &mut Brep,
+    fans: &Fans,
+    judge: &Judge,
+) -> Result<(), AssemblyError> {
+    for (f, &s) in fans.shell_of.iter().enumerate() {
+        brep.topology.faces[f].shell = ShellId(s as u32);
+    }
+    let mut members: Vec<Vec<FaceId>> = vec![Vec::new(); fans.euler.len()];
+    for (f, &s) in fans.shell_of.iter().enumerate() {
+        members[s].push(FaceId(f as u32));
+    }
+    for (s, faces) in members.iter().enumerate() {
+        // One shell alone is an outer one.
+        let volume = if members.len() == 1 {
+            1.0
+        } else {
+            shell_volume(brep, faces)
+        };
+        if volume == 0.0 || !volume.is_finite() {
+            return Err(AssemblyError::Flat {
+                place: point_of(brep, faces[0]).into(),
+            });
+        }
+        brep.topology.shells.push(Shell {
+            faces: faces.clone(),
+            solid: SolidId(u32::MAX),
+            void: volume < 0.0,
+            genus: (2 - fans.euler[s]).div_euclid(2),
+            odd: fans.euler[s].rem_euclid(2) == 1,
+        });
+    }
+    let shells = brep.topology.shells.len();
+    let outer: Vec<usize> = (0..shells)
+        .filter(|&s| !brep.topology.shells[s].void)
+        .collect();
+    for &s in &outer {
+        let id = SolidId(brep.topology.solids.len() as u32);
+        brep.topology.solids.push(Solid {
+            shells: vec![ShellId(s as u32)],
+        });
+        brep.topology.shells[s].solid = id;
+    }
+    for s in 0..shells {
+        if brep.topology.shells[s].void {
+            let home = home_of(brep, s, &outer, judge);
+            let solid = brep.topology.shells[home].solid;
+            brep.topology.shells[s].solid = solid;
+            brep.topology.solids[solid.index()]
+                .shells
+                .push(ShellId(s as u32));
+        }
+    }
+    Ok(())
+}
+
+/// The smallest outer shell around a void.
+fn home_of(brep: &Brep, void: usize, outer: &[usize], judge: &Judge) -> usize {
+    if let [only] = outer {
+        return *only;
+    }
+    let faces = &brep.topology.shells[void].faces;
+    let p = point_of(brep, faces[0]);
+    let around = outer
+        .iter()
+        .copied()
+        .filter(|&s| shell_holds(brep, &brep.topology.shells[s].faces, &p, judge.band()));
+    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces);
+    let home = around.min_by(|a, b| volume(a).total_cmp(&volume(b)));
+    home.or(outer.first().copied()).unwrap_or(void)
+}
+
+/// A point of a face's boundary, or of the face where it has none.
+pub(super) fn point_of(brep: &Brep, face: FaceId) -> Point3<f64> {
+    let topology = &brep.topology;
+    match topology.face(face).loops.first() {
+        Some(&l) => {
+            let edge = topology.coedge(topology.ring(l).coedges[0]).edge;
+            let [lo, hi] = brep.range(edge);
+            brep.curve(edge).point(lo + 0.37 * (hi - lo))
+        }
+        None => {
+            let s = brep.surface(face);
+            s.point(0.3, 0.4) + Vector3::zeros()
+        }
+    }
+}

@@ -10,7 +10,7 @@ use super::topology::{FaceId, Sense};
 use super::walk::{DirectedArc, Passage, Walk};
 use crate::geometry::bounds::Box3;
 use crate::geometry::curve::Curve;
-use crate::geometry::surface::Surface;
+use crate::geometry::surface::{Surface, Torus};
 use nalgebra::Point3;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
@@ -158,7 +158,7 @@ impl<'a> FaceLocator<'a> {
                 Some(walk) => self.take(&walk),
                 None => Outcome::Unclear,
             },
-            Surface::Torus(_) => self.toric(p, k),
+            Surface::Torus(s) => self.toric(s, p, k, turn),
         }
     }
 
@@ -191,49 +191,66 @@ impl<'a> FaceLocator<'a> {
         }
     }
 
-    /// Along the two circles of a torus to a point of the boundary.
-    fn toric(&self, p: &Point3<f64>, k: usize) -> Outcome {
-        let Surface::Torus(torus) = self.surface else {
-            return Outcome::Unclear;
-        };
+    /// Around the tube, or along both circles of a torus to a point of the boundary.
+    fn toric(&self, torus: &Torus, p: &Point3<f64>, k: usize, turn: f64) -> Outcome {
         if k == 0 {
             match self.take(&Walk::tube(torus, p, Sense::Along)) {
                 Outcome::Nothing => {}
                 decided => return decided,
             }
         }
-        // Every target is reached both ways.
-        let target = self.target(k / 2);
-        let tube_first = k % 2 == 1;
-        let (first, second) = if tube_first {
-            let walk = Walk::tube(torus, p, Sense::Along);
-            let corner = self.same_tube_angle(p, &target);
-            let leg = walk.upto(walk.at(&corner));
-            (
-                leg,
-                Walk::parallel(self.surface, &corner, Sense::Along, self.band),
-            )
-        } else {
-            let Some(walk) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
-                return Outcome::Unclear;
-            };
-            let corner = self.same_tube_angle(&target, p);
-            let leg = walk.upto(walk.at(&corner));
-            (leg, Some(Walk::tube(torus, &corner, Sense::Along)))
+        let Some(way) = self.toric_way(torus, p, k, turn) else {
+            return Outcome::Unclear;
         };
-        match (self.take(&first), second) {
-            (Outcome::Nothing, Some(walk)) => match self.take(&walk) {
-                // The second leg passes the target: nothing there means that it was not seen.
-                Outcome::Nothing => Outcome::Unclear,
-                decided => decided,
-            },
-            (Outcome::Nothing, None) => Outcome::Unclear,
-            (decided, _) => decided,
+        for leg in &way {
+            match self.take(leg) {
+                Outcome::Nothing => {}
+                decided => return decided,
+            }
         }
+        // The last leg passes the target: nothing there means that it was not seen.
+        Outcome::Unclear
+    }
+
+    /// The k-th way to a point of the boundary: along one circle to where the other, once round,
+    /// passes it. Every target is reached both ways. Where the boundary runs along the circles
+    /// through `p` they do not cross it: later ways first lead aside, by an angle.
+    fn toric_way(
+        &self,
+        torus: &Torus,
+        p: &Point3<f64>,
+        k: usize,
+        turn: f64,
+    ) -> Option<Vec<Walk>> {
+        let target = self.target(k / 2);
+        let tube = |from: &Point3<f64>| Some(Walk::tube(torus, from, Sense::Along));
+        let round =
+            |from: &Point3<f64>| Walk::parallel(self.surface, from, Sense::Along, self.band);
+        let tube_last = k.is_multiple_of(2);
+        let mut way = Vec::with_capacity(3);
+        let mut from = *p;
+        if k >= WALKS / 2 {
+            let [theta, phi] = self.surface.parameters(p);
+            let (walk, aside) = match tube_last {
+                true => (tube(p)?, self.surface.point(theta, phi + turn)),
+                false => (round(p)?, self.surface.point(theta + turn, phi)),
+            };
+            way.push(walk.upto(walk.at(&aside)));
+            from = aside;
+        }
+        let (walk, corner, last) = if tube_last {
+            let corner = self.with_tube_angle(&target, &from);
+            (round(&from)?, corner, tube(&corner)?)
+        } else {
+            let corner = self.with_tube_angle(&from, &target);
+            (tube(&from)?, corner, round(&corner)?)
+        };
+        way.extend([walk.upto(walk.at(&corner)), last]);
+        Some(way)
     }
 
     /// The point with the first angle of `a` and the second of `b`.
-    fn same_tube_angle(&self, a: &Point3<f64>, b: &Point3<f64>) -> Point3<f64> {
+    fn with_tube_angle(&self, a: &Point3<f64>, b: &Point3<f64>) -> Point3<f64> {
         let [theta, _] = self.surface.parameters(a);
         let [_, phi] = self.surface.parameters(b);
         self.surface.point(theta, phi)
@@ -546,6 +563,30 @@ mod tests {
             assert_eq!(place(5.0, 0.0), Place::Outside);
             assert_eq!(place(2.0, 1.0), Place::Inside);
         }
+    }
+
+    #[test]
+    fn a_slit_along_the_top_of_a_torus_hides_nothing() {
+        // Every point of the boundary lies where a plane across the axis touches the torus.
+        let f = tilted();
+        let surface = Surface::Torus(Torus {
+            frame: f,
+            major: 2.0,
+            minor: 0.75,
+        });
+        let top = circle_at(&f, 0.75, 2.0);
+        let slit = [Sense::Along, Sense::Against].map(|sense| arc(&top, [1.0, 2.0], sense));
+        let locator = FaceLocator::new(&surface, Sense::Along, slit.to_vec(), BAND);
+        let quarter = 0.25 * TAU;
+        for phi in [quarter, -quarter, 0.0, 2.0 * quarter, quarter + 1e-6, 1.0] {
+            for theta in [0.0, 3.0, 5.0] {
+                assert_eq!(locator.place(&surface.point(theta, phi)), Place::Inside);
+            }
+        }
+        for phi in [-quarter, 0.0, 1.0] {
+            assert_eq!(locator.place(&surface.point(1.5, phi)), Place::Inside);
+        }
+        assert_eq!(locator.place(&surface.point(1.5, quarter)), Place::On);
     }
 
     #[test]

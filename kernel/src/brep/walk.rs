@@ -2,16 +2,17 @@
 //!
 //! A walk is a straight line of a plane, a ruling or a parallel of a cylinder or a cone, a great
 //! circle or a parallel of a sphere, or either circle of a torus. Each lies in a plane, so its
-//! crossings with an arc are the roots of that plane's distance along the arc. Notation: s is the
-//! length along the walk, D its direction, N the outward normal of the face, T the direction of an
-//! arc; the face lies to the left, towards N × T, so the walk enters the face where D·(N × T) > 0.
+//! crossings with an arc are the roots of that plane's distance along the arc; at the top of a torus,
+//! which the plane touches, those of the cylinder's through the walk. Notation: s is the length
+//! along the walk, D its direction, N the outward normal of the face, T the direction of an arc; the
+//! face lies to the left, towards N × T, so the walk enters the face where D·(N × T) > 0.
 
 use super::topology::Sense;
 use crate::geometry::bounds::Box3;
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
-use crate::geometry::section::{line_meets, section_roots};
-use crate::geometry::surface::{Plane, Surface, Torus};
+use crate::geometry::section::{line_meets, section_roots, surface_roots};
+use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
 use crate::number::sign::ROUNDING;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
@@ -68,7 +69,14 @@ enum Branch {
     Half(Point3<f64>, Vector3<f64>),
     /// The outer (+1) or inner (-1) of a torus's two circles at one height.
     Parallel(Torus, f64),
+    /// A torus's circle next to its top (+1) or bottom (-1): of the two that the cylinder shares
+    /// with it, which stands upright on the walk.
+    Level(Cylinder, f64),
 }
+
+/// Next to the top of a torus, as a part of the tube's radius: there the two circles at one height
+/// are close to each other, those at one distance from the axis far apart.
+const TOP: f64 = 0.5;
 
 /// A walk on a surface from a point of it.
 #[derive(Clone, Copy, Debug)]
@@ -136,8 +144,7 @@ impl Walk {
     }
 
     /// The parallel circle of a cylinder, a cone, a sphere or a torus through `start`, once round
-    /// in the given sense about the axis. None on the axis, near the top of a torus, where one
-    /// height holds two circles too close to tell, and on a plane.
+    /// in the given sense about the axis. None on the axis and on a plane.
     pub fn parallel(
         surface: &Surface,
         start: &Point3<f64>,
@@ -151,11 +158,15 @@ impl Walk {
             Surface::Plane(_) => return None,
             Surface::Torus(t) => {
                 let away = rho - t.major;
-                // The plane meets the torus under an angle of about away/minor.
-                if away.abs() <= 8.0 * (2.0 * t.minor * band).sqrt() {
-                    return None;
+                if away.abs() <= TOP * t.minor {
+                    let upright = Cylinder {
+                        frame: *f,
+                        radius: rho,
+                    };
+                    Branch::Level(upright, q.z.signum())
+                } else {
+                    Branch::Parallel(*t, away.signum())
                 }
-                Branch::Parallel(*t, away.signum())
             }
             _ => Branch::Whole,
         };
@@ -297,6 +308,7 @@ impl Walk {
                 let q = t.frame.coordinates(p);
                 (q.x.hypot(q.y) - t.major) * side > -band
             }
+            Branch::Level(c, side) => (p - c.frame.origin).dot(&c.frame.z) * side > -band,
         };
         let s = self.at(p);
         on_branch && s > -band && s < self.length + band
@@ -380,12 +392,10 @@ impl Walk {
         found: &mut impl FnMut(f64, f64, Passage),
     ) {
         let [lo, hi] = arc.range;
-        let n = self.normal;
         if !closes(arc) {
             for t in [lo, hi] {
                 let p = arc.curve.point(t);
-                let near = (p - self.start).dot(&n).abs() <= band;
-                if near && self.passes(&p, band) {
+                if self.off(&p).abs() <= band && self.passes(&p, band) {
                     found(self.at(&p).max(0.0), t, Passage::Unclear);
                 }
             }
@@ -415,7 +425,23 @@ impl Walk {
             return;
         }
         for &range in ranges {
-            section_roots(arc.curve, range, (&self.start, &n), band, &mut root);
+            match self.branch {
+                Branch::Level(c, _) => {
+                    surface_roots(arc.curve, range, &Surface::Cylinder(c), band, &mut root);
+                }
+                _ => {
+                    let section = (&self.start, &self.normal);
+                    section_roots(arc.curve, range, section, band, &mut root);
+                }
+            }
+        }
+    }
+
+    /// The distance of a point from what cuts the walk out of its surface.
+    fn off(&self, p: &Point3<f64>) -> f64 {
+        match self.branch {
+            Branch::Level(c, _) => Surface::Cylinder(c).distance(p),
+            _ => (p - self.start).dot(&self.normal),
         }
     }
 }

@@ -50,14 +50,25 @@ pub(crate) fn section_roots(
         Curve::Quartic(c) if through_axis(c, (o, n), band) => {
             ruling_roots(c, range, n, band, found);
         }
-        _ => match cut(curve, range, &Surface::Plane(plane()), band) {
-            Zeros::Everywhere => found(0.5 * (range[0] + range[1]), false),
-            Zeros::At { roots, .. } => {
-                for r in roots {
-                    found(r.t, r.contact == Contact::Simple);
-                }
+        _ => surface_roots(curve, range, &Surface::Plane(plane()), band, found),
+    }
+}
+
+/// The same for any surface.
+pub(crate) fn surface_roots(
+    curve: &Curve,
+    range: [f64; 2],
+    surface: &Surface,
+    band: f64,
+    found: &mut impl FnMut(f64, bool),
+) {
+    match cut(curve, range, surface, band) {
+        Zeros::Everywhere => found(0.5 * (range[0] + range[1]), false),
+        Zeros::At { roots, .. } => {
+            for r in roots {
+                found(r.t, r.contact == Contact::Simple);
             }
-        },
+        }
     }
 }
 

@@ -344,6 +344,11 @@ impl Trim<'_, '_, '_, '_> {
                         found.extend(range);
                     } else {
                         plane_roots(curve, range, &plane, band, &mut |t, _| found.push(t));
+                        // A root at a vertex may be just beyond the ends of all its edges.
+                        let polar = Surface::Plane(plane);
+                        let met = |t: &f64| polar.distance(&curve.point(*t)).abs() <= band;
+                        let open = brep.topology.edge(edge).ends.is_some();
+                        found.extend(range.into_iter().filter(|t| open && met(t)));
                     }
                 }
             }

@@ -62,8 +62,10 @@ struct Cluster {
 /// What is known of a cluster's best parameter.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// A root between opposite signs.
+    /// A root between opposite signs of a monotone function.
     Simple,
+    /// The function is monotone, and within the band.
+    Level,
     /// The extremum.
     Extremum,
     /// Only that it lies in the cluster.
@@ -188,7 +190,9 @@ impl<F: Function> Search<'_, F> {
                 continue;
             }
             if v.magnitude() <= self.band {
-                self.cluster(a, b, m, Kind::Loose, Some(0.0));
+                let level = !jet.d.has_zero();
+                let kind = if level { Kind::Level } else { Kind::Loose };
+                self.cluster(a, b, m, kind, Some(0.0));
             } else if !jet.d.has_zero() {
                 self.monotone(a, b);
             } else if !jet.dd.has_zero() {
@@ -216,7 +220,7 @@ impl<F: Function> Search<'_, F> {
     fn monotone(&mut self, a: f64, b: f64) {
         let (fa, fb) = (self.value(a), self.value(b));
         match (self.sign(fa), self.sign(fb)) {
-            (0, 0) => self.cluster(a, b, 0.5 * (a + b), Kind::Loose, Some(0.0)),
+            (0, 0) => self.cluster(a, b, 0.5 * (a + b), Kind::Level, Some(0.0)),
             (0, _) => {
                 let (t, kind) = self.near_end(a, b, fa, fb, a);
                 self.cluster(a, t, t, kind, None);
@@ -238,7 +242,7 @@ impl<F: Function> Search<'_, F> {
         if fa * fb <= 0.0 {
             (self.refine(a, b, fa), Kind::Simple)
         } else {
-            (end, Kind::Loose)
+            (end, Kind::Level)
         }
     }
 
@@ -332,7 +336,6 @@ impl<F: Function> Search<'_, F> {
     fn root(&self, group: &[Cluster], crosses: bool) -> Root {
         let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
         let margin = group.iter().filter_map(|c| c.margin).reduce(f64::min);
-        let mut simple = group.iter().filter(|c| c.kind == Kind::Simple);
         let found = |t, contact| Root {
             t,
             lo,
@@ -340,15 +343,44 @@ impl<F: Function> Search<'_, F> {
             contact,
             margin,
         };
-        if let (Some(c), None, true) = (simple.next(), simple.next(), crosses) {
-            return found(c.t, Contact::Simple);
-        }
         if crosses {
-            return found(self.balance(lo, hi, |j| j.dd), Contact::Inflected);
+            let mut simple = group.iter().filter(|c| c.kind == Kind::Simple);
+            return match (simple.next(), simple.next()) {
+                (Some(c), None) => found(c.t, Contact::Simple),
+                _ if self.is_monotone(group) => found(self.crossing(lo, hi), Contact::Simple),
+                _ => found(self.inflection(lo, hi), Contact::Inflected),
+            };
         }
         let extremum = group.iter().find(|c| c.kind == Kind::Extremum);
         let t = extremum.map_or_else(|| self.balance(lo, hi, |j| j.d), |c| c.t);
         found(t, Contact::Touching)
+    }
+
+    /// Whether the function is monotone over clusters that touch one another.
+    fn is_monotone(&self, group: &[Cluster]) -> bool {
+        let slope = |c: &Cluster| self.slope(0.5 * (c.lo + c.hi));
+        let first = slope(&group[0]);
+        let known = |c: &Cluster| matches!(c.kind, Kind::Simple | Kind::Level);
+        group.iter().all(|c| known(c) && slope(c) * first > 0.0)
+    }
+
+    /// The zero between the ends of a cluster; its middle where rounding hides it.
+    fn crossing(&self, lo: f64, hi: f64) -> f64 {
+        let (a, b) = (self.value(lo), self.value(hi));
+        match a * b <= 0.0 {
+            true => self.refine(lo, hi, a),
+            false => 0.5 * (lo + hi),
+        }
+    }
+
+    /// The best parameter where a function that is not monotone crosses zero in a cluster: where
+    /// its second derivative vanishes, if that is in the cluster.
+    fn inflection(&self, lo: f64, hi: f64) -> f64 {
+        let t = self.balance(lo, hi, |j| j.dd);
+        if (lo..=hi).contains(&t) {
+            return t;
+        }
+        self.crossing(lo, hi)
     }
 
     /// The zero of a derivative in or next to a cluster, or where it is least.
@@ -526,6 +558,20 @@ mod tests {
         assert!((r[0].t - std::f64::consts::PI).abs() < 1e-15);
         let z = isolate(&|t| Jet::variable(t).scale(0.0), &[0.0, 1.0], 1e-11);
         assert_eq!(z, Zeros::Everywhere);
+    }
+
+    #[test]
+    fn a_crossing_lies_in_its_cluster() {
+        // Flat next to 0, where it touches; the crossing is where it has long bent away again, and
+        // the pieces next to it are within the band.
+        let f = |t: Jet<Interval>| t.square() * t.square() * (k(1.0) - t).scale(1e-8);
+        let r = roots(f, &[0.0, 0.5, 1.0 - 1e-4, 1.0 + 1e-4, 1.5]);
+        let [touch, crossing] = r.as_slice() else {
+            panic!("{r:?}")
+        };
+        assert_eq!(touch.contact, Contact::Touching);
+        assert_eq!(crossing.contact, Contact::Simple);
+        assert!((crossing.t - 1.0).abs() < 1e-12, "{crossing:?}");
     }
 
     #[test]

@@ -347,42 +347,56 @@ impl<'a> Scene<'a> {
         own: &impl Fn(FaceId) -> Own,
     ) -> Count {
         let ray = self.ray(p);
-        let mut plain = true;
-        let (mut layers, mut unclear): (Vec<Layer>, Vec<Hit>) = (Vec::new(), Vec::new());
+        let (mut fronts, mut unclear): (Vec<Hit>, Vec<Hit>) = (Vec::new(), Vec::new());
         self.hits(&ray, Asked::Hiding, own, &mut |hit| {
-            plain &= hit.plain;
             if !hit.plain {
                 unclear.push(hit);
             } else if hit.front {
-                let Hit { at, face, .. } = hit;
-                layers.push(Layer { at, face });
+                fronts.push(hit);
             }
         });
-        layers.sort_by(|a, b| b.at.total_cmp(&a.at));
-        let mut count = Count {
-            qi: layers.len() as u32,
-            order: layers.iter().map(|l| l.face).collect(),
-            plain,
-        };
+        fronts.sort_by(|a, b| b.at.total_cmp(&a.at));
         if !unclear.iter().any(|hit| hit.front) {
-            return count;
+            return Count {
+                qi: fronts.len() as u32,
+                order: fronts.iter().map(|hit| hit.face).collect(),
+                plain: unclear.is_empty(),
+            };
         }
         let mut most: Vec<Layer> = Vec::new();
         for side in sides(&ray.towards, along) {
-            let covered = self.layers_beside(&ray, &unclear, own, &side);
+            let mut covered = self.layers_beside(&ray, &unclear, own, &side);
+            covered.extend(self.kept_beside(&ray, &fronts, own, &side));
             if covered.len() > most.len() {
                 most = covered;
             }
         }
-        count.qi += most.len() as u32;
         // What is met next to boundaries may be as near as the next: only the first is certain.
-        count.order.truncate(1);
-        if let Some(first) = most.iter().max_by(|a, b| a.at.total_cmp(&b.at))
-            && layers.first().is_none_or(|l| first.at > l.at)
-        {
-            count.order = vec![first.face];
+        let first = most.iter().max_by(|a, b| a.at.total_cmp(&b.at));
+        Count {
+            qi: most.len() as u32,
+            order: first.map(|layer| layer.face).into_iter().collect(),
+            plain: false,
         }
-        count
+    }
+
+    /// Those of the faces that are met plainly which are still met just aside: next to an edge one
+    /// face of it may begin where the other one ends.
+    fn kept_beside(
+        &self,
+        ray: &Ray,
+        fronts: &[Hit],
+        own: &impl Fn(FaceId) -> Own,
+        side: &Vector3<f64>,
+    ) -> Vec<Layer> {
+        let kept = |hit: &&Hit| {
+            let mut met = false;
+            let report = &mut |_, front| met |= front;
+            self.passed_beside(ray, hit, own(hit.face), side, report);
+            met
+        };
+        let layer = |&Hit { at, face, .. }: &Hit| Layer { at, face };
+        fronts.iter().filter(kept).map(layer).collect()
     }
 
     /// The faces turned towards the eye on the line of sight just aside, of those that the line of

@@ -279,11 +279,19 @@ fn general(
             Zeros::Everywhere => together += a.length_between(&breaks),
             Zeros::At { roots, .. } => {
                 for r in &roots {
-                    let Some(t) = place_of(r, [a, b], |t| ahead(a, b, projection, t)) else {
-                        continue;
+                    let branch = |s: f64| Branch {
+                        a,
+                        b,
+                        projection,
+                        next_to: s,
                     };
-                    let h = projection.homogeneous(&a.curve.point(t));
-                    b.image.parameters(&h, b.range, &mut |s| found(t, s));
+                    let h = projection.homogeneous(&a.curve.point(r.t));
+                    b.image.parameters(&h, b.range, &mut |s| {
+                        let branch = branch(s);
+                        if let Some(t) = place_of(r, [a, b], |t| branch.ahead(t)) {
+                            found(t, branch.parameter(t).unwrap_or(s));
+                        }
+                    });
                 }
             }
         }
@@ -313,21 +321,40 @@ pub fn place_of(
     ((from < 0.0) != (to < 0.0)).then(|| bisect(root.lo, root.hi, from, nearer))
 }
 
-/// How far a line or conic lies before the point of another curve with the same image.
-fn ahead(a: &Strand<'_>, b: &Strand<'_>, projection: &Projection, t: f64) -> Option<f64> {
-    let p = a.curve.point(t);
-    let (v, _) = projection.towards_eye(&p);
-    let mut nearest: Option<(f64, f64)> = None;
-    b.image
-        .parameters(&projection.homogeneous(&p), b.range, &mut |s| {
-            let apart = b.curve.point(s) - p;
-            let along = apart.dot(&v);
-            let aside = (apart - v * along).norm();
-            if nearest.is_none_or(|n| aside < n.0) {
-                nearest = Some((aside, along));
+/// Where a line or conic `b` passes points of another curve `a` in the image, next to a parameter:
+/// one seen edge-on passes them twice.
+struct Branch<'x> {
+    a: &'x Strand<'x>,
+    b: &'x Strand<'x>,
+    projection: &'x Projection,
+    next_to: f64,
+}
+
+impl Branch<'_> {
+    /// The parameter on `b` of the point with the image of `a` at `t`.
+    fn parameter(&self, t: f64) -> Option<f64> {
+        let away = |s: f64| {
+            let away = (s - self.next_to).abs();
+            let period = self.b.curve.period();
+            period.map_or(away, |period| away.min(period - away))
+        };
+        let h = self.projection.homogeneous(&self.a.curve.point(t));
+        let mut nearest: Option<f64> = None;
+        self.b.image.parameters(&h, self.b.range, &mut |s| {
+            if nearest.is_none_or(|n| away(s) < away(n)) {
+                nearest = Some(s);
             }
         });
-    nearest.map(|n| n.1)
+        nearest
+    }
+
+    /// How far `b` lies before the point of `a` there.
+    fn ahead(&self, t: f64) -> Option<f64> {
+        let p = self.a.curve.point(t);
+        let (v, _) = self.projection.towards_eye(&p);
+        let q = self.b.curve.point(self.parameter(t)?);
+        Some((q - p).dot(&v))
+    }
 }
 
 /// Whether the image of a curve lies on the line or conic of another: none of the kinds there are

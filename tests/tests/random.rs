@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 20] = [
+const MENDED: [(u64, &str); 23] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -57,10 +57,29 @@ const MENDED: [(u64, &str); 20] = [
     (7382, "a limb that runs along the edge on which it ends"),
     (3052, "an edge below a touch of a plane and a torus"),
     (3081, "a limb below a touch of tori"),
+    (
+        4498,
+        "a limb that ends on an edge where it leaves another one that it touches",
+    ),
+    (3792, "an edge that leaves another one which it touches"),
+    (1429, "a fold that begins where a face ends"),
 ];
 
 /// The views in which they were wrong.
 const MENDED_IN: [&str; 3] = ["perspective 3", "orthographic 1", "along z"];
+
+/// Trees that were wrong along the other axes.
+const MENDED_ALONG: [(u64, &str); 3] = [
+    (122, "a slit along the top of a torus"),
+    (237, "a limb that ends at a vertex of three edges"),
+    (
+        7115,
+        "an edge that touches the limb of a torus beyond its end",
+    ),
+];
+
+/// The views in which those were wrong.
+const MENDED_ALONG_IN: [&str; 2] = ["along x", "along y"];
 
 /// Examines the trees of some seeds on two threads.
 fn assert_all_right(seeds: &[u64], views: &'static [&'static str]) {
@@ -105,4 +124,5 @@ fn views() {
 #[test]
 fn mended() {
     assert_all_right(&MENDED.map(|(seed, _)| seed), &MENDED_IN);
+    assert_all_right(&MENDED_ALONG.map(|(seed, _)| seed), &MENDED_ALONG_IN);
 }

@@ -215,13 +215,7 @@ impl<'a> FaceLocator<'a> {
     /// The k-th way to a point of the boundary: along one circle to where the other, once round,
     /// passes it. Every target is reached both ways. Where the boundary runs along the circles
     /// through `p` they do not cross it: later ways first lead aside, by an angle.
-    fn toric_way(
-        &self,
-        torus: &Torus,
-        p: &Point3<f64>,
-        k: usize,
-        turn: f64,
-    ) -> Option<Vec<Walk>> {
+    fn toric_way(&self, torus: &Torus, p: &Point3<f64>, k: usize, turn: f64) -> Option<Vec<Walk>> {
         let target = self.target(k / 2);
         let tube = |from: &Point3<f64>| Some(Walk::tube(torus, from, Sense::Along));
         let round =

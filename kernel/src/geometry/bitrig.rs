@@ -57,6 +57,11 @@ impl Section {
         }
     }
 
+    /// The sum of the absolute coefficients: what rounding is in proportion to.
+    pub fn size(&self) -> f64 {
+        self.k.iter().map(|c| c.abs()).sum()
+    }
+
     /// The value at an angle, and the derivative.
     pub fn at(&self, angle: f64) -> [f64; 2] {
         let [value, slope] = match self.local {

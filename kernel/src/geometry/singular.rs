@@ -9,6 +9,7 @@
 use super::bitrig::{BiTrig, Partials};
 use super::trace::grid::{Cell, plain_grid};
 use super::trace::{Bounds, DEPTH, Tracer, Unresolved, near};
+use crate::number::interval::Interval;
 
 /// How the curve meets itself at a singular point.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +62,8 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Vec<SingularPoint>,
             let same = |q: &SingularPoint| near(&q.angles, &point, 1e3 * tracer.slop.sqrt());
             let on = tracer.form.value(point[0], point[1]).abs() <= tracer.band;
             if on && !found.iter().any(same) {
-                found.push(plain(tracer, point));
+                let all = derivatives.get_or_insert_with(|| Derivatives::of(tracer.form));
+                found.push(all.plain(tracer, point));
             }
             continue;
         }
@@ -122,22 +124,6 @@ fn only_critical(tracer: &Tracer<'_>, cell: &Cell, at: &Partials<f64>) -> Option
     Some(inside.then_some(p))
 }
 
-/// A point whose Hessian has rank two.
-fn plain(tracer: &Tracer<'_>, angles: [f64; 2]) -> SingularPoint {
-    let at = tracer.form.partials(angles[0], angles[1]);
-    let det = at.xx * at.yy - at.xy * at.xy;
-    let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
-    SingularPoint {
-        angles,
-        contact: if det < 0.0 {
-            Contact::Crossing(tangents(&at))
-        } else {
-            Contact::Isolated
-        },
-        zone: (0.1 * det.abs() / (norm * tracer.third)).min(ZONE),
-    }
-}
-
 /// The directions in which an indefinite quadratic form vanishes.
 fn tangents(at: &Partials<f64>) -> [[f64; 2]; 2] {
     let root = (at.xy * at.xy - at.xx * at.yy).max(0.0).sqrt();
@@ -174,6 +160,39 @@ impl Derivatives {
             third: std::array::from_fn(|k| of(3, k)),
             fourth: std::array::from_fn(|k| of(4, k)),
         }
+    }
+
+    /// A point whose Hessian has rank two.
+    fn plain(&self, tracer: &Tracer<'_>, angles: [f64; 2]) -> SingularPoint {
+        let at = tracer.form.partials(angles[0], angles[1]);
+        let det = at.xx * at.yy - at.xy * at.xy;
+        let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
+        // As far as the Hessian cannot change by a tenth of what makes it singular.
+        let mut zone = ZONE;
+        for _ in 0..DEPTH {
+            let plain = 0.1 * det.abs() / (norm * self.third_within(&angles, zone));
+            if plain >= zone {
+                break;
+            }
+            zone = plain.max(0.5 * zone);
+        }
+        SingularPoint {
+            angles,
+            contact: if det < 0.0 {
+                Contact::Crossing(tangents(&at))
+            } else {
+                Contact::Isolated
+            },
+            zone,
+        }
+    }
+
+    /// A bound of the third derivatives in any direction of length one in each angle, in the
+    /// square of half a side `zone` about a point.
+    fn third_within(&self, p: &[f64; 2], zone: f64) -> f64 {
+        let [x, y] = p.map(|c| Interval::around(c, zone));
+        let most = self.third.each_ref().map(|f| f.value(x, y).magnitude());
+        most[0] + 3.0 * (most[1] + most[2]) + most[3]
     }
 
     /// The singular point of rank one next to a cell, and how far from it along its direction F is

@@ -136,7 +136,9 @@ impl Segment {
         let reach = self.steep.max(1.0) * (self.to - self.from).abs();
         let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
         let section = self.section(forms, x);
+        let rounding = ROUNDING * section.size();
         let mut y = start;
+        let mut last = f64::INFINITY;
         for _ in 0..12 {
             let [value, slope] = section.at(y);
             let step = value / slope;
@@ -144,9 +146,13 @@ impl Segment {
                 break;
             }
             y -= step;
-            if step.abs() <= 2.0 * f64::EPSILON * (1.0 + y.abs()) {
+            // Next to a singular point only rounding is left of the value, and steps no longer
+            // get shorter.
+            let noise = value.abs() <= rounding && step.abs() >= 0.5 * last;
+            if noise || step.abs() <= 2.0 * f64::EPSILON * (1.0 + y.abs()) {
                 return y;
             }
+            last = step.abs();
         }
         // Newton left the cell: F is monotone across it, so halving finds the root.
         let value = |y: f64| section.at(y)[0];

@@ -64,6 +64,8 @@ struct Cluster {
 enum Kind {
     /// A root between opposite signs.
     Simple,
+    /// An end of a monotone piece within the band, with no root on the piece's side of it.
+    End,
     /// The extremum.
     Extremum,
     /// Only that it lies in the cluster.
@@ -238,7 +240,7 @@ impl<F: Function> Search<'_, F> {
         if fa * fb <= 0.0 {
             (self.refine(a, b, fa), Kind::Simple)
         } else {
-            (end, Kind::Loose)
+            (end, Kind::End)
         }
     }
 
@@ -333,6 +335,8 @@ impl<F: Function> Search<'_, F> {
         let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
         let margin = group.iter().filter_map(|c| c.margin).reduce(f64::min);
         let mut simple = group.iter().filter(|c| c.kind == Kind::Simple);
+        // A root where two monotone pieces meet, or one ends, may be in none of them by rounding.
+        let mut ends = group.iter().take_while(|c| c.kind == Kind::End);
         let found = |t, contact| Root {
             t,
             lo,
@@ -341,6 +345,9 @@ impl<F: Function> Search<'_, F> {
             margin,
         };
         if let (Some(c), None, true) = (simple.next(), simple.next(), crosses) {
+            return found(c.t, Contact::Simple);
+        }
+        if crosses && let (Some(c), true) = (ends.next(), ends.count() + 1 == group.len()) {
             return found(c.t, Contact::Simple);
         }
         if crosses {

@@ -15,6 +15,21 @@ use crate::number::sign::{Judge, ROUNDING, Side};
 use nalgebra::{Point3, Vector2, Vector3};
 use std::f64::consts::TAU;
 
+/// Through the angles of the smaller one: on the other, far from the curve, the form is large, and
+/// its rounding with it.
+pub(super) fn torus_torus(
+    t: &Torus,
+    o: &Torus,
+    extent: &Extent,
+    judge: &Judge,
+) -> Result<Meeting, IntersectionError> {
+    if o.major + o.minor < t.major + t.minor {
+        torus_with(o, &Surface::Torus(*t), extent, judge)
+    } else {
+        torus_with(t, &Surface::Torus(*o), extent, judge)
+    }
+}
+
 pub(super) fn torus_with(
     t: &Torus,
     other: &Surface,

@@ -318,6 +318,16 @@ impl Toric {
         t.frame.world_of([rho * ct, rho * st, sp.scale(t.minor)])
     }
 
+    /// Whether the curve turns back at t: whether a cusp is there.
+    pub fn turns_back(&self, t: f64) -> bool {
+        let n = self.segments.len();
+        let near = t.rem_euclid(n as f64).round();
+        let s = &self.segments[near as usize % n];
+        let at_cusp = |c: &Chart| c.weights.run == 2 && s.from == 0.0;
+        let away = (t - near).rem_euclid(n as f64);
+        away.min(n as f64 - away) <= ROUNDING * n as f64 && self.chart(s).is_some_and(at_cusp)
+    }
+
     /// The parameter of the curve's point next to the angles (θ, φ).
     pub fn parameter(&self, theta: f64, phi: f64) -> f64 {
         let mut best = (f64::INFINITY, 0.0);

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 23] = [
+const MENDED: [(u64, &str); 27] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -63,6 +63,16 @@ const MENDED: [(u64, &str); 23] = [
     ),
     (3792, "an edge that leaves another one which it touches"),
     (1429, "a fold that begins where a face ends"),
+    (2851, "parallel tori whose top circles cross"),
+    (
+        5564,
+        "a plane through a crossing of a torus's curve with itself, almost along it",
+    ),
+    (
+        6699,
+        "a cone with its apex on a torus whose tangent plane holds its axis",
+    ),
+    (4864, "a limb along a torus's curve next to a crossing"),
 ];
 
 /// The views in which they were wrong.

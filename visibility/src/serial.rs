@@ -106,12 +106,15 @@ fn toric(c: &Toric) -> Value {
     let segments: Vec<Value> = c
         .segments
         .iter()
-        .map(|s| {
-            let along = match s.axis {
-                Axis::Around => "theta",
-                Axis::Tube => "phi",
-            };
-            json!({"along": along, "from": s.from, "to": s.to, "ends": s.ends})
+        .enumerate()
+        .map(|(i, s)| {
+            let [[theta0, phi0], [theta1, phi1]] = c.ends(i);
+            match s.axis {
+                Axis::Around => json!({"along": "theta", "from": theta0, "to": theta1,
+                    "ends": [phi0, phi1]}),
+                Axis::Tube => json!({"along": "phi", "from": phi0, "to": phi1,
+                    "ends": [theta0, theta1]}),
+            }
         })
         .collect();
     json!({"type": "toric", "torus": torus, "form": c.form.0, "closed": c.closed,

@@ -392,6 +392,7 @@ fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<Joined
         let follows = other.meeting == piece.meeting
             && other.ends.is_some_and(|e| e[0] == end)
             && meets_at(curve.period(), piece.range[1], other.range[0])
+            && !curve.turns_back(piece.range[1])
             && same_wings(wings, same);
         if follows {
             next[i] = Some(j);

@@ -40,37 +40,20 @@ fn basis<S: Scalar>(angle: S) -> [[S; 5]; 3] {
 /// What is left of a polynomial in two angles where one of them is fixed: the coefficients of the
 /// functions of the other.
 #[derive(Clone, Copy, Debug)]
-pub struct Section {
-    k: [f64; 5],
-    /// The singular point's angle, of a [`Local`].
-    local: Option<f64>,
-}
+pub struct Section([f64; 5]);
 
 impl Section {
-    /// Of the coefficients `k`, with the first or the second angle's functions fixed to `fixed`.
-    fn of(k: &[[f64; 5]; 5], first: bool, fixed: &[f64; 5], local: Option<f64>) -> Self {
-        let entry = |i: usize, j: usize| if first { k[i][j] } else { k[j][i] };
-        let sum = |j: usize| (0..5).map(|i| entry(i, j) * fixed[i]).sum();
-        Self {
-            k: std::array::from_fn(sum),
-            local,
-        }
+    /// The sum of the absolute coefficients: what rounding is in proportion to.
+    pub fn size(&self) -> f64 {
+        self.0.iter().map(|c| c.abs()).sum()
     }
 
     /// The value at an angle, and the derivative.
     pub fn at(&self, angle: f64) -> [f64; 2] {
-        let [value, slope] = match self.local {
-            Some(origin) => {
-                let [value, slope, _] = local_basis(angle - origin);
-                [value, slope]
-            }
-            None => {
-                let (s, c) = angle.sin_cos();
-                let (s2, c2) = (2.0 * s * c, (c - s) * (c + s));
-                [[1.0, c, s, c2, s2], [0.0, -s, c, -2.0 * s2, 2.0 * c2]]
-            }
-        };
-        let sum = |by: [f64; 5]| (0..5).map(|j| self.k[j] * by[j]).sum();
+        let (s, c) = angle.sin_cos();
+        let (s2, c2) = (2.0 * s * c, (c - s) * (c + s));
+        let [value, slope] = [[1.0, c, s, c2, s2], [0.0, -s, c, -2.0 * s2, 2.0 * c2]];
+        let sum = |by: [f64; 5]| (0..5).map(|j| self.0[j] * by[j]).sum();
         [sum(value), sum(slope)]
     }
 }
@@ -115,7 +98,10 @@ fn partials<S: Scalar>(k: &[[f64; 5]; 5], bx: &[[S; 5]; 3], by: &[[S; 5]; 3]) ->
 impl BiTrig {
     /// What is left where the first angle, or the second, is fixed to `angle`.
     pub fn section(&self, first: bool, angle: f64) -> Section {
-        Section::of(&self.0, first, &basis(angle)[0], None)
+        let fixed = &basis(angle)[0];
+        let entry = |i: usize, j: usize| if first { self.0[i][j] } else { self.0[j][i] };
+        let sum = |j: usize| (0..5).map(|i| entry(i, j) * fixed[i]).sum();
+        Section(std::array::from_fn(sum))
     }
 
     /// The zero polynomial.
@@ -196,92 +182,17 @@ impl BiTrig {
         d
     }
 
-    /// A bound of the third derivatives in any direction of length one in each angle.
-    pub fn third(&self) -> f64 {
+    /// A bound of the n-th derivatives in any direction of length one in each angle, over n!.
+    pub fn variation(&self, n: usize) -> f64 {
         let degree = [0.0, 1.0, 1.0, 2.0, 2.0];
         let mut total = 0.0;
         for (i, row) in self.0.iter().enumerate() {
             for (j, c) in row.iter().enumerate() {
                 let d: f64 = degree[i] + degree[j];
-                total += c.abs() * d * d * d;
+                let over = (1..=n).fold(1.0, |t, k| t * d / k as f64);
+                total += c.abs() * over;
             }
         }
         total
-    }
-}
-
-/// A [`BiTrig`] about one of its singular points, where its value and gradient vanish: written in
-/// functions of the offsets that keep their relative accuracy, with the vanishing terms left out.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Local {
-    /// The singular point.
-    pub origin: [f64; 2],
-    k: [[f64; 5]; 5],
-}
-
-/// 1, sin d, 1 - cos d, 1 - cos 2d, sin d sin²(d/2) with two derivatives.
-fn local_basis<S: Scalar>(d: S) -> [[S; 5]; 3] {
-    let (s, c) = d.sin_cos();
-    let h2 = d.scale(0.5).sin_cos().0.square();
-    let s2 = s.square();
-    let (one, zero) = (S::constant(1.0), S::constant(0.0));
-    [
-        [one, s, h2.scale(2.0), s2.scale(2.0), s * h2],
-        [zero, c, s, (s * c).scale(4.0), c * h2 + s2.scale(0.5)],
-        [
-            zero,
-            -s,
-            c,
-            (c.square() - s2).scale(4.0),
-            (s * c).scale(1.5) - s * h2,
-        ],
-    ]
-}
-
-/// The five functions of x0 + d in the functions of d: rows by function.
-fn shift(x0: f64) -> [[f64; 5]; 5] {
-    let (s, c) = x0.sin_cos();
-    let (s2, c2) = (2.0 * x0).sin_cos();
-    [
-        [1.0, 0.0, 0.0, 0.0, 0.0],
-        [c, -s, -c, 0.0, 0.0],
-        [s, c, -s, 0.0, 0.0],
-        [c2, -2.0 * s2, 0.0, -c2, 4.0 * s2],
-        [s2, 2.0 * c2, 0.0, -s2, -4.0 * c2],
-    ]
-}
-
-impl Local {
-    /// The form about its singular point `origin`.
-    pub fn about(form: &BiTrig, origin: [f64; 2]) -> Self {
-        let (a, b) = (shift(origin[0]), shift(origin[1]));
-        let mut k = [[0.0; 5]; 5];
-        for (i, row) in form.0.iter().enumerate() {
-            for (j, c) in row.iter().enumerate() {
-                for (m, line) in k.iter_mut().enumerate() {
-                    for (n, sum) in line.iter_mut().enumerate() {
-                        *sum += c * a[i][m] * b[j][n];
-                    }
-                }
-            }
-        }
-        k[0][0] = 0.0;
-        k[1][0] = 0.0;
-        k[0][1] = 0.0;
-        Self { origin, k }
-    }
-
-    /// What is left where the first angle, or the second, is fixed to `angle`.
-    pub fn section(&self, first: bool, angle: f64) -> Section {
-        let [a, b] = self.origin;
-        let (fixed, free) = if first { (a, b) } else { (b, a) };
-        Section::of(&self.k, first, &local_basis(angle - fixed)[0], Some(free))
-    }
-
-    /// The value with its partial derivatives at the angles (x, y).
-    pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
-        let bx = local_basis(x - S::constant(self.origin[0]));
-        let by = local_basis(y - S::constant(self.origin[1]));
-        partials(&self.k, &bx, &by)
     }
 }

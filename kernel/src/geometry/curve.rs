@@ -198,9 +198,19 @@ impl Curve {
         Vector3::new(j[0].d, j[1].d, j[2].d)
     }
 
-    /// The unit tangent at t.
+    /// Whether the curve turns back at t: whether a cusp is there.
+    pub fn turns_back(&self, t: f64) -> bool {
+        matches!(self, Self::Toric(c) if c.turns_back(t))
+    }
+
+    /// The unit tangent at t; at a cusp, of what comes after.
     pub fn tangent(&self, t: f64) -> Vector3<f64> {
-        self.derivative(t).normalize()
+        let d = self.derivative(t);
+        if d != Vector3::zeros() {
+            return d.normalize();
+        }
+        let j = self.jet(t);
+        Vector3::new(j[0].dd, j[1].dd, j[2].dd).normalize()
     }
 
     /// The curvature vector at t: the second derivative by arc length.

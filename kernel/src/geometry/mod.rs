@@ -2,6 +2,7 @@
 
 pub mod bitrig;
 pub mod bounds;
+pub mod chart;
 pub mod curve;
 pub mod cut;
 pub mod frame;

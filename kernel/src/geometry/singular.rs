@@ -2,23 +2,24 @@
 //!
 //! Where F and its gradient vanish within the band, the Hessian tells: indefinite, two branches
 //! cross; definite, the point stands alone. Where it has rank one, with d the direction in which it
-//! vanishes and e the one across, F is to the least order (Arnold's A3)
-//! F_ee e²/2 + F_dde d² e/2 + F_dddd d⁴/24: two branches that touch, a tacnode, or a single point.
-//! Anything worse is refused.
+//! vanishes and e the one across, F is to the least order F_ee e²/2 + F_ddd d³/6, a cusp (Arnold's
+//! A2), or, where F_ddd vanishes, F_ee e²/2 + F_dde d² e/2 + F_dddd d⁴/24 (A3): two branches that
+//! touch, a tacnode, or a single point. Anything worse is refused.
 
 use super::bitrig::{BiTrig, Partials};
+use super::chart::{Chart, Weights, sheared, taylor};
+use super::toric::Axis;
 use super::trace::grid::{Cell, plain_grid};
 use super::trace::{Bounds, DEPTH, Tracer, Unresolved, near};
+use crate::number::interval::Interval;
 
-/// How the curve meets itself at a singular point.
+/// A branch through a singular point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Contact {
-    /// Two branches cross, in these unit directions.
-    Crossing([[f64; 2]; 2]),
-    /// Two branches touch, in this unit direction.
-    Tacnode([f64; 2]),
-    /// There are no branches.
-    Isolated,
+pub(super) struct Pass {
+    /// The coordinates in which it is smooth.
+    pub chart: Chart,
+    /// κ at the point.
+    pub kappa: f64,
 }
 
 /// A singular point.
@@ -26,8 +27,8 @@ pub(super) enum Contact {
 pub(super) struct SingularPoint {
     /// (θ, φ).
     pub angles: [f64; 2],
-    /// How the curve meets itself there.
-    pub contact: Contact,
+    /// The branches through it; none where it stands alone.
+    pub passes: Vec<Pass>,
     /// How far from it the curve is known to be no more than these branches.
     pub zone: f64,
 }
@@ -61,7 +62,8 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Vec<SingularPoint>,
             let same = |q: &SingularPoint| near(&q.angles, &point, 1e3 * tracer.slop.sqrt());
             let on = tracer.form.value(point[0], point[1]).abs() <= tracer.band;
             if on && !found.iter().any(same) {
-                found.push(plain(tracer, point));
+                let all = derivatives.get_or_insert_with(|| Derivatives::of(tracer.form));
+                found.push(all.plain(tracer, point));
             }
             continue;
         }
@@ -122,22 +124,6 @@ fn only_critical(tracer: &Tracer<'_>, cell: &Cell, at: &Partials<f64>) -> Option
     Some(inside.then_some(p))
 }
 
-/// A point whose Hessian has rank two.
-fn plain(tracer: &Tracer<'_>, angles: [f64; 2]) -> SingularPoint {
-    let at = tracer.form.partials(angles[0], angles[1]);
-    let det = at.xx * at.yy - at.xy * at.xy;
-    let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
-    SingularPoint {
-        angles,
-        contact: if det < 0.0 {
-            Contact::Crossing(tangents(&at))
-        } else {
-            Contact::Isolated
-        },
-        zone: (0.1 * det.abs() / (norm * tracer.third)).min(ZONE),
-    }
-}
-
 /// The directions in which an indefinite quadratic form vanishes.
 fn tangents(at: &Partials<f64>) -> [[f64; 2]; 2] {
     let root = (at.xy * at.xy - at.xx * at.yy).max(0.0).sqrt();
@@ -155,6 +141,24 @@ fn tangents(at: &Partials<f64>) -> [[f64; 2]; 2] {
         return [[1.0, 0.0], [0.0, 1.0]];
     }
     [unit(q, at.xx), unit(at.yy, q)]
+}
+
+/// The branch through a crossing in a direction.
+fn crossing(form: &BiTrig, angles: [f64; 2], [x, y]: [f64; 2]) -> Pass {
+    let weights = Weights {
+        run: 1,
+        rise: 1,
+        form: 2,
+    };
+    let (axis, kappa) = if y.abs() > x.abs() {
+        (Axis::Tube, x / y)
+    } else {
+        (Axis::Around, y / x)
+    };
+    Pass {
+        chart: Chart::new(form, angles, axis, 0.0, 1.0, weights),
+        kappa,
+    }
 }
 
 /// The third and the fourth derivatives of F, by the number of times by the second angle.
@@ -176,15 +180,91 @@ impl Derivatives {
         }
     }
 
+    /// A point whose Hessian has rank two.
+    fn plain(&self, tracer: &Tracer<'_>, angles: [f64; 2]) -> SingularPoint {
+        let at = tracer.form.partials(angles[0], angles[1]);
+        let det = at.xx * at.yy - at.xy * at.xy;
+        let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
+        // As far as the Hessian cannot change by a tenth of what makes it singular.
+        let mut zone = ZONE;
+        for _ in 0..DEPTH {
+            let plain = 0.1 * det.abs() / (norm * self.third_within(&angles, zone));
+            if plain >= zone {
+                break;
+            }
+            zone = plain.max(0.5 * zone);
+        }
+        let passes = if det < 0.0 {
+            tangents(&at)
+                .map(|d| crossing(tracer.form, angles, d))
+                .into()
+        } else {
+            Vec::new()
+        };
+        SingularPoint {
+            angles,
+            passes,
+            zone,
+        }
+    }
+
+    /// A bound of the third derivatives in any direction of length one in each angle, in the
+    /// square of half a side `zone` about a point.
+    fn third_within(&self, p: &[f64; 2], zone: f64) -> f64 {
+        let [x, y] = p.map(|c| Interval::around(c, zone));
+        let most = self.third.each_ref().map(|f| f.value(x, y).magnitude());
+        most[0] + 3.0 * (most[1] + most[2]) + most[3]
+    }
+
     /// The singular point of rank one next to a cell, and how far from it along its direction F is
     /// within the band.
     fn degenerate(&self, tracer: &Tracer<'_>, cell: &Cell) -> Option<(SingularPoint, f64)> {
-        let start = cell.centre();
+        [3, 4].iter().find_map(|&order| {
+            let (point, at) = self.flattest(tracer, cell.centre(), order)?;
+            let (last, next) = match order {
+                3 => (at.cubic / 6.0, at.quartic / 24.0),
+                _ => (at.quartic / 24.0, 0.0),
+            };
+            let band = tracer.band;
+            // Where the leading term leaves the band.
+            let reach = (band / last.abs()).powf(1.0 / f64::from(order));
+            let vanishes = at.value.abs() <= band
+                && (at.along * reach).abs() <= band
+                && (0.5 * at.flat * reach * reach).abs() <= band
+                && (order == 3 || (at.cubic * reach * reach * reach / 6.0).abs() <= band);
+            let leads = at.bend.abs() * reach * reach >= 16.0 * band
+                && reach < ZONE
+                && (next * reach).abs() <= 0.25 * last.abs();
+            if !(vanishes && leads) {
+                return None;
+            }
+            let (passes, zone) = rank_one(tracer.form, point, order)?;
+            let point = SingularPoint {
+                angles: point,
+                passes,
+                zone,
+            };
+            Some((point, reach))
+        })
+    }
+
+    /// The point next to `start` at which F is critical across d and its derivative along d of one
+    /// less than the given order vanishes.
+    fn flattest(
+        &self,
+        tracer: &Tracer<'_>,
+        start: [f64; 2],
+        order: i32,
+    ) -> Option<([f64; 2], Leading)> {
         let mut p = start;
         let mut least = None;
         for _ in 0..12 {
             let at = self.leading(tracer.form, p);
-            let step = [-at.cubic / at.quartic, -at.across / at.bend];
+            let along = match order {
+                3 => at.flat / at.cubic,
+                _ => at.cubic / at.quartic,
+            };
+            let step = [-along, -at.across / at.bend];
             let [x, y] = at.direction;
             p = [
                 p[0] + step[0] * x - step[1] * y,
@@ -195,25 +275,7 @@ impl Derivatives {
                 return None;
             }
         }
-        let at = least?;
-        let band = tracer.band;
-        // Where the term of the fourth order leaves the band.
-        let reach = (24.0 * band / at.quartic.abs()).sqrt().sqrt();
-        let vanishes = at.value.abs() <= band
-            && (at.along * reach).abs() <= band
-            && (0.5 * at.flat * reach * reach).abs() <= band;
-        let leads = at.bend.abs() * reach * reach >= 16.0 * band && reach < ZONE;
-        let contact = if at.quartic * at.bend < 0.0 {
-            Contact::Tacnode(at.direction)
-        } else {
-            Contact::Isolated
-        };
-        let point = SingularPoint {
-            angles: p,
-            contact,
-            zone: ZONE,
-        };
-        (vanishes && leads).then_some((point, reach))
+        Some((p, least?))
     }
 
     /// The derivatives along the direction d in which the Hessian is least, and across it.
@@ -274,4 +336,67 @@ struct Leading {
     cubic: f64,
     /// The fourth derivative along the curve F_e = 0: F_dddd - 3 F_dde²/F_ee.
     quartic: f64,
+}
+
+/// The branches through a point of rank one at which F vanishes along its direction to less than
+/// the given order, and its zone.
+fn rank_one(form: &BiTrig, angles: [f64; 2], order: i32) -> Option<(Vec<Pass>, f64)> {
+    let at = form.partials(angles[0], angles[1]);
+    // The graphs run over the angle across which F bends more.
+    let (axis, across, mixed) = if at.yy.abs() >= at.xx.abs() {
+        (Axis::Around, at.yy, at.xy)
+    } else {
+        (Axis::Tube, at.xx, at.xy)
+    };
+    let slope = -mixed / across;
+    let k = sheared(&taylor(form, angles, axis), slope);
+    let chart = |side: f64, weights| Chart::new(form, angles, axis, slope, side, weights);
+    let zone = rank_one_zone(form, angles, axis);
+    let passes = if order == 3 {
+        // k₀₂ e² + k₃₀ s³: on the side where the second term has the other sign.
+        let side = -(k[3][0] * k[0][2]).signum();
+        let weights = Weights {
+            run: 2,
+            rise: 3,
+            form: 6,
+        };
+        vec![Pass {
+            chart: chart(side, weights),
+            kappa: (k[3][0] / k[0][2]).abs().sqrt(),
+        }]
+    } else {
+        // k₀₂ κ² + k₂₁ κ + k₄₀.
+        let weights = Weights {
+            run: 1,
+            rise: 2,
+            form: 4,
+        };
+        let middle = -0.5 * k[2][1] / k[0][2];
+        let square = middle * middle - k[4][0] / k[0][2];
+        let half = square.max(0.0).sqrt();
+        let pass = |kappa| Pass {
+            chart: chart(1.0, weights),
+            kappa,
+        };
+        match square > 0.0 {
+            true => vec![pass(middle - half), pass(middle + half)],
+            false => Vec::new(),
+        }
+    };
+    Some((passes, zone))
+}
+
+/// As far as F keeps bending across the running angle: there are no more than two sheets.
+fn rank_one_zone(form: &BiTrig, angles: [f64; 2], axis: Axis) -> f64 {
+    let across = usize::from(axis == Axis::Around);
+    let bend = form.derivative(across).derivative(across);
+    let mut zone = ZONE;
+    for _ in 0..DEPTH {
+        let [x, y] = angles.map(|c| Interval::around(c, zone));
+        if !bend.value(x, y).has_zero() {
+            break;
+        }
+        zone *= 0.5;
+    }
+    zone
 }

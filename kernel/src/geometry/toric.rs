@@ -2,12 +2,14 @@
 //!
 //! Notation: θ is the angle about the axis, φ about the tube; the curve is F(θ, φ) = 0 with F a
 //! [`BiTrig`]. It is kept as a chain of segments, each a graph of one angle over the other inside a
-//! rectangle where the slope is bounded, so that every point is one well-conditioned root.
+//! rectangle where the slope is bounded, so that every point is one well-conditioned root. Next to
+//! a singular point the graph is that of κ over σ in a [`Chart`].
 
-use super::bitrig::{BiTrig, Local, Section};
+use super::bitrig::{BiTrig, Partials, Section};
+use super::chart::{Chart, DEGREE};
 use super::surface::Torus;
 use crate::number::interval::Interval;
-use crate::number::jet::Jet;
+use crate::number::jet::{Base, Jet};
 use crate::number::roots::bisect;
 use crate::number::scalar::Scalar;
 use crate::number::sign::ROUNDING;
@@ -23,10 +25,10 @@ pub enum Axis {
     Tube,
 }
 
-/// A graph of one angle over the other.
+/// A graph of one angle over the other, or of κ over σ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// The angle that runs.
+    /// The angle that runs, or whose offset is a power of σ.
     pub axis: Axis,
     /// Where it starts.
     pub from: f64,
@@ -40,9 +42,8 @@ pub struct Segment {
     pub steep: f64,
     /// The range of the other angle in which the graph is the only one.
     pub bracket: [f64; 2],
-    /// The point where the curve crosses itself that the segment starts or ends at: an index
-    /// into the curve's nodes.
-    pub node: Option<usize>,
+    /// The chart of the segment's coordinates, an index into the curve's; else they are angles.
+    pub chart: Option<usize>,
 }
 
 /// A branch of F(θ, φ) = 0 on a torus; the parameter runs over one unit for each segment.
@@ -52,18 +53,86 @@ pub struct Toric {
     pub torus: Torus,
     /// F.
     pub form: BiTrig,
-    /// F about each point where it crosses itself.
-    pub nodes: Vec<Local>,
+    /// F about its singular points, for each branch.
+    pub charts: Vec<Chart>,
     /// The chain.
     pub segments: Vec<Segment>,
     /// Whether the last segment ends where the first begins.
     pub closed: bool,
 }
 
-/// What a segment is solved by.
-struct Forms<'a> {
-    form: &'a BiTrig,
-    nodes: &'a [Local],
+/// What a segment is solved by: F in its coordinates.
+#[derive(Clone, Copy)]
+enum Form<'a> {
+    Angles(&'a BiTrig, Axis),
+    Chart(&'a Chart),
+}
+
+/// F with the running coordinate fixed.
+enum Fixed {
+    Angle(Section),
+    Chart([f64; DEGREE + 1]),
+}
+
+impl Fixed {
+    /// The sum of the absolute coefficients: what rounding is in proportion to.
+    fn size(&self) -> f64 {
+        match self {
+            Self::Angle(section) => section.size(),
+            Self::Chart(section) => section.iter().map(|c| c.abs()).sum(),
+        }
+    }
+
+    /// The value and the derivative.
+    fn at(&self, y: f64) -> [f64; 2] {
+        match self {
+            Self::Angle(section) => section.at(y),
+            Self::Chart(section) => {
+                let step = |[v, d]: [f64; 2], c: &f64| [v * y + c, d * y + v];
+                section.iter().rev().fold([0.0; 2], step)
+            }
+        }
+    }
+}
+
+impl Form<'_> {
+    fn fixed(&self, x: f64) -> Fixed {
+        match self {
+            Self::Angles(form, axis) => Fixed::Angle(form.section(*axis == Axis::Around, x)),
+            Self::Chart(chart) => Fixed::Chart(chart.section(x)),
+        }
+    }
+
+    fn partials(&self, x: f64, y: f64) -> Partials<f64> {
+        match self {
+            Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
+            Self::Chart(chart) => chart.partials(x, y),
+        }
+    }
+
+    fn partials_over(&self, x: Interval, y: Interval) -> Partials<Interval> {
+        match self {
+            Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
+            Self::Chart(chart) => chart.partials_over(x, y),
+        }
+    }
+}
+
+/// The partial derivatives with the running angle as the first.
+fn run_along<S>(axis: Axis, x: S, y: S, at: impl Fn(S, S) -> Partials<S>) -> Partials<S> {
+    match axis {
+        Axis::Around => at(x, y),
+        Axis::Tube => {
+            let p = at(y, x);
+            Partials {
+                x: p.y,
+                y: p.x,
+                xx: p.yy,
+                yy: p.xx,
+                ..p
+            }
+        }
+    }
 }
 
 impl Segment {
@@ -78,36 +147,6 @@ impl Segment {
             - m1 * a * b * b
     }
 
-    /// (F, F along the running angle, F along the other, and the second derivatives likewise).
-    fn partials<S: Scalar>(&self, forms: &Forms<'_>, x: S, y: S) -> [S; 6] {
-        let at = |a: S, b: S| match self.node.and_then(|n| forms.nodes.get(n)) {
-            Some(local) => local.partials(a, b),
-            None => forms.form.partials(a, b),
-        };
-        match self.axis {
-            Axis::Around => {
-                let p = at(x, y);
-                [p.f, p.x, p.y, p.xx, p.xy, p.yy]
-            }
-            Axis::Tube => {
-                let p = at(y, x);
-                [p.f, p.y, p.x, p.yy, p.xy, p.xx]
-            }
-        }
-    }
-
-    /// The slope at an end, next to which x lies. At a node both partial derivatives vanish, and
-    /// next to it rounding in x is all that is left of them.
-    fn end_slope(&self, x: f64) -> Option<f64> {
-        let reach = ROUNDING.sqrt();
-        let near = |end: f64| self.node.is_some() && (x - end).abs() <= reach;
-        match (near(self.from), near(self.to)) {
-            (true, _) => Some(self.slopes[0]),
-            (_, true) => Some(self.slopes[1]),
-            _ => None,
-        }
-    }
-
     /// The same graph, run the other way.
     pub fn reversed(&self) -> Self {
         let flip = |[a, b]: [f64; 2]| [b, a];
@@ -120,23 +159,16 @@ impl Segment {
         }
     }
 
-    /// F over the other angle, with the running one fixed to x.
-    fn section(&self, forms: &Forms<'_>, x: f64) -> Section {
-        let first = self.axis == Axis::Around;
-        match self.node.and_then(|n| forms.nodes.get(n)) {
-            Some(local) => local.section(first, x),
-            None => forms.form.section(first, x),
-        }
-    }
-
     /// The other angle over x.
-    fn solve(&self, forms: &Forms<'_>, x: f64) -> f64 {
+    fn solve(&self, form: Form<'_>, x: f64) -> f64 {
         let start = self.hermite(x);
         let [lo, hi] = self.bracket;
         let reach = self.steep.max(1.0) * (self.to - self.from).abs();
         let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
-        let section = self.section(forms, x);
+        let section = form.fixed(x);
+        let rounding = ROUNDING * section.size();
         let mut y = start;
+        let mut last = f64::INFINITY;
         for _ in 0..12 {
             let [value, slope] = section.at(y);
             let step = value / slope;
@@ -144,9 +176,13 @@ impl Segment {
                 break;
             }
             y -= step;
-            if step.abs() <= 2.0 * f64::EPSILON * (1.0 + y.abs()) {
+            // Next to a singular point only rounding is left of the value, and steps no longer
+            // get shorter.
+            let noise = value.abs() <= rounding && step.abs() >= 0.5 * last;
+            if noise || step.abs() <= 2.0 * f64::EPSILON * (1.0 + y.abs()) {
                 return y;
             }
+            last = step.abs();
         }
         // Newton left the cell: F is monotone across it, so halving finds the root.
         let value = |y: f64| section.at(y)[0];
@@ -157,40 +193,64 @@ impl Segment {
         y
     }
 
-    fn jet(&self, forms: &Forms<'_>, x: f64) -> [f64; 3] {
-        let y = self.solve(forms, x);
-        if let Some(slope) = self.end_slope(x) {
-            return [y, slope, 0.0];
-        }
-        let p = self.partials(forms, x, y);
-        let d = -p[1] / p[2];
-        [y, d, -(p[3] + 2.0 * p[4] * d + p[5] * d * d) / p[2]]
+    fn jet(&self, form: Form<'_>, x: f64) -> [f64; 3] {
+        let y = self.solve(form, x);
+        let p = form.partials(x, y);
+        let d = -p.x / p.y;
+        [y, d, -(p.xx + 2.0 * p.xy * d + p.yy * d * d) / p.y]
     }
 
-    fn interval_jet(&self, forms: &Forms<'_>, x: Interval) -> [Interval; 3] {
+    fn interval_jet(&self, form: Form<'_>, x: Interval) -> [Interval; 3] {
         let m = x.mid();
-        let ym = self.solve(forms, m);
+        let ym = self.solve(form, m);
         let slop = Interval::around(ym, 4.0 * f64::EPSILON * (1.0 + ym.abs()));
         let run = x - Interval::point(m);
         let prior = Interval::new(-self.steep, self.steep);
         let mut y = slop + prior * run;
-        let p = self.partials(forms, x, y);
-        if p[2].has_zero() {
+        let p = form.partials_over(x, y);
+        if p.y.has_zero() {
             return [y, prior, Interval::ENTIRE];
         }
-        let d = (-p[1].over(p[2])).meet(prior);
+        let d = (-p.x.over(p.y)).meet(prior);
         y = y.meet(slop + d * run);
-        let dd = -(p[3] + (p[4] * d).scale(2.0) + p[5] * d.square()).over(p[2]);
+        let dd = -(p.xx + (p.xy * d).scale(2.0) + p.yy * d.square()).over(p.y);
         [y, d, dd]
     }
 }
 
 impl Toric {
-    fn forms(&self) -> Forms<'_> {
-        Forms {
-            form: &self.form,
-            nodes: &self.nodes,
+    fn chart(&self, s: &Segment) -> Option<&Chart> {
+        s.chart.and_then(|c| self.charts.get(c))
+    }
+
+    fn form(&self, s: &Segment) -> Form<'_> {
+        match self.chart(s) {
+            Some(chart) => Form::Chart(chart),
+            None => Form::Angles(&self.form, s.axis),
         }
+    }
+
+    /// (θ, φ) of the coordinates of a segment.
+    fn unfolded<S: Base>(&self, s: &Segment, run: Jet<S>, other: Jet<S>) -> [Jet<S>; 2] {
+        match self.chart(s) {
+            None => arrange(s.axis, run, other),
+            Some(chart) => {
+                let [x, y] = chart.offsets(run, other);
+                let [theta, phi] = chart.origin.map(Jet::constant);
+                let [x, y] = arrange(s.axis, x, y);
+                [theta + x, phi + y]
+            }
+        }
+    }
+
+    /// (θ, φ) at both ends of a segment, in its sense.
+    pub fn ends(&self, index: usize) -> [[f64; 2]; 2] {
+        let s = &self.segments[index];
+        let at = |x: f64, y: f64| {
+            self.unfolded(s, Jet::constant(x), Jet::constant(y))
+                .map(|j| j.v)
+        };
+        [at(s.from, s.ends[0]), at(s.to, s.ends[1])]
     }
 
     /// The number of segments: the parameter's length.
@@ -214,7 +274,7 @@ impl Toric {
         let (s, tau) = self.locate(t);
         let length = s.to - s.from;
         let x = s.from + tau * length;
-        let [y, d, dd] = s.jet(&self.forms(), x);
+        let [y, d, dd] = s.jet(self.form(s), x);
         let run = Jet {
             v: x,
             d: length,
@@ -225,7 +285,7 @@ impl Toric {
             d: d * length,
             dd: dd * length * length,
         };
-        arrange(s.axis, run, other)
+        self.unfolded(s, run, other)
     }
 
     /// (θ, φ) over an interval of t inside one segment, with two derivatives.
@@ -235,7 +295,7 @@ impl Toric {
         let base = t.mid() - tau;
         let offset = t - Interval::point(base);
         let x = Interval::point(s.from) + offset.scale(length);
-        let [y, d, dd] = s.interval_jet(&self.forms(), x);
+        let [y, d, dd] = s.interval_jet(self.form(s), x);
         let run = Jet {
             v: x,
             d: Interval::point(length),
@@ -246,7 +306,7 @@ impl Toric {
             d: d.scale(length),
             dd: dd.scale(length * length),
         };
-        arrange(s.axis, run, other)
+        self.unfolded(s, run, other)
     }
 
     /// The point with the given angles.
@@ -258,25 +318,48 @@ impl Toric {
         t.frame.world_of([rho * ct, rho * st, sp.scale(t.minor)])
     }
 
+    /// Whether the curve turns back at t: whether a cusp is there.
+    pub fn turns_back(&self, t: f64) -> bool {
+        let n = self.segments.len();
+        let near = t.rem_euclid(n as f64).round();
+        let s = &self.segments[near as usize % n];
+        let at_cusp = |c: &Chart| c.weights.run == 2 && s.from == 0.0;
+        let away = (t - near).rem_euclid(n as f64);
+        away.min(n as f64 - away) <= ROUNDING * n as f64 && self.chart(s).is_some_and(at_cusp)
+    }
+
     /// The parameter of the curve's point next to the angles (θ, φ).
     pub fn parameter(&self, theta: f64, phi: f64) -> f64 {
         let mut best = (f64::INFINITY, 0.0);
         for (i, s) in self.segments.iter().enumerate() {
-            let (x, y) = match s.axis {
-                Axis::Around => (theta, phi),
-                Axis::Tube => (phi, theta),
-            };
+            let x = self.folded(s, theta, phi);
             let length = s.to - s.from;
-            let middle = 0.5 * (s.from + s.to);
-            let x = middle + wrap(x - middle);
             let tau = ((x - s.from) / length).clamp(0.0, 1.0);
             let on = s.from + tau * length;
-            let away = wrap(y - s.solve(&self.forms(), on)).hypot(x - on);
+            let other = s.solve(self.form(s), on);
+            let [a, b] = self.unfolded::<f64>(s, Jet::constant(on), Jet::constant(other));
+            let away = wrap(theta - a.v).hypot(wrap(phi - b.v));
             if away < best.0 {
                 best = (away, i as f64 + tau);
             }
         }
         best.1
+    }
+
+    /// The running coordinate of a segment at the angles (θ, φ).
+    fn folded(&self, s: &Segment, theta: f64, phi: f64) -> f64 {
+        match self.chart(s) {
+            None => {
+                let [x, _] = arrange(s.axis, theta, phi);
+                let middle = 0.5 * (s.from + s.to);
+                middle + wrap(x - middle)
+            }
+            Some(chart) => {
+                let away = [theta - chart.origin[0], phi - chart.origin[1]].map(wrap);
+                let [x, y] = arrange(s.axis, away[0], away[1]);
+                chart.sigma(x, y)
+            }
+        }
     }
 
     /// A point of the torus by its angles.

@@ -131,7 +131,7 @@ pub fn meet(
             plane::plane_cone(p, c, extent, judge)
         }
         (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, extent, judge),
-        (S::Torus(t), S::Torus(o)) => torus::torus_with(t, &S::Torus(*o), extent, judge)?,
+        (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, extent, judge)?,
         (S::Torus(t), other) | (other, S::Torus(t)) => torus::torus_with(t, other, extent, judge)?,
         (x, y) => quadric::quadric_quadric(x, y, extent, judge)?,
     })

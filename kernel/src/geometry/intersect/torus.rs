@@ -15,6 +15,21 @@ use crate::number::sign::{Judge, ROUNDING, Side};
 use nalgebra::{Point3, Vector2, Vector3};
 use std::f64::consts::TAU;
 
+/// Through the angles of the smaller one: on the other, far from the curve, the form is large, and
+/// its rounding with it.
+pub(super) fn torus_torus(
+    t: &Torus,
+    o: &Torus,
+    extent: &Extent,
+    judge: &Judge,
+) -> Result<Meeting, IntersectionError> {
+    if o.major + o.minor < t.major + t.minor {
+        torus_with(o, &Surface::Torus(*t), extent, judge)
+    } else {
+        torus_with(t, &Surface::Torus(*o), extent, judge)
+    }
+}
+
 pub(super) fn torus_with(
     t: &Torus,
     other: &Surface,
@@ -97,11 +112,17 @@ fn traced(
     let mut meeting = Meeting::nothing();
     // The form knows both nappes of a cone: each branch is cut to the one that is meant.
     let mut parts: Vec<Vec<(usize, [f64; 2])>> = Vec::new();
-    for branch in traced.branches {
+    for (b, branch) in traced.branches.into_iter().enumerate() {
         let whole = [0.0, branch.length()];
+        let passes: Vec<f64> = traced
+            .singular
+            .iter()
+            .flat_map(|s| s.on.iter().filter(|on| on.0 == b).map(|on| on.1))
+            .collect();
         let curve = Curve::Toric(Box::new(branch));
         let mut kept = Vec::new();
         for range in nappe_parts(&curve, whole, other, judge.band()) {
+            let range = range.map(|end| at_pass(&curve, end, &passes, judge));
             kept.push((meeting.branches.len(), range));
             let (curve, closed) = (curve.clone(), range == whole);
             meeting.branches.push(Branch {
@@ -118,16 +139,17 @@ fn traced(
         if matches!(other, Surface::Cone(_)) && other.distance(&point) > t.minor {
             continue;
         }
-        let on = s.on.iter().flat_map(|&(b, at)| {
-            let kept = parts[b]
-                .iter()
-                .filter(move |(_, r)| at >= r[0] && at <= r[1]);
-            kept.map(move |&(i, _)| (i, at))
-        });
-        meeting.nodes.push(Node {
-            point,
-            on: on.collect(),
-        });
+        let mut on = Vec::new();
+        for (b, at) in s.on {
+            for &(i, [lo, hi]) in &parts[b] {
+                // Parts run on beyond the turn in which they start.
+                let cycle = meeting.branches[i].curve.period().unwrap_or(0.0);
+                let whole = meeting.branches[i].closed;
+                let passes = [at, at + cycle].into_iter().take(2 - usize::from(whole));
+                on.extend(passes.filter(|&t| t >= lo && t <= hi).map(|t| (i, t)));
+            }
+        }
+        meeting.nodes.push(Node { point, on });
     }
     if let Surface::Cone(c) = other
         && judge.within(Surface::Torus(*t).distance(&c.frame.origin))
@@ -138,6 +160,21 @@ fn traced(
         });
     }
     Ok(meeting)
+}
+
+/// The end of a part of a closed curve, or the singular point there: next to one, rounding is all
+/// that tells where the curve leaves a nappe.
+fn at_pass(curve: &Curve, end: f64, passes: &[f64], judge: &Judge) -> f64 {
+    let there = curve.point(end);
+    let near = passes.iter().map(|&at| {
+        let turns = curve
+            .period()
+            .map_or(0.0, |period| period * ((end - at) / period).round());
+        at + turns
+    });
+    near.filter(|&at| judge.within((curve.point(at) - there).norm()))
+        .min_by(|a, b| (a - end).abs().total_cmp(&(b - end).abs()))
+        .unwrap_or(end)
 }
 
 /// The circle around the axis, `up` along it, with the given radius.

@@ -3,10 +3,14 @@
 
 use super::grid::{Cell, grid, lines};
 use super::{STEEP, Singular, Traced, Tracer, Unresolved, near};
-use crate::geometry::bitrig::{BiTrig, Local};
-use crate::geometry::singular::{Contact as Kind, SingularPoint};
+use crate::geometry::bitrig::BiTrig;
+use crate::geometry::chart::Chart;
+use crate::geometry::singular::{Pass, SingularPoint};
 use crate::geometry::surface::Torus;
 use crate::geometry::toric::{Axis, Segment, Toric, wrap};
+use crate::number::interval::Interval;
+use crate::number::scalar::Scalar;
+use crate::number::sign::ROUNDING;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
 
@@ -35,7 +39,7 @@ struct Piece {
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum End {
     Root(RootId),
-    /// A pass through a singular point: (point, which of its two branches).
+    /// A pass through a singular point: (point, which of its branches).
     Pass(usize, usize),
 }
 
@@ -74,21 +78,10 @@ impl Tracer<'_> {
             let roots = self.around(cell, &corners, origin, &mut sides)?;
             self.join(cell, *axis, roots, &mut pieces)?;
         }
-        let mut isolated = Vec::new();
         for cell in &own {
             let Some(i) = home(cell) else { continue };
             let roots = self.around(cell, &corners, origin, &mut sides)?;
-            let angles = points[i].angles;
-            match (roots.len(), &points[i].contact) {
-                (0, Kind::Isolated) => isolated.push(i),
-                (4, Kind::Crossing(directions)) => {
-                    self.cross(i, &angles, directions, &roots, &mut pieces)?;
-                }
-                (4, Kind::Tacnode(direction)) => {
-                    self.kiss(i, &angles, direction, &roots, &mut pieces)?;
-                }
-                _ => return Err(Unresolved { angles }),
-            }
+            self.pass(points, i, &roots, &mut pieces)?;
         }
         chain(torus, self.form, points, pieces)
     }
@@ -162,7 +155,7 @@ impl Tracer<'_> {
                 slopes: [slope(p), slope(q)],
                 steep: STEEP,
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
-                node: None,
+                chart: None,
             };
             pieces.push(Piece {
                 ends: [End::Root(pair[0].0), End::Root(pair[1].0)],
@@ -172,88 +165,114 @@ impl Tracer<'_> {
         Ok(())
     }
 
-    /// Joins the four roots around a crossing to its two branches.
-    fn cross(
+    /// Joins the roots around a singular point to its branches, two to each.
+    fn pass(
         &self,
+        points: &[SingularPoint],
         index: usize,
-        point: &[f64; 2],
-        directions: &[[f64; 2]; 2],
         roots: &[(RootId, [f64; 2])],
         pieces: &mut Vec<Piece>,
     ) -> Result<(), Unresolved> {
-        let mut used = [[false; 2]; 2];
+        let point = &points[index];
+        let unresolved = Unresolved {
+            angles: point.angles,
+        };
+        let first: usize = points[..index].iter().map(|p| p.passes.len()).sum();
+        let mut used = vec![[false; 2]; point.passes.len()];
         for (root, p) in roots {
-            let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
-            let length = away[0].hypot(away[1]);
-            let along = |d: &[f64; 2]| (away[0] * d[0] + away[1] * d[1]) / length;
-            let b = usize::from(along(&directions[1]).abs() > along(&directions[0]).abs());
-            let d = directions[b];
-            let forward = usize::from(along(&d) > 0.0);
-            if used[b][forward] {
-                return Err(Unresolved { angles: *point });
+            let away = [0, 1].map(|k| wrap(p[k] - point.angles[k]));
+            let all = point.passes.iter().enumerate();
+            let (b, end) = all
+                .map(|(b, pass)| (b, Reached::by(pass, away)))
+                .min_by(|a, b| a.1.miss.total_cmp(&b.1.miss))
+                .ok_or(unresolved)?;
+            let forward = usize::from(end.sigma > 0.0);
+            if std::mem::replace(&mut used[b][forward], true) {
+                return Err(unresolved);
             }
-            used[b][forward] = true;
-            let segment = self.node_segment(index, point, &d, p);
+            let segment = node_segment(first + b, &point.passes[b], &end).ok_or(unresolved)?;
             pieces.push(Piece {
                 ends: [End::Pass(index, b), End::Root(*root)],
                 segment,
             });
         }
-        Ok(())
-    }
-
-    /// Joins the four roots around a tacnode to its two branches: they keep their order across the
-    /// common `direction`.
-    fn kiss(
-        &self,
-        index: usize,
-        point: &[f64; 2],
-        direction: &[f64; 2],
-        roots: &[(RootId, [f64; 2])],
-        pieces: &mut Vec<Piece>,
-    ) -> Result<(), Unresolved> {
-        let d = direction;
-        let mut sides: [Vec<(f64, usize)>; 2] = Default::default();
-        for (i, (_, p)) in roots.iter().enumerate() {
-            let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
-            let along = away[0] * d[0] + away[1] * d[1];
-            let across = away[1] * d[0] - away[0] * d[1];
-            sides[usize::from(along > 0.0)].push((across, i));
-        }
-        for side in &mut sides {
-            if side.len() != 2 {
-                return Err(Unresolved { angles: *point });
-            }
-            side.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (b, &(_, i)) in side.iter().enumerate() {
-                let (root, p) = &roots[i];
-                pieces.push(Piece {
-                    ends: [End::Pass(index, b), End::Root(*root)],
-                    segment: self.node_segment(index, point, d, p),
-                });
-            }
-        }
-        Ok(())
-    }
-
-    /// The graph from a node, left in the direction `d`, to a root around it.
-    fn node_segment(&self, index: usize, point: &[f64; 2], d: &[f64; 2], p: &[f64; 2]) -> Segment {
-        let away = [wrap(p[0] - point[0]), wrap(p[1] - point[1])];
-        let k = usize::from(d[1].abs() > d[0].abs());
-        let g = self.form.partials(p[0], p[1]);
-        let slope = if k == 0 { -g.x / g.y } else { -g.y / g.x };
-        Segment {
-            axis: if k == 0 { Axis::Around } else { Axis::Tube },
-            from: point[k],
-            to: point[k] + away[k],
-            ends: [point[1 - k], point[1 - k] + away[1 - k]],
-            slopes: [d[1 - k] / d[k], slope],
-            steep: 2.0 * STEEP,
-            bracket: [f64::NEG_INFINITY, f64::INFINITY],
-            node: Some(index),
+        match used.iter().flatten().all(|u| *u) {
+            true => Ok(()),
+            false => Err(unresolved),
         }
     }
 }
+
+/// A root on the side of a singular point's zone in the coordinates of a branch.
+struct Reached {
+    sigma: f64,
+    kappa: f64,
+    /// How far it is from the branch's leading term.
+    miss: f64,
+}
+
+impl Reached {
+    fn by(pass: &Pass, away: [f64; 2]) -> Self {
+        let chart = &pass.chart;
+        let [s, y] = match chart.axis {
+            Axis::Around => away,
+            Axis::Tube => [away[1], away[0]],
+        };
+        let (sigma, kappa) = (chart.sigma(s, y), chart.kappa(s, y));
+        let rise = sigma.powi(chart.weights.rise as i32).abs();
+        let miss = (kappa - pass.kappa).abs() * rise;
+        Self {
+            sigma,
+            kappa,
+            miss: if miss.is_finite() {
+                miss
+            } else {
+                f64::INFINITY
+            },
+        }
+    }
+}
+
+/// The graph of κ from a singular point to a root around it; none where it is not known to be the
+/// only one.
+fn node_segment(index: usize, pass: &Pass, end: &Reached) -> Option<Segment> {
+    let chart = &pass.chart;
+    let slope = |sigma: f64, kappa: f64| {
+        let g = chart.partials(sigma, kappa);
+        -g.x / g.y
+    };
+    let (from, to) = (pass.kappa, end.kappa);
+    let slopes = [slope(0.0, from), slope(end.sigma, to)];
+    let run = Interval::new(0.0, end.sigma);
+    let steepest = slopes[0].abs().max(slopes[1].abs());
+    // A bracket that the graph cannot leave with the slopes that it has in there.
+    let mut margin = (to - from).abs().max(steepest * end.sigma.abs());
+    for _ in 0..BRACKETS {
+        margin = 2.0 * margin + ROUNDING.sqrt();
+        let bracket = Interval::new(from - margin, from + margin);
+        let g = chart.partials_over(run, bracket);
+        if g.y.has_zero() {
+            return None;
+        }
+        let steep = g.x.over(g.y).magnitude();
+        if steep * end.sigma.abs() <= margin {
+            return Some(Segment {
+                axis: chart.axis,
+                from: 0.0,
+                to: end.sigma,
+                ends: [from, to],
+                slopes,
+                steep,
+                bracket: [bracket.lo, bracket.hi],
+                chart: Some(index),
+            });
+        }
+    }
+    None
+}
+
+/// How often a wider bracket is tried.
+const BRACKETS: u32 = 6;
 
 /// The corners of cells on every line of the grid.
 struct Corners {
@@ -319,10 +338,8 @@ fn chain(
             on: Vec::new(),
         })
         .collect();
-    let locals: Vec<Local> = points
-        .iter()
-        .map(|p| Local::about(form, p.angles))
-        .collect();
+    let passes = points.iter().flat_map(|p| &p.passes);
+    let charts: Vec<Chart> = passes.map(|p| p.chart.clone()).collect();
     let mut used = vec![false; pieces.len()];
     let mut branches = Vec::new();
     for start in 0..pieces.len() {
@@ -350,7 +367,7 @@ fn chain(
         branches.push(Toric {
             torus: *torus,
             form: form.clone(),
-            nodes: locals.clone(),
+            charts: charts.clone(),
             segments,
             closed: true,
         });

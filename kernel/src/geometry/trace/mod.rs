@@ -185,7 +185,7 @@ pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolv
     let slop = form.bound() * f64::EPSILON * 64.0;
     let tracer = Tracer {
         form,
-        third: form.third(),
+        third: 6.0 * form.variation(3),
         slop,
         band: band.max(slop),
     };
@@ -293,6 +293,27 @@ mod tests {
                 .len(),
             1
         );
+    }
+
+    /// A cylinder that touches a torus (12/5, 1) from inside at φ with cos φ = 3/5, where the
+    /// torus's curvatures are 1 and 1/5; its axis halves the angle between their directions. With
+    /// the radius ρ the curvatures differ by a form of determinant (1/5) - (3/5)/ρ.
+    fn touching_cylinder(radius: f64) -> Surface {
+        let (p, n) = (Point3::new(3.0, 0.0, 0.8), Vector3::new(0.6, 0.0, 0.8));
+        let axis = Vector3::new(-0.8, 1.0, 0.6).normalize();
+        let frame = Frame::about(p - n * radius, axis);
+        Surface::Cylinder(Cylinder { frame, radius })
+    }
+
+    #[test]
+    fn a_touching_cylinder_has_a_node_a_cusp_or_stands_alone() {
+        let passes = |radius: f64| -> Vec<usize> {
+            let t = traced(&touching_cylinder(radius), 2.4, 1.0);
+            t.singular.iter().map(|s| s.on.len()).collect()
+        };
+        assert_eq!(passes(2.9), [2]);
+        assert_eq!(passes(3.0), [1]);
+        assert_eq!(passes(3.1), [0]);
     }
 
     #[test]

@@ -1,0 +1,316 @@
+//! Coordinates in which a branch through a singular point of F(θ, φ) = 0 is a smooth graph.
+//!
+//! Notation: s is the offset of the running angle from the point, y that of the other one. With
+//! σ and κ the coordinates,
+//!
+//!   s = ε σᵃ,   y = m s + σᵇ κ,   F = σʷ G(σ, κ),
+//!
+//! a weighted blow-up (Arnold, Gusein-Zade and Varchenko, Singularities of Differentiable Maps I,
+//! 1985): where branches cross (a, b, w) = (1, 1, 2), where they touch (1, 2, 4), at a cusp
+//! (2, 3, 6). What of F is of less weight vanishes, so G(σ, κ) = 0 passes through (0, κ₀) with
+//! G_κ ≠ 0: Newton's steps and enclosures are as good there as anywhere else. F is Taylor's
+//! polynomial about the point, with a bound of what is left.
+
+use super::bitrig::{BiTrig, Partials};
+use super::toric::Axis;
+use crate::number::interval::Interval;
+use crate::number::jet::{Base, Jet};
+use crate::number::scalar::Scalar;
+
+/// The degree of Taylor's polynomials.
+pub const DEGREE: usize = 12;
+
+/// The coefficients of Taylor's polynomial of F, by the powers of s and of y.
+pub type Taylor = [[f64; DEGREE + 1]; DEGREE + 1];
+
+/// The exponents (a, b, w).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Weights {
+    /// a: the running angle's offset is a power of σ.
+    pub run: usize,
+    /// b: the power of σ that stands with κ.
+    pub rise: usize,
+    /// w: the power of σ that F holds.
+    pub form: usize,
+}
+
+/// F in the coordinates (σ, κ) about one of its singular points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// The running angle.
+    pub axis: Axis,
+    /// (θ, φ) of the singular point.
+    pub origin: [f64; 2],
+    /// ε, 1 or -1: the side on which the running angle lies.
+    pub side: f64,
+    /// m: the slope of the branch there.
+    pub slope: f64,
+    /// (a, b, w).
+    pub weights: Weights,
+    /// The coefficients of G by the power of κ, each by the power of σ.
+    rows: Vec<Vec<f64>>,
+    /// A bound of the next derivatives of F in any direction of length one in each angle, over the
+    /// factorial.
+    rest: f64,
+}
+
+/// The derivatives of the five functions of an angle, divided by factorials.
+fn terms(angle: f64) -> [[f64; 5]; DEGREE + 1] {
+    let (s, c) = angle.sin_cos();
+    let (s2, c2) = (2.0 * angle).sin_cos();
+    let mut all = [[0.0; 5]; DEGREE + 1];
+    // By turns cos, -sin, -cos, sin.
+    let turn = |c: f64, s: f64, n: usize| [c, -s, -c, s][n % 4];
+    let (mut one, mut two) = (1.0, 1.0);
+    for (n, row) in all.iter_mut().enumerate() {
+        if n > 0 {
+            one /= n as f64;
+            two *= 2.0 / n as f64;
+        }
+        *row = [
+            if n == 0 { 1.0 } else { 0.0 },
+            one * turn(c, s, n),
+            one * turn(s, -c, n),
+            two * turn(c2, s2, n),
+            two * turn(s2, -c2, n),
+        ];
+    }
+    all
+}
+
+/// Taylor's polynomial of a form about a point, by the powers of the offsets along `axis` and
+/// across.
+pub fn taylor(form: &BiTrig, origin: [f64; 2], axis: Axis) -> Taylor {
+    let [a, b] = origin.map(terms);
+    let mut all = [[0.0; DEGREE + 1]; DEGREE + 1];
+    for p in 0..=DEGREE {
+        for q in 0..=DEGREE - p {
+            let sum = |(row, x): (&[f64; 5], &f64)| -> f64 {
+                x * row.iter().zip(&b[q]).map(|(k, y)| k * y).sum::<f64>()
+            };
+            let c = form.0.iter().zip(&a[p]).map(sum).sum();
+            match axis {
+                Axis::Around => all[p][q] = c,
+                Axis::Tube => all[q][p] = c,
+            }
+        }
+    }
+    all
+}
+
+/// The same by the powers of s and of e = y - m s.
+pub fn sheared(taylor: &Taylor, slope: f64) -> Taylor {
+    let mut all = [[0.0; DEGREE + 1]; DEGREE + 1];
+    for (p, row) in taylor.iter().enumerate() {
+        for (q, c) in row.iter().enumerate().take(DEGREE + 1 - p) {
+            // (m s + e)^q by the powers of e.
+            let mut term = *c;
+            for r in (0..=q).rev() {
+                all[p + q - r][r] += term;
+                term *= slope * r as f64 / (q + 1 - r) as f64;
+            }
+        }
+    }
+    all
+}
+
+impl Chart {
+    /// The chart of a branch that leaves the singular point with the given slope.
+    pub fn new(
+        form: &BiTrig,
+        origin: [f64; 2],
+        axis: Axis,
+        slope: f64,
+        side: f64,
+        weights: Weights,
+    ) -> Self {
+        let Weights { run, rise, form: w } = weights;
+        let all = sheared(&taylor(form, origin, axis), slope);
+        let mut rows = vec![Vec::new(); DEGREE + 1];
+        for (i, row) in all.iter().enumerate() {
+            for (j, c) in row.iter().enumerate().take(DEGREE + 1 - i) {
+                let weight = run * i + rise * j;
+                if weight >= w && *c != 0.0 {
+                    let line: &mut Vec<f64> = &mut rows[j];
+                    line.resize(line.len().max(weight - w + 1), 0.0);
+                    line[weight - w] += if i % 2 == 1 { side * c } else { *c };
+                }
+            }
+        }
+        while rows.last().is_some_and(Vec::is_empty) {
+            rows.pop();
+        }
+        Self {
+            axis,
+            origin,
+            side,
+            slope,
+            weights,
+            rows,
+            rest: form.variation(DEGREE + 1),
+        }
+    }
+
+    /// (s, y) of a point of the chart.
+    pub fn offsets<S: Base>(&self, sigma: Jet<S>, kappa: Jet<S>) -> [Jet<S>; 2] {
+        let power = |n: usize| (1..n).fold(sigma, |p, _| p * sigma);
+        let s = power(self.weights.run).scale(self.side);
+        [s, s.scale(self.slope) + power(self.weights.rise) * kappa]
+    }
+
+    /// σ of the point with the offsets (s, y); zero beyond the chart's side.
+    pub fn sigma(&self, s: f64, y: f64) -> f64 {
+        let s = s * self.side;
+        match self.weights.run {
+            1 => s,
+            // Where s is a square, σ has the sign of what is odd in it.
+            _ => s.max(0.0).sqrt().copysign(y - self.slope * s * self.side),
+        }
+    }
+
+    /// κ of the point with the offsets (s, y) on the chart's side.
+    pub fn kappa(&self, s: f64, y: f64) -> f64 {
+        (y - self.slope * s) / self.sigma(s, y).powi(self.weights.rise as i32)
+    }
+
+    /// G over κ at a fixed σ, by the powers of κ.
+    pub fn section(&self, sigma: f64) -> [f64; DEGREE + 1] {
+        let mut section = [0.0; DEGREE + 1];
+        for (value, row) in section.iter_mut().zip(&self.rows) {
+            *value = row.iter().rev().fold(0.0, |sum, c| sum * sigma + c);
+        }
+        section
+    }
+
+    /// G with its partial derivatives by σ and κ; what Taylor leaves is not in it.
+    pub fn partials<S: Scalar>(&self, sigma: S, kappa: S) -> Partials<S> {
+        let zero = S::constant(0.0);
+        let most = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let mut powers = vec![S::constant(1.0)];
+        for n in 1..most {
+            powers.push(powers[n - 1] * sigma);
+        }
+        let [mut f, mut x, mut y, mut xx, mut xy, mut yy] = [zero; 6];
+        // κʲ and its derivatives.
+        let mut k = [S::constant(1.0), zero, zero];
+        for (j, row) in self.rows.iter().enumerate() {
+            let mut p = [zero; 3];
+            for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
+                let m = n as f64;
+                p[0] = p[0] + powers[n].scale(c);
+                if n > 0 {
+                    p[1] = p[1] + powers[n - 1].scale(c * m);
+                }
+                if n > 1 {
+                    p[2] = p[2] + powers[n - 2].scale(c * m * (m - 1.0));
+                }
+            }
+            f = f + p[0] * k[0];
+            x = x + p[1] * k[0];
+            xx = xx + p[2] * k[0];
+            if j > 0 {
+                y = y + p[0] * k[1];
+                xy = xy + p[1] * k[1];
+                yy = yy + p[0] * k[2];
+            }
+            let m = (j + 1) as f64;
+            k = [k[0] * kappa, k[0].scale(m), k[1].scale(m)];
+        }
+        Partials {
+            f,
+            x,
+            y,
+            xx,
+            xy,
+            yy,
+        }
+    }
+
+    /// Bounds of what Taylor leaves of G and of its first and second derivatives where |σ| and |κ|
+    /// are at most these.
+    pub fn remainder(&self, sigma: f64, kappa: f64) -> [f64; 3] {
+        let Weights { run, rise, form } = self.weights;
+        let n = DEGREE + 1;
+        // Both offsets are at most this times σᵃ.
+        let size = (self.slope.abs() + sigma.powi((rise - run) as i32) * kappa).max(1.0);
+        let power = (run * n - form) as i32;
+        let value = self.rest * size.powi(n as i32);
+        // A derivative takes a factor of σ away, and no more than this comes with it.
+        let factor = (form + 2 * n * rise) as f64;
+        [0, 1, 2].map(|d| value * factor.powi(d) * sigma.powi(power - d))
+    }
+
+    /// The ranges of G and its partial derivatives.
+    pub fn partials_over(&self, sigma: Interval, kappa: Interval) -> Partials<Interval> {
+        let p = self.partials(sigma, kappa);
+        let [f, d, dd] = self
+            .remainder(sigma.magnitude(), kappa.magnitude())
+            .map(|r| Interval::new(-r, r));
+        Partials {
+            f: p.f + f,
+            x: p.x + d,
+            y: p.y + d,
+            xx: p.xx + dd,
+            xy: p.xy + dd,
+            yy: p.yy + dd,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form() -> BiTrig {
+        BiTrig::interpolate(|x, y| {
+            x.cos() * (2.0 * y).sin() + 0.3 * (2.0 * x).sin() - 0.7 * y.cos() * x.sin() + 0.2
+        })
+    }
+
+    #[test]
+    fn taylor_is_the_form_next_to_the_point() {
+        let (form, origin) = (form(), [0.4, 2.1]);
+        for axis in [Axis::Around, Axis::Tube] {
+            let all = sheared(&taylor(&form, origin, axis), 0.8);
+            let (s, e) = (0.03, -0.02);
+            let mut sum = 0.0;
+            for (i, row) in all.iter().enumerate() {
+                for (j, c) in row.iter().enumerate() {
+                    sum += c * f64::powi(s, i as i32) * f64::powi(e, j as i32);
+                }
+            }
+            let y = 0.8 * s + e;
+            let value = match axis {
+                Axis::Around => form.value(origin[0] + s, origin[1] + y),
+                Axis::Tube => form.value(origin[0] + y, origin[1] + s),
+            };
+            assert!((sum - value).abs() < 1e-14, "{sum} {value}");
+        }
+    }
+
+    #[test]
+    fn partials_are_derivatives() {
+        let weights = Weights {
+            run: 2,
+            rise: 3,
+            form: 6,
+        };
+        let chart = Chart::new(&form(), [0.4, 2.1], Axis::Tube, 0.8, -1.0, weights);
+        let (x, y, h) = (0.1, 0.7, 1e-5);
+        let p = chart.partials(x, y);
+        let by = |a: Partials<f64>, b: Partials<f64>, f: fn(Partials<f64>) -> f64| {
+            (f(a) - f(b)) / (2.0 * h)
+        };
+        let [e, w] = [chart.partials(x + h, y), chart.partials(x - h, y)];
+        let [n, s] = [chart.partials(x, y + h), chart.partials(x, y - h)];
+        for (exact, numeric) in [
+            (p.x, by(e, w, |p| p.f)),
+            (p.y, by(n, s, |p| p.f)),
+            (p.xx, by(e, w, |p| p.x)),
+            (p.xy, by(e, w, |p| p.y)),
+            (p.yy, by(n, s, |p| p.y)),
+        ] {
+            assert!((exact - numeric).abs() < 1e-8, "{exact} {numeric}");
+        }
+    }
+}

@@ -5,3 +5,4 @@ pub mod brep;
 pub mod geometry;
 pub mod motion;
 pub mod number;
+pub mod tessellation;

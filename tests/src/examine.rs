@@ -1,12 +1,13 @@
 //! What is asked of every tree: it is evaluated without a refusal, a panic or a close call, the
 //! boundary keeps its rules, the volume is the rays', no piece of a view is wrong, and no contour is missing.
 
+use crate::cast::Cast;
 use premio::checks::{Checker, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_visibility::invisibility::Method;
 use premio_visibility::view::contours_by;
-use premio_visibility::{Camera, Contours};
+use premio_visibility::{Camera, Contours, contours};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
@@ -83,10 +84,18 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     let mut report = checker.solid(depth.rays);
     if !depth.views.is_empty() && report.holds() {
         let all = views::around(&evaluation.bounds);
+        let cast = Cast::of(&evaluation);
+        match &cast {
+            Ok(cast) => wrong.extend(cast.faults(&evaluation)),
+            Err(error) => wrong.push(format!("mesh: {error}")),
+        }
         for &name in depth.views {
             for v in all.iter().filter(|v| v.name == name) {
                 report.checks.extend(checker.view(&v.name, &v.camera));
                 wrong.extend(differences(&evaluation, &v.name, &v.camera));
+                if let Ok(cast) = &cast {
+                    wrong.extend(before(cast, &evaluation, &v.name, &v.camera));
+                }
             }
         }
     }
@@ -96,6 +105,18 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
             .map(|c| format!("{}: {}", c.subject, c.detail)),
     );
     wrong
+}
+
+/// Where rays on triangles of the boundary see something else before a piece than it says.
+fn before(cast: &Cast, evaluation: &Evaluation, name: &str, camera: &Camera) -> Option<String> {
+    let seen = contours(&evaluation.brep, camera, evaluation.resolution).ok()?;
+    let counted = cast.count(&seen);
+    let first = counted.wrong.first()?;
+    Some(format!(
+        "triangles in {name}: {} of {} samples; {first}",
+        counted.wrong.len(),
+        counted.agreed + counted.unclear + counted.wrong.len()
+    ))
 }
 
 /// Where the invisibility that is carried along contours is not what is counted piece by piece.

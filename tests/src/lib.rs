@@ -1,5 +1,6 @@
 //! What the tests across crates share: random trees, and what is asked of each.
 
+pub mod cast;
 pub mod examine;
 pub mod formula;
 pub mod parts;

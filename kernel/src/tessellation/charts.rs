@@ -1,0 +1,264 @@
+//! Faces laid out in a plane, where they can be triangulated.
+//!
+//! A plane is its own chart. A cylinder and a cone are seen along their axis, the cylinder as if it
+//! widened; a sphere is seen from a point of it outside the face (stereographic projection). A torus
+//! is cut along a parallel and a circle of the tube, the seams, and unrolled: the seams exist in
+//! the chart only, and are chosen where edges cross them steeply.
+
+use super::Accuracy;
+use super::edges::{Polylines, STEEPEST};
+use crate::brep::Brep;
+use crate::brep::locate::{FaceLocator, Place};
+use crate::brep::topology::{FaceId, Sense};
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Cylinder, Sphere, Surface, Torus, turn};
+use nalgebra::{Point2, Point3, Vector3};
+use std::f64::consts::TAU;
+
+/// A map from a face to the plane.
+#[derive(Clone, Debug)]
+pub(super) enum Chart {
+    /// The plane's own coordinates.
+    Plane(Frame),
+    /// Polar coordinates: the angle, and a radius that grows from 1 to 2 along the axis.
+    Cylinder(Cylinder, [f64; 2]),
+    /// Polar coordinates: the angle, and the distance from the axis.
+    Cone(Frame, f64),
+    /// Stereographic: z points to the centre of the projection.
+    Sphere(Frame, f64),
+    /// Lengths along the parallels and the tube, from the seams.
+    Torus(Torus, Seams),
+    /// A whole sphere has none.
+    WholeSphere(Sphere),
+}
+
+/// The angles about the axis and about the tube at which a torus is cut.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seams {
+    /// The two angles.
+    pub at: [f64; 2],
+    /// Into how many steps each of the two angles is divided along the other's seam.
+    pub steps: [u32; 2],
+}
+
+impl Chart {
+    /// The chart of a face.
+    pub fn of(
+        brep: &Brep,
+        face: FaceId,
+        lines: &Polylines,
+        accuracy: &Accuracy,
+        band: f64,
+    ) -> Self {
+        match *brep.surface(face) {
+            Surface::Plane(s) => Self::Plane(s.frame),
+            Surface::Cylinder(s) => {
+                let heights = points_of(brep, face, lines).map(|p| s.frame.coordinates(&p).z);
+                let range = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], z| {
+                    [lo.min(z), hi.max(z)]
+                });
+                Self::Cylinder(s, range)
+            }
+            Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
+            Surface::Sphere(s) => match centre_of_projection(brep, face, &s, band) {
+                Some(z) => Self::Sphere(Frame::about(s.frame.origin, z), s.radius),
+                None => Self::WholeSphere(s),
+            },
+            Surface::Torus(s) => {
+                let at = Seams::angles(brep, face, lines);
+                // They may be nearly half as long again next to an edge, and triangles need room.
+                let fine = accuracy.part(0.25);
+                let steps = [s.major + s.minor, s.minor].map(|r| steps_round(r, &fine));
+                Self::Torus(s, Seams { at, steps })
+            }
+        }
+    }
+
+    /// Where a point of the surface lies in the chart; on a torus from the seams on.
+    pub fn map(&self, p: &Point3<f64>) -> Point2<f64> {
+        match self {
+            Self::Plane(f) | Self::Cone(f, _) => f.coordinates(p).xy().into(),
+            Self::Cylinder(s, [lo, hi]) => {
+                let q = s.frame.coordinates(p);
+                let radius = 1.0 + (q.z - lo) / (hi - lo);
+                (q.xy().normalize() * radius).into()
+            }
+            Self::Sphere(f, radius) => {
+                let q = f.coordinates(p) / *radius;
+                (q.xy() / (1.0 - q.z)).into()
+            }
+            Self::Torus(s, seams) => {
+                let [u, v] = Surface::Torus(*s).parameters(p);
+                let from = |i: usize, x: f64| turn(x - seams.at[i]);
+                Point2::new(s.major * from(0, u), s.minor * from(1, v))
+            }
+            Self::WholeSphere(_) => Point2::origin(),
+        }
+    }
+
+    /// The point of the surface at a place of the chart.
+    pub fn lift(&self, x: &Point2<f64>) -> Point3<f64> {
+        match self {
+            Self::Plane(f) => f.point(x.x, x.y, 0.0),
+            Self::Cylinder(s, [lo, hi]) => {
+                let away = x.coords.norm();
+                let on = x.coords * (s.radius / away);
+                s.frame.point(on.x, on.y, lo + (away - 1.0) * (hi - lo))
+            }
+            Self::Cone(f, slope) => f.point(x.x, x.y, x.coords.norm() * slope),
+            Self::Sphere(f, radius) => {
+                let square = x.coords.norm_squared();
+                let part = 2.0 * radius / (1.0 + square);
+                f.point(x.x * part, x.y * part, radius - part)
+            }
+            Self::Torus(s, seams) => {
+                let (u, v) = (x.x / s.major + seams.at[0], x.y / s.minor + seams.at[1]);
+                Surface::Torus(*s).point(u, v)
+            }
+            Self::WholeSphere(s) => s.frame.origin,
+        }
+    }
+
+    /// Whether what runs counterclockwise in the chart runs clockwise as seen from outside.
+    pub fn is_mirrored(&self, outward: Sense) -> bool {
+        let own = match self {
+            Self::Plane(_) | Self::Torus(..) => false,
+            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) | Self::WholeSphere(_) => true,
+        };
+        own != (outward == Sense::Against)
+    }
+}
+
+/// All points of the divided edges of a face.
+fn points_of<'a>(
+    brep: &'a Brep,
+    face: FaceId,
+    lines: &'a Polylines,
+) -> impl Iterator<Item = Point3<f64>> + 'a {
+    let t = &brep.topology;
+    let coedges = t.face(face).loops.iter();
+    let coedges = coedges.flat_map(|&l| &t.ring(l).coedges);
+    coedges.flat_map(|&c| {
+        let nodes = lines.nodes(t.coedge(c).edge).iter();
+        nodes.map(|n| lines.points[n.point as usize])
+    })
+}
+
+/// The direction of a point of the sphere that is outside the face, well away from it if there is
+/// such a one; none where the face is the whole sphere.
+fn centre_of_projection(
+    brep: &Brep,
+    face: FaceId,
+    sphere: &Sphere,
+    band: f64,
+) -> Option<Vector3<f64>> {
+    let locator = FaceLocator::of(brep, face, band);
+    let arcs = locator.arcs();
+    if arcs.is_empty() {
+        return None;
+    }
+    let centre = sphere.frame.origin;
+    let outside = |d: &Vector3<f64>| locator.place(&(centre + d * sphere.radius)) == Place::Outside;
+    let away = |d: &Vector3<f64>| {
+        let samples = arcs.iter().flat_map(|a| {
+            let [lo, hi] = a.range;
+            (0..=8).map(move |k| a.curve.point(lo + (hi - lo) * f64::from(k) / 8.0))
+        });
+        let apart = samples.map(|p| (p - (centre + d * sphere.radius)).norm());
+        apart.fold(f64::INFINITY, f64::min)
+    };
+    let spread = (0..SPREAD).map(|k| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(SPREAD);
+        let (sin, cos) = (GOLDEN * f64::from(k)).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vector3::new(r * cos, r * sin, z)
+    });
+    // Next to the boundary, to the right of it, for faces that cover all but a little.
+    let beside = arcs.iter().flat_map(|a| {
+        let t = 0.5 * (a.range[0] + a.range[1]);
+        let p = a.curve.point(t);
+        let out = brep.outward(face, &p);
+        let right = a.curve.tangent(t).cross(&out) * a.sense.sign();
+        let size = (a.curve.point(a.range[0]) - p).norm();
+        (1..NEAREST).map(move |k| (p + right * (size / f64::from(1 << k)) - centre).normalize())
+    });
+    let best = |all: &mut dyn Iterator<Item = Vector3<f64>>| {
+        all.filter(|d| outside(d))
+            .map(|d| (away(&d), d))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, d)| d)
+    };
+    best(&mut spread.into_iter()).or_else(|| best(&mut beside.into_iter()))
+}
+
+/// How many directions are tried as the centre of a projection.
+const SPREAD: u32 = 64;
+
+/// How many powers of two nearer than an arc is long they are tried beside it.
+const NEAREST: u32 = 16;
+
+/// The golden angle: its multiples spread over the circle.
+const GOLDEN: f64 = 2.399_963_229_728_653;
+
+impl Seams {
+    /// Where the edges of a face cross a parallel and a circle of the tube most steeply and
+    /// farthest from their vertices and turns.
+    fn angles(brep: &Brep, face: FaceId, lines: &Polylines) -> [f64; 2] {
+        let surface = brep.surface(face);
+        let t = &brep.topology;
+        let mut turns: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+        for &ring in &t.face(face).loops {
+            for &c in &t.ring(ring).coedges {
+                let nodes = lines.nodes(t.coedge(c).edge);
+                let at: Vec<[f64; 2]> = nodes
+                    .iter()
+                    .map(|n| surface.parameters(&lines.points[n.point as usize]))
+                    .collect();
+                for (i, turns) in turns.iter_mut().enumerate() {
+                    turns.extend([at[0][i], at[at.len() - 1][i]]);
+                    let steps: Vec<f64> = at
+                        .windows(2)
+                        .map(|w| signed_turn(w[1][i] - w[0][i]))
+                        .collect();
+                    let turning = steps.windows(2).enumerate();
+                    turns.extend(
+                        turning
+                            .filter(|(_, s)| s[0] * s[1] <= 0.0)
+                            .map(|(k, _)| at[k + 1][i]),
+                    );
+                }
+            }
+        }
+        turns.map(|turns| widest_gap(&turns))
+    }
+}
+
+/// Into how many chords a circle of this radius is divided.
+pub(super) fn steps_round(radius: f64, accuracy: &Accuracy) -> u32 {
+    let sagitta = (1.0 - accuracy.deviation / radius).clamp(-1.0, 1.0);
+    let step = (2.0 * sagitta.acos()).min(accuracy.angle).min(STEEPEST);
+    (TAU / step).ceil() as u32
+}
+
+/// An angle brought between -pi and pi.
+pub(super) fn signed_turn(angle: f64) -> f64 {
+    let a = turn(angle);
+    if a > 0.5 * TAU { a - TAU } else { a }
+}
+
+/// A seam is put at this part of a gap: near its middle, where symmetric parts have other points.
+const ASIDE: f64 = 0.47;
+
+/// The angle near the middle of the widest gap between angles.
+fn widest_gap(angles: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = angles.iter().map(|&a| turn(a)).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(&first) = sorted.first() else {
+        return 0.0;
+    };
+    sorted.push(first + TAU);
+    let widest = sorted
+        .windows(2)
+        .max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    widest.map_or(0.0, |w| turn(w[0] + ASIDE * (w[1] - w[0])))
+}

@@ -1,0 +1,180 @@
+//! A mesh of triangles that follows a boundary: watertight, and within a stated distance of it.
+//!
+//! Every edge is divided once (`edges`), so that the faces on its sides share its points. Each face
+//! is laid out in a plane (`charts`), where the divided edges are the constraints of a Delaunay
+//! triangulation (`domain`); where their chords cross there, the edges are divided further. Points
+//! are then added inside until the triangles follow the surface (`refine`).
+//!
+//! A mesh is made for looking, for other programs and for checks. No result of ours rests on it.
+
+mod charts;
+mod domain;
+mod edges;
+mod fit;
+mod refine;
+
+use crate::brep::Brep;
+use crate::brep::topology::FaceId;
+use charts::Chart;
+use domain::{Division, Domain};
+use edges::Polylines;
+use nalgebra::Point3;
+use std::collections::HashMap;
+
+/// How near a mesh comes to the boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// The greatest distance from a triangle to the surface, in the part's unit.
+    pub deviation: f64,
+    /// The greatest angle between the normals at the ends of a triangle's side, in radians.
+    pub angle: f64,
+}
+
+impl Accuracy {
+    /// What a part of a circle's step that has this accuracy comes up to: the deviation goes with
+    /// the square of the angle.
+    fn part(&self, part: f64) -> Self {
+        Self {
+            deviation: self.deviation * part,
+            angle: self.angle * part.sqrt(),
+        }
+    }
+}
+
+/// A triangle of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Triangle {
+    /// The indices of its corners, counterclockwise as seen from outside the material.
+    pub corners: [u32; 3],
+    /// The face it follows.
+    pub face: FaceId,
+}
+
+/// A mesh of triangles. Every side of a triangle is a side of another, run the other way.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// The corners.
+    pub points: Vec<Point3<f64>>,
+    /// The triangles, face by face.
+    pub triangles: Vec<Triangle>,
+}
+
+/// Why a boundary cannot be followed by triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TessellationError {
+    /// However finely they are divided, the chords of a face's edges cross.
+    #[error("the edges of face {} are too close to one another for triangles", face.0)]
+    Crossing {
+        /// The face.
+        face: FaceId,
+    },
+    /// The edges of a face do not tell its inside from its outside.
+    #[error("the edges of face {} do not tell inside from outside", face.0)]
+    Sides {
+        /// The face.
+        face: FaceId,
+    },
+    /// The accuracy asks for too many triangles.
+    #[error("face {} takes more than {limit} points", face.0)]
+    TooMany {
+        /// The face.
+        face: FaceId,
+        /// How many points a face may have.
+        limit: usize,
+    },
+}
+
+/// How often the edges are divided further.
+const ROUNDS: usize = 40;
+
+/// The mesh of a boundary; `band` is the part's resolution.
+pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, TessellationError> {
+    let mut lines = Polylines::of(brep, accuracy);
+    let charts: Vec<Chart> = brep
+        .topology
+        .face_ids()
+        .map(|face| Chart::of(brep, face, &lines, accuracy, band))
+        .collect();
+    let mut domains: Vec<Option<Domain>> = charts.iter().map(|_| None).collect();
+    for round in 0.. {
+        let mut divisions: Vec<Division> = Vec::new();
+        let mut settled = true;
+        for face in brep.topology.face_ids() {
+            let (chart, domain) = (&charts[face.index()], &mut domains[face.index()]);
+            if domain.as_ref().is_some_and(|d| d.is_current(&lines)) {
+                continue;
+            }
+            if round == ROUNDS {
+                return Err(TessellationError::Crossing { face });
+            }
+            settled = false;
+            match Domain::of(brep, face, chart, accuracy, &mut lines) {
+                Ok(found) => *domain = Some(found),
+                Err(found) => divisions.extend(found),
+            }
+        }
+        if settled {
+            break;
+        }
+        lines.divide(brep, divisions);
+    }
+    let mut mesh = Mesh {
+        points: lines.points,
+        triangles: Vec::new(),
+    };
+    for (face, domain) in brep.topology.face_ids().zip(domains.into_iter().flatten()) {
+        refine::triangles(
+            brep,
+            face,
+            &charts[face.index()],
+            domain,
+            accuracy,
+            &mut mesh,
+        )?;
+    }
+    mesh.drop_unused();
+    Ok(mesh)
+}
+
+impl Mesh {
+    /// Drops the points that no triangle has.
+    fn drop_unused(&mut self) {
+        let mut used = vec![false; self.points.len()];
+        for corner in self.triangles.iter().flat_map(|t| t.corners) {
+            used[corner as usize] = true;
+        }
+        let mut place = vec![0; self.points.len()];
+        let mut kept = Vec::new();
+        for (i, &p) in self.points.iter().enumerate().filter(|(i, _)| used[*i]) {
+            place[i] = kept.len() as u32;
+            kept.push(p);
+        }
+        for corner in self.triangles.iter_mut().flat_map(|t| &mut t.corners) {
+            *corner = place[*corner as usize];
+        }
+        self.points = kept;
+    }
+
+    /// The enclosed volume, by the divergence theorem.
+    pub fn volume(&self) -> f64 {
+        let corner = |i: u32| self.points[i as usize].coords;
+        let six = self.triangles.iter().map(|t| {
+            let [a, b, c] = t.corners.map(corner);
+            a.dot(&b.cross(&c))
+        });
+        six.sum::<f64>() / 6.0
+    }
+
+    /// Whether every side of a triangle is a side of another, run the other way.
+    pub fn is_watertight(&self) -> bool {
+        let mut open: HashMap<[u32; 2], i32> = HashMap::new();
+        for t in &self.triangles {
+            for k in 0..3 {
+                let (a, b) = (t.corners[k], t.corners[(k + 1) % 3]);
+                let (side, run) = if a < b { ([a, b], 1) } else { ([b, a], -1) };
+                *open.entry(side).or_default() += run;
+            }
+        }
+        open.values().all(|&n| n == 0)
+    }
+}

@@ -1,0 +1,224 @@
+//! The triangles of a face: points are added inside until they follow the surface.
+
+use super::charts::{Chart, steps_round};
+use super::domain::{Corner, Domain, Side};
+use super::fit::Fit;
+use super::{Accuracy, Mesh, TessellationError, Triangle};
+use crate::brep::Brep;
+use crate::brep::topology::{FaceId, Sense};
+use crate::geometry::surface::{Sphere, Surface};
+use nalgebra::{Point2, Point3};
+use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag, VertexHandle};
+use spade::{CdtEdge, Triangulation};
+use std::collections::HashSet;
+use std::f64::consts::TAU;
+
+/// How many points a face may have.
+const LIMIT: usize = 1 << 20;
+
+/// Adds the triangles of a face to a mesh.
+pub(super) fn triangles(
+    brep: &Brep,
+    face: FaceId,
+    chart: &Chart,
+    mut domain: Domain,
+    accuracy: &Accuracy,
+    mesh: &mut Mesh,
+) -> Result<(), TessellationError> {
+    if let Chart::WholeSphere(sphere) = chart {
+        whole_sphere(brep, face, sphere, accuracy, mesh);
+        return Ok(());
+    }
+    let mirrored = chart.is_mirrored(brep.sense(face));
+    loop {
+        let inside = inside(&domain, mirrored).ok_or(TessellationError::Sides { face })?;
+        let missing = missing(
+            brep.surface(face),
+            chart,
+            &domain,
+            &inside,
+            accuracy,
+            &mesh.points,
+        );
+        if missing.is_empty() {
+            for triangle in inside {
+                let corners = domain.net.face(triangle).vertices();
+                let mut corners = corners.map(|v| v.data().point);
+                if mirrored {
+                    corners.swap(1, 2);
+                }
+                mesh.triangles.push(Triangle { corners, face });
+            }
+            return Ok(());
+        }
+        if domain.net.num_vertices() + missing.len() > LIMIT {
+            return Err(TessellationError::TooMany { face, limit: LIMIT });
+        }
+        for at in missing {
+            mesh.points.push(chart.lift(&at));
+            let point = mesh.points.len() as u32 - 1;
+            let added = domain.net.insert(Corner::new(at, point));
+            if added.is_err() {
+                return Err(TessellationError::Sides { face });
+            }
+        }
+    }
+}
+
+type Inner = FixedFaceHandle<InnerTag>;
+
+/// The triangles inside a face, in order; none where its edges contradict one another. A region
+/// that no edge bounds is inside.
+fn inside(domain: &Domain, mirrored: bool) -> Option<Vec<Inner>> {
+    let net = &domain.net;
+    let count = net.num_all_faces();
+    let mut region = vec![usize::MAX; count];
+    let mut told: Vec<Option<bool>> = Vec::new();
+    for start in net.fixed_inner_faces() {
+        if region[start.index()] != usize::MAX {
+            continue;
+        }
+        let number = told.len();
+        told.push(None);
+        region[start.index()] = number;
+        let mut waiting = vec![start];
+        while let Some(triangle) = waiting.pop() {
+            for edge in net.face(triangle).adjacent_edges() {
+                let side = (edge.from().fix().index(), edge.to().fix().index());
+                let back = (side.1, side.0);
+                let (left, right) = if mirrored { (back, side) } else { (side, back) };
+                let on_left = domain.bounding.contains_key(&left);
+                let on_right = domain.bounding.contains_key(&right);
+                if on_left || on_right {
+                    // A slit has the face on both sides.
+                    let here = on_left;
+                    match told[number] {
+                        Some(known) if known != here => return None,
+                        _ => told[number] = Some(here),
+                    }
+                    continue;
+                }
+                let beyond = match domain.glued.get(&side) {
+                    Some(&(from, to)) => {
+                        let vertex = FixedVertexHandle::from_index;
+                        net.get_edge_from_neighbors(vertex(from), vertex(to))?
+                            .face()
+                    }
+                    None => edge.rev().face(),
+                };
+                if let Some(next) = beyond.as_inner()
+                    && region[next.fix().index()] == usize::MAX
+                {
+                    region[next.fix().index()] = number;
+                    waiting.push(next.fix());
+                }
+            }
+        }
+    }
+    let holds = |t: &Inner| told[region[t.index()]].unwrap_or(domain.bounding.is_empty());
+    Some(net.fixed_inner_faces().filter(holds).collect())
+}
+
+/// A side may be this part of the accuracy off: the middle of a triangle between three such sides
+/// is off by four thirds of it.
+const OF_SIDES: f64 = 0.75;
+
+/// Where points are missing: in the middle of the longest side that leaves the surface of each
+/// triangle, or of the triangle where only that does.
+fn missing(
+    surface: &Surface,
+    chart: &Chart,
+    domain: &Domain,
+    inside: &[Inner],
+    accuracy: &Accuracy,
+    points: &[Point3<f64>],
+) -> Vec<Point2<f64>> {
+    if matches!(surface, Surface::Plane(_)) {
+        return Vec::new();
+    }
+    let fit = |accuracy| Fit {
+        surface,
+        chart,
+        accuracy,
+    };
+    let finer = accuracy.part(OF_SIDES);
+    let (of_sides, of_triangles) = (fit(&finer), fit(accuracy));
+    let point = |c: &Corner| points[c.point as usize];
+    let mut divided: HashSet<Side> = HashSet::new();
+    let mut found = Vec::new();
+    for &triangle in inside {
+        let triangle = domain.net.face(triangle);
+        let free = triangle.adjacent_edges().into_iter().filter(|edge| {
+            let side = (edge.from().fix().index(), edge.to().fix().index());
+            !edge.is_constraint_edge() && !domain.glued.contains_key(&side)
+        });
+        let sides = free.map(|edge| [edge.from(), edge.to()]);
+        let off = sides.filter(|ends| {
+            let [a, b] = ends.map(|v| *v.data());
+            let middle = nalgebra::center(&a.at, &b.at);
+            !of_sides.holds(&middle, &[point(&a), point(&b)])
+        });
+        let length = |ends: &[VertexHandle<'_, Corner, (), CdtEdge<()>, ()>; 2]| {
+            let [a, b] = ends.map(|v| point(v.data()));
+            (a - b).norm()
+        };
+        if let Some([a, b]) = off.max_by(|x, y| length(x).total_cmp(&length(y))) {
+            let (i, j) = (a.fix().index(), b.fix().index());
+            if divided.insert((i.min(j), i.max(j))) {
+                found.push(nalgebra::center(&a.data().at, &b.data().at));
+            }
+            continue;
+        }
+        let corners = triangle.vertices().map(|v| *v.data());
+        let sum = corners
+            .iter()
+            .fold(Point2::origin(), |c, k| c + k.at.coords);
+        let centre = sum / 3.0;
+        if !of_triangles.holds(&centre, &corners.map(|c| point(&c))) {
+            found.push(centre);
+        }
+    }
+    found
+}
+
+/// A sphere without edges, by parallels and meridians.
+fn whole_sphere(brep: &Brep, face: FaceId, sphere: &Sphere, accuracy: &Accuracy, mesh: &mut Mesh) {
+    // The diagonal of a quadrangle is off by the sum of what its sides are.
+    let around = steps_round(sphere.radius, &accuracy.part(0.5));
+    let rows = around.div_ceil(2);
+    let first = mesh.points.len() as u32;
+    let surface = Surface::Sphere(*sphere);
+    for row in 1..rows {
+        let v = 0.5 * TAU * (f64::from(row) / f64::from(rows) - 0.5);
+        let parallel =
+            (0..around).map(|k| surface.point(TAU * f64::from(k) / f64::from(around), v));
+        mesh.points.extend(parallel);
+    }
+    let (south, north) = (mesh.points.len() as u32, mesh.points.len() as u32 + 1);
+    let quarter = 0.25 * TAU;
+    mesh.points
+        .extend([surface.point(0.0, -quarter), surface.point(0.0, quarter)]);
+    let at = |row: u32, k: u32| match row {
+        0 => south,
+        r if r == rows => north,
+        r => first + (r - 1) * around + k % around,
+    };
+    let mirrored = brep.sense(face) == Sense::Against;
+    for row in 0..rows {
+        for k in 0..around {
+            let [a, b, c, d] = [
+                at(row, k),
+                at(row, k + 1),
+                at(row + 1, k + 1),
+                at(row + 1, k),
+            ];
+            for corners in [[a, b, c], [a, c, d]] {
+                let [x, y, z] = corners;
+                if x != y && y != z && z != x {
+                    let corners = if mirrored { [x, z, y] } else { corners };
+                    mesh.triangles.push(Triangle { corners, face });
+                }
+            }
+        }
+    }
+}

@@ -64,6 +64,17 @@ fn nearest_turn(strand: &Strand<'_>, from: f64, t: f64) -> f64 {
     }
 }
 
+/// What a contour does to one that passes behind it.
+#[derive(Clone, Copy, Debug)]
+struct Hidden {
+    /// The face that begins to hide it.
+    entered: Option<FaceId>,
+    /// The face that ceases to.
+    left: Option<FaceId>,
+    /// How far aside it gets, for each unit of its length.
+    aside: f64,
+}
+
 struct Search<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
@@ -297,12 +308,21 @@ impl Search<'_, '_, '_, '_> {
             let along = far.curve.tangent(t.t);
             match self.hidden_by(near, s.t, &q, &along, v) {
                 // Faces turned away change nothing, and what is not seen has no junction.
-                Some((None, None)) => return,
-                Some((entered, left)) => Change::Pass(Passing {
+                Some(Hidden {
+                    entered: None,
+                    left: None,
+                    ..
+                }) => return,
+                Some(Hidden {
+                    entered,
+                    left,
+                    aside,
+                }) => Change::Pass(Passing {
                     by: i32::from(entered.is_some()) - i32::from(left.is_some()),
                     entered,
                     left,
                     ahead: (q - p).dot(v),
+                    aside,
                 }),
                 None => Change::Correct,
             }
@@ -326,7 +346,7 @@ impl Search<'_, '_, '_, '_> {
         q: &Point3<f64>,
         u: &Vector3<f64>,
         v: &Vector3<f64>,
-    ) -> Option<(Option<FaceId>, Option<FaceId>)> {
+    ) -> Option<Hidden> {
         let flat = ROUNDING.sqrt();
         let t = near.curve.tangent(s);
         let turn = t.cross(u).dot(v);
@@ -345,7 +365,12 @@ impl Search<'_, '_, '_, '_> {
                 return None;
             }
         }
-        Some((entered, left))
+        let aside = turn.abs() / t.cross(v).norm();
+        Some(Hidden {
+            entered,
+            left,
+            aside,
+        })
     }
 
     /// The side of a contour on which a face of it hides what is behind: the sign of det(t, ·, v),

@@ -84,8 +84,46 @@ struct Search<'s, 'a, 'j, 'p> {
     asked: Vec<Vec<[f64; 2]>>,
 }
 
+/// Splits the strands that meet where the boundary touches itself: which is in front may change
+/// there, also for those that fall on one another in the image.
+fn touches(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    let near = LOOSE * scene.band;
+    let (topology, geometry) = (&scene.brep.topology, &scene.brep.geometry);
+    for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
+        let within = |strand: &Strand<'_>| match strand.edge {
+            Some(edge) => touch.edges.contains(&edge),
+            None => strand.faces.iter().any(|f| touch.faces.contains(&f.0)),
+        };
+        let passing = |strand: &Strand<'_>| {
+            let at = settle(strand, strand.curve.parameter(place), near)?;
+            let met = (strand.curve.point(at.t) - place).norm() <= near;
+            (met && !at.at_end).then_some(at.t)
+        };
+        let all = strands.iter_mut().filter(|strand| within(strand));
+        let met: Vec<_> = all.filter_map(|s| Some((passing(s)?, s))).collect();
+        if met.len() < if touch.fans > 0 { 1 } else { 2 } {
+            continue;
+        }
+        let junction = match touch.vertex {
+            Some(vertex) => junctions.vertex(vertex, place),
+            None => junctions.add(JunctionKind::T, Site::Alone, place),
+        };
+        junctions.crowd(junction);
+        for (t, strand) in met {
+            let contours = &mut junctions.list[junction as usize].contours;
+            contours.push(strand.contour);
+            strand.splits.push(Split {
+                t,
+                junction,
+                change: Change::Correct,
+            });
+        }
+    }
+}
+
 /// Finds all T-junctions and notes them as splits of the farther strands.
 pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    touches(strands, scene, junctions);
     let pairs = candidates(strands, scene.projection, LOOSE * scene.band);
     let mut search = Search {
         scene,

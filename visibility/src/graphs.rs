@@ -9,6 +9,7 @@
 use crate::crossing::{Overlap, overlap_of, place_of};
 use crate::image::flat_point;
 use crate::projection::Projection;
+use crate::shared::{Runs, Shared};
 use crate::strand::Strand;
 use crate::stretch::{Course, Stretch, dot2, simple_run};
 use nalgebra::Point3;
@@ -29,38 +30,26 @@ const PLACES: usize = 9;
 /// Newton's steps that follow a curve beyond the end of a stretch, by far less than the stretch.
 const BEYOND: usize = 3;
 
-/// Stretches of two curves whose images fall on one another.
-#[derive(Clone, Copy)]
-struct Shared {
-    /// The ranges of both curves.
-    on: [[f64; 2]; 2],
-    /// Their ends.
-    ends: [[Point3<f64>; 2]; 2],
-    /// Whether it may as well be a crossing or a touch.
-    short: bool,
-}
-
 /// What two general curves have in common in the image.
 #[derive(Default)]
-struct Common {
+struct Common<'x> {
     /// The parameters of crossings on both.
     roots: Vec<(f64, f64)>,
-    shared: Vec<Shared>,
-    /// How long the images are together.
-    together: f64,
+    /// The stretches whose images fall on one another.
+    shared: Vec<Shared<'x>>,
 }
 
 /// Reports the crossings of two general curves in the image.
-pub fn general_pair(
-    a: &Strand<'_>,
-    b: &Strand<'_>,
-    projection: &Projection,
+pub fn general_pair<'x>(
+    a: &'x Strand<'x>,
+    b: &'x Strand<'x>,
+    projection: &'x Projection,
     band: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
     let same = std::ptr::eq(a, b);
     let mut common = Common::default();
-    let mut both = |x: &Stretch, y: &Stretch| {
+    let mut both = |x: &'x Stretch, y: &'x Stretch| {
         if x.bounds.meets(&y.bounds)
             && let Some(graphs) = Graphs::of((a, x), (b, y), projection)
         {
@@ -76,14 +65,17 @@ pub fn general_pair(
             }
         }
     }
-    let overlap = [a, b].map(|c| overlap_of(common.together, c));
+    let Common { mut roots, shared } = common;
+    let runs = Runs::of(shared, SAME * band, SHORT * band);
+    roots.extend(runs.contacts(band));
+    let overlap = [a, b].map(|c| overlap_of(runs.length(), c));
     let overlaps = overlap.contains(&Overlap::Yes);
     if overlaps {
-        common.leave_out_shared([a.curve, b.curve], SAME * band);
+        runs.leave_out([a.curve, b.curve], &mut roots);
     }
     let apart = |c: &Curve, u: f64, v: f64| (c.point(u) - c.point(v)).norm() > SAME * band;
-    let mut known: Vec<(f64, f64)> = Vec::with_capacity(common.roots.len());
-    for (t, s) in common.roots {
+    let mut known: Vec<(f64, f64)> = Vec::with_capacity(roots.len());
+    for (t, s) in roots {
         let mut all = known.iter();
         if all.all(|r| apart(a.curve, r.0, t) || apart(b.curve, r.1, s)) {
             known.push((t, s));
@@ -96,46 +88,8 @@ pub fn general_pair(
     }
 }
 
-impl Common {
-    /// Where stretches of curves on one another only meet at an end, that is no crossing.
-    fn leave_out_shared(&mut self, curves: [&Curve; 2], near: f64) {
-        // Short ones go on from the long ones, one after the other.
-        let (mut short, mut long): (Vec<Shared>, Vec<Shared>) =
-            self.shared.iter().partition(|x| x.short);
-        let mut next = 0;
-        while next < long.len() {
-            let from = long[next];
-            long.extend(short.extract_if(.., |x| x.touches(&from, near)));
-            next += 1;
-        }
-        self.roots.retain(|&(t, s)| {
-            let at = [(t, curves[0].point(t)), (s, curves[1].point(s))];
-            !long.iter().any(|x| x.holds(&at, near))
-        });
-    }
-}
-
-impl Shared {
-    /// Whether a point of either curve, with its parameter, is in the range.
-    fn holds(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
-        (0..2).all(|k| {
-            let ([lo, hi], (t, p)) = (self.on[k], at[k]);
-            (lo..=hi).contains(&t) || self.ends[k].iter().any(|q| (p - q).norm() <= near)
-        })
-    }
-
-    /// Whether both ranges go on in the other's.
-    fn touches(&self, other: &Self, near: f64) -> bool {
-        (0..2).all(|k| {
-            let (these, those) = (self.ends[k], other.ends[k]);
-            let all = these.iter().flat_map(|p| those.map(|q| (p - q).norm()));
-            all.fold(f64::INFINITY, f64::min) <= near
-        })
-    }
-}
-
 /// The pairs of stretches of one curve that may cross.
-fn own_pairs(a: &Strand<'_>, both: &mut impl FnMut(&Stretch, &Stretch)) {
+fn own_pairs<'x>(a: &'x Strand<'_>, both: &mut impl FnMut(&'x Stretch, &'x Stretch)) {
     let n = a.stretches.len();
     let from = |i: usize| a.stretches[i..].iter().chain(&a.stretches[..i]);
     let reach: Vec<usize> = (0..n)
@@ -155,14 +109,12 @@ fn own_pairs(a: &Strand<'_>, both: &mut impl FnMut(&Stretch, &Stretch)) {
 }
 
 /// Two stretches as graphs over a common direction.
-struct Graphs<'x> {
+pub struct Graphs<'x> {
     strands: [&'x Strand<'x>; 2],
     a: &'x Curve,
     b: &'x Curve,
     projection: &'x Projection,
     of: [&'x Stretch; 2],
-    /// The ranges of both curves.
-    whole: [[f64; 2]; 2],
     courses: [Course; 2],
     /// x and y.
     axes: [[f64; 2]; 2],
@@ -170,11 +122,14 @@ struct Graphs<'x> {
     scale: f64,
 }
 
-/// D with its derivative, and the parameter on the first curve.
-struct Gap {
-    v: f64,
-    d: f64,
-    t: f64,
+/// The gap between two graphs.
+pub struct Gap {
+    /// D, as a distance in space.
+    pub v: f64,
+    /// Its derivative.
+    pub d: f64,
+    /// The parameter on the first curve.
+    pub t: f64,
 }
 
 impl<'x> Graphs<'x> {
@@ -196,7 +151,6 @@ impl<'x> Graphs<'x> {
             b: b.curve,
             projection,
             of: [x, y],
-            whole: [a.range, b.range],
             courses,
             axes: [e, [-e[1], e[0]]],
             scale: projection.scale(&b.curve.point(y.range[0])),
@@ -262,7 +216,35 @@ impl<'x> Graphs<'x> {
         })
     }
 
-    fn gap(&self, s: f64) -> Gap {
+    /// The direction over which both are graphs, the first one's with growing parameter.
+    pub fn direction(&self) -> [f64; 2] {
+        self.axes[0]
+    }
+
+    /// The points of both curves at their parameters.
+    pub fn points(&self, t: f64, s: f64) -> [Point3<f64>; 2] {
+        [self.a.point(t), self.b.point(s)]
+    }
+
+    /// How long the image of the second is between two parameters.
+    pub fn length(&self, range: [f64; 2]) -> f64 {
+        let [from, to] = range.map(|s| self.jet(self.b, s)[0].v);
+        (to - from).abs()
+    }
+
+    /// What turns a distance in the image into one in space.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Whether one of the curves ends at a parameter.
+    pub fn ends(&self, t: f64, s: f64) -> bool {
+        let ends = |k: usize, t: f64| !self.strands[k].closed && self.strands[k].range.contains(&t);
+        ends(0, t) || ends(1, s)
+    }
+
+    /// The gap over a point of the second curve.
+    pub fn gap(&self, s: f64) -> Gap {
         let [x, y] = self.jet(self.b, s);
         let t = self.over(0, self.a, x.v);
         let [u, f] = self.jet(self.a, t);
@@ -274,7 +256,7 @@ impl<'x> Graphs<'x> {
     }
 
     /// How far the first curve lies before the point of the second with the same image.
-    fn ahead(&self, s: f64) -> Option<f64> {
+    pub fn ahead(&self, s: f64) -> Option<f64> {
         let p = self.b.point(s);
         let (v, _) = self.projection.towards_eye(&p);
         Some((self.a.point(self.gap(s).t) - p).dot(&v))
@@ -313,71 +295,55 @@ impl<'x> Graphs<'x> {
     }
 
     /// Notes the crossings, or that the two are together in the image.
-    fn cross(&self, band: f64, common: &mut Common) {
+    fn cross(self, band: f64, common: &mut Common<'x>) {
         if self.apart(band / self.scale) {
             return;
         }
         let Some([lo, hi]) = self.common() else {
             return;
         };
-        let mut found = |t: f64, s: f64| common.roots.push((t, s));
         if self.transversal() {
-            return self.once([lo, hi], band, &mut found);
+            return common.roots.extend(self.once([lo, hi], band));
         }
         // Isolation would have to narrow everything down to the resolution.
         let at = |k: usize| lo + (hi - lo) * (k as f64 / (PLACES - 1) as f64);
         if (0..PLACES).all(|k| self.gap(at(k)).v.abs() <= band) {
-            return self.together([lo, hi], band, common);
+            return common.shared.push(Shared::new(self, [lo, hi]));
         }
         match isolate(&|s: Interval| self.gap_over(s), &[lo, hi], band) {
-            Zeros::Everywhere => self.together([lo, hi], band, common),
+            Zeros::Everywhere => common.shared.push(Shared::new(self, [lo, hi])),
             Zeros::At { roots, .. } => {
                 let [a, b] = self.strands;
                 let place = |r: &Root| place_of(r, [b, a], |s| self.ahead(s));
                 for s in roots.iter().filter_map(place) {
-                    found(self.gap(s).t, s);
+                    common.roots.push((self.gap(s).t, s));
                 }
             }
         }
     }
 
-    /// Notes the common part; too short a one may be a crossing.
-    fn together(&self, [lo, hi]: [f64; 2], band: f64, common: &mut Common) {
-        let x = [lo, hi].map(|s| self.jet(self.b, s)[0].v);
-        let length = (x[1] - x[0]).abs();
-        let short = length * self.scale <= SHORT * band;
-        if short {
-            let mut found = |t: f64, s: f64| common.roots.push((t, s));
-            self.once([lo, hi], band, &mut found);
-        } else {
-            common.together += length;
-        }
-        let [t, u] = x.map(|x| self.over(0, self.a, x));
-        let on = [[t.min(u), t.max(u)], [lo, hi]];
-        let ends = [
-            on[0].map(|t| self.a.point(t)),
-            on[1].map(|s| self.b.point(s)),
-        ];
-        common.shared.push(Shared { on, ends, short });
-    }
-
     /// The crossing of stretches that cross once or not at all.
-    fn once(&self, [lo, hi]: [f64; 2], band: f64, found: &mut impl FnMut(f64, f64)) {
+    fn once(&self, [lo, hi]: [f64; 2], band: f64) -> Option<(f64, f64)> {
         let (a, b) = (self.gap(lo), self.gap(hi));
         if a.v * b.v <= 0.0 {
-            let s = bisect_newton(lo, hi, a.v, |s| {
-                let gap = self.gap(s);
-                (gap.v, gap.d)
-            });
-            return found(self.gap(s).t, s);
+            return Some(self.crossing([lo, hi], a.v));
         }
         // Next to an end that is none of the curve's the neighbour decides, but for rounding.
-        for (s, gap) in [(lo, &a), (hi, &b)] {
-            let last = self.whole[0].contains(&gap.t) || self.whole[1].contains(&s);
+        let mut ends = [(lo, a), (hi, b)].into_iter();
+        ends.find(|(s, gap)| {
+            let last = self.ends(gap.t, *s);
             let within = if last { band } else { ROUNDING * self.scale };
-            if gap.v.abs() <= within {
-                return found(gap.t, s);
-            }
-        }
+            gap.v.abs() <= within
+        })
+        .map(|(s, gap)| (gap.t, s))
+    }
+
+    /// The crossing between two parameters of the second curve; `from` is the gap at the first.
+    pub fn crossing(&self, [lo, hi]: [f64; 2], from: f64) -> (f64, f64) {
+        let s = bisect_newton(lo, hi, from, |s| {
+            let gap = self.gap(s);
+            (gap.v, gap.d)
+        });
+        (self.gap(s).t, s)
     }
 }

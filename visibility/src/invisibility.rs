@@ -127,6 +127,14 @@ impl Chain {
                 stops.push((hi, strand.ends[1]));
             }
         }
+        // Contours that are not apart by the time of the next junction are not passed plainly.
+        for (around, change) in stops.windows(3).zip(&mut between) {
+            let [before, at, after] = [0, 1, 2].map(|k| around[k].0);
+            let way = (at - before).min(after - at) * strand.curve.derivative(at).norm();
+            if matches!(change, Change::Pass(passing) if way * passing.aside <= near) {
+                *change = Change::Correct;
+            }
+        }
         let span = |w: &[(f64, Option<u32>)]| Span {
             range: [w[0].0, w[1].0],
             ends: [w[0].1, w[1].1],

@@ -64,6 +64,17 @@ fn nearest_turn(strand: &Strand<'_>, from: f64, t: f64) -> f64 {
     }
 }
 
+/// What a contour does to one that passes behind it.
+#[derive(Clone, Copy, Debug)]
+struct Hidden {
+    /// The face that begins to hide it.
+    entered: Option<FaceId>,
+    /// The face that ceases to.
+    left: Option<FaceId>,
+    /// How far aside it gets, for each unit of its length.
+    aside: f64,
+}
+
 struct Search<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
@@ -73,8 +84,46 @@ struct Search<'s, 'a, 'j, 'p> {
     asked: Vec<Vec<[f64; 2]>>,
 }
 
+/// Splits the strands that meet where the boundary touches itself: which is in front may change
+/// there, also for those that fall on one another in the image.
+fn touches(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    let near = LOOSE * scene.band;
+    let (topology, geometry) = (&scene.brep.topology, &scene.brep.geometry);
+    for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
+        let within = |strand: &Strand<'_>| match strand.edge {
+            Some(edge) => touch.edges.contains(&edge),
+            None => strand.faces.iter().any(|f| touch.faces.contains(&f.0)),
+        };
+        let passing = |strand: &Strand<'_>| {
+            let at = settle(strand, strand.curve.parameter(place), near)?;
+            let met = (strand.curve.point(at.t) - place).norm() <= near;
+            (met && !at.at_end).then_some(at.t)
+        };
+        let all = strands.iter_mut().filter(|strand| within(strand));
+        let met: Vec<_> = all.filter_map(|s| Some((passing(s)?, s))).collect();
+        if met.len() < if touch.fans > 0 { 1 } else { 2 } {
+            continue;
+        }
+        let junction = match touch.vertex {
+            Some(vertex) => junctions.vertex(vertex, place),
+            None => junctions.add(JunctionKind::T, Site::Alone, place),
+        };
+        junctions.crowd(junction);
+        for (t, strand) in met {
+            let contours = &mut junctions.list[junction as usize].contours;
+            contours.push(strand.contour);
+            strand.splits.push(Split {
+                t,
+                junction,
+                change: Change::Correct,
+            });
+        }
+    }
+}
+
 /// Finds all T-junctions and notes them as splits of the farther strands.
 pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    touches(strands, scene, junctions);
     let pairs = candidates(strands, scene.projection, LOOSE * scene.band);
     let mut search = Search {
         scene,
@@ -297,12 +346,21 @@ impl Search<'_, '_, '_, '_> {
             let along = far.curve.tangent(t.t);
             match self.hidden_by(near, s.t, &q, &along, v) {
                 // Faces turned away change nothing, and what is not seen has no junction.
-                Some((None, None)) => return,
-                Some((entered, left)) => Change::Pass(Passing {
+                Some(Hidden {
+                    entered: None,
+                    left: None,
+                    ..
+                }) => return,
+                Some(Hidden {
+                    entered,
+                    left,
+                    aside,
+                }) => Change::Pass(Passing {
                     by: i32::from(entered.is_some()) - i32::from(left.is_some()),
                     entered,
                     left,
                     ahead: (q - p).dot(v),
+                    aside,
                 }),
                 None => Change::Correct,
             }
@@ -326,7 +384,7 @@ impl Search<'_, '_, '_, '_> {
         q: &Point3<f64>,
         u: &Vector3<f64>,
         v: &Vector3<f64>,
-    ) -> Option<(Option<FaceId>, Option<FaceId>)> {
+    ) -> Option<Hidden> {
         let flat = ROUNDING.sqrt();
         let t = near.curve.tangent(s);
         let turn = t.cross(u).dot(v);
@@ -345,7 +403,12 @@ impl Search<'_, '_, '_, '_> {
                 return None;
             }
         }
-        Some((entered, left))
+        let aside = turn.abs() / t.cross(v).norm();
+        Some(Hidden {
+            entered,
+            left,
+            aside,
+        })
     }
 
     /// The side of a contour on which a face of it hides what is behind: the sign of det(t, ·, v),

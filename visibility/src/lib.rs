@@ -18,6 +18,7 @@ mod meeting;
 pub mod polynomial;
 pub mod projection;
 pub mod serial;
+mod shared;
 pub mod sight;
 pub mod strand;
 pub mod stretch;

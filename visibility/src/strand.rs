@@ -27,6 +27,8 @@ pub struct Passing {
     pub left: Option<FaceId>,
     /// How far the other contour lies before this one, along the line of sight.
     pub ahead: f64,
+    /// How far aside of the other contour this one gets, for each unit of its length.
+    pub aside: f64,
 }
 
 impl Passing {
@@ -36,7 +38,7 @@ impl Passing {
             by: -self.by,
             entered: self.left,
             left: self.entered,
-            ahead: self.ahead,
+            ..*self
         }
     }
 }

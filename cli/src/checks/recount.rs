@@ -1,7 +1,8 @@
 //! The quantitative invisibility of pieces, counted again by rays on the tree.
 
 use nalgebra::{Point3, Vector3};
-use premio_csg::rays::{Clearance, Material};
+use premio_csg::rays::{Clearance, Evidence, Material};
+use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::Contours;
 use premio_visibility::contour::{ImageCurve, Kind};
 use premio_visibility::projection::{Projection, Sight};
@@ -14,7 +15,7 @@ const SAMPLES: [f64; 3] = [0.21, 0.53, 0.83];
 /// How many times the clearance a sample is away from the ends of its piece.
 const NEAR: f64 = 10.0;
 
-/// What disagrees is looked at again with rays that run this much closer.
+/// What disagrees is looked at again with rays that run closer and closer by this.
 const CLOSER: f64 = 1.0 / 16.0;
 
 /// The least share of samples that must be counted, where not many are.
@@ -74,11 +75,17 @@ impl Recount {
     pub fn of(material: &Material, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let sight = |p: &_| line_of_sight(&projection, p);
-        let closer = Clearance {
-            aside: clearance.aside * CLOSER,
-            ..*clearance
+        let closer = closer(clearance);
+        // No line of sight may tell anything else, however close it runs.
+        let holds = |p: &_, counted: u32| {
+            closer
+                .iter()
+                .all(|c| match material.invisibility(p, sight, c) {
+                    Evidence::Count(again) => again == counted,
+                    Evidence::Thin => true,
+                    Evidence::Mixed | Evidence::Close => false,
+                })
         };
-        let again = |p: &_| material.invisibility(p, sight, &closer);
         let mut recount = Self::default();
         for contour in &seen.contours {
             let end_on = matches!(contour.curve2, ImageCurve::Point { .. });
@@ -94,17 +101,23 @@ impl Recount {
                     let short = ends.map(|e| (e - place).norm() < NEAR * clearance.aside);
                     let unclear = end_on || (open && short.contains(&true));
                     let counted = material.invisibility(&place, sight, clearance);
-                    match counted.filter(|_| !unclear) {
-                        None => recount.ambiguous += 1,
+                    let counted = match counted {
+                        Evidence::Count(counted) if !unclear => counted,
+                        _ => {
+                            recount.ambiguous += 1;
+                            continue;
+                        }
+                    };
+                    match counted {
                         // Seen end-on it has no two sides; the rays beside it may all miss what
                         // covers a narrow angle of its surroundings.
-                        Some(counted) if end_on && counted != piece.qi => recount.ambiguous += 1,
-                        Some(counted) if counted == piece.qi && piece.visible == (counted == 0) => {
+                        _ if end_on && counted != piece.qi => recount.ambiguous += 1,
+                        _ if counted == piece.qi && piece.visible == (counted == 0) => {
                             recount.agreed += 1;
                         }
                         // Depends on how far beside the rays run.
-                        Some(counted) if again(&place) != Some(counted) => recount.ambiguous += 1,
-                        Some(counted) => {
+                        _ if !holds(&place, counted) => recount.ambiguous += 1,
+                        _ => {
                             wrong = Some(WrongPiece {
                                 t: piece.t,
                                 contour: contour.id,
@@ -122,6 +135,13 @@ impl Recount {
         }
         recount
     }
+}
+
+/// Closer and closer clearances, down to half-way between the resolution and rounding.
+fn closer(clearance: &Clearance) -> Vec<Clearance> {
+    let finest = (clearance.sliver * CLOSER * CLOSER * clearance.size * ROUNDING).sqrt();
+    let all = (1..).map(|k| clearance.closer(CLOSER.powi(k)));
+    all.take_while(|c| c.aside >= finest).collect()
 }
 
 /// The direction from a point to the eye, and how far it is to the eye or the near plane.

@@ -9,7 +9,7 @@ mod sight;
 mod volume;
 
 pub use crossing::{Crossing, Surfaces};
-pub use sight::Clearance;
+pub use sight::{Clearance, Evidence};
 pub use volume::Estimate;
 
 use crate::tree::{Node, NodeId, Operation, Placed, Tree};

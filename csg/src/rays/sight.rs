@@ -26,10 +26,34 @@ pub struct Clearance {
     pub size: f64,
 }
 
+/// What lines of sight tell of how a point of a contour is hidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// How often they all enter material between the eye and the point: its quantitative
+    /// invisibility.
+    Count(u32),
+    /// They disagree: another contour is near, or a face is seen edge-on.
+    Mixed,
+    /// A face that is not the point's own lies close before it.
+    Close,
+    /// Material or gaps before it are too thin to count on: surfaces touch near by.
+    Thin,
+}
+
+impl Clearance {
+    /// The same with lines of sight that run this much closer.
+    pub fn closer(&self, by: f64) -> Self {
+        Self {
+            sliver: self.sliver * by,
+            aside: self.aside * by,
+            ..*self
+        }
+    }
+}
+
 impl Material {
-    /// How often the line of sight enters material between the eye and a point of a contour: its
-    /// quantitative invisibility. None where the answer changes within the clearance: next to
-    /// another contour, along a face seen edge-on, close behind another face.
+    /// How often the lines of sight next to a point of a contour enter material between the eye
+    /// and the point.
     ///
     /// `sight` gives the unit direction from a point to the eye, and how far the line of sight
     /// reaches.
@@ -38,53 +62,64 @@ impl Material {
         point: &Point3<f64>,
         sight: impl Fn(&Point3<f64>) -> (Vector3<f64>, f64),
         clearance: &Clearance,
-    ) -> Option<u32> {
+    ) -> Evidence {
+        self.count(point, sight, clearance)
+            .map_or_else(|why| why, Evidence::Count)
+    }
+
+    fn count(
+        &self,
+        point: &Point3<f64>,
+        sight: impl Fn(&Point3<f64>) -> (Vector3<f64>, f64),
+        clearance: &Clearance,
+    ) -> Result<u32, Evidence> {
         // Aside of a limb, its own surface lies this much nearer.
         let depth = 2.0 * (clearance.aside * clearance.size).sqrt();
         let (towards, length) = sight(point);
         if length <= depth {
-            return None;
+            return Err(Evidence::Close);
         }
         let own = self.along(point, towards, clearance)?;
         let unclear = |s: &f64| *s > clearance.aside && *s < depth;
         if own.iter().flatten().any(unclear) {
-            return None;
+            return Err(Evidence::Close);
         }
         let count = entries(&own, depth, length);
         let frame = Frame::about(*point, towards);
         // What is nearer than this is rounding on the point's own faces.
         let least = clearance.sliver * CLOSER * CLOSER;
-        let agree = (0..NEIGHBOURS).all(|k| {
+        for k in 0..NEIGHBOURS {
             let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
             let beside = |by: f64| {
                 let origin = frame.point(by * cos, by * sin, 0.0);
                 let (towards, length) = sight(&origin);
-                Some((self.along(&origin, towards, clearance)?, length))
+                Ok((self.along(&origin, towards, clearance)?, length))
             };
-            let Some((aside, length)) = beside(clearance.aside) else {
-                return false;
-            };
+            let (aside, length) = beside(clearance.aside)?;
             if entries(&aside, depth, length) != count {
-                return false;
+                return Err(Evidence::Mixed);
             }
             // The point's own faces draw near with the line of sight, another one does not, however
             // close it lies.
             let close = first_exit(&aside, least);
-            close >= depth
-                || beside(clearance.aside * CLOSER)
-                    .is_some_and(|(closer, _)| first_exit(&closer, 0.0) < close * DRAWN)
-        });
-        agree.then_some(count)
+            if close < depth {
+                let (closer, _) = beside(clearance.aside * CLOSER)?;
+                if first_exit(&closer, 0.0) >= close * DRAWN {
+                    return Err(Evidence::Close);
+                }
+            }
+        }
+        Ok(count)
     }
 
-    /// The material along a line of sight; none where gaps or slivers that are more than rounding
+    /// The material along a line of sight, where no gaps or slivers that are more than rounding
     /// are too short to count on: next to where two surfaces touch.
     fn along(
         &self,
         origin: &Point3<f64>,
         direction: Vector3<f64>,
         clearance: &Clearance,
-    ) -> Option<Vec<[f64; 2]>> {
+    ) -> Result<Vec<[f64; 2]>, Evidence> {
         let ray = Ray {
             origin: *origin,
             direction,
@@ -95,7 +130,10 @@ impl Material {
         let gaps = found.windows(2);
         let mut gaps = gaps.filter(|w| w[0][1] > clearance.aside);
         let close = slivers || gaps.any(|w| short(w[0][1], w[1][0]));
-        (!close).then_some(found)
+        match close {
+            true => Err(Evidence::Thin),
+            false => Ok(found),
+        }
     }
 }
 

@@ -134,13 +134,13 @@ fn faces_before_a_point() {
     };
     let count = |x: f64, y: f64, z: f64| part.invisibility(&Point3::new(x, y, z), up, &clearance);
     // On the upper and the lower block's top edges, on the lower block's bottom.
-    assert_eq!(count(0.5, 0.7, 5.0), Some(0));
-    assert_eq!(count(0.2, 0.0, 2.0), Some(0));
-    assert_eq!(count(0.2, 0.2, 0.0), Some(1));
-    assert_eq!(count(0.7, 0.7, 0.0), Some(2));
+    assert_eq!(count(0.5, 0.7, 5.0), Evidence::Count(0));
+    assert_eq!(count(0.2, 0.0, 2.0), Evidence::Count(0));
+    assert_eq!(count(0.2, 0.2, 0.0), Evidence::Count(1));
+    assert_eq!(count(0.7, 0.7, 0.0), Evidence::Count(2));
     // Below the upper block's edge; along the lower block's side.
-    assert_eq!(count(0.5, 0.7, 2.0), None);
-    assert_eq!(count(0.0, 0.7, 0.0), None);
+    assert_eq!(count(0.5, 0.7, 2.0), Evidence::Mixed);
+    assert_eq!(count(0.0, 0.7, 0.0), Evidence::Mixed);
 }
 
 #[test]

@@ -22,29 +22,23 @@ pub(super) struct Piece {
     pub tangent: Vec<[usize; 2]>,
 }
 
-/// What two pieces share that run over the same points.
-type Name = (Option<[usize; 2]>, Vec<usize>);
-
 pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
+    let homes = homes(arrangement, judge);
     let mut all: Vec<Piece> = Vec::new();
-    let mut known: HashMap<Name, Vec<usize>> = HashMap::new();
+    // Two pieces that run over the same points share a home and their ends.
+    let mut known: HashMap<(usize, Option<[usize; 2]>), Vec<usize>> = HashMap::new();
     for (index, m) in arrangement.meetings.iter().enumerate() {
-        let many = m.carriers.len() > 2;
         for (range, ends) in spans(m) {
             let name = ends.map(|[a, b]| [a.min(b), a.max(b)]);
             let middle = m.curve.point(0.5 * (range[0] + range[1]));
-            if many {
-                let list = known.entry((name, m.carriers.clone())).or_default();
+            if m.carriers.len() > 2 {
+                let list = known.entry((homes[index], name)).or_default();
                 let same = list.iter().copied().find(|&i| {
-                    passes(
-                        &arrangement.meetings[all[i].meeting].curve,
-                        all[i].range,
-                        &middle,
-                        judge,
-                    )
+                    let curve = &arrangement.meetings[all[i].meeting].curve;
+                    passes(curve, all[i].range, &middle, judge)
                 });
                 if let Some(i) = same {
-                    all[i].tangent.extend(m.tangent);
+                    all[i].add(m);
                     continue;
                 }
                 list.push(all.len());
@@ -59,8 +53,93 @@ pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
             });
         }
     }
-    reparameterise(arrangement, &mut all, judge);
+    for piece in &mut all {
+        let home = homes[piece.meeting];
+        if home != piece.meeting {
+            piece.move_to(home, arrangement);
+        }
+    }
     all
+}
+
+/// For each meeting the first one on the same curve. Of the copies found from several pairs of
+/// carriers each is clipped to faces of its own pair, and knows only the carriers near these.
+fn homes(arrangement: &Arrangement, judge: &Judge) -> Vec<usize> {
+    let mut homes: Vec<usize> = (0..arrangement.meetings.len()).collect();
+    let mut by_pair: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+    for (i, m) in arrangement.meetings.iter().enumerate() {
+        // What is shorter than the resolution lies in everything near it, and has no pieces.
+        if m.carriers.len() < 3 || spans(m).is_empty() {
+            continue;
+        }
+        for (k, &a) in m.carriers.iter().enumerate() {
+            for &b in &m.carriers[k + 1..] {
+                let list = by_pair.entry([a, b]).or_default();
+                for &j in list.iter() {
+                    let (p, q) = (first_home(&homes, i), first_home(&homes, j));
+                    if p != q && same_curve(&arrangement.meetings[j], m, judge) {
+                        homes[p.max(q)] = p.min(q);
+                    }
+                }
+                list.push(i);
+            }
+        }
+    }
+    (0..homes.len()).map(|i| first_home(&homes, i)).collect()
+}
+
+fn first_home(homes: &[usize], mut i: usize) -> usize {
+    while homes[i] != i {
+        i = homes[i];
+    }
+    i
+}
+
+/// Whether two meetings that have two carriers in common run over one curve: two points of the
+/// longer one tell, of which one at most is where they cross.
+fn same_curve(a: &Meeting, b: &Meeting, judge: &Judge) -> bool {
+    let (long, short) = match a.bounds.diagonal() > b.bounds.diagonal() {
+        true => (a, b),
+        false => (b, a),
+    };
+    let [lo, hi] = long.range;
+    [1.0, 2.0].iter().all(|part| {
+        let p = long.curve.point(lo + (hi - lo) * part / 3.0);
+        (short.curve.point(short.curve.parameter(&p)) - p).norm() <= SAME * judge.band()
+    })
+}
+
+/// Curves and pieces that may be one lie within this many times the resolution, or far apart.
+const SAME: f64 = 64.0;
+
+impl Piece {
+    /// Takes what a copy of it is known by.
+    fn add(&mut self, copy: &Meeting) {
+        self.tangent.extend(copy.tangent);
+        self.carriers.extend(&copy.carriers);
+        self.carriers.sort_unstable();
+        self.carriers.dedup();
+    }
+
+    /// Puts a piece on another copy of its curve, so that it can be joined to the pieces there.
+    fn move_to(&mut self, home: usize, arrangement: &Arrangement) {
+        let Some([a, b]) = self.ends else { return };
+        let own = &arrangement.meetings[self.meeting].curve;
+        let curve = &arrangement.meetings[home].curve;
+        let middle = 0.5 * (self.range[0] + self.range[1]);
+        let at = |v: usize| curve.parameter(&arrangement.corners[v].point);
+        let (mut lo, mut hi, t) = (at(a), at(b), curve.parameter(&own.point(middle)));
+        if own.tangent(middle).dot(&curve.tangent(t)) < 0.0 {
+            (lo, hi) = (hi, lo);
+            self.ends = Some([b, a]);
+        }
+        hi = curve.in_cycle(hi, lo);
+        if let (true, Some(cycle)) = (hi == lo, curve.cycle()) {
+            hi += cycle;
+        }
+        self.range = [lo, hi];
+        self.meeting = home;
+    }
 }
 
 /// The ranges between consecutive cuts, with the corners at their ends. What lies before the first
@@ -95,45 +174,5 @@ fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
 fn passes(curve: &Curve, range: [f64; 2], p: &Point3<f64>, judge: &Judge) -> bool {
     let t = curve.in_cycle(curve.parameter(p), range[0]);
     // Two pieces between the same corners in the same carriers are one or far apart.
-    t >= range[0] && t <= range[1] && (curve.point(t) - p).norm() <= 64.0 * judge.band()
-}
-
-/// Pieces of one curve that was found from several pairs are put on one of the copies, so that
-/// they can be joined again.
-fn reparameterise(arrangement: &Arrangement, all: &mut [Piece], judge: &Judge) {
-    let mut homes: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
-    for piece in all.iter_mut().filter(|p| p.carriers.len() > 2) {
-        let m = &arrangement.meetings[piece.meeting];
-        let homes = homes.entry(piece.carriers.clone()).or_default();
-        let middle = m.curve.point(0.5 * (piece.range[0] + piece.range[1]));
-        let home = homes.iter().copied().find(|&h| {
-            let curve = &arrangement.meetings[h].curve;
-            (curve.point(curve.parameter(&middle)) - middle).norm() <= 64.0 * judge.band()
-        });
-        match home {
-            None => homes.push(piece.meeting),
-            Some(h) if h == piece.meeting => {}
-            Some(h) => {
-                let Some([a, b]) = piece.ends else { continue };
-                let curve = &arrangement.meetings[h].curve;
-                let at = |v: usize| curve.parameter(&arrangement.corners[v].point);
-                let (mut lo, mut hi, t) = (at(a), at(b), curve.parameter(&middle));
-                let forward = m
-                    .curve
-                    .tangent(0.5 * (piece.range[0] + piece.range[1]))
-                    .dot(&curve.tangent(t))
-                    > 0.0;
-                if !forward {
-                    (lo, hi) = (hi, lo);
-                    piece.ends = Some([b, a]);
-                }
-                hi = curve.in_cycle(hi, lo);
-                if let (true, Some(cycle)) = (hi == lo, curve.cycle()) {
-                    hi += cycle;
-                }
-                piece.range = [lo, hi];
-                piece.meeting = h;
-            }
-        }
-    }
+    t >= range[0] && t <= range[1] && (curve.point(t) - p).norm() <= SAME * judge.band()
 }

@@ -206,3 +206,38 @@ fn pairs_on_a_grid_meet_in_all_their_curves() {
         check(seed, true);
     }
 }
+
+/// The torus touches the cone's other nappe, close to the apex: no point of the cone.
+#[test]
+fn no_node_lies_on_the_other_nappe() {
+    let along = |z: f64, x: f64, y: f64, height: f64| Frame {
+        origin: Point3::new(x, y, height),
+        x: Vector3::x(),
+        y: Vector3::y() * z,
+        z: Vector3::z() * z,
+    };
+    let slant = 10.0f64.sqrt();
+    let cone = Surface::Cone(Cone {
+        frame: along(-1.0, 0.0, 0.0, 0.5),
+        sin: 3.0 / slant,
+        cos: 1.0 / slant,
+    });
+    let torus = Surface::Torus(Torus {
+        frame: along(1.0, -1.5, 0.5, 1.0),
+        major: 1.5,
+        minor: 0.5,
+    });
+    let extent = Extent {
+        centre: Point3::origin(),
+        radius: 10.0,
+    };
+    let judge = Judge::new(1e-11 * extent.radius);
+    let meeting = meet(&torus, &cone, &extent, &judge).expect("torus and cone meet");
+    for node in &meeting.nodes {
+        let away = [torus, cone].map(|s| s.distance(&node.point).abs());
+        assert!(
+            away.iter().all(|&d| judge.within(d)),
+            "{node:?} lies {away:?} off"
+        );
+    }
+}

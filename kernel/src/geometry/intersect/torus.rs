@@ -136,7 +136,7 @@ fn traced(
     }
     for s in traced.singular {
         let point = Surface::Torus(*t).point(s.angles[0], s.angles[1]);
-        if matches!(other, Surface::Cone(_)) && other.distance(&point) > t.minor {
+        if matches!(other, Surface::Cone(_)) && !judge.within(other.distance(&point)) {
             continue;
         }
         let mut on = Vec::new();

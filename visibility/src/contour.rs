@@ -1,9 +1,9 @@
 //! The contours for a viewpoint, as they are handed on (`premio.contours/1`).
 
 use crate::camera::Camera;
-use crate::serial;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::serial;
 use serde::Serialize;
 
 /// The name of the format.

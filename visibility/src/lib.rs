@@ -17,7 +17,6 @@ pub mod limb;
 mod meeting;
 pub mod polynomial;
 pub mod projection;
-pub mod serial;
 mod shared;
 pub mod sight;
 pub mod strand;

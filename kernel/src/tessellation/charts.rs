@@ -3,7 +3,7 @@
 //! A plane is its own chart. A cylinder and a cone are seen along their axis, the cylinder as if it
 //! widened; a sphere is seen from a point of it outside the face (stereographic projection). A torus
 //! is cut along a parallel and a circle of the tube, the seams, and unrolled: the seams exist in
-//! the chart only, and are chosen where edges cross them steeply.
+//! the chart only, and are put away from vertices and from where edges turn back.
 
 use super::Accuracy;
 use super::edges::{Polylines, STEEPEST};
@@ -201,8 +201,8 @@ const NEAREST: u32 = 16;
 const GOLDEN: f64 = 2.399_963_229_728_653;
 
 impl Seams {
-    /// Where the edges of a face cross a parallel and a circle of the tube most steeply and
-    /// farthest from their vertices and turns.
+    /// The angles near the middle of the widest gaps between the vertices of a face and the nodes
+    /// at which its edges turn back.
     fn angles(brep: &Brep, face: FaceId, lines: &Polylines) -> [f64; 2] {
         let surface = brep.surface(face);
         let t = &brep.topology;

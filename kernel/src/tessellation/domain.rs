@@ -11,7 +11,7 @@ use crate::number::roots::bisect;
 use nalgebra::Point2;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// A chord of an edge: from the node at this place to the next.
@@ -65,7 +65,7 @@ pub(super) struct Domain {
     /// The triangulation.
     pub net: ConstrainedDelaunayTriangulation<Corner>,
     /// The sides that the face lies to the left of, as its loops run.
-    pub bounding: HashMap<Side, u32>,
+    pub bounding: HashSet<Side>,
     /// Sides along a seam, and the same sides beyond it, both with the chart to their left.
     pub glued: HashMap<Side, Side>,
     /// How many nodes each of its edges had.
@@ -169,7 +169,7 @@ impl<'a> Builder<'a> {
             lines,
             domain: Domain {
                 net: ConstrainedDelaunayTriangulation::new(),
-                bounding: HashMap::new(),
+                bounding: HashSet::new(),
                 glued: HashMap::new(),
                 built_of,
             },
@@ -199,7 +199,7 @@ impl<'a> Builder<'a> {
             if !self.fit.holds(&nalgebra::center(&a, &b), &points) {
                 self.halve(chord);
             }
-            *self.domain.bounding.entry(side).or_default() += 1;
+            self.domain.bounding.insert(side);
             self.constrain(from, to, chord);
         }
     }

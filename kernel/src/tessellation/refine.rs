@@ -87,8 +87,8 @@ fn inside(domain: &Domain, mirrored: bool) -> Option<Vec<Inner>> {
                 let side = (edge.from().fix().index(), edge.to().fix().index());
                 let back = (side.1, side.0);
                 let (left, right) = if mirrored { (back, side) } else { (side, back) };
-                let on_left = domain.bounding.contains_key(&left);
-                let on_right = domain.bounding.contains_key(&right);
+                let on_left = domain.bounding.contains(&left);
+                let on_right = domain.bounding.contains(&right);
                 if on_left || on_right {
                     // A slit has the face on both sides.
                     let here = on_left;

@@ -72,9 +72,10 @@ pub(super) fn arrange(
     judge: &Judge,
 ) -> Result<Arrangement, EvaluationError> {
     let (carriers, sides) = merge(solids, extent, judge);
-    let band = judge.band();
+    // Faces that nearly meet are asked, too: a close call is listed on either side of the band.
+    let reach = judge.reach();
     let boxes = solids.all.iter().enumerate().map(|(i, s)| {
-        let b = s.bounds.grown(band);
+        let b = s.bounds.grown(reach);
         GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
     });
     let tree = RTree::bulk_load(boxes.collect());
@@ -85,8 +86,8 @@ pub(super) fn arrange(
         corners: Vec::new(),
         tree,
     };
-    let mut corners = Corners::new(band);
-    for ((a, b), supports) in found.pairs(solids, band) {
+    let mut corners = Corners::new(judge.band());
+    for ((a, b), supports) in found.pairs(solids, reach) {
         found.add_pair(a, b, &supports, extent, judge, &mut corners)?;
     }
     let mut wide = Vec::new();
@@ -112,30 +113,30 @@ type Pairs = BTreeMap<(usize, usize), Vec<Box3>>;
 
 impl Arrangement {
     /// The pairs of carriers whose faces' boxes meet, with the boxes that they share.
-    fn pairs(&self, solids: &Solids, band: f64) -> Pairs {
+    fn pairs(&self, solids: &Solids, reach: f64) -> Pairs {
         let mut pairs = Pairs::new();
         for (i, s) in solids.all.iter().enumerate() {
             let around = AABB::from_corners(s.bounds.min, s.bounds.max);
             for near in self.tree.locate_in_envelope_intersecting(around) {
                 let j = near.data;
                 if j >= i {
-                    self.add_pairs_of(solids, i, j, band, &mut pairs);
+                    self.add_pairs_of(solids, i, j, reach, &mut pairs);
                 }
             }
         }
         pairs
     }
 
-    fn add_pairs_of(&self, solids: &Solids, i: usize, j: usize, band: f64, pairs: &mut Pairs) {
+    fn add_pairs_of(&self, solids: &Solids, i: usize, j: usize, reach: f64, pairs: &mut Pairs) {
         let (s, o) = (&solids.all[i], &solids.all[j]);
         for (k, a) in s.sides.iter().enumerate() {
-            let box_a = a.bounds.grown(band);
+            let box_a = a.bounds.grown(reach);
             for (l, b) in o.sides.iter().enumerate() {
                 let (c, d) = (self.sides[i][k].0, self.sides[j][l].0);
                 if c == d || (i == j && k >= l) {
                     continue;
                 }
-                if let Some(shared) = common(&box_a, &b.bounds.grown(band)) {
+                if let Some(shared) = common(&box_a, &b.bounds.grown(reach)) {
                     pairs.entry((c.min(d), c.max(d))).or_default().push(shared);
                 }
             }

@@ -36,7 +36,7 @@ impl Corners {
 
     /// The corner at `p`, which the given carriers pass through.
     pub fn at(&mut self, p: &Point3<f64>, carriers: &[usize], judge: &Judge) -> usize {
-        let reach = 100.0 * judge.band();
+        let reach = judge.reach();
         let lo = self.key(&(p - Vector3::repeat(reach)));
         let hi = self.key(&(p + Vector3::repeat(reach)));
         let mut best: Option<(f64, usize)> = None;

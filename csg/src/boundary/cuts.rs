@@ -14,9 +14,6 @@ use premio_kernel::number::sign::{Judge, ROUNDING};
 use rstar::AABB;
 use std::collections::HashMap;
 
-/// Points nearer to one another than this many times the resolution are a close call.
-const CLOSE_CALL: f64 = 100.0;
-
 /// A curve may pass one corner twice, but never within this part of a radian or a unit.
 pub(super) const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
 
@@ -40,14 +37,13 @@ impl Arrangement {
         corners: &mut Corners,
         wide: &mut Vec<Wide>,
     ) {
-        let band = judge.band();
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
         let mut near: Vec<(usize, Box3)> = Vec::new();
         for s in self.tree.locate_in_envelope_intersecting(around) {
             for (k, side) in solids.all[s.data].sides.iter().enumerate() {
                 let c = self.sides[s.data][k].0;
-                let face = side.bounds.grown(band);
+                let face = side.bounds.grown(judge.reach());
                 if !m.carriers.contains(&c) && common(&face, &m.bounds).is_some() {
                     near.push((c, face));
                 }
@@ -58,57 +54,71 @@ impl Arrangement {
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for faces in near.chunk_by(|a, b| a.0 == b.0) {
-            let c = faces[0].0;
-            let special = self.special_points(index, c, &known, judge, corners);
-            let m = &self.meetings[index];
-            let Some((roots, misses)) = m.meet(&self.carriers[c], faces, band) else {
-                holding.push(c);
-                continue;
-            };
-            for r in roots {
-                let p = m.curve.point(r.t);
-                let absorbed = special.iter().any(|s| {
-                    let at = corners.all[s.vertex].point;
-                    m.holds_within(r.lo, r.hi, s.t) || (at - p).norm() <= CLOSE_CALL * band
-                });
-                if absorbed {
-                    continue;
-                }
-                if let Some(margin) = r.margin {
-                    judge.note("curve on surface", margin, p.coords.into());
-                }
-                let all = [m.carriers[0], m.carriers[1], c];
-                let reach = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
-                let reach = reach[0].max(reach[1]);
-                if reach > CLOSE_CALL * band {
-                    wide.push(Wide {
-                        meeting: index,
-                        carrier: c,
-                        t: r.t,
-                        reach,
-                    });
-                    continue;
-                }
-                let plain = r.contact == Contact::Simple;
-                let p = if plain { self.polished(p, all) } else { p };
-                cuts.push(Cut {
-                    t: r.t,
-                    vertex: corners.at(&p, &all, judge),
-                });
+            match self.cuts_by(index, faces, &known, judge, corners, wide) {
+                Some(found) => cuts.extend(found),
+                None => holding.push(faces[0].0),
             }
-            for (t, value) in misses {
-                judge.note(
-                    "curve beside surface",
-                    value,
-                    m.curve.point(t).coords.into(),
-                );
-            }
-            cuts.extend(special);
         }
         let m = &mut self.meetings[index];
         m.carriers.extend(holding);
         m.carriers.sort_unstable();
         m.cuts.extend(cuts);
+    }
+
+    /// The cuts of a curve by the faces of one carrier; none where the carrier holds the curve.
+    fn cuts_by(
+        &self,
+        index: usize,
+        faces: &[(usize, Box3)],
+        known: &[Cut],
+        judge: &Judge,
+        corners: &mut Corners,
+        wide: &mut Vec<Wide>,
+    ) -> Option<Vec<Cut>> {
+        let c = faces[0].0;
+        let m = &self.meetings[index];
+        let mut cuts = self.special_points(index, c, known, judge, corners);
+        let special: Vec<(f64, Point3<f64>)> = cuts
+            .iter()
+            .map(|s| (s.t, corners.all[s.vertex].point))
+            .collect();
+        let at_special =
+            |p: &Point3<f64>| special.iter().any(|s| (s.1 - p).norm() <= judge.reach());
+        let (roots, misses) = m.meet(&self.carriers[c], faces, judge)?;
+        for r in roots {
+            let p = m.curve.point(r.t);
+            if special.iter().any(|s| m.holds_within(r.lo, r.hi, s.0)) || at_special(&p) {
+                continue;
+            }
+            if let Some(margin) = r.margin {
+                judge.note("curve on surface", margin, p.coords.into());
+            }
+            let reach = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
+            let reach = reach[0].max(reach[1]);
+            if reach > judge.reach() {
+                wide.push(Wide {
+                    meeting: index,
+                    carrier: c,
+                    t: r.t,
+                    reach,
+                });
+                continue;
+            }
+            let all = [m.carriers[0], m.carriers[1], c];
+            let plain = r.contact == Contact::Simple;
+            let p = if plain { self.polished(p, all) } else { p };
+            cuts.push(Cut {
+                t: r.t,
+                vertex: corners.at(&p, &all, judge),
+            });
+        }
+        for (t, value) in misses {
+            let p = m.curve.point(t);
+            if !at_special(&p) {
+                judge.note("curve beside surface", value, p.coords.into());
+            }
+        }
+        Some(cuts)
     }
 
     /// Puts a cut whose place is not well known at a corner that is, where there is one in reach.
@@ -231,14 +241,15 @@ type Met = (Vec<Root>, Vec<(f64, f64)>);
 impl Meeting {
     /// Where the curve meets a surface, as far as it runs through the boxes of faces of it; none
     /// where it lies on the surface.
-    fn meet(&self, surface: &Surface, faces: &[(usize, Box3)], band: f64) -> Option<Met> {
+    fn meet(&self, surface: &Surface, faces: &[(usize, Box3)], judge: &Judge) -> Option<Met> {
+        let band = judge.band();
         if lies_on(&self.curve, self.range, surface, band) {
             return None;
         }
         let mut all = Met::default();
         let near = |b: &Box3| {
             faces.iter().any(|(_, face)| common(face, b).is_some())
-                && comes_near(surface, b, CLOSE_CALL * band)
+                && comes_near(surface, b, judge.reach())
         };
         let mut parts = self.parts.as_slice();
         while let Some(first) = parts.iter().position(|p| near(&p.1)) {

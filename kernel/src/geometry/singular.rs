@@ -12,6 +12,7 @@ use super::toric::Axis;
 use super::trace::grid::{Cell, plain_grid};
 use super::trace::{Bounds, DEPTH, Tracer, Unresolved, near};
 use crate::number::interval::Interval;
+use crate::number::sign::CLOSE;
 
 /// A branch through a singular point.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,13 +34,24 @@ pub(super) struct SingularPoint {
     pub zone: f64,
 }
 
+/// The critical points of F at which F is small.
+#[derive(Debug, Default)]
+pub(super) struct Critical {
+    /// Those at which F is within the band, in the order of their angles.
+    pub singular: Vec<SingularPoint>,
+    /// The angles of these and of those at which it is nearly so.
+    pub close: Vec<[f64; 2]>,
+}
+
 /// The greatest zone.
 const ZONE: f64 = 0.05;
 /// From this depth of cells on a degenerate point is looked for.
 const DEEP: u32 = 10;
 
-/// The critical points of F at which F is within the band.
-pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Vec<SingularPoint>, Unresolved> {
+/// The critical points of F at which F is within the band, or so near to it that it is to be told.
+pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Critical, Unresolved> {
+    let reach = CLOSE * tracer.band;
+    let mut misses: Vec<[f64; 2]> = Vec::new();
     let mut found: Vec<SingularPoint> = Vec::new();
     // Degenerate points, with how far from them F is within the band.
     let mut degenerate: Vec<(SingularPoint, f64)> = Vec::new();
@@ -47,7 +59,7 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Vec<SingularPoint>,
     let mut stack: Vec<(Cell, u32)> = plain_grid().into_iter().map(|c| (c, 0)).collect();
     while let Some((cell, depth)) = stack.pop() {
         let b = tracer.bounds(&cell);
-        if b.clear || b.x[0] > 0.0 || b.y[0] > 0.0 {
+        if b.least > reach || b.x[0] > 0.0 || b.y[0] > 0.0 {
             continue;
         }
         let [hx, hy] = cell.half();
@@ -60,10 +72,20 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Vec<SingularPoint>,
         if let Some(point) = only_critical(tracer, &cell, &b.at) {
             let Some(point) = point else { continue };
             let same = |q: &SingularPoint| near(&q.angles, &point, 1e3 * tracer.slop.sqrt());
-            let on = tracer.form.value(point[0], point[1]).abs() <= tracer.band;
-            if on && !found.iter().any(same) {
+            let value = tracer.form.value(point[0], point[1]).abs();
+            if value > tracer.band {
+                if value < reach {
+                    misses.push(point);
+                }
+            } else if !found.iter().any(same) {
                 let all = derivatives.get_or_insert_with(|| Derivatives::of(tracer.form));
                 found.push(all.plain(tracer, point));
+            }
+            continue;
+        }
+        if depth >= DEEP && b.least > 0.0 {
+            if b.at.f.abs() < reach {
+                misses.push(cell.centre());
             }
             continue;
         }
@@ -92,7 +114,16 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Vec<SingularPoint>,
         let [a, b] = [a.angles, b.angles];
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
     });
-    Ok(found)
+    let mut close: Vec<[f64; 2]> = Vec::new();
+    for p in found.iter().map(|p| p.angles).chain(misses) {
+        if !close.iter().any(|q| near(q, &p, ZONE)) {
+            close.push(p);
+        }
+    }
+    Ok(Critical {
+        singular: found,
+        close,
+    })
 }
 
 /// Where the Hessian cannot vanish over the cell's surroundings: the one critical point there, if

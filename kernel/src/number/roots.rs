@@ -8,6 +8,7 @@
 
 use super::interval::Interval;
 use super::jet::Jet;
+use super::sign::CLOSE;
 
 /// How a function meets zero at a root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,12 +41,12 @@ pub struct Root {
 pub enum Zeros {
     /// The function is within the band throughout.
     Everywhere,
-    /// The roots in order, and the nearest miss: the parameter and value of the least extremum
-    /// that was found to be apart.
+    /// The roots in order, and the extrema that were found to be apart, all those among them that
+    /// are close calls.
     At {
         /// In increasing order.
         roots: Vec<Root>,
-        /// Extremum apart from zero: (parameter, value).
+        /// Extrema apart from zero: (parameter, value).
         misses: Vec<(f64, f64)>,
     },
 }
@@ -78,6 +79,9 @@ const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 /// A function that leaves the band by no more than this has not left it: next to the band's edge
 /// rounding takes it in and out.
 const FRINGE: f64 = 1.0 + 1.0 / 64.0;
+
+/// A function that changes by less than this part of its value is level.
+const LEVEL: f64 = 1.0 / 64.0;
 
 /// A function whose roots are sought.
 pub trait Function {
@@ -116,7 +120,16 @@ struct Search<'a, F> {
     band: f64,
     floor: f64,
     clusters: Vec<Cluster>,
-    misses: Vec<(f64, f64)>,
+    misses: Vec<Miss>,
+}
+
+/// An extremum apart from zero, or the least value of a stretch that is nowhere near nor far.
+#[derive(Clone, Copy)]
+struct Miss {
+    lo: f64,
+    hi: f64,
+    t: f64,
+    value: f64,
 }
 
 /// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
@@ -171,14 +184,36 @@ impl<F: Function> Search<'_, F> {
         });
     }
 
+    /// Keeps a miss, the least of those of pieces that follow one another.
+    fn miss(&mut self, lo: f64, hi: f64, t: f64, value: f64) {
+        match self.misses.last_mut() {
+            Some(last) if last.hi >= lo => {
+                last.hi = hi;
+                if value.abs() < last.value.abs() {
+                    (last.t, last.value) = (t, value);
+                }
+            }
+            _ => self.misses.push(Miss { lo, hi, t, value }),
+        }
+    }
+
+    /// Whether a miss is the least value around: a stretch may lead on to a root, or a lesser one.
+    fn is_least(&self, miss: &Miss) -> bool {
+        let width = miss.hi - miss.lo;
+        let falls = |t: f64, way: f64| {
+            let fall = -self.slope(t) * miss.value.signum() * way * width;
+            t == miss.t && fall > LEVEL * miss.value.abs()
+        };
+        width == 0.0 || !(falls(miss.lo, -1.0) || falls(miss.hi, 1.0))
+    }
+
     /// Works through [a, b] in order, by halving with a stack of its own.
     fn piece(&mut self, a: f64, b: f64) {
         let mut stack = vec![(a, b)];
         while let Some((a, b)) = stack.pop() {
             let m = 0.5 * (a + b);
             let x = Interval { lo: a, hi: b };
-            let reach = self.f.reach(x);
-            if reach.lo > self.band || reach.hi < -self.band {
+            if self.is_clear(self.f.reach(x)) {
                 continue;
             }
             let jet = self.f.over(x);
@@ -186,7 +221,14 @@ impl<F: Function> Search<'_, F> {
             if v.has_zero() && jet.d.has_zero() && jet.d.width().is_finite() {
                 v = v.meet(self.value_over(m) + jet.d * (x - Interval::point(m)));
             }
-            if v.lo > self.band || v.hi < -self.band {
+            if self.is_clear(v) {
+                continue;
+            }
+            let misses = v.lo > self.band || v.hi < -self.band;
+            if misses && (v.magnitude() <= CLOSE * self.band || b - a <= self.floor) {
+                for t in [a, m, b] {
+                    self.miss(a, b, t, self.value(t));
+                }
                 continue;
             }
             if v.magnitude() <= self.band {
@@ -204,6 +246,11 @@ impl<F: Function> Search<'_, F> {
                 stack.push((a, m));
             }
         }
+    }
+
+    /// Whether no value of a range is a root, or so near to one that it is to be told.
+    fn is_clear(&self, v: Interval) -> bool {
+        v.lo > CLOSE * self.band || v.hi < -CLOSE * self.band
     }
 
     /// -1, 0 (within the band) or 1.
@@ -249,6 +296,12 @@ impl<F: Function> Search<'_, F> {
     fn convex(&mut self, a: f64, b: f64) {
         let (da, db) = (self.slope(a), self.slope(b));
         if da * db >= 0.0 {
+            for (t, slope) in [(a, da), (b, db)] {
+                let value = self.value(t);
+                if slope == 0.0 && self.sign(value) != 0 {
+                    self.miss(t, t, t, value);
+                }
+            }
             return self.monotone(a, b);
         }
         let t = bisect(a, b, da, |t| self.slope(t));
@@ -257,7 +310,7 @@ impl<F: Function> Search<'_, F> {
             let (lo, hi) = (self.limit(t, a), self.limit(t, b));
             return self.cluster(lo, hi, t, Kind::Extremum, Some(extremum.abs()));
         }
-        self.misses.push((t, extremum));
+        self.miss(t, t, t, extremum);
         self.monotone(a, t);
         self.monotone(t, b);
     }
@@ -326,9 +379,10 @@ impl<F: Function> Search<'_, F> {
             let crosses = sign_between(i) != sign_between(i + 1);
             self.root(group, crosses)
         });
+        let misses = self.misses.iter().filter(|m| self.is_least(m));
         Zeros::At {
             roots: roots.collect(),
-            misses: self.misses,
+            misses: misses.map(|m| (m.t, m.value)).collect(),
         }
     }
 
@@ -496,6 +550,28 @@ mod tests {
 
     fn k(x: f64) -> Jet<Interval> {
         Jet::constant(x)
+    }
+
+    fn misses(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<f64> {
+        match isolate(&|t| f(Jet::variable(t)), breaks, 1e-11) {
+            Zeros::At { misses, .. } => misses.iter().map(|m| m.1).collect(),
+            Zeros::Everywhere => panic!("everywhere"),
+        }
+    }
+
+    #[test]
+    fn what_nearly_touches_is_told_once() {
+        let near = 5e-10;
+        for breaks in [&[-1.0, 1.0][..], &[-1.0, 0.0, 1.0]] {
+            let above = misses(|t| t * t + k(near), breaks);
+            assert_eq!(above.len(), 1, "{above:?}");
+            assert!((above[0] - near).abs() < 1e-15);
+            // What leads on to a root is no miss, however slowly it does.
+            let flat = misses(|t| t * t * t * t, breaks);
+            assert!(flat.iter().all(|v| v.abs() > 1e-9), "{flat:?}");
+        }
+        assert_eq!(misses(|t| t * k(0.0) + k(near), &[0.0, 4.0]), [near]);
+        assert!(misses(|t| t - k(near), &[-1.0, 0.0, 1.0]).is_empty());
     }
 
     #[test]

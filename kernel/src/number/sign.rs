@@ -8,7 +8,7 @@
 use std::cell::RefCell;
 
 /// The factor on either side of the band within which a decision is a close call.
-const CLOSE: f64 = 100.0;
+pub(crate) const CLOSE: f64 = 100.0;
 
 /// The default resolution: this times the size of the part.
 pub const RELATIVE_RESOLUTION: f64 = 1e-11;
@@ -95,6 +95,12 @@ impl Judge {
         self.band
     }
 
+    /// What is no further apart than this coincides, or is a close call: only what is further apart
+    /// need not be asked about.
+    pub fn reach(&self) -> f64 {
+        self.band * CLOSE
+    }
+
     /// The side on which the signed `distance` lies; `place` is where it was measured.
     pub fn side(&self, question: &'static str, distance: f64, place: [f64; 3]) -> Side {
         self.note(question, distance, place);
@@ -122,7 +128,7 @@ impl Judge {
     /// Whether a decision made on `distance` would be a close call, or coincide: for a search that
     /// may look elsewhere.
     pub fn is_close(&self, distance: f64) -> bool {
-        distance.abs() < self.band * CLOSE
+        distance.abs() < self.reach()
     }
 
     /// Counts one decision made on `distance`.
@@ -134,7 +140,7 @@ impl Judge {
         } else {
             decisions.filtered += 1;
         }
-        if size * CLOSE > self.band && size < self.band * CLOSE {
+        if size * CLOSE > self.band && size < self.reach() {
             decisions.close_calls.push(CloseCall {
                 question,
                 place,

@@ -110,6 +110,10 @@ fn traced(
 ) -> Result<Meeting, IntersectionError> {
     let traced = trace(t, form, judge.band())?;
     let mut meeting = Meeting::nothing();
+    for [theta, phi] in &traced.close {
+        let p = Surface::Torus(*t).point(*theta, *phi);
+        judge.note("torus touches surface", other.distance(&p), p.coords.into());
+    }
     // The form knows both nappes of a cone: each branch is cut to the one that is meant.
     let mut parts: Vec<Vec<(usize, [f64; 2])>> = Vec::new();
     for (b, branch) in traced.branches.into_iter().enumerate() {

@@ -372,5 +372,9 @@ fn chain(
             closed: true,
         });
     }
-    Ok(Traced { branches, singular })
+    Ok(Traced {
+        branches,
+        singular,
+        ..Traced::default()
+    })
 }

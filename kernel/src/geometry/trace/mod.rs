@@ -10,7 +10,7 @@ pub(super) mod grid;
 mod join;
 
 use super::bitrig::{BiTrig, Partials};
-use super::singular::singular_points;
+use super::singular::{Critical, singular_points};
 use super::surface::Torus;
 use super::toric::{Axis, Toric, wrap};
 use crate::number::interval::Interval;
@@ -34,6 +34,8 @@ pub struct Traced {
     pub branches: Vec<Toric>,
     /// The singular points.
     pub singular: Vec<Singular>,
+    /// The critical points of F, by their angles, that are singular points or nearly so.
+    pub close: Vec<[f64; 2]>,
 }
 
 /// The curve has a singular point worse than a crossing, or one that cannot be told from it.
@@ -46,8 +48,8 @@ pub struct Unresolved {
 
 /// Taylor's bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
 pub(super) struct Bounds {
-    /// F has no zero in the cell.
-    pub clear: bool,
+    /// The least |F|; below zero where F may vanish.
+    pub least: f64,
     /// The least and the greatest |F_x|.
     pub x: [f64; 2],
     /// The least and the greatest |F_y|.
@@ -95,7 +97,7 @@ impl Tracer<'_> {
         let rx = p.xx.abs() * hx + p.xy.abs() * hy + 0.5 * r.x + self.slop;
         let ry = p.xy.abs() * hx + p.yy.abs() * hy + 0.5 * r.y + self.slop;
         Bounds {
-            clear: p.f.abs() > spread,
+            least: p.f.abs() - spread,
             x: [p.x.abs() - rx, p.x.abs() + rx],
             y: [p.y.abs() - ry, p.y.abs() + ry],
             at: p,
@@ -128,7 +130,7 @@ impl Tracer<'_> {
         let mut stack: Vec<(Cell, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
         while let Some((cell, depth)) = stack.pop() {
             let b = self.bounds(&cell);
-            if b.clear {
+            if b.least > 0.0 {
                 continue;
             }
             if b.y[0] > 0.0 && b.x[1] <= STEEP * b.y[0] {
@@ -189,12 +191,15 @@ pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolv
         slop,
         band: band.max(slop),
     };
-    let points = singular_points(&tracer)?;
+    let Critical {
+        singular: points,
+        close,
+    } = singular_points(&tracer)?;
     let mut shrink = 1.0;
     let mut failed = None;
     for attempt in 0..ATTEMPTS {
         match tracer.assemble(torus, &points, shrink, SKEWS[attempt % SKEWS.len()]) {
-            Ok(traced) => return Ok(traced),
+            Ok(traced) => return Ok(Traced { close, ..traced }),
             Err(e) => failed = failed.or(Some(e)),
         }
         shrink *= 0.5;

@@ -3,6 +3,7 @@
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::intersect::{Extent, coincidence, meet};
+use premio_kernel::geometry::relation::Carrier;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::number::sign::Judge;
 
@@ -137,10 +138,10 @@ fn check(seed: u64, grid: bool) {
         radius: 12.0,
     };
     let judge = Judge::new(1e-10);
-    if coincidence(&a, &b, &extent, &judge).is_some() {
+    if coincidence(Carrier::given(&a), Carrier::given(&b), &extent, &judge).is_some() {
         return;
     }
-    let meeting = match meet(&a, &b, &extent, &judge) {
+    let meeting = match meet(Carrier::given(&a), Carrier::given(&b), &extent, &judge) {
         Ok(m) => m,
         Err(e) if grid && REFUSED.contains(&seed) => {
             let _ = e;
@@ -232,7 +233,13 @@ fn no_node_lies_on_the_other_nappe() {
         radius: 10.0,
     };
     let judge = Judge::new(1e-11 * extent.radius);
-    let meeting = meet(&torus, &cone, &extent, &judge).expect("torus and cone meet");
+    let meeting = meet(
+        Carrier::given(&torus),
+        Carrier::given(&cone),
+        &extent,
+        &judge,
+    )
+    .expect("torus and cone meet");
     for node in &meeting.nodes {
         let away = [torus, cone].map(|s| s.distance(&node.point).abs());
         assert!(

@@ -4,14 +4,16 @@
 //! surfaces become one carrier, equal points one vertex that is known by all carriers through it.
 
 use super::EvaluationError;
-use super::carriers::merge;
+use super::carriers::{Merged, Source, merge};
 use super::corners::{Corner, Corners};
 use super::cuts::CLOSE_PASS;
 use super::halfspaces::Solids;
+use crate::tree::Tree;
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::bounds::{Box3, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::intersect::{Branch, Extent, meet};
+use premio_kernel::geometry::relation::Carrier;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::sign::Judge;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -67,11 +69,16 @@ pub(super) struct Arrangement {
 }
 
 pub(super) fn arrange(
+    tree: &Tree,
     solids: &Solids,
     extent: &Extent,
     judge: &Judge,
 ) -> Result<Arrangement, EvaluationError> {
-    let (carriers, sides) = merge(solids, extent, judge);
+    let Merged {
+        carriers,
+        sources,
+        sides,
+    } = merge(tree, solids, extent, judge);
     // Faces that nearly meet are asked, too: a close call is listed on either side of the band.
     let reach = judge.reach();
     let boxes = solids.all.iter().enumerate().map(|(i, s)| {
@@ -87,8 +94,8 @@ pub(super) fn arrange(
         tree,
     };
     let mut corners = Corners::new(judge.band());
-    for ((a, b), supports) in found.pairs(solids, reach) {
-        found.add_pair(a, b, &supports, extent, judge, &mut corners)?;
+    for (pair, supports) in found.pairs(solids, reach) {
+        found.add_pair(pair, &supports, &sources, extent, judge, &mut corners)?;
     }
     let mut wide = Vec::new();
     for i in 0..found.meetings.len() {
@@ -145,14 +152,16 @@ impl Arrangement {
 
     fn add_pair(
         &mut self,
-        a: usize,
-        b: usize,
+        (a, b): (usize, usize),
         supports: &[Box3],
+        sources: &[Source<'_>],
         extent: &Extent,
         judge: &Judge,
         corners: &mut Corners,
     ) -> Result<(), EvaluationError> {
-        let met = meet(&self.carriers[a], &self.carriers[b], extent, judge)?;
+        let exact = [a, b].map(|c| move || sources[c].exact());
+        let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
+        let met = meet(carrier(a, 0), carrier(b, 1), extent, judge)?;
         let mut kept: Vec<Vec<usize>> = Vec::new();
         for branch in &met.branches {
             kept.push(self.add_branch(a, b, branch, supports, judge));

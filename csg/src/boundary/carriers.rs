@@ -1,17 +1,47 @@
 //! The carriers: the distinct surfaces of all half spaces.
 
+use super::exact::coefficients;
 use super::halfspaces::{HalfSpace, Solids};
+use crate::tree::{Placed, Tree};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::intersect::{Extent, coincidence};
+use premio_kernel::geometry::relation::{Carrier, Coefficients};
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::rational::Rational;
 use premio_kernel::number::sign::{Judge, ROUNDING};
 
+/// The half space that a carrier was met as first: its exact coefficients are the carrier's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'t> {
+    placed: &'t Placed,
+    side: usize,
+}
+
+impl Source<'_> {
+    /// The carrier's exact coefficients.
+    pub fn exact(&self) -> Coefficients<Rational> {
+        coefficients(self.placed, self.side)
+    }
+}
+
+/// All half spaces' surfaces, equal ones merged.
+pub(super) struct Merged<'t> {
+    /// The distinct surfaces.
+    pub carriers: Vec<Surface>,
+    /// Where each comes from.
+    pub sources: Vec<Source<'t>>,
+    /// For each half space of each solid: its carrier, and the sense relative to it.
+    pub sides: Vec<Vec<(usize, Sense)>>,
+}
+
 /// The distinct surfaces, and each half space's carrier.
-pub(super) fn merge(
+pub(super) fn merge<'t>(
+    tree: &'t Tree,
     solids: &Solids,
     extent: &Extent,
     judge: &Judge,
-) -> (Vec<Surface>, Vec<Vec<(usize, Sense)>>) {
+) -> Merged<'t> {
+    let placed: Vec<&Placed> = tree.leaves().map(|leaf| leaf.1).collect();
     // Equal surfaces have nearly the same point next to the extent's centre: sorted by it, only
     // neighbours are compared.
     let foot = |s: &Surface| {
@@ -37,18 +67,32 @@ pub(super) fn merge(
         .map(|s| vec![(usize::MAX, Sense::Along); s.sides.len()])
         .collect();
     let mut carriers: Vec<Surface> = Vec::new();
+    let mut sources: Vec<Source<'t>> = Vec::new();
     // The carriers that may still be met, by the place of their foot.
     let mut recent: Vec<(f64, usize)> = Vec::new();
     for (x, i, k, side) in list {
         recent.retain(|(y, _)| x - y <= window);
+        let source = Source {
+            placed: placed[i],
+            side: k,
+        };
+        let exact = || source.exact();
         let known = recent.iter().find_map(|&(_, c)| {
-            coincidence(&carriers[c], &side.surface, extent, judge).map(|sense| (c, sense))
+            let met = || sources[c].exact();
+            let a = Carrier::rounded(&carriers[c], &met);
+            let b = Carrier::rounded(&side.surface, &exact);
+            coincidence(a, b, extent, judge).map(|sense| (c, sense))
         });
         sides[i][k] = known.unwrap_or_else(|| {
             carriers.push(side.surface);
+            sources.push(source);
             recent.push((x, carriers.len() - 1));
             (carriers.len() - 1, Sense::Along)
         });
     }
-    (carriers, sides)
+    Merged {
+        carriers,
+        sources,
+        sides,
+    }
 }

@@ -10,6 +10,7 @@ mod arrangement;
 mod carriers;
 mod corners;
 mod cuts;
+mod exact;
 mod halfspaces;
 mod membership;
 mod pieces;
@@ -118,7 +119,7 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
         centre: solids.bounds.centre(),
         radius: 0.75 * size,
     };
-    let arrangement = arrangement::arrange(&solids, &extent, &judge)?;
+    let arrangement = arrangement::arrange(tree, &solids, &extent, &judge)?;
     let raw = wings::boundary(tree, &solids, arrangement, &judge)?;
     let brep = assemble(raw, &judge)?;
     let decisions = judge.decisions();

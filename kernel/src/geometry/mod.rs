@@ -8,6 +8,7 @@ pub mod cut;
 pub mod frame;
 pub mod intersect;
 pub mod quartic;
+pub mod relation;
 pub mod section;
 pub mod serial;
 mod singular;

@@ -1,9 +1,11 @@
 //! Numbers: exact rationals, intervals, jets, isolated roots, and the one place that decides signs.
 
+pub mod enclosure;
 pub mod interval;
 pub mod jet;
 pub mod quadrature;
 pub mod rational;
+pub mod real;
 pub mod roots;
 pub mod scalar;
 pub mod sign;

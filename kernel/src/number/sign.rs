@@ -4,7 +4,14 @@
 //! part's unit, and leaves as an enum. What lies within the band of the part's one resolution
 //! coincides; what lies outside is apart, by its certified sign. A distance within a hundred times
 //! the band on either side of it is a close call and is listed.
+//!
+//! A relation between two surfaces is a [`Distance`] that is known to more than one precision: its
+//! range in doubles tells nearly always; where the edge of the band lies in the range, ranges of
+//! growing precision do.
 
+use super::enclosure::Enclosure;
+use super::interval::Interval;
+use super::rational::from_f64;
 use std::cell::RefCell;
 
 /// The factor on either side of the band within which a decision is a close call.
@@ -64,7 +71,7 @@ pub struct CloseCall {
 pub struct Decisions {
     /// Settled by intervals of doubles.
     pub filtered: u64,
-    /// Settled with more bits.
+    /// Settled with more bits than doubles have, either way.
     pub refined: u64,
     /// Settled by an exact zero test.
     pub exact: u64,
@@ -72,6 +79,50 @@ pub struct Decisions {
     pub coincident: u64,
     /// Closer than a hundred to one, in the order met.
     pub close_calls: Vec<CloseCall>,
+}
+
+/// A signed distance between geometric things, in the part's unit.
+pub trait Distance {
+    /// A certified range, in doubles.
+    fn range(&self) -> Interval;
+
+    /// A certified range reckoned to so many bits; none where no more is known.
+    fn refined(&self, bits: usize) -> Option<Enclosure>;
+}
+
+/// A distance that is a construction's: taken at its word.
+impl Distance for f64 {
+    fn range(&self) -> Interval {
+        Interval::point(*self)
+    }
+
+    fn refined(&self, _bits: usize) -> Option<Enclosure> {
+        None
+    }
+}
+
+/// The precisions that are tried, in bits.
+const PRECISIONS: [usize; 4] = [128, 256, 512, 1024];
+
+/// How a decision was reached.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Effort {
+    Filter,
+    MoreBits,
+}
+
+/// The side of a distance in [lo, hi], where the range tells: `band` and `below` are the two edges of
+/// the band.
+fn side_of<N: PartialOrd>(lo: N, hi: N, band: N, below: N) -> Option<Side> {
+    if lo > band {
+        Some(Side::Outside)
+    } else if hi < below {
+        Some(Side::Inside)
+    } else if lo >= below && hi <= band {
+        Some(Side::On)
+    } else {
+        None
+    }
 }
 
 /// Decides by the part's one resolution, and keeps count.
@@ -102,21 +153,43 @@ impl Judge {
     }
 
     /// The side on which the signed `distance` lies; `place` is where it was measured.
-    pub fn side(&self, question: &'static str, distance: f64, place: [f64; 3]) -> Side {
-        self.note(question, distance, place);
-        if distance.abs() <= self.band {
-            Side::On
-        } else if distance < 0.0 {
-            Side::Inside
-        } else {
-            Side::Outside
-        }
+    pub fn side(&self, question: &'static str, distance: impl Distance, place: [f64; 3]) -> Side {
+        let range = distance.range();
+        let (side, effort) = match side_of(range.lo, range.hi, self.band, -self.band) {
+            Some(side) => (side, Effort::Filter),
+            None => (self.refined_side(&distance), Effort::MoreBits),
+        };
+        self.count(question, side, effort, range.mid(), place);
+        side
     }
 
     /// Whether two things `distance` apart coincide.
-    pub fn coincide(&self, question: &'static str, distance: f64, place: [f64; 3]) -> bool {
-        self.note(question, distance, place);
-        distance.abs() <= self.band
+    pub fn coincide(
+        &self,
+        question: &'static str,
+        distance: impl Distance,
+        place: [f64; 3],
+    ) -> bool {
+        self.side(question, distance, place) == Side::On
+    }
+
+    /// The side by more bits. What cannot be told from the edge of the band lies on it, and
+    /// coincides.
+    fn refined_side(&self, distance: &impl Distance) -> Side {
+        let Some(band) = from_f64(self.band) else {
+            return Side::On;
+        };
+        let below = -band.clone();
+        for bits in PRECISIONS {
+            let enclosure = distance.refined(bits);
+            let Some([lo, hi]) = enclosure.as_ref().and_then(Enclosure::ends) else {
+                continue;
+            };
+            if let Some(side) = side_of(lo, hi, &band, &below) {
+                return side;
+            }
+        }
+        Side::On
     }
 
     /// Whether `distance` is within the band, without counting it: for searches that ask many
@@ -133,12 +206,23 @@ impl Judge {
 
     /// Counts one decision made on `distance`.
     pub fn note(&self, question: &'static str, distance: f64, place: [f64; 3]) {
+        self.side(question, distance, place);
+    }
+
+    fn count(
+        &self,
+        question: &'static str,
+        side: Side,
+        effort: Effort,
+        distance: f64,
+        place: [f64; 3],
+    ) {
         let size = distance.abs();
         let mut decisions = self.decisions.borrow_mut();
-        if size <= self.band {
-            decisions.coincident += 1;
-        } else {
-            decisions.filtered += 1;
+        match (side, effort) {
+            (_, Effort::MoreBits) => decisions.refined += 1,
+            (Side::On, _) => decisions.coincident += 1,
+            _ => decisions.filtered += 1,
         }
         if size * CLOSE > self.band && size < self.reach() {
             decisions.close_calls.push(CloseCall {

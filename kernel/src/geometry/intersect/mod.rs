@@ -10,15 +10,15 @@ mod sphere;
 mod torus;
 
 use super::curve::Curve;
-use super::frame::Frame;
-use super::surface::{Cone, Surface};
+use super::relation::{Carrier, Pair, Relation};
+use super::surface::{Cone, Surface, SurfaceKind};
 use super::trace::Unresolved;
 use crate::brep::topology::Sense;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{Function, Zeros, isolate};
 use crate::number::sign::{Judge, ROUNDING};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
 /// A ball that holds the part: what lies outside is not asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,97 +113,59 @@ impl Meeting {
 
 /// The curves in which two distinct surfaces meet within the extent.
 pub fn meet(
-    a: &Surface,
-    b: &Surface,
+    a: Carrier<'_>,
+    b: Carrier<'_>,
     extent: &Extent,
     judge: &Judge,
 ) -> Result<Meeting, IntersectionError> {
     use Surface as S;
-    Ok(match (a, b) {
-        (S::Plane(p), S::Plane(q)) => plane::plane_plane(p, q, extent, judge),
-        (S::Plane(p), S::Sphere(s)) | (S::Sphere(s), S::Plane(p)) => {
-            plane::plane_sphere(p, s, extent, judge)
-        }
-        (S::Plane(p), S::Cylinder(c)) | (S::Cylinder(c), S::Plane(p)) => {
-            plane::plane_cylinder(p, c, extent, judge)
-        }
-        (S::Plane(p), S::Cone(c)) | (S::Cone(c), S::Plane(p)) => {
-            plane::plane_cone(p, c, extent, judge)
-        }
-        (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, extent, judge),
-        (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, extent, judge)?,
-        (S::Torus(t), other) | (other, S::Torus(t)) => torus::torus_with(t, other, extent, judge)?,
-        (x, y) => quadric::quadric_quadric(x, y, extent, judge)?,
+    let pair = Pair::new(a, b, extent);
+    let turned = pair.turned();
+    Ok(match (a.surface, b.surface) {
+        (S::Plane(p), S::Plane(q)) => plane::plane_plane(p, q, &pair, judge),
+        (S::Plane(p), S::Sphere(s)) => plane::plane_sphere(p, s, &pair, judge),
+        (S::Sphere(s), S::Plane(p)) => plane::plane_sphere(p, s, &turned, judge),
+        (S::Plane(p), S::Cylinder(c)) => plane::plane_cylinder(p, c, &pair, judge),
+        (S::Cylinder(c), S::Plane(p)) => plane::plane_cylinder(p, c, &turned, judge),
+        (S::Plane(p), S::Cone(c)) => plane::plane_cone(p, c, &pair, judge),
+        (S::Cone(c), S::Plane(p)) => plane::plane_cone(p, c, &turned, judge),
+        (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, &pair, judge),
+        (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, &pair, judge)?,
+        (S::Torus(t), _) => torus::torus_with(t, &pair, judge)?,
+        (_, S::Torus(t)) => torus::torus_with(t, &turned, judge)?,
+        _ => quadric::quadric_quadric(&pair, judge)?,
     })
 }
 
-/// How far two directions drift apart over the extent.
-fn drift(a: &Vector3<f64>, b: &Vector3<f64>, extent: &Extent) -> f64 {
-    a.cross(b).norm() * extent.radius
-}
-
-/// Whether two lines, each a point and a unit direction, are the same within the band.
-fn same_line(f: &Frame, g: &Frame, extent: &Extent, judge: &Judge) -> bool {
-    let away = g.origin - f.origin;
-    let across = (away - f.z * f.z.dot(&away)).norm();
-    // Seen from the extent's centre, so that a far-off origin does not magnify the drift.
-    let to_centre = extent.centre - f.origin;
-    let along = (to_centre.dot(&f.z) - away.dot(&f.z)).abs();
-    let tilt = f.z.cross(&g.z).norm();
-    judge.within(tilt * extent.radius) && judge.within(across - tilt * along)
+/// Whether the axes of two carriers are one line within the band.
+fn same_line(pair: &Pair<'_>, place: [f64; 3], judge: &Judge) -> bool {
+    judge.coincide("axes side by side", pair.how(Relation::Drift), place)
+        && judge.coincide("axis on axis", pair.how(Relation::OffLine), place)
 }
 
 /// Whether two surfaces coincide over the extent: `Along` with the same side inside, `Against`
 /// with opposite sides, which only planes can be.
-pub fn coincidence(a: &Surface, b: &Surface, extent: &Extent, judge: &Judge) -> Option<Sense> {
-    use Surface as S;
-    let axis = |f: &Frame, g: &Frame| {
-        let tilt = f.z.cross(&g.z).norm() * extent.radius;
-        let away = extent.centre - f.origin;
-        let foot = f.origin + f.z * f.z.dot(&away);
-        let off = foot - g.origin;
-        tilt + (off - g.z * g.z.dot(&off)).norm()
-    };
-    let apart = match (a, b) {
-        (S::Plane(p), S::Plane(q)) => {
-            let foot = extent.centre - p.frame.z * (extent.centre - p.frame.origin).dot(&p.frame.z);
-            let off = (foot - q.frame.origin).dot(&q.frame.z).abs();
-            off + drift(&p.frame.z, &q.frame.z, extent)
-        }
-        (S::Sphere(s), S::Sphere(t)) => {
-            (s.frame.origin - t.frame.origin).norm() + (s.radius - t.radius).abs()
-        }
-        (S::Cylinder(c), S::Cylinder(d)) => axis(&c.frame, &d.frame) + (c.radius - d.radius).abs(),
-        (S::Cone(c), S::Cone(d)) => {
-            if c.frame.z.dot(&d.frame.z) < 0.0 {
-                return None;
-            }
-            (c.frame.origin - d.frame.origin).norm()
-                + drift(&c.frame.z, &d.frame.z, extent)
-                + (c.sin * d.cos - c.cos * d.sin).abs() * extent.radius
-        }
-        (S::Torus(t), S::Torus(u)) => {
-            (t.frame.origin - u.frame.origin).norm()
-                + t.frame.z.cross(&u.frame.z).norm() * t.major
-                + (t.major - u.major).abs()
-                + (t.minor - u.minor).abs()
-        }
-        _ => return None,
-    };
-    let f = a.frame();
+pub fn coincidence(
+    a: Carrier<'_>,
+    b: Carrier<'_>,
+    extent: &Extent,
+    judge: &Judge,
+) -> Option<Sense> {
+    let kinds = [a, b].map(|c| c.surface.kind());
+    let against = a.surface.frame().z.dot(&b.surface.frame().z) < 0.0;
+    if kinds[0] != kinds[1] || (against && kinds[0] == SurfaceKind::Cone) {
+        return None;
+    }
+    let pair = Pair::new(a, b, extent);
     // Most pairs are far apart: only what could matter is put to the judge.
-    if apart > extent.radius {
+    if pair.estimate(Relation::Apart) > 2.0 * judge.reach() {
         return None;
     }
-    if !judge.coincide(
-        "surface on surface",
-        apart,
-        [f.origin.x, f.origin.y, f.origin.z],
-    ) {
+    let place = place(&a.surface.frame().origin);
+    if !judge.coincide("surface on surface", pair.how(Relation::Apart), place) {
         return None;
     }
-    let against = matches!((a, b), (S::Plane(p), S::Plane(q)) if p.frame.z.dot(&q.frame.z) < 0.0);
-    Some(if against {
+    Some(if against && kinds[0] == SurfaceKind::Plane {
         Sense::Against
     } else {
         Sense::Along

@@ -1,8 +1,9 @@
 //! A plane and another surface: lines and conics in closed form.
 
-use super::{Branch, Extent, Meeting, Node, drift, place};
+use super::{Branch, Meeting, Node, place};
 use crate::geometry::curve::{Circle, Curve, Ellipse, Hyperbola, Line, Parabola};
 use crate::geometry::frame::Frame;
+use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere};
 use crate::number::sign::{Judge, Side};
 use nalgebra::{Point3, Vector3};
@@ -12,15 +13,16 @@ fn height(p: &Plane, x: &Point3<f64>) -> f64 {
     (x - p.frame.origin).dot(&p.frame.z)
 }
 
-pub(super) fn plane_plane(p: &Plane, q: &Plane, extent: &Extent, judge: &Judge) -> Meeting {
+pub(super) fn plane_plane(p: &Plane, q: &Plane, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let mut meeting = Meeting::nothing();
     let across = p.frame.z.cross(&q.frame.z);
-    if judge.within(drift(&p.frame.z, &q.frame.z, extent)) {
+    let at = place(&p.frame.origin);
+    if judge.coincide("plane along plane", pair.how(Relation::Drift), at) {
         return meeting;
     }
     let direction = across.normalize();
     // The point of both planes next to the extent's centre.
-    let c = extent.centre;
+    let c = pair.extent.centre;
     let (hp, hq) = (height(p, &c), height(q, &c));
     let cos = p.frame.z.dot(&q.frame.z);
     let sin2 = across.norm_squared();
@@ -29,33 +31,38 @@ pub(super) fn plane_plane(p: &Plane, q: &Plane, extent: &Extent, judge: &Judge) 
     let (hp, hq) = (height(p, &origin), height(q, &origin));
     let origin =
         origin + p.frame.z * ((hq * cos - hp) / sin2) + q.frame.z * ((hp * cos - hq) / sin2);
-    meeting.add(Curve::Line(Line { origin, direction }), false, extent);
+    meeting.add(Curve::Line(Line { origin, direction }), false, pair.extent);
     meeting
 }
 
-pub(super) fn plane_sphere(p: &Plane, s: &Sphere, extent: &Extent, judge: &Judge) -> Meeting {
+pub(super) fn plane_sphere(p: &Plane, s: &Sphere, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let h = height(p, &s.frame.origin);
     let foot = s.frame.origin - p.frame.z * h;
-    match judge.side("plane on sphere", h.abs() - s.radius, place(&foot)) {
+    match judge.side(
+        "plane on sphere",
+        pair.how(Relation::PlaneOnSphere),
+        place(&foot),
+    ) {
         Side::Outside => Meeting::nothing(),
         Side::On => Meeting::touch(foot),
         Side::Inside => {
             let radius = ((s.radius - h.abs()) * (s.radius + h.abs())).sqrt();
             let mut meeting = Meeting::nothing();
             let frame = p.frame.at(foot);
-            meeting.add(Curve::Circle(Circle { frame, radius }), false, extent);
+            meeting.add(Curve::Circle(Circle { frame, radius }), false, pair.extent);
             meeting
         }
     }
 }
 
-pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, extent: &Extent, judge: &Judge) -> Meeting {
+pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
     let mut meeting = Meeting::nothing();
-    if judge.within(cos.abs() * extent.radius) {
+    let at = place(&c.frame.origin);
+    if judge.coincide("plane along axis", pair.how(Relation::Lean), at) {
         // The axis is parallel to the plane.
-        let along = (extent.centre - c.frame.origin).dot(&z);
+        let along = (pair.extent.centre - c.frame.origin).dot(&z);
         let middle = c.frame.origin + z * along;
         let h = height(p, &middle);
         let normal = (n - z * cos).normalize();
@@ -66,20 +73,25 @@ pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, extent: &Extent, judge: &J
                 direction: z,
             })
         };
-        match judge.side("plane on cylinder", h.abs() - c.radius, place(&foot)) {
+        match judge.side(
+            "plane on cylinder",
+            pair.how(Relation::PlaneOnCylinder),
+            place(&foot),
+        ) {
             Side::Outside => {}
-            Side::On => meeting.add(line(foot), true, extent),
+            Side::On => meeting.add(line(foot), true, pair.extent),
             Side::Inside => {
                 let half = ((c.radius - h.abs()) * (c.radius + h.abs())).sqrt();
                 let side = z.cross(&normal) * half;
-                meeting.add(line(foot - side), false, extent);
-                meeting.add(line(foot + side), false, extent);
+                meeting.add(line(foot - side), false, pair.extent);
+                meeting.add(line(foot + side), false, pair.extent);
             }
         }
         return meeting;
     }
     let centre = c.frame.origin - z * (height(p, &c.frame.origin) / cos);
-    if judge.within(drift(&n, &z, extent).min(n.cross(&z).norm() * c.radius)) {
+    let tilt = pair.how(Relation::PlaneAcrossCylinder);
+    if judge.coincide("plane across axis", tilt, at) {
         let frame = c.frame.at(centre);
         meeting.add(
             Curve::Circle(Circle {
@@ -87,31 +99,30 @@ pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, extent: &Extent, judge: &J
                 radius: c.radius,
             }),
             false,
-            extent,
+            pair.extent,
         );
     } else {
         let frame = Frame::toward(centre, n, z);
         let (a, b) = (c.radius / cos.abs(), c.radius);
-        meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, extent);
+        meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, pair.extent);
     }
     meeting
 }
 
-pub(super) fn plane_cone(p: &Plane, c: &Cone, extent: &Extent, judge: &Judge) -> Meeting {
+pub(super) fn plane_cone(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let apex = c.frame.origin;
     let h = height(p, &apex);
-    match judge.side("apex on plane", h, place(&apex)) {
-        Side::On => plane_through_apex(p, c, extent, judge),
-        _ => plane_beside_apex(p, c, h, extent, judge),
+    match judge.side("apex on plane", pair.how(Relation::Height), place(&apex)) {
+        Side::On => plane_through_apex(p, c, pair, judge),
+        _ => plane_beside_apex(p, c, h, pair, judge),
     }
 }
 
-fn plane_through_apex(p: &Plane, c: &Cone, extent: &Extent, judge: &Judge) -> Meeting {
+fn plane_through_apex(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let apex = c.frame.origin;
     let n = c.frame.components(&p.frame.z);
     let across = n.x.hypot(n.y);
     // The rulings (sin cos u, sin sin u, cos) in the plane: across cos(u - u0) = -n_z cot.
-    let lean = (n.z.abs() * c.cos - across * c.sin) * extent.radius;
     let u0 = n.y.atan2(n.x);
     let ruling = |u: f64| {
         let local = Vector3::new(c.sin * u.cos(), c.sin * u.sin(), c.cos);
@@ -123,7 +134,7 @@ fn plane_through_apex(p: &Plane, c: &Cone, extent: &Extent, judge: &Judge) -> Me
     let mut meeting = Meeting::nothing();
     let mut add = |u: f64, tangent: bool| {
         let curve = Curve::Line(ruling(u));
-        if let Some([_, end]) = curve.range_within(&extent.centre, extent.radius)
+        if let Some([_, end]) = curve.range_within(&pair.extent.centre, pair.extent.radius)
             && end > 0.0
         {
             let on = (meeting.branches.len(), 0.0);
@@ -142,7 +153,11 @@ fn plane_through_apex(p: &Plane, c: &Cone, extent: &Extent, judge: &Judge) -> Me
             }
         }
     };
-    match judge.side("plane along a cone's ruling", lean, place(&apex)) {
+    match judge.side(
+        "plane along a cone's ruling",
+        pair.how(Relation::PlaneOnRuling),
+        place(&apex),
+    ) {
         Side::Outside => return Meeting::touch(apex),
         Side::On => add(
             if n.z > 0.0 {
@@ -161,14 +176,15 @@ fn plane_through_apex(p: &Plane, c: &Cone, extent: &Extent, judge: &Judge) -> Me
     meeting
 }
 
-fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, extent: &Extent, judge: &Judge) -> Meeting {
+fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
     let mut meeting = Meeting::nothing();
     let tan = c.sin / c.cos;
     // The semi-latus rectum of every section is the apex's distance times tan.
     let rectum = h.abs() * tan;
-    if judge.within(drift(&n, &z, extent)) {
+    let at = place(&c.frame.origin);
+    if judge.coincide("plane across axis", pair.how(Relation::Drift), at) {
         let up = -h / cos;
         if up > 0.0 {
             let frame = c.frame.at(c.frame.origin + z * up);
@@ -178,7 +194,7 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, extent: &Extent, judge: &Judge
                     radius: up * tan,
                 }),
                 false,
-                extent,
+                pair.extent,
             );
         }
         return meeting;
@@ -188,7 +204,10 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, extent: &Extent, judge: &Judge
     let rulings = [z * c.cos + w * c.sin, z * c.cos - w * c.sin];
     let rates = rulings.map(|r| n.dot(&r));
     let vertex = |i: usize| c.frame.origin - rulings[i] * (h / rates[i]);
-    let parallel = rates.map(|r| judge.within(r * extent.radius));
+    let parallel = [false, true].map(|far| {
+        let along = pair.how(Relation::PlaneAlongRuling(far));
+        judge.coincide("ruling along plane", along, at)
+    });
     if let Some(i) = parallel.iter().position(|&p| p) {
         if -h / rates[1 - i] > 0.0 {
             let frame = Frame::toward(vertex(1 - i), n, rulings[i]);
@@ -198,7 +217,7 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, extent: &Extent, judge: &Judge
                     focal: 0.5 * rectum,
                 }),
                 false,
-                extent,
+                pair.extent,
             );
         }
         return meeting;
@@ -213,9 +232,13 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, extent: &Extent, judge: &Judge
     let b = (rectum * a).sqrt();
     let frame = Frame::toward(o + (v - o) * 0.5, n, v - o);
     if ahead == [true, true] {
-        meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, extent);
+        meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, pair.extent);
     } else {
-        meeting.add(Curve::Hyperbola(Hyperbola { frame, a, b }), false, extent);
+        meeting.add(
+            Curve::Hyperbola(Hyperbola { frame, a, b }),
+            false,
+            pair.extent,
+        );
     }
     meeting
 }

@@ -1,50 +1,52 @@
 //! Two quadrics, neither a plane: which of them carries the curve, and what needs no rulings.
 
-use super::rulings::{Rulings, apart};
-use super::{Branch, Extent, IntersectionError, Meeting, drift, place};
+use super::rulings::Rulings;
+use super::{Branch, Extent, IntersectionError, Meeting, place};
 use crate::geometry::curve::{Curve, Line};
 use crate::geometry::frame::Frame;
 use crate::geometry::quartic::Ruled;
+use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Cone, Cylinder, Surface};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{Contact, Zeros, isolate};
 use crate::number::scalar::Scalar;
 use crate::number::sign::{Judge, ROUNDING, Side};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 pub(super) fn quadric_quadric(
-    x: &Surface,
-    y: &Surface,
-    extent: &Extent,
+    pair: &Pair<'_>,
     judge: &Judge,
 ) -> Result<Meeting, IntersectionError> {
     use Surface as S;
-    match (x, y) {
+    let turned = pair.turned();
+    match (pair.a.surface, pair.b.surface) {
         (S::Cylinder(c), S::Cylinder(d)) => {
-            if judge.within(drift(&c.frame.z, &d.frame.z, extent)) {
-                return Ok(parallel_cylinders(c, d, extent, judge));
+            let at = place(&c.frame.origin);
+            if judge.coincide("axes side by side", pair.how(Relation::Drift), at) {
+                return Ok(parallel_cylinders(c, d, pair, judge));
             }
-            over_rulings(Ruled::Cylinder(*c), y, extent, judge)
+            over_rulings(Ruled::Cylinder(*c), pair, judge)
         }
-        (S::Cylinder(c), _) => over_rulings(Ruled::Cylinder(*c), y, extent, judge),
-        (_, S::Cylinder(c)) => over_rulings(Ruled::Cylinder(*c), x, extent, judge),
-        (S::Cone(c), S::Cone(d)) => cones(c, d, extent, judge),
-        (S::Cone(c), _) => over_rulings(Ruled::Cone(*c), y, extent, judge),
-        (_, S::Cone(c)) => over_rulings(Ruled::Cone(*c), x, extent, judge),
+        (S::Cylinder(c), _) => over_rulings(Ruled::Cylinder(*c), pair, judge),
+        (_, S::Cylinder(c)) => over_rulings(Ruled::Cylinder(*c), &turned, judge),
+        (S::Cone(c), S::Cone(d)) => cones(c, d, pair, judge),
+        (S::Cone(c), _) => over_rulings(Ruled::Cone(*c), pair, judge),
+        (_, S::Cone(c)) => over_rulings(Ruled::Cone(*c), &turned, judge),
         _ => Ok(Meeting::nothing()),
     }
 }
 
-fn parallel_cylinders(c: &Cylinder, d: &Cylinder, extent: &Extent, judge: &Judge) -> Meeting {
+fn parallel_cylinders(c: &Cylinder, d: &Cylinder, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+    let extent = pair.extent;
     let z = c.frame.z;
     let at = |f: &Frame| f.origin + f.z * ((extent.centre - f.origin).dot(&z) / f.z.dot(&z));
     let (p, q) = (at(&c.frame), at(&d.frame));
     let away = q - p;
     let dist = away.norm();
     let mut meeting = Meeting::nothing();
-    if judge.within(dist) {
+    if judge.coincide("axis on axis", pair.how(Relation::BetweenAxes), place(&p)) {
         return meeting;
     }
     let axis = away / dist;
@@ -57,8 +59,9 @@ fn parallel_cylinders(c: &Cylinder, d: &Cylinder, extent: &Extent, judge: &Judge
         })
     };
     let foot = p + axis * x;
-    let side = |gap: f64| judge.side("cylinder along cylinder", gap, place(&foot));
-    match (side(dist - (r + s)), side((r - s).abs() - dist)) {
+    let side = |gap| judge.side("cylinder along cylinder", pair.how(gap), place(&foot));
+    let outer = side(Relation::CylinderBesideCylinder);
+    match (outer, side(Relation::CylinderInCylinder)) {
         (Side::On, _) => meeting.add(line(p + axis * r), true, extent),
         (_, Side::On) => meeting.add(line(p + axis * r.copysign(r - s)), true, extent),
         (Side::Inside, Side::Inside) => {
@@ -72,17 +75,20 @@ fn parallel_cylinders(c: &Cylinder, d: &Cylinder, extent: &Extent, judge: &Judge
     meeting
 }
 
-fn cones(c: &Cone, d: &Cone, extent: &Extent, judge: &Judge) -> Result<Meeting, IntersectionError> {
-    let (sc, sd) = (Surface::Cone(*c), Surface::Cone(*d));
-    let on_other = |apex: &Point3<f64>, surface: &Surface| judge.within(apart(surface, apex));
-    let between = (c.frame.origin - d.frame.origin).norm();
-    if judge.coincide("apex on apex", between, place(&c.frame.origin)) {
-        return Ok(common_apex(c, &sd, extent, judge));
+fn cones(c: &Cone, d: &Cone, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, IntersectionError> {
+    let at = place(&c.frame.origin);
+    if judge.coincide("apex on apex", pair.how(Relation::Between), at) {
+        return Ok(common_apex(c, pair.b.surface, pair.extent, judge));
     }
-    if on_other(&c.frame.origin, &sd) && !on_other(&d.frame.origin, &sc) {
-        return over_rulings(Ruled::Cone(*d), &sc, extent, judge);
+    let turned = pair.turned();
+    let on_quadric = |pair: &Pair<'_>, apex: &Cone| {
+        let at = place(&apex.frame.origin);
+        judge.coincide("apex on quadric", pair.how(Relation::PointOnQuadric), at)
+    };
+    if on_quadric(&turned, c) && !on_quadric(pair, d) {
+        return over_rulings(Ruled::Cone(*d), &turned, judge);
     }
-    over_rulings(Ruled::Cone(*c), &sd, extent, judge)
+    over_rulings(Ruled::Cone(*c), pair, judge)
 }
 
 /// Two cones with one apex meet in common rulings.
@@ -134,18 +140,14 @@ fn common_apex(c: &Cone, other: &Surface, extent: &Extent, judge: &Judge) -> Mee
     meeting
 }
 
-fn over_rulings(
-    base: Ruled,
-    other: &Surface,
-    extent: &Extent,
-    judge: &Judge,
-) -> Result<Meeting, IntersectionError> {
-    let rulings = Rulings::new(base, other, extent);
+/// Over the rulings of the pair's first.
+fn over_rulings(base: Ruled, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, IntersectionError> {
+    let rulings = Rulings::new(base, pair.b.surface, pair.extent);
     let flat = match &base {
         // The other surface holds the direction of the rulings: a cone with a ruling along them.
-        Ruled::Cylinder(_) => judge.within(rulings.lead * extent.radius),
+        Ruled::Cylinder(_) => judge.within(rulings.lead * pair.extent.radius),
         Ruled::Cone(c) => {
-            let away = apart(other, &c.frame.origin);
+            let away = pair.turned().how(Relation::PointOnQuadric);
             judge.coincide("apex on quadric", away, place(&c.frame.origin))
         }
     };

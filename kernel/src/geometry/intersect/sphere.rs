@@ -1,25 +1,27 @@
 //! Two spheres.
 
-use super::{Extent, Meeting, place};
+use super::{Meeting, place};
 use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::frame::Frame;
+use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::Sphere;
 use crate::number::sign::{Judge, Side};
 
-pub(super) fn sphere_sphere(s: &Sphere, t: &Sphere, extent: &Extent, judge: &Judge) -> Meeting {
+pub(super) fn sphere_sphere(s: &Sphere, t: &Sphere, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let away = t.frame.origin - s.frame.origin;
     let d = away.norm();
     let (r, q) = (s.radius, t.radius);
-    if judge.within(d) {
+    let at = place(&s.frame.origin);
+    if judge.coincide("centre on centre", pair.how(Relation::Between), at) {
         return Meeting::nothing();
     }
     let axis = away / d;
     let x = 0.5 * (d + (r - q) * (r + q) / d);
     let foot = s.frame.origin + axis * x;
-    let side = |gap: f64| judge.side("sphere on sphere", gap, place(&foot));
-    // Apart outside, or one within the other: the two gaps have the same sign where they meet.
-    let (outer, inner) = (d - (r + q), (r - q).abs() - d);
-    match (side(outer), side(inner)) {
+    let side = |gap| judge.side("sphere on sphere", pair.how(gap), place(&foot));
+    // Apart outside, or one within the other: both gaps are negative where they meet.
+    let outer = side(Relation::SphereBesideSphere);
+    match (outer, side(Relation::SphereInSphere)) {
         (Side::On, _) => Meeting::touch(s.frame.origin + axis * r),
         (_, Side::On) => Meeting::touch(s.frame.origin + axis * r.copysign(r - q)),
         (Side::Inside, Side::Inside) => {
@@ -28,7 +30,7 @@ pub(super) fn sphere_sphere(s: &Sphere, t: &Sphere, extent: &Extent, judge: &Jud
             let radius = area.max(0.0).sqrt() / (2.0 * d);
             let mut meeting = Meeting::nothing();
             let frame = Frame::about(foot, axis);
-            meeting.add(Curve::Circle(Circle { frame, radius }), false, extent);
+            meeting.add(Curve::Circle(Circle { frame, radius }), false, pair.extent);
             meeting
         }
         _ => Meeting::nothing(),

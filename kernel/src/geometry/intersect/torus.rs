@@ -1,10 +1,11 @@
 //! A torus and another surface: circles where they are coaxial, along a meridian, or Villarceau's;
 //! otherwise the curve through the torus's angles.
 
-use super::{Branch, Extent, IntersectionError, Meeting, Node, nappe_parts, place, same_line};
+use super::{Branch, IntersectionError, Meeting, Node, nappe_parts, place, same_line};
 use crate::geometry::bitrig::BiTrig;
 use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::frame::Frame;
+use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Plane, Surface, Torus};
 use crate::geometry::trace::trace;
 use crate::geometry::trigonometric::divide;
@@ -20,32 +21,33 @@ use std::f64::consts::TAU;
 pub(super) fn torus_torus(
     t: &Torus,
     o: &Torus,
-    extent: &Extent,
+    pair: &Pair<'_>,
     judge: &Judge,
 ) -> Result<Meeting, IntersectionError> {
     if o.major + o.minor < t.major + t.minor {
-        torus_with(o, &Surface::Torus(*t), extent, judge)
+        torus_with(o, &pair.turned(), judge)
     } else {
-        torus_with(t, &Surface::Torus(*o), extent, judge)
+        torus_with(t, pair, judge)
     }
 }
 
+/// The torus is the pair's first.
 pub(super) fn torus_with(
     t: &Torus,
-    other: &Surface,
-    extent: &Extent,
+    pair: &Pair<'_>,
     judge: &Judge,
 ) -> Result<Meeting, IntersectionError> {
-    if let Some(meeting) = coaxial(t, other, extent, judge) {
+    let (other, extent) = (pair.b.surface, pair.extent);
+    if let Some(meeting) = coaxial(t, pair, judge) {
         return Ok(meeting);
     }
     if let Surface::Plane(p) = other
-        && let Some(meeting) = central_plane(t, p, extent, judge)
+        && let Some(meeting) = central_plane(t, p, pair, judge)
     {
         return Ok(meeting);
     }
     let form = form(t, other);
-    let Some(contact) = contact_meridian(t, other, extent, judge) else {
+    let Some(contact) = contact_meridian(t, pair, judge) else {
         return traced(t, other, &form, judge);
     };
     let mut meeting = traced(t, other, &without_meridian(&form, contact), judge)?;
@@ -204,113 +206,113 @@ fn meridian(t: &Torus, theta: f64) -> Circle {
 }
 
 /// What is coaxial meets in parallel circles: points of the two profiles in a half plane.
-fn coaxial(t: &Torus, other: &Surface, extent: &Extent, judge: &Judge) -> Option<Meeting> {
+fn coaxial(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
+    let other = pair.b.surface;
     let f = other.frame();
+    let at = place(&t.frame.origin);
     let is_coaxial = match other {
-        Surface::Plane(_) => judge.within(t.frame.z.cross(&f.z).norm() * (t.major + t.minor)),
-        Surface::Sphere(_) => {
-            let away = f.origin - t.frame.origin;
-            judge.within((away - t.frame.z * t.frame.z.dot(&away)).norm())
-        }
-        _ => same_line(&t.frame, f, extent, judge),
+        Surface::Plane(_) => judge.coincide("plane across axis", pair.how(Relation::Tilt), at),
+        Surface::Sphere(_) => judge.coincide("centre on axis", pair.how(Relation::OffAxis), at),
+        _ => same_line(pair, at, judge),
     };
     if !is_coaxial {
         return None;
     }
     let up = (f.origin - t.frame.origin).dot(&t.frame.z);
-    let tube = Vector2::new(t.major, 0.0);
     let sign = t.frame.z.dot(&f.z).signum();
+    let profile = Profile {
+        tube: Vector2::new(t.major, 0.0),
+        radius: t.minor,
+        pair,
+        judge,
+    };
     let points = match other {
-        Surface::Plane(_) => {
-            line_circle(&Vector2::new(0.0, up), &Vector2::x(), &tube, t.minor, judge)
-        }
-        Surface::Cylinder(c) => line_circle(
-            &Vector2::new(c.radius, 0.0),
-            &Vector2::y(),
-            &tube,
-            t.minor,
-            judge,
-        ),
+        Surface::Plane(_) => profile.line(&Vector2::new(0.0, up), &Vector2::x()),
+        Surface::Cylinder(c) => profile.line(&Vector2::new(c.radius, 0.0), &Vector2::y()),
         Surface::Cone(c) => {
             let apex = Vector2::new(0.0, up);
             let d = Vector2::new(c.sin, sign * c.cos);
-            let mut points = line_circle(&apex, &d, &tube, t.minor, judge);
+            let mut points = profile.line(&apex, &d);
             points.retain(|(p, _)| (p - apex).dot(&d) > 0.0);
             points
         }
-        Surface::Sphere(s) => {
-            circle_circle(&Vector2::new(0.0, up), s.radius, &tube, t.minor, judge)
-        }
-        Surface::Torus(s) => {
-            circle_circle(&Vector2::new(s.major, up), s.minor, &tube, t.minor, judge)
-        }
+        Surface::Sphere(s) => profile.circle(&Vector2::new(0.0, up), s.radius),
+        Surface::Torus(s) => profile.circle(&Vector2::new(s.major, up), s.minor),
     };
     let mut meeting = Meeting::nothing();
     for (p, tangent) in points {
         if p.x > 0.0 {
-            meeting.add(parallel(t, p.y, p.x), tangent, extent);
+            meeting.add(parallel(t, p.y, p.x), tangent, pair.extent);
         }
     }
     Some(meeting)
 }
 
-/// Where a line of the profile plane meets a circle, and whether it touches.
-fn line_circle(
-    o: &Vector2<f64>,
-    d: &Vector2<f64>,
-    c: &Vector2<f64>,
-    r: f64,
-    judge: &Judge,
-) -> Vec<(Vector2<f64>, bool)> {
-    let foot = o + d * (c - o).dot(d);
-    let h = (c - foot).norm();
-    match judge.side("line on circle of a profile", h - r, [foot.x, 0.0, foot.y]) {
-        Side::Outside => Vec::new(),
-        Side::On => vec![(foot, true)],
-        Side::Inside => {
-            let half = ((r - h) * (r + h)).sqrt();
-            vec![(foot - d * half, false), (foot + d * half, false)]
-        }
-    }
+/// The circle of the tube in a half plane from the axis, and what is coaxial to the torus.
+struct Profile<'a> {
+    /// The centre of the tube: its distance from the axis, and its height.
+    tube: Vector2<f64>,
+    radius: f64,
+    pair: &'a Pair<'a>,
+    judge: &'a Judge,
 }
 
-/// Where two circles of the profile plane meet, and whether they touch.
-fn circle_circle(
-    a: &Vector2<f64>,
-    r: f64,
-    b: &Vector2<f64>,
-    q: f64,
-    judge: &Judge,
-) -> Vec<(Vector2<f64>, bool)> {
-    let away = b - a;
-    let d = away.norm();
-    if judge.within(d) {
-        return Vec::new();
+impl Profile<'_> {
+    fn side(&self, question: &'static str, relation: Relation, at: &Vector2<f64>) -> Side {
+        let f = self.pair.a.surface.frame();
+        let at = f.point(at.x, 0.0, at.y);
+        self.judge
+            .side(question, self.pair.how(relation), place(&at))
     }
-    let axis = away / d;
-    let foot = a + axis * (0.5 * (d + (r - q) * (r + q) / d));
-    let side = |gap: f64| judge.side("circle on circle of a profile", gap, [foot.x, 0.0, foot.y]);
-    match (side(d - (r + q)), side((r - q).abs() - d)) {
-        (Side::On, _) => vec![(a + axis * r, true)],
-        (_, Side::On) => vec![(a + axis * r.copysign(r - q), true)],
-        (Side::Inside, Side::Inside) => {
-            let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
-            let half = Vector2::new(-axis.y, axis.x) * (area.max(0.0).sqrt() / (2.0 * d));
-            vec![(foot - half, false), (foot + half, false)]
+
+    /// Where the line of a plane, a cylinder or a cone meets the circle, and whether it touches.
+    fn line(&self, o: &Vector2<f64>, d: &Vector2<f64>) -> Vec<(Vector2<f64>, bool)> {
+        let foot = o + d * (self.tube - o).dot(d);
+        let (h, r) = ((self.tube - foot).norm(), self.radius);
+        match self.side("line on circle of a profile", Relation::LineOnTube, &foot) {
+            Side::Outside => Vec::new(),
+            Side::On => vec![(foot, true)],
+            Side::Inside => {
+                let half = ((r - h) * (r + h)).sqrt();
+                vec![(foot - d * half, false), (foot + d * half, false)]
+            }
         }
-        _ => Vec::new(),
+    }
+
+    /// Where the circle of a sphere or of another tube meets it, and whether it touches.
+    fn circle(&self, a: &Vector2<f64>, r: f64) -> Vec<(Vector2<f64>, bool)> {
+        let away = self.tube - a;
+        let (d, q) = (away.norm(), self.radius);
+        let concentric = self.side("centre on centre", Relation::BetweenTubes, &self.tube);
+        if concentric == Side::On {
+            return Vec::new();
+        }
+        let axis = away / d;
+        let foot = a + axis * (0.5 * (d + (r - q) * (r + q) / d));
+        let side = |gap| self.side("circle on circle of a profile", gap, &foot);
+        match (side(Relation::BesideTube), side(Relation::InTube)) {
+            (Side::On, _) => vec![(a + axis * r, true)],
+            (_, Side::On) => vec![(a + axis * r.copysign(r - q), true)],
+            (Side::Inside, Side::Inside) => {
+                let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
+                let half = Vector2::new(-axis.y, axis.x) * (area.max(0.0).sqrt() / (2.0 * d));
+                vec![(foot - half, false), (foot + half, false)]
+            }
+            _ => Vec::new(),
+        }
     }
 }
 
 /// A plane through the centre that holds the axis, or touches the tube twice (Villarceau).
-fn central_plane(t: &Torus, p: &Plane, extent: &Extent, judge: &Judge) -> Option<Meeting> {
-    let n = p.frame.z;
-    if !judge.within((t.frame.origin - p.frame.origin).dot(&n)) {
+fn central_plane(t: &Torus, p: &Plane, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
+    let (n, extent) = (p.frame.z, pair.extent);
+    let at = place(&t.frame.origin);
+    let height = pair.turned().how(Relation::Height);
+    if !judge.coincide("centre on plane", height, at) {
         return None;
     }
     let mut meeting = Meeting::nothing();
-    let lean = n.dot(&t.frame.z).abs();
-    if judge.within(lean * (t.major + t.minor)) {
+    if judge.coincide("axis in plane", pair.how(Relation::Upright), at) {
         let q = t.frame.components(&n);
         let theta = q.y.atan2(q.x) + TAU / 4.0;
         for theta in [theta, theta + TAU / 2.0] {
@@ -320,8 +322,8 @@ fn central_plane(t: &Torus, p: &Plane, extent: &Extent, judge: &Judge) -> Option
     }
     let across = n.cross(&t.frame.z);
     let slope = across.norm();
-    let gap = t.major * slope - t.minor;
-    if !judge.coincide("plane touching a torus twice", gap, place(&t.frame.origin)) {
+    let gap = pair.how(Relation::PlaneOnBothSides);
+    if !judge.coincide("plane touching a torus twice", gap, at) {
         return None;
     }
     let axis = across / slope;
@@ -346,18 +348,24 @@ fn central_plane(t: &Torus, p: &Plane, extent: &Extent, judge: &Judge) -> Option
 
 /// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
 /// the tube, a straight pipe or another bend that continues it.
-fn contact_meridian(t: &Torus, other: &Surface, extent: &Extent, judge: &Judge) -> Option<f64> {
+fn contact_meridian(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<f64> {
+    let (other, extent) = (pair.b.surface, pair.extent);
     let f = other.frame();
+    let radii = match other {
+        Surface::Sphere(_) | Surface::Cylinder(_) => Relation::SizeOfTube,
+        Surface::Torus(_) => Relation::Tubes,
+        Surface::Plane(_) | Surface::Cone(_) => return None,
+    };
+    if !judge.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
+        return None;
+    }
     let centre = match other {
-        Surface::Sphere(s) if judge.within(s.radius - t.minor) => f.origin,
-        Surface::Cylinder(c) if judge.within(c.radius - t.minor) => {
-            f.origin + f.z * (t.frame.origin - f.origin).dot(&f.z)
-        }
-        Surface::Torus(u) if judge.within(u.minor - t.minor) => {
+        Surface::Cylinder(_) => f.origin + f.z * (t.frame.origin - f.origin).dot(&f.z),
+        Surface::Torus(u) => {
             let away = t.frame.origin - f.origin;
             common_spine_point(t, u, &away, judge)?
         }
-        _ => return None,
+        _ => f.origin,
     };
     let q = t.frame.coordinates(&centre);
     let theta = q.y.atan2(q.x);

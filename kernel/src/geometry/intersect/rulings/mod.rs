@@ -12,6 +12,7 @@ use super::{Branch, Extent, Meeting, Node, nappe_parts, place};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::quartic::Ruled;
+use crate::geometry::relation::{Carrier, Pair};
 use crate::geometry::surface::{Plane, Surface};
 use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1, trig2};
 use crate::number::sign::{Judge, Side};
@@ -214,9 +215,12 @@ impl<'a> Rulings<'a> {
         let plane = Plane {
             frame: Frame::about(origin, n),
         };
+        let section = Surface::Plane(plane);
+        let carriers = [&section, &surface].map(Carrier::given);
+        let pair = Pair::new(carriers[0], carriers[1], self.extent);
         let part = match &self.base {
-            Ruled::Cylinder(s) => plane_cylinder(&plane, s, self.extent, judge),
-            Ruled::Cone(s) => plane_cone(&plane, s, self.extent, judge),
+            Ruled::Cylinder(s) => plane_cylinder(&plane, s, &pair, judge),
+            Ruled::Cone(s) => plane_cone(&plane, s, &pair, judge),
         };
         for branch in part.branches {
             for range in self.on_other_nappe(&branch.curve, branch.range, judge) {

@@ -1,0 +1,468 @@
+//! How two surfaces lie to one another, as distances over the part's extent.
+//!
+//! A relation is written once, over any [`Real`]: ranges in doubles first, exact coefficients with
+//! more bits where these do not tell. The constructions take the answers and work in doubles.
+//! Directions need not have length one.
+
+use super::intersect::Extent;
+use super::surface::Surface;
+use crate::number::enclosure::Enclosure;
+use crate::number::interval::Interval;
+use crate::number::rational::{Rational, from_f64};
+use crate::number::real::Real;
+use crate::number::sign::Distance;
+
+/// What defines a surface, over some number type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coefficients<N> {
+    /// A point of the plane or of the cylinder's axis, the apex, the centre.
+    pub point: [N; 3],
+    /// The outward normal, or the axis, into the nappe of a cone; of any length. A sphere's is of no
+    /// account.
+    pub direction: [N; 3],
+    /// The radius; the tangent of a cone's half angle; the radius of a torus's spine. A plane's is
+    /// of no account.
+    pub size: N,
+    /// The radius of a torus's tube; of the others of no account.
+    pub tube: N,
+}
+
+impl<N> Coefficients<N> {
+    /// The same over another number type.
+    pub fn map<M>(&self, f: impl Fn(&N) -> M) -> Coefficients<M> {
+        Coefficients {
+            point: self.point.each_ref().map(&f),
+            direction: self.direction.each_ref().map(&f),
+            size: f(&self.size),
+            tube: f(&self.tube),
+        }
+    }
+}
+
+/// A surface in doubles, with the way to its exact coefficients.
+#[derive(Clone, Copy)]
+pub struct Carrier<'a> {
+    /// The surface: its numbers are the exact ones, rounded.
+    pub surface: &'a Surface,
+    exact: Option<&'a dyn Fn() -> Coefficients<Rational>>,
+}
+
+impl<'a> Carrier<'a> {
+    /// A surface whose doubles are exact.
+    pub fn given(surface: &'a Surface) -> Self {
+        Self {
+            surface,
+            exact: None,
+        }
+    }
+
+    /// A surface that was rounded from exact coefficients.
+    pub fn rounded(surface: &'a Surface, exact: &'a dyn Fn() -> Coefficients<Rational>) -> Self {
+        Self {
+            surface,
+            exact: Some(exact),
+        }
+    }
+
+    /// Ranges that hold the exact coefficients: every number of a surface is within a few units in
+    /// the last place of its length.
+    fn ranges(&self) -> Coefficients<Interval> {
+        let near = |x: f64, size: f64| Interval::around(x, SLACK * size);
+        doubles(self.surface, |x| near(x, x.abs()), |x| near(x, 1.0))
+    }
+
+    fn exact(&self) -> Coefficients<Rational> {
+        let number = |x: f64| from_f64(x).unwrap_or_default();
+        match self.exact {
+            Some(exact) => exact(),
+            None => doubles(self.surface, number, number),
+        }
+    }
+}
+
+/// How far a surface's numbers may lie from the exact ones, as a part of what they measure.
+const SLACK: f64 = 8.0 * f64::EPSILON;
+
+/// The coefficients in doubles: `of` takes lengths, `along` the components of directions.
+fn doubles<N>(
+    surface: &Surface,
+    of: impl Fn(f64) -> N,
+    along: impl Fn(f64) -> N,
+) -> Coefficients<N> {
+    let frame = surface.frame();
+    let (size, tube) = match surface {
+        Surface::Plane(_) => (0.0, 0.0),
+        Surface::Cylinder(c) => (c.radius, 0.0),
+        Surface::Cone(c) => (c.sin / c.cos, 0.0),
+        Surface::Sphere(s) => (s.radius, 0.0),
+        Surface::Torus(t) => (t.major, t.minor),
+    };
+    Coefficients {
+        point: <[f64; 3]>::from(frame.origin).map(&of),
+        direction: <[f64; 3]>::from(frame.z).map(&along),
+        size: of(size),
+        tube: of(tube),
+    }
+}
+
+/// What can be asked of two surfaces, each a distance. Angles are measured by how far they take two
+/// directions apart over the extent's radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// How far two surfaces of one kind are apart over the extent: where it is zero they are one.
+    Apart,
+    /// How far two directions drift apart.
+    Drift,
+    /// How far a normal or an axis is from square to the other.
+    Lean,
+    /// Between the points: centres, apexes.
+    Between,
+    /// How far the second's point lies above the first, a plane.
+    Height,
+    /// How far the second's point lies from the axis of the first.
+    OffAxis,
+    /// Between two parallel axes, at the extent's centre.
+    BetweenAxes,
+    /// How far two axes are apart next to the extent's centre, whatever they lean.
+    OffLine,
+    /// The difference of the radii of two tubes.
+    Tubes,
+    /// The difference of the second's size and the radius of the first's tube.
+    SizeOfTube,
+    /// How far a plane is from touching a sphere: negative where it cuts it.
+    PlaneOnSphere,
+    /// How far a plane along a cylinder is from touching it.
+    PlaneOnCylinder,
+    /// How far a plane across a cylinder tilts the circle in which it cuts it.
+    PlaneAcrossCylinder,
+    /// How far a plane through a cone's apex is from touching it along a ruling.
+    PlaneOnRuling,
+    /// How far the nearer (`false`) or the farther ruling of a cone is from running along a plane.
+    PlaneAlongRuling(bool),
+    /// Two spheres: the gap between them.
+    SphereBesideSphere,
+    /// Two spheres: the gap by which one holds the other.
+    SphereInSphere,
+    /// Two parallel cylinders: the gap between them.
+    CylinderBesideCylinder,
+    /// Two parallel cylinders: the gap by which one holds the other.
+    CylinderInCylinder,
+    /// How far the second's point lies from the first, a cylinder, a sphere or a cone with both
+    /// nappes.
+    PointOnQuadric,
+    /// How far a plane's normal, or an axis, takes the rim of a torus, the first, off its plane.
+    Tilt,
+    /// How far a plane is from holding the axis of a torus, the first, at its rim.
+    Upright,
+    /// How far a plane through the centre of a torus, the first, is from touching it twice.
+    PlaneOnBothSides,
+    /// How far the profile of what is coaxial to a torus, the first, is from touching its tube: the
+    /// line of a plane, of a cylinder and of a cone.
+    LineOnTube,
+    /// Between the centres of the tube and of the coaxial sphere or the other tube, in the profile.
+    BetweenTubes,
+    /// The gap between the tube and the coaxial sphere or the other tube.
+    BesideTube,
+    /// The gap by which one of them holds the other.
+    InTube,
+}
+
+fn minus<N: Real>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+    [0, 1, 2].map(|i| a[i].clone() - b[i].clone())
+}
+
+fn dot<N: Real>(a: &[N; 3], b: &[N; 3]) -> N {
+    let [x, y, z] = [0, 1, 2].map(|i| a[i].clone() * b[i].clone());
+    x + y + z
+}
+
+fn cross<N: Real>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i].clone() * b[j].clone() - a[j].clone() * b[i].clone())
+}
+
+fn norm<N: Real>(a: &[N; 3]) -> N {
+    dot(a, a).sqrt()
+}
+
+/// Two coefficients and the extent.
+struct Over<N> {
+    a: Coefficients<N>,
+    b: Coefficients<N>,
+    centre: [N; 3],
+    radius: N,
+}
+
+impl<N: Real> Over<N> {
+    /// The sine of the angle between the directions.
+    fn sine(&self) -> N {
+        let (a, b) = (&self.a.direction, &self.b.direction);
+        norm(&cross(a, b)).over(norm(a) * norm(b))
+    }
+
+    /// The cosine of the angle between the directions.
+    fn cosine(&self) -> N {
+        let (a, b) = (&self.a.direction, &self.b.direction);
+        dot(a, b).over(norm(a) * norm(b))
+    }
+
+    /// From the first's point to the second's.
+    fn away(&self) -> [N; 3] {
+        minus(&self.b.point, &self.a.point)
+    }
+
+    /// The component of a vector along the first's direction.
+    fn along(&self, v: &[N; 3]) -> N {
+        dot(v, &self.a.direction).over(norm(&self.a.direction))
+    }
+
+    /// The length of a vector across the first's direction.
+    fn across(&self, v: &[N; 3]) -> N {
+        norm(&cross(v, &self.a.direction)).over(norm(&self.a.direction))
+    }
+
+    /// The point of the second's axis at the height of the extent's centre over it.
+    fn foot(&self) -> [N; 3] {
+        let d = &self.b.direction;
+        let up = dot(&minus(&self.centre, &self.b.point), d).over(dot(d, d));
+        [0, 1, 2].map(|i| self.b.point[i].clone() + d[i].clone() * up.clone())
+    }
+
+    /// The distance of parallel axes, measured at the extent's centre.
+    fn between_axes(&self) -> N {
+        self.across(&minus(&self.foot(), &self.a.point))
+    }
+
+    /// The sine and the cosine of a cone's half angle.
+    fn half_angle(tangent: &N) -> (N, N) {
+        let square = tangent.clone() * tangent.clone();
+        let cos = N::constant(1.0).over((N::constant(1.0) + square).sqrt());
+        (tangent.clone() * cos.clone(), cos)
+    }
+
+    /// The gap between two circles, the distance of their centres given.
+    fn beside(between: N, [r, s]: [N; 2]) -> N {
+        between - (r + s)
+    }
+
+    /// The gap by which one of two circles holds the other.
+    fn within(between: N, [r, s]: [N; 2]) -> N {
+        (r - s).abs() - between
+    }
+
+    fn sizes(&self) -> [N; 2] {
+        [self.a.size.clone(), self.b.size.clone()]
+    }
+
+    /// The radius of the torus, the first, with its tube.
+    fn rim(&self) -> N {
+        self.a.size.clone() + self.a.tube.clone()
+    }
+
+    /// The radius of the tube and that of the other circle in the profile.
+    fn profile(&self, other: &Surface) -> [N; 2] {
+        let radius = match other {
+            Surface::Torus(_) => &self.b.tube,
+            _ => &self.b.size,
+        };
+        [self.a.tube.clone(), radius.clone()]
+    }
+
+    /// Between the centres of the tube and of the other circle in the profile.
+    fn between_tubes(&self, other: &Surface) -> N {
+        let out = match other {
+            Surface::Torus(_) => self.a.size.clone() - self.b.size.clone(),
+            _ => self.a.size.clone(),
+        };
+        let up = self.along(&self.away());
+        (out.clone() * out + up.clone() * up).sqrt()
+    }
+
+    /// The distance of the tube's centre from the line of the other's profile.
+    fn line_on_tube(&self, other: &Surface) -> N {
+        let up = self.along(&self.away());
+        let off = match other {
+            Surface::Cylinder(_) => self.b.size.clone() - self.a.size.clone(),
+            Surface::Cone(_) => {
+                let (sin, cos) = Self::half_angle(&self.b.size);
+                self.a.size.clone() * self.cosine() * cos + up * sin
+            }
+            _ => up,
+        };
+        off.abs() - self.a.tube.clone()
+    }
+
+    /// Two surfaces of the same kind.
+    fn apart(&self, kind: &Surface) -> N {
+        let between = norm(&self.away());
+        let drift = self.sine() * self.radius.clone();
+        let sizes = (self.a.size.clone() - self.b.size.clone()).abs();
+        match kind {
+            Surface::Plane(_) => self.between_planes().abs() + drift,
+            Surface::Cylinder(_) => self.between_axes() + drift + sizes,
+            Surface::Cone(_) => between + drift + self.half_angles().abs(),
+            Surface::Sphere(_) => between + sizes,
+            Surface::Torus(_) => {
+                let tubes = (self.a.tube.clone() - self.b.tube.clone()).abs();
+                between + self.sine() * self.a.size.clone() + sizes + tubes
+            }
+        }
+    }
+
+    fn half_angles(&self) -> N {
+        let (sin, cos) = Self::half_angle(&self.a.size);
+        let (sine, cosine) = Self::half_angle(&self.b.size);
+        (sin * cosine - cos * sine) * self.radius.clone()
+    }
+
+    fn between_planes(&self) -> N {
+        let n = &self.a.direction;
+        let up = dot(&minus(&self.centre, &self.a.point), n).over(dot(n, n));
+        let foot = [0, 1, 2].map(|i| self.centre[i].clone() - n[i].clone() * up.clone());
+        dot(&minus(&foot, &self.b.point), &self.b.direction).over(norm(&self.b.direction))
+    }
+
+    /// The distance of two axes at the extent's centre, less what the way from there lets them
+    /// drift.
+    fn off_line(&self) -> N {
+        let away = self.away();
+        let to_centre = minus(&self.centre, &self.a.point);
+        let along = (self.along(&to_centre) - self.along(&away)).abs();
+        self.across(&away) - self.sine() * along
+    }
+
+    fn plane_on_ruling(&self) -> N {
+        let (sin, cos) = Self::half_angle(&self.b.size);
+        (self.cosine().abs() * cos - self.sine() * sin) * self.radius.clone()
+    }
+
+    fn plane_along_ruling(&self, far: bool) -> N {
+        let (sin, cos) = Self::half_angle(&self.b.size);
+        let (up, out) = (self.cosine() * cos, self.sine() * sin);
+        let rate = if far { up - out } else { up + out };
+        rate * self.radius.clone()
+    }
+
+    fn point_on_quadric(&self, quadric: &Surface) -> N {
+        let away = self.away();
+        match quadric {
+            Surface::Sphere(_) => norm(&away) - self.a.size.clone(),
+            Surface::Cone(_) => {
+                let (sin, cos) = Self::half_angle(&self.a.size);
+                self.across(&away) * cos - self.along(&away).abs() * sin
+            }
+            _ => self.across(&away) - self.a.size.clone(),
+        }
+    }
+
+    fn distance(&self, relation: Relation, [first, second]: [&Surface; 2]) -> N {
+        let (a, b) = (&self.a, &self.b);
+        match relation {
+            Relation::Apart => self.apart(first),
+            Relation::Drift => self.sine() * self.radius.clone(),
+            Relation::Lean => self.cosine() * self.radius.clone(),
+            Relation::Between => norm(&self.away()),
+            Relation::Height => self.along(&self.away()),
+            Relation::OffAxis => self.across(&self.away()),
+            Relation::BetweenAxes => self.between_axes(),
+            Relation::OffLine => self.off_line(),
+            Relation::Tubes => a.tube.clone() - b.tube.clone(),
+            Relation::SizeOfTube => b.size.clone() - a.tube.clone(),
+            Relation::PlaneOnSphere => self.along(&self.away()).abs() - b.size.clone(),
+            Relation::PlaneOnCylinder => {
+                self.along(&minus(&self.foot(), &a.point)).abs() - b.size.clone()
+            }
+            Relation::PlaneAcrossCylinder => self.sine() * b.size.clone(),
+            Relation::PlaneOnRuling => self.plane_on_ruling(),
+            Relation::PlaneAlongRuling(far) => self.plane_along_ruling(far),
+            Relation::SphereBesideSphere => Self::beside(norm(&self.away()), self.sizes()),
+            Relation::SphereInSphere => Self::within(norm(&self.away()), self.sizes()),
+            Relation::CylinderBesideCylinder => Self::beside(self.between_axes(), self.sizes()),
+            Relation::CylinderInCylinder => Self::within(self.between_axes(), self.sizes()),
+            Relation::PointOnQuadric => self.point_on_quadric(first),
+            Relation::Tilt => self.sine() * self.rim(),
+            Relation::Upright => self.cosine() * self.rim(),
+            Relation::PlaneOnBothSides => self.sine() * a.size.clone() - a.tube.clone(),
+            Relation::LineOnTube => self.line_on_tube(second),
+            Relation::BetweenTubes => self.between_tubes(second),
+            Relation::BesideTube => Self::beside(self.between_tubes(second), self.profile(second)),
+            Relation::InTube => Self::within(self.between_tubes(second), self.profile(second)),
+        }
+    }
+}
+
+/// Two carriers over the part's extent.
+#[derive(Clone, Copy)]
+pub struct Pair<'a> {
+    /// The first.
+    pub a: Carrier<'a>,
+    /// The second.
+    pub b: Carrier<'a>,
+    /// The extent.
+    pub extent: &'a Extent,
+}
+
+impl<'a> Pair<'a> {
+    /// Two carriers in the order in which relations name them.
+    pub fn new(a: Carrier<'a>, b: Carrier<'a>, extent: &'a Extent) -> Self {
+        Self { a, b, extent }
+    }
+
+    /// The two the other way round.
+    pub fn turned(&self) -> Self {
+        Self {
+            a: self.b,
+            b: self.a,
+            extent: self.extent,
+        }
+    }
+
+    /// How the two lie to one another, in doubles: enough to see that something is out of question.
+    pub fn estimate(&self, relation: Relation) -> f64 {
+        let number = |x: f64| x;
+        let [a, b] = [&self.a, &self.b].map(|c| doubles(c.surface, number, number));
+        How {
+            pair: *self,
+            relation,
+        }
+        .over(a, b)
+    }
+
+    /// How the two lie to one another.
+    pub fn how(&self, relation: Relation) -> impl Distance + use<'a> {
+        How {
+            pair: *self,
+            relation,
+        }
+    }
+}
+
+/// A relation of a pair, to be measured.
+struct How<'a> {
+    pair: Pair<'a>,
+    relation: Relation,
+}
+
+impl How<'_> {
+    fn over<N: Real>(&self, a: Coefficients<N>, b: Coefficients<N>) -> N {
+        let Extent { centre, radius } = *self.pair.extent;
+        let over = Over {
+            a,
+            b,
+            centre: <[f64; 3]>::from(centre).map(N::constant),
+            radius: N::constant(radius),
+        };
+        over.distance(self.relation, [self.pair.a.surface, self.pair.b.surface])
+    }
+}
+
+impl Distance for How<'_> {
+    fn range(&self) -> Interval {
+        self.over(self.pair.a.ranges(), self.pair.b.ranges())
+    }
+
+    fn refined(&self, bits: usize) -> Option<Enclosure> {
+        let reckoned = |c: &Rational| Enclosure::exact(c.clone(), bits);
+        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.exact().map(reckoned));
+        Some(self.over(a, b))
+    }
+}

@@ -1,0 +1,73 @@
+//! What the relations between surfaces are measured over: doubles for an estimate, intervals of
+//! doubles for the answer, enclosures with more bits where those do not tell.
+
+use super::enclosure::Enclosure;
+use super::interval::Interval;
+use super::scalar::Scalar;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A real number, or a range that is known to hold it.
+pub trait Real:
+    Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// A double, exactly.
+    fn constant(x: f64) -> Self;
+    /// The quotient; everything where the divisor may be zero.
+    fn over(self, divisor: Self) -> Self;
+    /// The square root of the non-negative part.
+    fn sqrt(self) -> Self;
+    /// The absolute value.
+    fn abs(self) -> Self;
+}
+
+impl Real for f64 {
+    fn constant(x: f64) -> Self {
+        x
+    }
+    fn over(self, divisor: Self) -> Self {
+        self / divisor
+    }
+    fn sqrt(self) -> Self {
+        Scalar::sqrt(self)
+    }
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+}
+
+impl Real for Interval {
+    fn constant(x: f64) -> Self {
+        Self::point(x)
+    }
+    fn over(self, divisor: Self) -> Self {
+        Scalar::over(self, divisor)
+    }
+    fn sqrt(self) -> Self {
+        Scalar::sqrt(self)
+    }
+    fn abs(self) -> Self {
+        match (self.lo >= 0.0, self.hi <= 0.0) {
+            (true, _) => self,
+            (_, true) => -self,
+            _ => Self {
+                lo: 0.0,
+                hi: self.magnitude(),
+            },
+        }
+    }
+}
+
+impl Real for Enclosure {
+    fn constant(x: f64) -> Self {
+        Self::of_double(x)
+    }
+    fn over(self, divisor: Self) -> Self {
+        self.quotient(divisor)
+    }
+    fn sqrt(self) -> Self {
+        self.root()
+    }
+    fn abs(self) -> Self {
+        self.magnitude()
+    }
+}

@@ -48,6 +48,15 @@ fn fault(part: &Evaluation, deviation: f64) -> Option<String> {
     (!mesh.is_watertight()).then(|| "not watertight".to_owned())
 }
 
+/// Parts whose faces are narrow, or whose edges run through the middle of a chart.
+#[rustfmt::skip]
+const NARROW: &[(&str, &str)] = &[
+    ("a cone barely out of a torus", r#"{"op":"union","children":[{"prim":"torus","R":2,"r":1.5},{"prim":"cone","r":1,"h":0.5,"transform":[{"rotate":[[1,0,0],90]},{"translate":[1,0.5,1]},{"rotate":[[0,0,1],90]},{"translate":[2,0,-0.5]}]}]}"#),
+    ("a sliver between a rim and a torus", r#"{"op":"difference","children":[{"prim":"cone","r":1,"h":1.5,"transform":[{"rotate":[[0,1,0],-90]},{"translate":[-1.5,2,0.5]}]},{"prim":"torus","R":2,"r":1,"transform":[{"translate":[0.5,1.5,0.5]}]}]}"#),
+    ("an edge that ends at an apex", r#"{"op":"union","children":[{"prim":"cone","r":2,"h":2,"transform":[{"rotate":[[0,1,0],-90]},{"translate":[0,-0.5,1.5]}]},{"prim":"frustum","r1":0.5,"r2":2,"h":2.5,"transform":[{"translate":[-2,-1,1.5]}]}]}"#),
+    ("a great circle", r#"{"op":"union","children":[{"prim":"frustum","r1":1,"r2":0,"h":3},{"prim":"sphere","r":1},{"prim":"cylinder","r":1,"h":2,"transform":[{"rotate":[[1,0,0],-90]},{"translate":[-1,-2,-0.5]}]},{"prim":"cylinder","r":1.5,"h":0.5,"transform":[{"rotate":[[1,0,0],-90]},{"translate":[-1,-2,-0.5]}]}]}"#),
+];
+
 #[test]
 fn triangles_follow_every_named_case() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
@@ -103,4 +112,14 @@ fn rays_on_triangles_find_pieces_that_are_wrong() {
         }
     }
     assert!(4 * found > raised, "{found} of {raised}");
+}
+
+#[test]
+fn narrow_faces_are_followed() {
+    for (name, text) in NARROW {
+        let part = part(text, Format::Json).unwrap();
+        for deviation in [1e-2, 2e-3, 5e-4] {
+            assert_eq!(fault(&part, deviation), None, "{name} at {deviation}");
+        }
+    }
 }

@@ -10,7 +10,9 @@ use crate::geometry::surface::{Surface, Torus};
 use crate::number::roots::bisect;
 use nalgebra::Point2;
 use spade::handles::FixedVertexHandle;
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
+use spade::{
+    ConstrainedDelaunayTriangulation, HasPosition, PositionInTriangulation, Triangulation,
+};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
@@ -305,21 +307,92 @@ impl<'a> Builder<'a> {
     fn finish(mut self) -> Result<Domain, Vec<Division>> {
         match self.fit.chart {
             Chart::Torus(torus, seams) => self.add_seams(torus, seams),
-            // The apex; and what lies opposite to the centre of the projection, lest triangles that
-            // are small reach around the sphere.
-            Chart::Cone(..) | Chart::Sphere(..) => {
-                let mut points = self.domain.net.vertices();
-                if points.all(|v| v.data().at != Point2::origin()) {
-                    let middle = self.lines.add(self.fit.chart.lift(&Point2::origin()));
-                    self.corner(Point2::origin(), middle);
-                }
-            }
+            Chart::Cone(..) | Chart::Sphere(..) => self.add_middle(),
             _ => {}
         }
+        self.divide_split();
+        self.divide_around_corners();
         if self.divisions.is_empty() && !self.crowded {
             Ok(self.domain)
         } else {
             Err(self.divisions)
+        }
+    }
+
+    /// Adds the apex; or what lies opposite to the centre of the projection, lest triangles that are
+    /// small reach around the sphere. A chord through it serves as well.
+    fn add_middle(&mut self) {
+        let net = &self.domain.net;
+        let at_middle = |c: &Corner| {
+            c.at == Point2::origin() || self.fit.is_apex(&self.lines.points[c.point as usize])
+        };
+        let known = net.vertices().any(|v| at_middle(v.data()));
+        let on_chord = match net.locate(spade::Point2::new(0.0, 0.0)) {
+            PositionInTriangulation::OnEdge(edge) => net.is_constraint_edge(edge.as_undirected()),
+            _ => false,
+        };
+        if !known && !on_chord {
+            let middle = self.lines.add(self.fit.chart.lift(&Point2::origin()));
+            self.corner(Point2::origin(), middle);
+        }
+    }
+
+    /// Divides the chords that a corner added later lies on: the triangulation split them.
+    fn divide_split(&mut self) {
+        let vertex = FixedVertexHandle::from_index;
+        let net = &self.domain.net;
+        let split = |side: &Side| !net.exists_constraint(vertex(side.0), vertex(side.1));
+        let mut split: Vec<(Side, Chord)> = self
+            .chords
+            .iter()
+            .filter(|(side, _)| split(side))
+            .map(|(side, chord)| (*side, *chord))
+            .collect();
+        split.sort_unstable_by_key(|(side, _)| *side);
+        for (_, chord) in split {
+            self.halve(chord);
+        }
+    }
+
+    /// Divides the chords between which and their edges a corner lies: it would be on the wrong side
+    /// of the edge.
+    fn divide_around_corners(&mut self) {
+        let mut chords: Vec<(Side, Chord)> = self.chords.iter().map(|(s, c)| (*s, *c)).collect();
+        chords.sort_unstable_by_key(|(side, _)| *side);
+        for ((from, to), chord) in chords {
+            let vertex = FixedVertexHandle::from_index;
+            let net = &self.domain.net;
+            let Some(run) = net.get_edge_from_neighbors(vertex(from), vertex(to)) else {
+                continue;
+            };
+            let ends = [run.from().data().at, run.to().data().at];
+            let beside = [run, run.rev()].map(|side| Some(*side.opposite_vertex()?.data()));
+            for corner in beside.into_iter().flatten() {
+                self.divide_around(chord, ends, &corner);
+            }
+        }
+    }
+
+    fn divide_around(&mut self, chord: Chord, ends: [Point2<f64>; 2], corner: &Corner) {
+        let curve = self.brep.curve(chord.edge);
+        let [start, end] = self.ends(chord).map(|n| n.t);
+        let p = &self.lines.points[corner.point as usize];
+        let t = curve.in_cycle(curve.parameter(p), start);
+        if t <= start || t >= end {
+            return;
+        }
+        let mut on = self.fit.chart.map(&curve.point(t));
+        if let Chart::Torus(torus, _) = self.fit.chart {
+            on = beside(torus, on, &nalgebra::center(&ends[0], &ends[1]));
+        }
+        let height = |x: &Point2<f64>| (ends[1] - ends[0]).perp(&(x - ends[0]));
+        let (of_corner, of_edge) = (height(&corner.at), height(&on));
+        if of_corner * of_edge > 0.0 && of_corner.abs() < of_edge.abs() {
+            let margin = BESIDE * (end - start);
+            let apart = start + margin < t && t < end - margin;
+            let t = if apart { t } else { 0.5 * (start + end) };
+            let edge = chord.edge;
+            self.divisions.push(Division { edge, t });
         }
     }
 

@@ -33,7 +33,7 @@ impl Fit<'_> {
     }
 
     /// Whether a point is a cone's apex, where there is no normal.
-    fn is_apex(&self, p: &Point3<f64>) -> bool {
+    pub fn is_apex(&self, p: &Point3<f64>) -> bool {
         let near = self.accuracy.deviation * APEX;
         matches!(self.surface, Surface::Cone(c) if (c.frame.origin - p).norm() <= near)
     }

@@ -5,6 +5,8 @@ use crate::cast::Cast;
 use premio::checks::{Checker, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
+use premio_kernel::brep::locate::{FaceLocator, Place};
+use premio_visibility::contour::{Contour, Piece};
 use premio_visibility::invisibility::Method;
 use premio_visibility::view::contours_by;
 use premio_visibility::{Camera, Contours, contours};
@@ -21,6 +23,12 @@ pub const VIEWS: [&str; 5] = [
     "along y",
     "along z",
 ];
+
+/// The place in a piece that is asked first for what lies before it, as a part of its range.
+const COUNTED_AT: f64 = 0.47;
+
+/// How far a point of a face may be off, in multiples of the resolution.
+const ON: f64 = 4.0;
 
 /// What to look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,13 +139,30 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Opti
         return Some(format!("methods in {name}: not the same pieces"));
     }
     let both = carried.contours.iter().zip(&counted.contours);
-    both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(|pair| (a.id, pair)))
-        .find(|(_, (a, b))| a.qi != b.qi || a.t != b.t)
-        .map(|(id, (a, b))| {
-            let [from, to] = a.t;
+    both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(move |pair| (a, pair)))
+        .filter(|(_, (a, b))| a.qi != b.qi || a.t != b.t)
+        .find(|(contour, (a, b))| a.t != b.t || !lies_on_another(evaluation, contour, a))
+        .map(|(contour, (a, b))| {
+            let (id, [from, to]) = (contour.id, a.t);
             format!(
                 "methods in {name}: contour {id} from {from} to {to}: carried {}, counted {} from {} to {}",
                 a.qi, b.qi, b.t[0], b.t[1]
             )
         })
+}
+
+/// Whether a piece is nearer than the resolution to a face that is not its own, next to its middle,
+/// where it is counted: whether such a face lies before it is not to be told.
+fn lies_on_another(evaluation: &Evaluation, contour: &Contour, piece: &Piece) -> bool {
+    let (brep, band) = (&evaluation.brep, evaluation.resolution);
+    let [lo, hi] = piece.t;
+    let p = contour.curve3.point(lo + (hi - lo) * COUNTED_AT);
+    let mut others = brep
+        .topology
+        .face_ids()
+        .filter(|f| !contour.faces.contains(f));
+    others.any(|f| {
+        let near = brep.surface(f).distance(&p).abs() <= ON * band;
+        near && FaceLocator::of(brep, f, band).place(&p) != Place::Outside
+    })
 }

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 27] = [
+const MENDED: [(u64, &str); 30] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -73,19 +73,31 @@ const MENDED: [(u64, &str); 27] = [
         "a cone with its apex on a torus whose tangent plane holds its axis",
     ),
     (4864, "a limb along a torus's curve next to a crossing"),
+    (21000, "an edge below the sharp edge of a very narrow wedge"),
+    (20994, "an edge along a wedge thinner than the resolution"),
+    (9615, "an edge just inside an equator of its own torus"),
 ];
 
 /// The views in which they were wrong.
 const MENDED_IN: [&str; 3] = ["perspective 3", "orthographic 1", "along z"];
 
 /// Trees that were wrong along the other axes.
-const MENDED_ALONG: [(u64, &str); 3] = [
+const MENDED_ALONG: [(u64, &str); 6] = [
     (122, "a slit along the top of a torus"),
     (237, "a limb that ends at a vertex of three edges"),
     (
         7115,
         "an edge that touches the limb of a torus beyond its end",
     ),
+    (
+        9990,
+        "a line behind the end of a limb on an edge, and tangent to both",
+    ),
+    (
+        20860,
+        "a line that touches a torus's top circle four times over",
+    ),
+    (22433, "a limb tangent to another where that one ends"),
 ];
 
 /// The views in which those were wrong.

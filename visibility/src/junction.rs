@@ -82,6 +82,18 @@ struct Search<'s, 'a, 'j, 'p> {
     splits: Vec<(u32, Split)>,
     /// By strand: the points of the image at which others that fall on it end.
     asked: Vec<Vec<[f64; 2]>>,
+    /// What lies behind junctions of other strands.
+    behind: Vec<Behind>,
+}
+
+/// Where a junction of a nearer strand falls on a farther one in the image.
+#[derive(Clone, Copy, Debug)]
+struct Behind {
+    /// The farther strand, and its parameter.
+    strand: u32,
+    t: f64,
+    /// The contours of the nearer and of the farther strand.
+    contours: [u32; 2],
 }
 
 /// Splits the strands that meet where the boundary touches itself: which is in front may change
@@ -130,6 +142,7 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
         junctions,
         splits: Vec::new(),
         asked: vec![Vec::new(); strands.len()],
+        behind: Vec::new(),
     };
     for (i, j) in pairs {
         let (a, b) = (&strands[i as usize], &strands[j as usize]);
@@ -137,6 +150,8 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
         let overlap = cross(a, b, scene.projection, scene.band, &mut found);
         search.crowd_passed(a, b);
         search.crowd_passed(b, a);
+        search.pass_behind(a, (j, b));
+        search.pass_behind(b, (i, a));
         if i != j {
             search.turns((i, a), (j, b));
             search.turns((j, b), (i, a));
@@ -157,8 +172,31 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
             search.crowd_all(a);
         }
     }
-    for (strand, split) in search.splits {
+    let Search { splits, behind, .. } = search;
+    for (strand, split) in splits {
         strands[strand as usize].splits.push(split);
+    }
+    for behind in behind {
+        behind.cut(&mut strands[behind.strand as usize], scene, junctions);
+    }
+}
+
+impl Behind {
+    /// Cuts the farther strand, where it is not cut yet.
+    fn cut(self, strand: &mut Strand<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+        let near = 2.0 * LOOSE * scene.band;
+        let p = strand.curve.point(self.t);
+        let here = |t: f64| (strand.curve.point(t) - p).norm() <= near;
+        if strand.junctions().any(|(_, t)| here(t)) {
+            return;
+        }
+        let junction = junctions.add(JunctionKind::T, Site::Alone, &p);
+        junctions.list[junction as usize].contours = self.contours.to_vec();
+        strand.splits.push(Split {
+            t: self.t,
+            junction,
+            change: Change::Correct,
+        });
     }
 }
 
@@ -321,6 +359,50 @@ impl Search<'_, '_, '_, '_> {
                 self.junctions.crowd(id);
             }
         }
+    }
+
+    /// Notes where `far` passes behind the junctions of `near` in the image: contours that only
+    /// touch it there end there, or begin to be hidden, so that it may enter what lies between them.
+    fn pass_behind(&mut self, near: &Strand<'_>, (strand, far): (u32, &Strand<'_>)) {
+        let margin = 2.0 * LOOSE * self.scene.band;
+        for (id, s) in near.junctions() {
+            if !far.hull.holds(self.junctions.image(id)) {
+                continue;
+            }
+            let q = near.curve.point(s);
+            let mut met = Vec::new();
+            parameters_at(far, &q, self.scene, &mut |t| met.push(t));
+            for t in met {
+                let Some(Settled { t, at_end: false }) = self.settle(far, t) else {
+                    continue;
+                };
+                let p = far.curve.point(t);
+                let (v, _) = self.scene.projection.towards_eye(&p);
+                let before = (q - p).dot(&v) > margin && self.apart(&p, &q) <= margin;
+                // A cusp's own contour falls on it in the image a long way.
+                let own = |&(other, from): &(u32, f64)| {
+                    other == id && self.straight(far, nearest_turn(far, from, t), t)
+                };
+                let own = far.junctions().any(|at| own(&at));
+                if before && !own && !self.is_turned_away(near, &q, &v) {
+                    self.behind.push(Behind {
+                        strand,
+                        t,
+                        contours: [near.contour, far.contour],
+                    });
+                }
+            }
+        }
+    }
+
+    /// Whether all faces along a strand are turned away at a point of it, or seen edge-on, so that
+    /// they hide nothing.
+    fn is_turned_away(&self, strand: &Strand<'_>, q: &Point3<f64>, v: &Vector3<f64>) -> bool {
+        let t = strand.curve.tangent(strand.curve.parameter(q));
+        let hides = |&(face, sense): &(FaceId, Sense)| {
+            self.image_side(strand, face, sense, &t, q, v) != Some(0.0)
+        };
+        !strand.faces.iter().any(hides)
     }
 
     /// Another contour falls on a strand.

@@ -412,30 +412,45 @@ impl<'a> Scene<'a> {
         for hit in unclear.iter().filter(|hit| hit.front) {
             let face = hit.face;
             self.passed_beside(ray, hit, own(face), side, &mut |at, front| match front {
-                true => layers.push(Layer { at, face }),
-                false => backs.push(at),
+                true => layers.push((Layer { at, face }, hit)),
+                false => backs.push((at, hit)),
             });
         }
-        // Faces that touch are no further apart here than the resolution: there is no gap to see.
         // A wedge of material, or of nothing, next to an edge is as thick here as the way aside.
-        let near = TOUCHING * self.band;
         let touched = |hit: &&Hit| {
             let reach = 2.0 * ASIDE * self.band;
-            layers.iter().any(|l| (l.at - hit.at).abs() <= reach)
+            layers.iter().any(|(l, _)| (l.at - hit.at).abs() <= reach)
         };
         for hit in unclear.iter().filter(|hit| !hit.front).filter(touched) {
             self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
                 if !front {
-                    backs.push(at);
+                    backs.push((at, hit));
                 }
             });
         }
-        for back in backs {
-            if let Some(i) = layers.iter().position(|l| (l.at - back).abs() <= near) {
+        // Faces that touch are no further apart here than the resolution: there is no gap to see.
+        for (back, behind) in backs {
+            let touches = |(l, hit): &(Layer, &Hit)| {
+                let near = (l.at - back).abs() <= TOUCHING * self.band;
+                near && !self.meet_at_an_angle(ray, [hit, behind])
+            };
+            if let Some(i) = layers.iter().position(touches) {
                 layers.swap_remove(i);
             }
         }
-        layers
+        layers.into_iter().map(|(layer, _)| layer).collect()
+    }
+
+    /// Whether two faces go apart where a line of sight meets them: however narrow the wedge between
+    /// them is, they are not one. Those that touch within the resolution may do so at an angle of
+    /// its root.
+    fn meet_at_an_angle(&self, ray: &Ray, hits: [&Hit; 2]) -> bool {
+        let normal = |hit: &Hit| {
+            let p = ray.origin + ray.towards * hit.at;
+            self.brep.outward(hit.face, &p)
+        };
+        let [m, n] = hits.map(normal);
+        m.cross(&n).norm() > ROUNDING.sqrt().sqrt()
     }
 
     /// Where the line of sight just aside of a hit passes the same face, and whether from its

@@ -81,7 +81,7 @@ impl Recount {
             closer
                 .iter()
                 .all(|c| match material.invisibility(p, sight, c) {
-                    Evidence::Count(again) => again == counted,
+                    Evidence::Count(again) | Evidence::Fold(again) => again == counted,
                     Evidence::Thin => true,
                     Evidence::Mixed | Evidence::Close => false,
                 })
@@ -101,8 +101,12 @@ impl Recount {
                     let short = ends.map(|e| (e - place).norm() < NEAR * clearance.aside);
                     let unclear = end_on || (open && short.contains(&true));
                     let counted = material.invisibility(&place, sight, clearance);
-                    let counted = match counted {
-                        Evidence::Count(counted) if !unclear => counted,
+                    let (counted, folds) = match counted {
+                        Evidence::Count(counted) if !unclear => (counted, false),
+                        // A limb is on its own fold.
+                        Evidence::Fold(counted) if !unclear => {
+                            (counted, contour.kind != Kind::Limb)
+                        }
                         _ => {
                             recount.ambiguous += 1;
                             continue;
@@ -114,6 +118,9 @@ impl Recount {
                         _ if end_on && counted != piece.qi => recount.ambiguous += 1,
                         _ if counted == piece.qi && piece.visible == (counted == 0) => {
                             recount.agreed += 1;
+                        }
+                        _ if folds && piece.qi == counted + 1 && !piece.visible => {
+                            recount.ambiguous += 1;
                         }
                         // Depends on how far beside the rays run.
                         _ if !holds(&place, counted) => recount.ambiguous += 1,

@@ -15,6 +15,10 @@ const NEIGHBOURS: usize = 24;
 const CLOSER: f64 = 1.0 / 16.0;
 const DRAWN: f64 = 0.5;
 
+/// What has come nearer by less than this, more than a surface at an angle to the line of sight
+/// does, folds there.
+const FOLDED: f64 = 1.0 / 8.0;
+
 /// How far things must be apart for rays to tell them apart, in the part's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
@@ -32,6 +36,9 @@ pub enum Evidence {
     /// How often they all enter material between the eye and the point: its quantitative
     /// invisibility.
     Count(u32),
+    /// The same, but a face of the point folds next to it, nearer than lines of sight can tell: before
+    /// a point that is not on the limb itself the fold may lie once more.
+    Fold(u32),
     /// They disagree: another contour is near, or a face is seen edge-on.
     Mixed,
     /// A face that is not the point's own lies close before it.
@@ -64,7 +71,7 @@ impl Material {
         clearance: &Clearance,
     ) -> Evidence {
         self.count(point, sight, clearance)
-            .map_or_else(|why| why, Evidence::Count)
+            .unwrap_or_else(|why| why)
     }
 
     fn count(
@@ -72,7 +79,7 @@ impl Material {
         point: &Point3<f64>,
         sight: impl Fn(&Point3<f64>) -> (Vector3<f64>, f64),
         clearance: &Clearance,
-    ) -> Result<u32, Evidence> {
+    ) -> Result<Evidence, Evidence> {
         // Aside of a limb, its own surface lies this much nearer.
         let depth = 2.0 * (clearance.aside * clearance.size).sqrt();
         let (towards, length) = sight(point);
@@ -88,6 +95,7 @@ impl Material {
         let frame = Frame::about(*point, towards);
         // What is nearer than this is rounding on the point's own faces.
         let least = clearance.sliver * CLOSER * CLOSER;
+        let mut folds = false;
         for k in 0..NEIGHBOURS {
             let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
             let beside = |by: f64| {
@@ -104,12 +112,17 @@ impl Material {
             let close = first_exit(&aside, least);
             if close < depth {
                 let (closer, _) = beside(clearance.aside * CLOSER)?;
-                if first_exit(&closer, 0.0) >= close * DRAWN {
+                let drawn = first_exit(&closer, 0.0);
+                if drawn >= close * DRAWN {
                     return Err(Evidence::Close);
                 }
+                folds |= drawn > close * FOLDED;
             }
         }
-        Ok(count)
+        Ok(match folds {
+            true => Evidence::Fold(count),
+            false => Evidence::Count(count),
+        })
     }
 
     /// The material along a line of sight, where no gaps or slivers that are more than rounding

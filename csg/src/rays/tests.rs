@@ -144,6 +144,23 @@ fn faces_before_a_point() {
 }
 
 #[test]
+fn a_fold_next_to_a_point_is_not_told_from_its_own() {
+    let part = material("P = CYL(R=1, H=2) AT (ROTY=90)");
+    let up = |_: &Point3<f64>| (Vector3::z(), f64::INFINITY);
+    let clearance = Clearance {
+        sliver: 1e-9,
+        aside: 1e-6,
+        size: 4.0,
+    };
+    let count = |x: f64, y: f64, z: f64| part.invisibility(&Point3::new(x, y, z), up, &clearance);
+    // On the limb; 1e-18 aside of it in the image, below it; well below it; on top.
+    assert_eq!(count(1.0, 1.0, 0.0), Evidence::Fold(0));
+    assert_eq!(count(1.0, 1.0, -1e-9), Evidence::Fold(0));
+    assert_eq!(count(1.0, 0.8, -0.6), Evidence::Count(1));
+    assert_eq!(count(1.0, 0.8, 0.6), Evidence::Count(0));
+}
+
+#[test]
 fn a_thousand_primitives() {
     let balls: Vec<String> = (0..1000)
         .map(|i| {

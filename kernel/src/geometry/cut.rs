@@ -5,7 +5,7 @@ use super::curve::Curve;
 use super::surface::Surface;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::{Contact, Function, Root, Zeros, isolate};
+use crate::number::roots::{Contact, Function, Root, Zeros, isolate_closely};
 
 /// How far above a surface a curve runs.
 struct Height<'a> {
@@ -53,7 +53,7 @@ pub fn roots(
     band: f64,
 ) -> (Vec<Root>, Vec<(f64, f64)>) {
     let breaks = curve.breaks(lo, hi);
-    match isolate(&Height { curve, surface }, &breaks, band) {
+    match isolate_closely(&Height { curve, surface }, &breaks, band) {
         Zeros::At { roots, misses } => (roots, misses),
         Zeros::Everywhere => {
             let root = Root {

@@ -41,8 +41,7 @@ pub struct Root {
 pub enum Zeros {
     /// The function is within the band throughout.
     Everywhere,
-    /// The roots in order, and the extrema that were found to be apart, all those among them that
-    /// are close calls.
+    /// The roots in order, and extrema that were found to be apart.
     At {
         /// In increasing order.
         roots: Vec<Root>,
@@ -118,6 +117,8 @@ impl<F: Fn(Interval) -> Jet<Interval>> Function for F {
 struct Search<'a, F> {
     f: &'a F,
     band: f64,
+    /// What is no further from zero than this is told.
+    reach: f64,
     floor: f64,
     clusters: Vec<Cluster>,
     misses: Vec<Miss>,
@@ -133,8 +134,18 @@ struct Miss {
 }
 
 /// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
-/// resolution. A closed curve passes its whole period and is wrapped by the caller.
+/// resolution. A closed curve passes its whole period and is wrapped by the caller. Of the misses
+/// some are told.
 pub fn isolate<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
+    search(f, breaks, band, band)
+}
+
+/// The same, and all misses that are close calls.
+pub fn isolate_closely<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
+    search(f, breaks, band, CLOSE * band)
+}
+
+fn search<F: Function>(f: &F, breaks: &[f64], band: f64, reach: f64) -> Zeros {
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
         return Zeros::At {
             roots: Vec::new(),
@@ -145,6 +156,7 @@ pub fn isolate<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
     let mut search = Search {
         f,
         band,
+        reach,
         floor,
         clusters: Vec::new(),
         misses: Vec::new(),
@@ -225,7 +237,7 @@ impl<F: Function> Search<'_, F> {
                 continue;
             }
             let misses = v.lo > self.band || v.hi < -self.band;
-            if misses && (v.magnitude() <= CLOSE * self.band || b - a <= self.floor) {
+            if misses && (v.magnitude() <= self.reach || b - a <= self.floor) {
                 for t in [a, m, b] {
                     self.miss(a, b, t, self.value(t));
                 }
@@ -250,7 +262,7 @@ impl<F: Function> Search<'_, F> {
 
     /// Whether no value of a range is a root, or so near to one that it is to be told.
     fn is_clear(&self, v: Interval) -> bool {
-        v.lo > CLOSE * self.band || v.hi < -CLOSE * self.band
+        v.lo > self.reach || v.hi < -self.reach
     }
 
     /// -1, 0 (within the band) or 1.
@@ -553,7 +565,7 @@ mod tests {
     }
 
     fn misses(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<f64> {
-        match isolate(&|t| f(Jet::variable(t)), breaks, 1e-11) {
+        match isolate_closely(&|t| f(Jet::variable(t)), breaks, 1e-11) {
             Zeros::At { misses, .. } => misses.iter().map(|m| m.1).collect(),
             Zeros::Everywhere => panic!("everywhere"),
         }

@@ -5,7 +5,7 @@ use super::curve::Curve;
 use super::surface::Surface;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::{Contact, Function, Root, Zeros, isolate_closely};
+use crate::number::roots::{Contact, Function, Root, Zeros, isolate, isolate_closely, vanishes};
 
 /// How far above a surface a curve runs.
 struct Height<'a> {
@@ -40,31 +40,43 @@ pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zero
     if lies_on(curve, range, surface, band) {
         return Zeros::Everywhere;
     }
-    let (roots, misses) = roots(curve, range, surface, band);
-    Zeros::At { roots, misses }
+    let breaks = curve.breaks(range[0], range[1]);
+    match isolate(&Height { curve, surface }, &breaks, band) {
+        Zeros::Everywhere => touching(range),
+        zeros => zeros,
+    }
 }
 
 /// The same over a part of a curve that does not lie on the surface, however short: the roots, and
-/// the nearest misses.
+/// all misses that are close calls.
 pub fn roots(
     curve: &Curve,
-    [lo, hi]: [f64; 2],
+    range: [f64; 2],
     surface: &Surface,
     band: f64,
 ) -> (Vec<Root>, Vec<(f64, f64)>) {
-    let breaks = curve.breaks(lo, hi);
-    match isolate_closely(&Height { curve, surface }, &breaks, band) {
+    let breaks = curve.breaks(range[0], range[1]);
+    let zeros = match isolate_closely(&Height { curve, surface }, &breaks, band) {
+        Zeros::Everywhere => touching(range),
+        zeros => zeros,
+    };
+    match zeros {
         Zeros::At { roots, misses } => (roots, misses),
-        Zeros::Everywhere => {
-            let root = Root {
-                t: 0.5 * (lo + hi),
-                lo,
-                hi,
-                contact: Contact::Touching,
-                margin: Some(0.0),
-            };
-            (vec![root], Vec::new())
-        }
+        Zeros::Everywhere => (Vec::new(), Vec::new()),
+    }
+}
+
+/// One touching root over the whole range.
+fn touching([lo, hi]: [f64; 2]) -> Zeros {
+    Zeros::At {
+        roots: vec![Root {
+            t: 0.5 * (lo + hi),
+            lo,
+            hi,
+            contact: Contact::Touching,
+            margin: Some(0.0),
+        }],
+        misses: Vec::new(),
     }
 }
 
@@ -78,17 +90,7 @@ pub fn comes_near(surface: &Surface, b: &Box3, margin: f64) -> bool {
     level.lo <= margin && level.hi >= -margin
 }
 
-/// The points at which a curve is asked whether it lies on a surface: more than twice the number
-/// of zeros that any of the curves can have on any of the surfaces, so that one that is within the
-/// band at all of them is so in between.
-const PROBES: u32 = 67;
-
-/// Fractions of a range: the first few already lie far apart, by steps of the golden section.
-fn probes() -> impl Iterator<Item = f64> {
-    (1..=PROBES).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
-}
-
 /// Whether the curve lies on the surface, within the band.
 pub fn lies_on(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
-    probes().all(|part| surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band)
+    vanishes(|t| surface.distance(&curve.point(t)), [lo, hi], band)
 }

@@ -114,6 +114,18 @@ impl<F: Fn(Interval) -> Jet<Interval>> Function for F {
     }
 }
 
+/// The points at which a function is asked whether it vanishes: more than twice the number of zeros
+/// that what is asked along any of the curves can have, so that one that is within the band at all
+/// of them is so in between.
+const PROBES: u32 = 67;
+
+/// Whether a function along a curve is within the band throughout.
+pub fn vanishes(f: impl Fn(f64) -> f64, [lo, hi]: [f64; 2], band: f64) -> bool {
+    // By steps of the golden section: the first few already lie far apart.
+    let part = |k: u32| (f64::from(k) * 0.618_033_988_749_895).fract();
+    (1..=PROBES).all(|k| f(lo + (hi - lo) * part(k)).abs() <= band)
+}
+
 struct Search<'a, F> {
     f: &'a F,
     band: f64,

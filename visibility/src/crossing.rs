@@ -258,8 +258,7 @@ fn general(
     let image = |t: Interval| projection.homogeneous_over(a.curve.jet_over(t));
     let solve = |breaks: &[f64]| match &b.image {
         Image::Conic { conic, .. } => {
-            let polar = conic * middle;
-            let scale = 0.5 / polar.x.hypot(polar.y);
+            let scale = 0.5 / (least_slope(b, conic, projection) * middle.z);
             let f = |t: Interval| {
                 let h = image(t);
                 let row = |i: usize| dot(&conic.row(i).transpose(), h);
@@ -298,6 +297,22 @@ fn general(
     }
     overlap_of(together, a)
 }
+
+/// The least slope of a conic's equation on a strand of it, at some of its points brought to depth
+/// one: by it a value is a distance from the conic, or more. At the curve that it is to cross the slope may be anything.
+fn least_slope(b: &Strand<'_>, conic: &Matrix3<f64>, projection: &Projection) -> f64 {
+    let [lo, hi] = b.range;
+    let slopes = (0..=SLOPES).map(|k| {
+        let t = lo + (hi - lo) * f64::from(k) / f64::from(SLOPES);
+        let point = projection.homogeneous(&b.curve.point(t));
+        let polar = conic * point;
+        polar.x.hypot(polar.y) / point.z
+    });
+    slopes.fold(f64::INFINITY, f64::min)
+}
+
+/// At how many points, less one, a conic's slope is asked.
+const SLOPES: u32 = 8;
 
 /// Where a root on `a` is a crossing. One that only touches is where the curves meet in space, so
 /// that the other is in front from there on; else it is none. One that is not told from a junction

@@ -90,6 +90,10 @@ impl Edgewise {
     ) {
         let q = self.carrier.frame.coordinates(&p);
         let size = q.x.hypot(q.y);
+        // The image of the axis is no point of the circle's.
+        if size == 0.0 {
+            return;
+        }
         let (cos, sin) = (q.x / size, q.y / size);
         // On the wall the image is that of a ruling.
         let frame = &self.carrier.frame;

@@ -14,8 +14,9 @@ use crate::sight::Scene;
 use crate::strand::Strand;
 use crate::stretch::passes;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+use premio_kernel::number::bisection::bisect;
 use premio_kernel::number::interval::Interval;
-use premio_kernel::number::roots::{Contact, Root, Zeros, bisect, isolate};
+use premio_kernel::number::roots::{Contact, Root, Zeros, isolate};
 use premio_kernel::number::scalar::{Scalar, dot};
 use premio_kernel::number::sign::ROUNDING;
 use std::f64::consts::TAU;
@@ -299,7 +300,8 @@ fn general(
 }
 
 /// The least slope of a conic's equation on a strand of it, at some of its points brought to depth
-/// one: by it a value is a distance from the conic, or more. At the curve that it is to cross the slope may be anything.
+/// one: by it a value is a distance from the conic, or more. Away from the conic the slope may
+/// vanish.
 fn least_slope(b: &Strand<'_>, conic: &Matrix3<f64>, projection: &Projection) -> f64 {
     let [lo, hi] = b.range;
     let slopes = (0..=SLOPES).map(|k| {

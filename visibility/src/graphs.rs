@@ -14,9 +14,10 @@ use crate::strand::Strand;
 use crate::stretch::{Course, Stretch, dot2, simple_run};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::number::bisection::bisect_newton;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::roots::{Root, Zeros, bisect_newton, isolate};
+use premio_kernel::number::roots::{Root, Zeros, isolate};
 use premio_kernel::number::sign::ROUNDING;
 
 /// Distances in space within which two roots are one, in multiples of the resolution.

@@ -4,7 +4,7 @@
 //! an extremum is as good as zero, by the caller's measure, the polynomial touches zero: a double
 //! root, however rounding would split it.
 
-use premio_kernel::number::roots::bisect_newton;
+use premio_kernel::number::bisection::bisect_newton;
 
 /// A polynomial, `k[i]` the coefficient of the i-th power.
 pub type Quartic = [f64; 5];

@@ -8,7 +8,7 @@ use crate::graphs::Graphs;
 use crate::stretch::dot2;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::number::roots::bisect;
+use premio_kernel::number::bisection::bisect;
 
 /// A stretch of two curves over which their images fall on one another.
 pub struct Shared<'x> {

@@ -10,9 +10,9 @@ use crate::image::{flat_of, flat_point};
 use crate::image_box::ImageBox;
 use crate::projection::Projection;
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::number::bisection::bisect;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::roots::bisect;
 use premio_kernel::number::scalar::Scalar;
 use premio_kernel::number::sign::ROUNDING;
 

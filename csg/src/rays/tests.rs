@@ -122,17 +122,22 @@ fn gaps_are_closed() {
     assert_intervals(&part.intervals(&line, 0.01), &[[1.0, 3.001]]);
 }
 
-#[test]
-fn faces_before_a_point() {
-    let part =
-        material("P = BLO(X=2, Y=2, Z=2) UN BLO(X=1, Y=1, Z=1) AT (MOVX=0.5, MOVY=0.5, MOVZ=4)");
+/// What lies before a point of a part of the given size, seen from far above.
+fn from_above(part: &Material, size: f64, point: [f64; 3]) -> Evidence {
     let up = |_: &Point3<f64>| (Vector3::z(), f64::INFINITY);
     let clearance = Clearance {
         sliver: 1e-9,
         aside: 1e-6,
-        size: 6.0,
+        size,
     };
-    let count = |x: f64, y: f64, z: f64| part.invisibility(&Point3::new(x, y, z), up, &clearance);
+    part.invisibility(&point.into(), up, &clearance)
+}
+
+#[test]
+fn faces_before_a_point() {
+    let part =
+        material("P = BLO(X=2, Y=2, Z=2) UN BLO(X=1, Y=1, Z=1) AT (MOVX=0.5, MOVY=0.5, MOVZ=4)");
+    let count = |x, y, z| from_above(&part, 6.0, [x, y, z]);
     // On the upper and the lower block's top edges, on the lower block's bottom.
     assert_eq!(count(0.5, 0.7, 5.0), Evidence::Count(0));
     assert_eq!(count(0.2, 0.0, 2.0), Evidence::Count(0));
@@ -146,13 +151,7 @@ fn faces_before_a_point() {
 #[test]
 fn a_fold_next_to_a_point_is_not_told_from_its_own() {
     let part = material("P = CYL(R=1, H=2) AT (ROTY=90)");
-    let up = |_: &Point3<f64>| (Vector3::z(), f64::INFINITY);
-    let clearance = Clearance {
-        sliver: 1e-9,
-        aside: 1e-6,
-        size: 4.0,
-    };
-    let count = |x: f64, y: f64, z: f64| part.invisibility(&Point3::new(x, y, z), up, &clearance);
+    let count = |x, y, z| from_above(&part, 4.0, [x, y, z]);
     // On the limb; 1e-18 aside of it in the image, below it; well below it; on top.
     assert_eq!(count(1.0, 1.0, 0.0), Evidence::Fold(0));
     assert_eq!(count(1.0, 1.0, -1e-9), Evidence::Fold(0));

@@ -15,7 +15,7 @@ use super::{Arc, Brep, Geometry, Patch};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::Surface;
-use crate::number::roots::bisect;
+use crate::number::bisection::bisect;
 use crate::number::sign::{Judge, ROUNDING};
 use nalgebra::Point3;
 use std::collections::{BTreeMap, HashMap};

@@ -2,9 +2,9 @@
 
 use super::curve::Curve;
 use super::frame::Frame;
+use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::bisect;
 use crate::number::scalar::Scalar;
 use nalgebra::Point3;
 use std::f64::consts::TAU;

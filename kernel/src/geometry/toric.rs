@@ -8,9 +8,9 @@
 use super::bitrig::{BiTrig, Partials, Section};
 use super::chart::{Chart, DEGREE};
 use super::surface::Torus;
+use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
 use crate::number::jet::{Base, Jet};
-use crate::number::roots::bisect;
 use crate::number::scalar::Scalar;
 use crate::number::sign::ROUNDING;
 use nalgebra::Point3;

@@ -1,5 +1,7 @@
-//! Numbers: exact rationals, intervals, jets, isolated roots, and the one place that decides signs.
+//! Numbers: exact rationals, enclosures, intervals, jets, isolated roots, and the one place that
+//! decides signs.
 
+pub mod bisection;
 pub mod enclosure;
 pub mod interval;
 pub mod jet;

@@ -7,7 +7,7 @@ use super::fit::Fit;
 use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId, Sense};
 use crate::geometry::surface::{Surface, Torus};
-use crate::number::roots::bisect;
+use crate::number::bisection::bisect;
 use nalgebra::Point2;
 use spade::handles::FixedVertexHandle;
 use spade::{

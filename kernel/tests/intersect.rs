@@ -1,8 +1,10 @@
 //! All fifteen pairs: every branch lies on both surfaces, and none is missing.
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
+use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::intersect::{Extent, coincidence, meet};
+use premio_kernel::geometry::intersect::{Branch, Extent, Meeting, coincidence, meet};
 use premio_kernel::geometry::relation::Carrier;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::number::sign::Judge;
@@ -247,4 +249,68 @@ fn no_node_lies_on_the_other_nappe() {
             "{node:?} lies {away:?} off"
         );
     }
+}
+
+/// A torus (4, 1) about z at the origin, meeting another surface.
+fn on_a_ring(other: &Surface) -> Meeting {
+    let torus = Surface::Torus(Torus {
+        frame: Frame::world(),
+        major: 4.0,
+        minor: 1.0,
+    });
+    let extent = Extent {
+        centre: Point3::origin(),
+        radius: 10.0,
+    };
+    let judge = Judge::new(1e-11 * extent.radius);
+    let [a, b] = [&torus, other].map(Carrier::given);
+    meet(a, b, &extent, &judge).expect("they meet")
+}
+
+/// The centres and radii of the circles among the branches.
+fn circles(meeting: &Meeting) -> Vec<[f64; 4]> {
+    let circle = |b: &Branch| match &b.curve {
+        Curve::Circle(c) => Some([
+            c.frame.origin.x,
+            c.frame.origin.y,
+            c.frame.origin.z,
+            c.radius,
+        ]),
+        _ => None,
+    };
+    let mut found: Vec<[f64; 4]> = meeting.branches.iter().filter_map(circle).collect();
+    found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    found
+}
+
+/// On the sphere about (5, 0, 0) with the radius √10 the power of the ring's centre is 15, as that
+/// of its tube: ρ cos θ = 4/5 ρ, so that they meet in two circles of the tube.
+#[test]
+fn a_sphere_across_the_spine_meets_a_torus_in_circles_of_the_tube() {
+    let sphere = Surface::Sphere(Sphere {
+        frame: Frame::about(Point3::new(5.0, 0.0, 0.0), Vector3::z()),
+        radius: 10.0f64.sqrt(),
+    });
+    let meeting = on_a_ring(&sphere);
+    let found = circles(&meeting);
+    assert_eq!((meeting.branches.len(), found.len()), (2, 2));
+    for c in found {
+        assert_abs_diff_eq!(c[..], [3.2, c[1], 0.0, 1.0][..], epsilon = 1e-14);
+        assert_abs_diff_eq!(c[1].abs(), 2.4, epsilon = 1e-14);
+    }
+}
+
+/// The cone of 45 degrees about the spine's tangent at (4, 0, 0), its apex one tube's radius from
+/// there, holds the circle of the tube.
+#[test]
+fn a_cone_about_a_tangent_of_the_spine_meets_a_torus_in_a_circle_of_the_tube() {
+    let half = 0.5f64.sqrt();
+    let cone = Surface::Cone(Cone {
+        frame: Frame::about(Point3::new(4.0, -1.0, 0.0), Vector3::y()),
+        sin: half,
+        cos: half,
+    });
+    let found = circles(&on_a_ring(&cone));
+    assert_eq!(found.len(), 1);
+    assert_abs_diff_eq!(found[0][..], [4.0, 0.0, 0.0, 1.0][..], epsilon = 1e-14);
 }

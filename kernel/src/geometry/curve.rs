@@ -28,6 +28,22 @@ pub struct Circle {
     pub radius: f64,
 }
 
+impl Circle {
+    /// The circle through three points; none where they are on a line.
+    pub fn through(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>) -> Option<Self> {
+        let (u, v) = (b - a, c - a);
+        let across = u.cross(&v);
+        let z = across.try_normalize(0.0)?;
+        let towards = (v * u.norm_squared() - u * v.norm_squared()).cross(&across);
+        let from_a = towards / (2.0 * across.norm_squared());
+        let (centre, radius) = (a + from_a, from_a.norm());
+        radius.is_finite().then(|| Self {
+            frame: Frame::toward(centre, z, -from_a),
+            radius,
+        })
+    }
+}
+
 /// An ellipse, (a cos t, b sin t) in its frame, a >= b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {

@@ -4,6 +4,7 @@
 use super::{Branch, IntersectionError, Meeting, Node, nappe_parts, place, same_line};
 use crate::geometry::bitrig::BiTrig;
 use crate::geometry::curve::{Circle, Curve};
+use crate::geometry::cut::lies_on;
 use crate::geometry::frame::Frame;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Plane, Surface, Torus};
@@ -118,14 +119,22 @@ fn traced(
     }
     // The form knows both nappes of a cone: each branch is cut to the one that is meant.
     let mut parts: Vec<Vec<(usize, [f64; 2])>> = Vec::new();
+    let mut singular = traced.singular;
     for (b, branch) in traced.branches.into_iter().enumerate() {
-        let whole = [0.0, branch.length()];
-        let passes: Vec<f64> = traced
-            .singular
-            .iter()
-            .flat_map(|s| s.on.iter().filter(|on| on.0 == b).map(|on| on.1))
-            .collect();
-        let curve = Curve::Toric(Box::new(branch));
+        let toric = Curve::Toric(Box::new(branch));
+        let passes = singular.iter_mut().flat_map(|s| &mut s.on);
+        let mut passes: Vec<&mut f64> = passes.filter(|on| on.0 == b).map(|on| &mut on.1).collect();
+        let curve = match circle_of(&toric, t, other, judge) {
+            Some(circle) => {
+                for at in &mut passes {
+                    **at = circle.parameter(&toric.point(**at));
+                }
+                circle
+            }
+            None => toric,
+        };
+        let passes: Vec<f64> = passes.into_iter().map(|at| *at).collect();
+        let whole = [0.0, curve.period().unwrap_or(0.0)];
         let mut kept = Vec::new();
         for range in nappe_parts(&curve, whole, other, judge.band()) {
             let range = range.map(|end| at_pass(&curve, end, &passes, judge));
@@ -140,7 +149,7 @@ fn traced(
         }
         parts.push(kept);
     }
-    for s in traced.singular {
+    for s in singular {
         let point = Surface::Torus(*t).point(s.angles[0], s.angles[1]);
         if matches!(other, Surface::Cone(_)) && !judge.within(other.distance(&point)) {
             continue;
@@ -166,6 +175,16 @@ fn traced(
         });
     }
     Ok(meeting)
+}
+
+/// The circle that a branch is, where it is one: a sphere across a torus's spine meets it in circles
+/// of the tube, a cone about a tangent of the spine in one.
+fn circle_of(branch: &Curve, t: &Torus, other: &Surface, judge: &Judge) -> Option<Curve> {
+    let period = branch.period()?;
+    let [a, b, c] = [0.0, 1.0, 2.0].map(|third| branch.point(third * period / 3.0));
+    let circle = Curve::Circle(Circle::through(&a, &b, &c)?);
+    let on = |s: &Surface| lies_on(&circle, [0.0, TAU], s, judge.band());
+    (on(&Surface::Torus(*t)) && on(other)).then_some(circle)
 }
 
 /// The end of a part of a closed curve, or the singular point there: next to one, rounding is all

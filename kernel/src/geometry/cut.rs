@@ -5,7 +5,7 @@ use super::curve::Curve;
 use super::surface::Surface;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::{Contact, Function, Root, Zeros, isolate, isolate_closely};
+use crate::number::roots::{Contact, Function, Root, Zeros, isolate, isolate_closely, probes};
 
 /// How far above a surface a curve runs.
 struct Height<'a> {
@@ -88,16 +88,6 @@ pub fn comes_near(surface: &Surface, b: &Box3, margin: f64) -> bool {
     }
     let level = surface.level([0, 1, 2].map(|i| Interval::new(b.min[i], b.max[i])));
     level.lo <= margin && level.hi >= -margin
-}
-
-/// The points at which a curve is asked whether it lies on a surface: more than twice the number
-/// of zeros that any of the curves can have on any of the surfaces, so that one that is within the
-/// band at all of them is so in between.
-const PROBES: u32 = 67;
-
-/// Fractions of a range: the first few already lie far apart, by steps of the golden section.
-fn probes() -> impl Iterator<Item = f64> {
-    (1..=PROBES).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
 }
 
 /// Whether the curve lies on the surface, within the band.

@@ -115,6 +115,15 @@ impl<F: Fn(Interval) -> Jet<Interval>> Function for F {
     }
 }
 
+/// More than twice the number of zeros that what is asked along any of the curves can have: what is
+/// within the band at that many places is so in between.
+const PROBES: u32 = 67;
+
+/// Fractions of a range: the first few already lie far apart, by steps of the golden section.
+pub fn probes() -> impl Iterator<Item = f64> {
+    (1..=PROBES).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
+}
+
 struct Search<'a, F> {
     f: &'a F,
     band: f64,
@@ -222,7 +231,8 @@ impl<F: Function> Search<'_, F> {
 
     /// Works through [a, b] in order, by halving with a stack of its own.
     fn piece(&mut self, a: f64, b: f64) {
-        let mut stack = vec![(a, b)];
+        let whole = (a, b);
+        let mut stack = vec![whole];
         while let Some((a, b)) = stack.pop() {
             let m = 0.5 * (a + b);
             let x = Interval { lo: a, hi: b };
@@ -254,11 +264,19 @@ impl<F: Function> Search<'_, F> {
                 self.convex(a, b);
             } else if b - a <= self.floor {
                 self.cluster(a, b, m, Kind::Loose, Some(v.magnitude()));
+            } else if (a, b) == whole && self.vanishes(a, b) {
+                self.cluster(a, b, m, Kind::Loose, Some(0.0));
             } else {
                 stack.push((m, b));
                 stack.push((a, m));
             }
         }
+    }
+
+    /// Whether the function is within the band throughout, by its values at enough places. Halving
+    /// finds it, too, but one that is zero is halved down to the root of the band.
+    fn vanishes(&self, a: f64, b: f64) -> bool {
+        probes().all(|part| self.value(a + (b - a) * part).abs() <= self.band)
     }
 
     /// Whether no value of a range is a root, or so near to one that it is to be told.

@@ -17,7 +17,8 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::bisection::bisect_newton;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::roots::{Root, Zeros, isolate};
+use premio_kernel::number::roots::{Function, Root, Zeros, isolate};
+use premio_kernel::number::scalar::Scalar;
 use premio_kernel::number::sign::ROUNDING;
 
 /// Distances in space within which two roots are one, in multiples of the resolution.
@@ -119,6 +120,8 @@ pub struct Graphs<'x> {
     courses: [Course; 2],
     /// x and y.
     axes: [[f64; 2]; 2],
+    /// How fast the second graph rises above the first over x.
+    rise: Interval,
     /// What turns a distance in the image into one in space.
     scale: f64,
 }
@@ -146,6 +149,7 @@ impl<'x> Graphs<'x> {
         let sum = [p[0] + sign * q[0], p[1] + sign * q[1]];
         let size = sum[0].hypot(sum[1]);
         let e = [sum[0] / size, sum[1] / size];
+        let [under, over] = courses.map(|c| c.slope_over(e));
         Some(Self {
             strands: [a, b],
             a: a.curve,
@@ -154,6 +158,7 @@ impl<'x> Graphs<'x> {
             of: [x, y],
             courses,
             axes: [e, [-e[1], e[0]]],
+            rise: over - under,
             scale: projection.scale(&b.curve.point(y.range[0])),
         })
     }
@@ -198,7 +203,7 @@ impl<'x> Graphs<'x> {
     }
 
     /// The parameter over `x` on one of the stretches, or on the curve just beyond its ends.
-    fn over(&self, k: usize, curve: &Curve, x: f64) -> f64 {
+    fn parameter(&self, k: usize, curve: &Curve, x: f64) -> f64 {
         let [lo, hi] = self.of[k].range;
         let [from, to] = self.of[k].ends.map(|p| dot2(self.axes[0], p) - x);
         if from * to > 0.0 {
@@ -247,7 +252,7 @@ impl<'x> Graphs<'x> {
     /// The gap over a point of the second curve.
     pub fn gap(&self, s: f64) -> Gap {
         let [x, y] = self.jet(self.b, s);
-        let t = self.over(0, self.a, x.v);
+        let t = self.parameter(0, self.a, x.v);
         let [u, f] = self.jet(self.a, t);
         Gap {
             v: (y.v - f.v) * self.scale,
@@ -263,22 +268,6 @@ impl<'x> Graphs<'x> {
         Some((self.a.point(self.gap(s).t) - p).dot(&v))
     }
 
-    fn gap_over(&self, s: Interval) -> Jet<Interval> {
-        use premio_kernel::number::scalar::Scalar;
-        let [x, y] = self.jet_over(self.b, s);
-        let t = [s.lo, s.hi].map(|s| self.over(0, self.a, self.jet(self.b, s)[0].v));
-        let t = Interval::new(t[0], t[1]);
-        let [u, f] = self.jet_over(self.a, t);
-        let dt = x.d.over(u.d);
-        let ddt = (x.dd - u.dd * dt.square()).over(u.d);
-        let gap = Jet {
-            v: y.v - f.v,
-            d: y.d - f.d * dt,
-            dd: y.dd - f.dd * dt.square() - f.d * ddt,
-        };
-        gap.scale(self.scale)
-    }
-
     /// The range of s over which both stretches have points.
     fn common(&self) -> Option<[f64; 2]> {
         let along = |k: usize| {
@@ -291,7 +280,7 @@ impl<'x> Graphs<'x> {
             // Ends that meet within rounding.
             return None;
         }
-        let ends = [lo, hi].map(|x| self.over(1, self.b, x));
+        let ends = [lo, hi].map(|x| self.parameter(1, self.b, x));
         Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
     }
 
@@ -311,7 +300,7 @@ impl<'x> Graphs<'x> {
         if (0..PLACES).all(|k| self.gap(at(k)).v.abs() <= band) {
             return common.shared.push(Shared::new(self, [lo, hi]));
         }
-        match isolate(&|s: Interval| self.gap_over(s), &[lo, hi], band) {
+        match isolate(&self, &[lo, hi], band) {
             Zeros::Everywhere => common.shared.push(Shared::new(self, [lo, hi])),
             Zeros::At { roots, .. } => {
                 let [a, b] = self.strands;
@@ -346,5 +335,37 @@ impl<'x> Graphs<'x> {
             (gap.v, gap.d)
         });
         (self.gap(s).t, s)
+    }
+}
+
+/// D over the parameter of the second curve.
+impl Function for Graphs<'_> {
+    fn over(&self, s: Interval) -> Jet<Interval> {
+        let [x, y] = self.jet_over(self.b, s);
+        let t = [s.lo, s.hi].map(|s| self.parameter(0, self.a, self.jet(self.b, s)[0].v));
+        let t = Interval::new(t[0], t[1]);
+        let [u, f] = self.jet_over(self.a, t);
+        let dt = x.d.over(u.d);
+        let ddt = (x.dd - u.dd * dt.square()).over(u.d);
+        let gap = Jet {
+            v: y.v - f.v,
+            d: y.d - f.d * dt,
+            dd: y.dd - f.dd * dt.square() - f.d * ddt,
+        };
+        gap.scale(self.scale)
+    }
+
+    /// By the directions of both: narrow where a curve hardly moves in the image, however wide its
+    /// derivatives are.
+    fn reach(&self, s: Interval) -> Interval {
+        let x = |s: f64| self.jet(self.b, s)[0].v;
+        let middle = x(s.mid());
+        let run = Interval::new(x(s.lo) - middle, x(s.hi) - middle);
+        let gap = Interval::around(self.gap(s.mid()).v, ROUNDING * self.scale);
+        gap + (self.rise * run).scale(self.scale)
+    }
+
+    fn value(&self, s: f64) -> f64 {
+        self.gap(s).v
     }
 }

@@ -30,6 +30,17 @@ pub struct Course {
     pub bend: Option<f64>,
 }
 
+impl Course {
+    /// The slope of the image as a graph over a unit direction near its own.
+    pub fn slope_over(&self, e: [f64; 2]) -> Interval {
+        let along = dot2(e, self.direction);
+        let turn = dot2([-e[1], e[0]], self.direction) / along;
+        let spread = Interval::new(-self.spread, self.spread);
+        let one = Interval::point(1.0);
+        (Interval::point(turn) + spread).over(one - spread.scale(turn))
+    }
+}
+
 /// A part of a curve over which the image keeps its direction, or is a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {

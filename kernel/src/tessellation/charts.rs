@@ -119,6 +119,19 @@ impl Chart {
         }
     }
 
+    /// Where a side comes nearest to the middle of a chart that has one, between its ends. Far out a
+    /// long side of the chart is a short one of the surface, but not there.
+    pub fn nearest_to_middle(&self, [a, b]: [Point2<f64>; 2]) -> Option<Point2<f64>> {
+        let away = b - a;
+        let part = -a.coords.dot(&away) / away.norm_squared();
+        match self {
+            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) if part > 0.0 && part < 1.0 => {
+                Some(a + away * part)
+            }
+            _ => None,
+        }
+    }
+
     /// Whether what runs counterclockwise in the chart runs clockwise as seen from outside.
     pub fn is_mirrored(&self, outward: Sense) -> bool {
         let own = match self {

@@ -198,7 +198,7 @@ impl<'a> Builder<'a> {
                 Sense::Against => (to.index(), from.index()),
             };
             let points = [pair[0], pair[1]].map(|n| self.lines.points[n.point as usize]);
-            if !self.fit.holds(&nalgebra::center(&a, &b), &points) {
+            if self.fit.leaves([a, b], &points).is_some() {
                 self.halve(chord);
             }
             self.domain.bounding.insert(side);

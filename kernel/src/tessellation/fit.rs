@@ -32,9 +32,28 @@ impl Fit<'_> {
         })
     }
 
+    /// Where a side between two places of the chart, which stand for these points, leaves the
+    /// surface: at its middle, or where it comes nearest to the middle of the chart.
+    pub fn leaves(&self, ends: [Point2<f64>; 2], points: &[Point3<f64>; 2]) -> Option<Point2<f64>> {
+        let middle = nalgebra::center(&ends[0], &ends[1]);
+        if !self.holds(&middle, points) {
+            return Some(middle);
+        }
+        let nearest = self.chart.nearest_to_middle(ends)?;
+        (from_segment(&self.chart.lift(&nearest), points) > self.accuracy.deviation)
+            .then_some(nearest)
+    }
+
     /// Whether a point is a cone's apex, where there is no normal.
     pub fn is_apex(&self, p: &Point3<f64>) -> bool {
         let near = self.accuracy.deviation * APEX;
         matches!(self.surface, Surface::Cone(c) if (c.frame.origin - p).norm() <= near)
     }
+}
+
+/// How far a point is from a segment.
+fn from_segment(p: &Point3<f64>, [a, b]: &[Point3<f64>; 2]) -> f64 {
+    let (along, away) = (b - a, p - a);
+    let part = away.dot(&along) / along.norm_squared();
+    (away - along * part.clamp(0.0, 1.0)).norm()
 }

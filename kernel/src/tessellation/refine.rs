@@ -8,8 +8,8 @@ use crate::brep::Brep;
 use crate::brep::topology::{FaceId, Sense};
 use crate::geometry::surface::{Sphere, Surface};
 use nalgebra::{Point2, Point3};
-use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag, VertexHandle};
-use spade::{CdtEdge, Triangulation};
+use spade::Triangulation;
+use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
@@ -51,7 +51,8 @@ pub(super) fn triangles(
             }
             return Ok(());
         }
-        if domain.net.num_vertices() + missing.len() > LIMIT {
+        let before = domain.net.num_vertices();
+        if before + missing.len() > LIMIT {
             return Err(TessellationError::TooMany { face, limit: LIMIT });
         }
         for at in missing {
@@ -61,6 +62,10 @@ pub(super) fn triangles(
             if added.is_err() {
                 return Err(TessellationError::Sides { face });
             }
+        }
+        // What is missing is there: the doubles of the chart are too coarse.
+        if domain.net.num_vertices() == before {
+            return Err(TessellationError::Crossing { face });
         }
     }
 }
@@ -123,8 +128,8 @@ fn inside(domain: &Domain, mirrored: bool) -> Option<Vec<Inner>> {
 /// is off by four thirds of it.
 const OF_SIDES: f64 = 0.75;
 
-/// Where points are missing: in the middle of the longest side that leaves the surface of each
-/// triangle, or of the triangle where only that does.
+/// Where points are missing: where the longest side that leaves the surface does, of each triangle,
+/// or in the middle of the triangle where only that does.
 fn missing(
     surface: &Surface,
     chart: &Chart,
@@ -152,20 +157,18 @@ fn missing(
             let side = (edge.from().fix().index(), edge.to().fix().index());
             !edge.is_constraint_edge() && !domain.glued.contains_key(&side)
         });
-        let sides = free.map(|edge| [edge.from(), edge.to()]);
-        let off = sides.filter(|ends| {
+        let off = free.filter_map(|edge| {
+            let ends = [edge.from(), edge.to()];
             let [a, b] = ends.map(|v| *v.data());
-            let middle = nalgebra::center(&a.at, &b.at);
-            !of_sides.holds(&middle, &[point(&a), point(&b)])
+            let points = [point(&a), point(&b)];
+            let place = of_sides.leaves([a.at, b.at], &points)?;
+            let [i, j] = ends.map(|v| v.fix().index());
+            let side = (i.min(j), i.max(j));
+            Some((side, (points[0] - points[1]).norm(), place))
         });
-        let length = |ends: &[VertexHandle<'_, Corner, (), CdtEdge<()>, ()>; 2]| {
-            let [a, b] = ends.map(|v| point(v.data()));
-            (a - b).norm()
-        };
-        if let Some([a, b]) = off.max_by(|x, y| length(x).total_cmp(&length(y))) {
-            let (i, j) = (a.fix().index(), b.fix().index());
-            if divided.insert((i.min(j), i.max(j))) {
-                found.push(nalgebra::center(&a.data().at, &b.data().at));
+        if let Some((side, _, place)) = off.max_by(|x, y| x.1.total_cmp(&y.1)) {
+            if divided.insert(side) {
+                found.push(place);
             }
             continue;
         }

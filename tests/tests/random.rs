@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 30] = [
+const MENDED: [(u64, &str); 32] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -75,6 +75,8 @@ const MENDED: [(u64, &str); 30] = [
     (4864, "a limb along a torus's curve next to a crossing"),
     (21000, "an edge below the sharp edge of a very narrow wedge"),
     (20994, "an edge along a wedge thinner than the resolution"),
+    (23640, "a sphere across the spine of a torus"),
+    (23783, "a sphere with a long narrow hole, for the mesh"),
     (9615, "an edge just inside an equator of its own torus"),
 ];
 
@@ -82,7 +84,7 @@ const MENDED: [(u64, &str); 30] = [
 const MENDED_IN: [&str; 3] = ["perspective 3", "orthographic 1", "along z"];
 
 /// Trees that were wrong along the other axes.
-const MENDED_ALONG: [(u64, &str); 6] = [
+const MENDED_ALONG: [(u64, &str); 8] = [
     (122, "a slit along the top of a torus"),
     (237, "a limb that ends at a vertex of three edges"),
     (
@@ -97,6 +99,8 @@ const MENDED_ALONG: [(u64, &str); 6] = [
         20860,
         "a line that touches a torus's top circle four times over",
     ),
+    (22229, "edges along limbs of a torus"),
+    (28215, "a cone along one of its rulings"),
     (22433, "a limb tangent to another where that one ends"),
 ];
 

@@ -219,8 +219,17 @@ impl Search<'_> {
             .into_iter()
             .filter_map(|met| met.get(index))
             .fold(f64::INFINITY, |least, c| c.at.min(least));
+        // Material, or a gap, that ends at an edge is still this thick next to it where it is steep.
+        let longer = if first.len() > second.len() {
+            first
+        } else {
+            second
+        };
+        let thick = first.len() != second.len();
+        let beyond = longer.get(index + 1).filter(|_| thick);
+        let until = beyond.map_or(depth, |c| c.at.max(depth));
         let deep = deep(depth);
-        let there = |p: &Passing| p.depth[0] - deep <= depth && depth <= p.depth[1] + deep;
+        let there = |p: &Passing| p.depth[0] - deep <= until && depth <= p.depth[1] + deep;
         let lack = if !images.any(a, near, |_| true) {
             Lack::Contour
         } else if !images.any(a, near, there) {

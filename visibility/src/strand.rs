@@ -329,17 +329,28 @@ impl Trim<'_, '_, '_, '_> {
         let band = self.scene.band;
         let mut found = Vec::new();
         match brep.surface(face) {
-            Surface::Torus(s) => match torus_limb_on(s, sight, curve, range, band) {
-                // Where the edge runs along one limb, others cross both at the limb's nodes.
-                Zeros::Everywhere => {
-                    found.extend(range);
-                    let nodes = limbs
-                        .iter()
-                        .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
-                    found.extend(nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * band)));
+            Surface::Torus(s) => {
+                // Where limbs cross one another is known better than where an edge meets them.
+                let nodes = limbs
+                    .iter()
+                    .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
+                let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * band));
+                match torus_limb_on(s, sight, curve, range, band) {
+                    // Where the edge runs along one limb, others cross both at the limb's nodes.
+                    Zeros::Everywhere => {
+                        found.extend(range);
+                        found.extend(nodes);
+                    }
+                    Zeros::At { roots, .. } => {
+                        let nodes: Vec<f64> = nodes.collect();
+                        let place = |r: &Root| {
+                            let node = nodes.iter().find(|&&t| r.lo <= t && t <= r.hi);
+                            node.copied().unwrap_or(r.t)
+                        };
+                        found.extend(roots.iter().map(place));
+                    }
                 }
-                Zeros::At { roots, .. } => found.extend(roots.iter().map(|r: &Root| r.t)),
-            },
+            }
             surface => {
                 if let Some(plane) = polar_plane(surface, sight) {
                     if runs_in(curve, range, &plane, band) {

@@ -9,6 +9,7 @@
 use super::bisection::{bisect, bisect_newton};
 use super::interval::Interval;
 use super::jet::Jet;
+use super::scalar::Scalar;
 use super::sign::CLOSE;
 
 /// How a function meets zero at a root.
@@ -115,6 +116,10 @@ impl<F: Fn(Interval) -> Jet<Interval>> Function for F {
     }
 }
 
+/// Most roots are isolated before a piece is halved to this part of it; next to a contact of high
+/// order halving goes on, and it is worth while to narrow more.
+const SMALL: f64 = 1.0 / 16.0;
+
 /// More than twice the number of zeros that what is asked along any of the curves can have: what is
 /// within the band at that many places is so in between.
 const PROBES: u32 = 67;
@@ -192,6 +197,32 @@ impl<F: Function> Search<'_, F> {
         }
     }
 
+    /// The ranges over an interval, `run` from its middle, narrowed by Taylor's sums about that as
+    /// far as they do not tell enough: by the second only where the interval is `small`.
+    fn narrowed(
+        &self,
+        wide: Jet<Interval>,
+        run: Interval,
+        middle: f64,
+        small: bool,
+    ) -> Jet<Interval> {
+        let Jet { v, d, dd } = wide;
+        if !(v.has_zero() && d.has_zero() && d.width().is_finite()) {
+            return wide;
+        }
+        let v = v.meet(self.value_over(middle) + d * run);
+        if !(small && v.has_zero() && dd.has_zero() && dd.width().is_finite()) {
+            return Jet { v, d, dd };
+        }
+        let at = self.f.over(Interval::point(middle));
+        let bent = (dd * run.square()).scale(0.5);
+        Jet {
+            v: v.meet(at.v + at.d * run + bent),
+            d: d.meet(at.d + dd * run),
+            dd,
+        }
+    }
+
     fn slope(&self, t: f64) -> f64 {
         self.f.at(t).d
     }
@@ -239,11 +270,9 @@ impl<F: Function> Search<'_, F> {
             if self.is_clear(self.f.reach(x)) {
                 continue;
             }
-            let jet = self.f.over(x);
-            let mut v = jet.v;
-            if v.has_zero() && jet.d.has_zero() && jet.d.width().is_finite() {
-                v = v.meet(self.value_over(m) + jet.d * (x - Interval::point(m)));
-            }
+            let small = b - a <= SMALL * (whole.1 - whole.0);
+            let jet = self.narrowed(self.f.over(x), x - Interval::point(m), m, small);
+            let v = jet.v;
             if self.is_clear(v) {
                 continue;
             }

@@ -314,3 +314,57 @@ fn a_cone_about_a_tangent_of_the_spine_meets_a_torus_in_a_circle_of_the_tube() {
     assert_eq!(found.len(), 1);
     assert_abs_diff_eq!(found[0][..], [4.0, 0.0, 0.0, 1.0][..], epsilon = 1e-14);
 }
+
+fn torus(origin: Point3<f64>, axis: Vector3<f64>, major: f64, minor: f64) -> Surface {
+    Surface::Torus(Torus {
+        frame: Frame::about(origin, axis),
+        major,
+        minor,
+    })
+}
+
+/// The radii of the circles along which two tori touch, and the points where other curves pass them,
+/// or they each other.
+fn contact_circles(a: &Surface, b: &Surface) -> (Vec<f64>, usize) {
+    let extent = Extent {
+        centre: Point3::origin(),
+        radius: 10.0,
+    };
+    let judge = Judge::new(1e-11 * extent.radius);
+    let meeting = meet(Carrier::given(a), Carrier::given(b), &extent, &judge).expect("tori meet");
+    let radius = |branch: &Branch| match (&branch.curve, branch.tangent) {
+        (Curve::Circle(c), true) => c.radius,
+        other => panic!("{other:?}"),
+    };
+    let radii = meeting.branches.iter().map(radius).collect();
+    (radii, meeting.nodes.len())
+}
+
+/// A ring touches the tube of another torus all round, from outside with its inner rim or from
+/// inside with its outer one: where R - r, or R + r, is the tube's radius, the centre on the spine
+/// and the axis along it.
+#[test]
+fn a_ring_touches_a_tube_all_round() {
+    let tube = torus(Point3::origin(), Vector3::z(), 2.0, 0.5);
+    let wide = torus(Point3::origin(), Vector3::z(), 3.0, 1.5);
+    let at = |x| Point3::new(x, 0.0, 0.0);
+    let around = torus(at(2.0), Vector3::y(), 1.0, 0.5);
+    let inside = torus(at(3.0), Vector3::y(), 1.0, 0.5);
+    for (a, b) in [(&tube, &around), (&around, &tube)] {
+        assert_eq!(contact_circles(a, b), (vec![0.5], 0));
+    }
+    for (a, b) in [(&wide, &inside), (&inside, &wide)] {
+        assert_eq!(contact_circles(a, b), (vec![1.5], 0));
+    }
+}
+
+/// Two links whose tubes fill each other's hole: each rim is the other's tube, and the two circles
+/// cross in the point between the centres.
+#[test]
+fn links_that_fill_each_other_touch_along_two_circles() {
+    let link = torus(Point3::origin(), Vector3::z(), 2.0, 0.5);
+    let other = torus(Point3::new(2.0, 0.0, 0.0), Vector3::y(), 2.0, 1.5);
+    let (mut radii, nodes) = contact_circles(&link, &other);
+    radii.sort_by(f64::total_cmp);
+    assert_eq!((radii, nodes > 0), (vec![0.5, 1.5], true));
+}

@@ -185,7 +185,7 @@ impl Classifier<'_> {
         tangent: &Vector3<f64>,
         near: &[Near],
     ) -> Result<Vec<Wing>, EvaluationError> {
-        let sheets = self.sheets(piece, p, tangent)?;
+        let sheets = self.sheets(piece, p, tangent, near)?;
         let n = sheets.len();
         // The sides before the first sheet: opposite to what lies beyond a carrier's first one.
         let mut sides = vec![Sense::Along; piece.carriers.len()];
@@ -236,19 +236,25 @@ impl Classifier<'_> {
         Ok(changes.iter().map(wing).collect())
     }
 
-    /// The half sheets around a piece, counterclockwise about its tangent.
+    /// The half sheets around a piece, counterclockwise about its tangent, of the carriers on which
+    /// a primitive that is there has a face.
     fn sheets(
         &self,
         piece: &Piece,
         p: &Point3<f64>,
         tangent: &Vector3<f64>,
+        near: &[Near],
     ) -> Result<Vec<Sheet>, EvaluationError> {
         let e1 = perpendicular(tangent);
         let e2 = tangent.cross(&e1);
         let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
         // A carrier tangent to an earlier one takes its angle: only the bend tells them apart.
         let mut axes: Vec<(usize, Vector3<f64>)> = Vec::new();
+        let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
         for (at, &c) in piece.carriers.iter().enumerate() {
+            if !has_face(at) {
+                continue;
+            }
             let surface = self.surface(c);
             let normal = surface.normal(p);
             let mut direction = normal.cross(tangent).normalize();

@@ -108,6 +108,9 @@ struct Half {
 
 type Group = (usize, Sense);
 
+/// An edge, and whether it is its first end that is meant.
+type End = (usize, bool);
+
 struct Assembler<'a> {
     raw: &'a RawBoundary,
     judge: &'a Judge,
@@ -211,21 +214,23 @@ impl<'a> Assembler<'a> {
         into: &[usize],
         out: &[usize],
     ) -> Result<(), AssemblyError> {
-        let angles = self.angles(vertex, group, into, out)?;
-        for &i in into {
-            let back = angles[&(self.halves[i].edge, self.at_first_end(i, true))];
-            let clockwise = |o: usize| {
-                let a = angles[&(self.halves[o].edge, self.at_first_end(o, false))];
-                let turn = (back - a).rem_euclid(TAU);
-                if turn == 0.0 { TAU } else { turn }
-            };
-            let follower = out
-                .iter()
-                .copied()
-                .min_by(|&a, &b| clockwise(a).total_cmp(&clockwise(b)));
-            self.next[i] = follower.unwrap_or(i);
+        let back = |&i: &usize| (self.halves[i].edge, self.at_first_end(i, true));
+        let away = |&o: &usize| (self.halves[o].edge, self.at_first_end(o, false));
+        let mut ends: Vec<End> = into.iter().map(back).chain(out.iter().map(away)).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let order = self.order(vertex, group, ends)?;
+        let n = order.len();
+        let rank: HashMap<End, usize> = order.into_iter().zip(0..).collect();
+        let follower = |i: &usize| {
+            // One at least away: an end may be followed by itself, after a whole turn.
+            let clockwise = |o: &&usize| (rank[&back(i)] + n - rank[&away(o)] + n - 1) % n;
+            out.iter().min_by_key(clockwise).copied()
+        };
+        let mut followers: Vec<usize> = into.iter().filter_map(follower).collect();
+        for (&i, &o) in into.iter().zip(&followers) {
+            self.next[i] = o;
         }
-        let mut followers: Vec<usize> = into.iter().map(|&i| self.next[i]).collect();
         followers.sort_unstable();
         followers.dedup();
         if followers.len() != into.len() {
@@ -241,28 +246,30 @@ impl<'a> Assembler<'a> {
         at_end != (self.halves[half].wing.sense == Sense::Along)
     }
 
-    /// The angles at which edge ends leave a vertex, counterclockwise seen from outside: of the
-    /// points in which a small sphere around the vertex meets them. The sphere is widened until
-    /// all are apart.
-    fn angles(
+    /// Edge ends in their order around a vertex, counterclockwise seen from outside: of the points
+    /// in which a small sphere around the vertex meets them. What is tangent, and not told apart
+    /// on one sphere, is on a wider one, which only these have to reach.
+    fn order(
         &self,
         vertex: usize,
         group: Group,
-        into: &[usize],
-        out: &[usize],
-    ) -> Result<HashMap<(usize, bool), f64>, AssemblyError> {
+        ends: Vec<End>,
+    ) -> Result<Vec<End>, AssemblyError> {
         let v = self.raw.points[vertex].place;
-        let mut ends: Vec<(usize, bool)> = into
-            .iter()
-            .map(|&i| (self.halves[i].edge, self.at_first_end(i, true)))
-            .chain(
-                out.iter()
-                    .map(|&o| (self.halves[o].edge, self.at_first_end(o, false))),
-            )
-            .collect();
-        ends.sort_unstable();
-        ends.dedup();
         let frame = self.tangent_frame(group, &v);
+        let mut bundles = vec![ends];
+        while let Some(at) = bundles.iter().position(|b| b.len() > 1) {
+            let parts = self.told_apart(&v, &frame, &bundles[at]);
+            if parts.len() < 2 {
+                return Err(AssemblyError::Order { place: v.into() });
+            }
+            bundles.splice(at..=at, parts);
+        }
+        Ok(bundles.concat())
+    }
+
+    /// Edge ends counterclockwise, in as many bundles as any sphere tells apart that all reach.
+    fn told_apart(&self, v: &Point3<f64>, frame: &Frame, ends: &[End]) -> Vec<Vec<End>> {
         let middle = |e: usize| {
             let edge = &self.raw.edges[e];
             self.raw.curves[edge.curve].point(0.5 * (edge.range[0] + edge.range[1]))
@@ -271,23 +278,24 @@ impl<'a> Assembler<'a> {
             .iter()
             .map(|e| (middle(e.0) - v).norm())
             .fold(f64::INFINITY, f64::min);
+        let mut best = Vec::new();
         for part in [1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0, 1.0 / 256.0, 0.5] {
             let radius = reach * part;
-            let angle = |&(e, first): &(usize, bool)| {
-                let d = frame.components(&(self.point_at(e, first, &v, radius) - v));
-                ((e, first), d.y.atan2(d.x))
+            let angle = |&(e, first): &End| {
+                let d = frame.components(&(self.point_at(e, first, v, radius) - v));
+                (d.y.atan2(d.x), (e, first))
             };
-            let angles: HashMap<_, _> = ends.iter().map(angle).collect();
-            let mut sorted: Vec<f64> = angles.values().copied().collect();
-            sorted.sort_by(f64::total_cmp);
-            sorted.push(sorted[0] + TAU);
             // A gap must be seen well above the vertex's own uncertainty.
             let least = self.judge.band() / radius * 16.0 + ROUNDING;
-            if sorted.windows(2).all(|w| w[1] - w[0] > least) {
-                return Ok(angles);
+            let bundles = bundled(ends.iter().map(angle).collect(), least);
+            if bundles.len() > best.len() {
+                best = bundles;
+            }
+            if best.len() == ends.len() {
+                break;
             }
         }
-        Err(AssemblyError::Order { place: v.into() })
+        best
     }
 
     fn tangent_frame(&self, (surface, outward): Group, v: &Point3<f64>) -> Frame {
@@ -461,4 +469,26 @@ impl<'a> Assembler<'a> {
         };
         (Brep { topology, geometry }, names)
     }
+}
+
+/// Ends by their angles, in order from the widest gap on, in bundles that are parted by more than
+/// `least`.
+fn bundled(mut angles: Vec<(f64, End)>, least: f64) -> Vec<Vec<End>> {
+    angles.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let n = angles.len();
+    let gap = |i: usize| match i {
+        0 => angles[0].0 + TAU - angles[n - 1].0,
+        _ => angles[i].0 - angles[i - 1].0,
+    };
+    let Some(start) = (0..n).max_by(|&a, &b| gap(a).total_cmp(&gap(b))) else {
+        return Vec::new();
+    };
+    let mut bundles: Vec<Vec<End>> = Vec::new();
+    for i in (start..n).chain(0..start) {
+        match bundles.last_mut() {
+            Some(bundle) if gap(i) <= least => bundle.push(angles[i].1),
+            _ => bundles.push(vec![angles[i].1]),
+        }
+    }
+    bundles
 }

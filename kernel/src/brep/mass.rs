@@ -11,7 +11,7 @@ use crate::geometry::bounds::{self, Box3};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::section::plane_roots;
-use crate::geometry::surface::{Plane, Sphere, Surface, SurfaceKind, Torus};
+use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
 use crate::number::quadrature::{Rule, TWENTY, TWO, adaptive, integral};
 use crate::number::sign::{RELATIVE_RESOLUTION, ROUNDING};
 use nalgebra::{Point3, Vector3};
@@ -90,13 +90,17 @@ impl Amid {
             b = b.hull(&Box3::of(&brep.curve(e).point(lo)));
             b = b.hull(&Box3::of(&brep.curve(e).point(0.5 * (lo + hi))));
         }
-        for s in brep
-            .geometry
-            .surfaces
-            .iter()
-            .filter(|s| s.kind() >= SurfaceKind::Sphere)
-        {
-            b = b.hull(&Box3::of(&s.frame().origin));
+        // What bulges beyond its edges, and a whole surface that has none.
+        let faces = brep.topology.face_ids();
+        for (face, s) in faces.map(|f| (f, brep.surface(f))) {
+            let radius = match s {
+                Surface::Sphere(s) => s.radius,
+                Surface::Torus(t) => t.major + t.minor,
+                _ => continue,
+            };
+            let is_whole = brep.topology.face(face).loops.is_empty();
+            let centre = Box3::of(&s.frame().origin);
+            b = b.hull(&centre.grown(if is_whole { radius } else { 0.0 }));
         }
         let l = b.diagonal();
         let area = l * l * ROUNDING;

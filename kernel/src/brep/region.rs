@@ -287,7 +287,9 @@ impl Sorter<'_> {
         goal: Option<usize>,
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
-        if heading < SLANT {
+        // What ends next to the arc has not left it: the next leg may run to its other side.
+        let leaves = legs.len() == 1 || legs[0].length() > self.start();
+        if heading < SLANT || !leaves {
             return false;
         }
         let mut inside = Some(ring);
@@ -327,6 +329,11 @@ impl Sorter<'_> {
         true
     }
 
+    /// As far as this from a walk's start the arc is that it starts on.
+    fn start(&self) -> f64 {
+        64.0 * self.band
+    }
+
     /// The arc that runs over the same edge the other way.
     fn twin(&self, arc: usize) -> Option<usize> {
         let a = &self.arcs.all[arc];
@@ -342,7 +349,7 @@ impl Sorter<'_> {
             let arc = &self.arcs.all[i];
             let mut note = |at: f64, t: f64, passage: Passage| {
                 // Arcs of both senses run over the starting edge where a face bounds itself.
-                let here = start.is_some() && at <= 64.0 * self.band;
+                let here = start.is_some() && at <= self.start();
                 if !here && !self.is_full_turn(walk, at, start) {
                     found.push(Crossing {
                         at,
@@ -380,7 +387,7 @@ impl Sorter<'_> {
 
     /// Whether a closed walk is back at its start.
     fn is_full_turn(&self, walk: &Walk, at: f64, start: Option<usize>) -> bool {
-        start.is_some() && (walk.point(at) - walk.point(0.0)).norm() <= 64.0 * self.band
+        start.is_some() && (walk.point(at) - walk.point(0.0)).norm() <= self.start()
     }
 
     /// The Euler characteristic of a region.

@@ -265,6 +265,11 @@ impl Walk {
         }
     }
 
+    /// How long it is.
+    pub(super) fn length(&self) -> f64 {
+        self.length
+    }
+
     /// Whether the walk ends where it starts.
     pub(super) fn closes(&self) -> bool {
         matches!(self.track, Track::Circle(_, radius) if self.length >= TAU * radius)

@@ -3,11 +3,11 @@
 //! Notation: s is the offset of the running angle from the point, y that of the other one. With
 //! σ and κ the coordinates,
 //!
-//!   s = ε σᵃ,   y = m s + σᵇ κ,   F = σʷ G(σ, κ),
+//!   s = ε σᵃ,   y = Y(s) + σᵇ κ,   F = σʷ G(σ, κ),
 //!
 //! a weighted blow-up (Arnold, Gusein-Zade and Varchenko, Singularities of Differentiable Maps I,
-//! 1985): where branches cross (a, b, w) = (1, 1, 2), where they touch (1, 2, 4), at a cusp
-//! (2, 3, 6). What of F is of less weight vanishes, so G(σ, κ) = 0 passes through (0, κ₀) with
+//! 1985): where n branches cross (a, b, w) = (1, 1, n), where two touch (1, 2, 4), (1, 3, 6), ...,
+//! at a cusp (2, 3, 6), (2, 5, 10), .... What of F is of less weight vanishes, so G(σ, κ) = 0 passes through (0, κ₀) with
 //! G_κ ≠ 0: Newton's steps and enclosures are as good there as anywhere else. F is Taylor's
 //! polynomial about the point, with a bound of what is left.
 
@@ -43,8 +43,8 @@ pub struct Chart {
     pub origin: [f64; 2],
     /// ε, 1 or -1: the side on which the running angle lies.
     pub side: f64,
-    /// m: the slope of the branch there.
-    pub slope: f64,
+    /// Y by the powers of s, of which the first is zero: what the branches have in common.
+    trend: Vec<f64>,
     /// (a, b, w).
     pub weights: Weights,
     /// The coefficients of G by the power of κ, each by the power of σ.
@@ -98,56 +98,89 @@ pub fn taylor(form: &BiTrig, origin: [f64; 2], axis: Axis) -> Taylor {
     all
 }
 
-/// The same by the powers of s and of e = y - m s.
-pub fn sheared(taylor: &Taylor, slope: f64) -> Taylor {
+/// The same by the powers of s and of e = y - c sⁿ, to the same degree.
+pub fn sheared(taylor: &Taylor, n: usize, c: f64) -> Taylor {
     let mut all = [[0.0; DEGREE + 1]; DEGREE + 1];
     for (p, row) in taylor.iter().enumerate() {
-        for (q, c) in row.iter().enumerate().take(DEGREE + 1 - p) {
-            // (m s + e)^q by the powers of e.
-            let mut term = *c;
+        for (q, k) in row.iter().enumerate().take(DEGREE + 1 - p) {
+            // (c sⁿ + e)^q by the powers of e.
+            let mut term = *k;
             for r in (0..=q).rev() {
-                all[p + q - r][r] += term;
-                term *= slope * r as f64 / (q + 1 - r) as f64;
+                let s = p + n * (q - r);
+                if s + r > DEGREE {
+                    break;
+                }
+                all[s][r] += term;
+                term *= c * r as f64 / (q + 1 - r) as f64;
             }
         }
     }
     all
 }
 
+/// The product of two polynomials.
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut all = vec![0.0; a.len() + b.len() - 1];
+    for (i, x) in a.iter().enumerate() {
+        for (j, y) in b.iter().enumerate() {
+            all[i + j] += x * y;
+        }
+    }
+    all
+}
+
 impl Chart {
-    /// The chart of a branch that leaves the singular point with the given slope.
+    /// The chart about a singular point of branches that have Y in common, given by the powers of s
+    /// from the first on.
     pub fn new(
         form: &BiTrig,
         origin: [f64; 2],
         axis: Axis,
-        slope: f64,
+        trend: &[f64],
         side: f64,
         weights: Weights,
     ) -> Self {
-        let Weights { run, rise, form: w } = weights;
-        let all = sheared(&taylor(form, origin, axis), slope);
-        let mut rows = vec![Vec::new(); DEGREE + 1];
-        for (i, row) in all.iter().enumerate() {
-            for (j, c) in row.iter().enumerate().take(DEGREE + 1 - i) {
-                let weight = run * i + rise * j;
-                if weight >= w && *c != 0.0 {
-                    let line: &mut Vec<f64> = &mut rows[j];
-                    line.resize(line.len().max(weight - w + 1), 0.0);
-                    line[weight - w] += if i % 2 == 1 { side * c } else { *c };
-                }
-            }
-        }
-        while rows.last().is_some_and(Vec::is_empty) {
-            rows.pop();
-        }
-        Self {
+        let mut chart = Self {
             axis,
             origin,
             side,
-            slope,
+            trend: std::iter::once(0.0).chain(trend.iter().copied()).collect(),
             weights,
-            rows,
+            rows: vec![Vec::new(); DEGREE + 1],
             rest: form.variation(DEGREE + 1),
+        };
+        let mut powers = vec![vec![1.0]];
+        for n in 0..DEGREE {
+            powers.push(product(&powers[n], &chart.trend));
+        }
+        for (p, row) in taylor(form, origin, axis).iter().enumerate() {
+            for (q, c) in row.iter().enumerate().take(DEGREE + 1 - p) {
+                // (Y + e)^q by the powers of e.
+                let mut term = *c;
+                for r in (0..=q).rev() {
+                    chart.add(term, p, &powers[q - r], r);
+                    term *= r as f64 / (q + 1 - r) as f64;
+                }
+            }
+        }
+        while chart.rows.last().is_some_and(Vec::is_empty) {
+            chart.rows.pop();
+        }
+        chart
+    }
+
+    /// Adds c sᵖ P(s) eʳ to F, as far as it weighs enough.
+    fn add(&mut self, c: f64, p: usize, polynomial: &[f64], r: usize) {
+        let Weights { run, rise, form } = self.weights;
+        for (n, k) in polynomial.iter().enumerate() {
+            let (i, value) = (p + n, c * k);
+            let weight = run * i + rise * r;
+            if weight < form || value == 0.0 {
+                continue;
+            }
+            let line = &mut self.rows[r];
+            line.resize(line.len().max(weight - form + 1), 0.0);
+            line[weight - form] += if i % 2 == 1 { self.side * value } else { value };
         }
     }
 
@@ -155,22 +188,29 @@ impl Chart {
     pub fn offsets<S: Base>(&self, sigma: Jet<S>, kappa: Jet<S>) -> [Jet<S>; 2] {
         let power = |n: usize| (1..n).fold(sigma, |p, _| p * sigma);
         let s = power(self.weights.run).scale(self.side);
-        [s, s.scale(self.slope) + power(self.weights.rise) * kappa]
+        let trend = self.trend.iter().skip(1).rev();
+        let trend = trend.fold(Jet::constant(0.0), |sum, &c| (sum + Jet::constant(c)) * s);
+        [s, trend + power(self.weights.rise) * kappa]
+    }
+
+    /// y - Y(s).
+    fn above(&self, s: f64, y: f64) -> f64 {
+        y - self.trend.iter().rev().fold(0.0, |sum, c| sum * s + c)
     }
 
     /// σ of the point with the offsets (s, y); zero beyond the chart's side.
     pub fn sigma(&self, s: f64, y: f64) -> f64 {
-        let s = s * self.side;
+        let run = s * self.side;
         match self.weights.run {
-            1 => s,
+            1 => run,
             // Where s is a square, σ has the sign of what is odd in it.
-            _ => s.max(0.0).sqrt().copysign(y - self.slope * s * self.side),
+            _ => run.max(0.0).sqrt().copysign(self.above(s, y)),
         }
     }
 
     /// κ of the point with the offsets (s, y) on the chart's side.
     pub fn kappa(&self, s: f64, y: f64) -> f64 {
-        (y - self.slope * s) / self.sigma(s, y).powi(self.weights.rise as i32)
+        self.above(s, y) / self.sigma(s, y).powi(self.weights.rise as i32)
     }
 
     /// G over κ at a fixed σ, by the powers of κ.
@@ -232,7 +272,9 @@ impl Chart {
         let Weights { run, rise, form } = self.weights;
         let n = DEGREE + 1;
         // Both offsets are at most this times σᵃ.
-        let size = (self.slope.abs() + sigma.powi((rise - run) as i32) * kappa).max(1.0);
+        let trend = self.trend.iter().skip(1).rev();
+        let trend = trend.fold(0.0, |sum, c| sum * sigma.powi(run as i32) + c.abs());
+        let size = (trend + sigma.powi((rise - run) as i32) * kappa).max(1.0);
         let power = (run * n - form) as i32;
         let value = self.rest * size.powi(n as i32);
         // A derivative takes a factor of σ away, and no more than this comes with it.
@@ -271,7 +313,7 @@ mod tests {
     fn taylor_is_the_form_next_to_the_point() {
         let (form, origin) = (form(), [0.4, 2.1]);
         for axis in [Axis::Around, Axis::Tube] {
-            let all = sheared(&taylor(&form, origin, axis), 0.8);
+            let all = sheared(&taylor(&form, origin, axis), 1, 0.8);
             let (s, e) = (0.03, -0.02);
             let mut sum = 0.0;
             for (i, row) in all.iter().enumerate() {
@@ -295,7 +337,7 @@ mod tests {
             rise: 3,
             form: 6,
         };
-        let chart = Chart::new(&form(), [0.4, 2.1], Axis::Tube, 0.8, -1.0, weights);
+        let chart = Chart::new(&form(), [0.4, 2.1], Axis::Tube, &[0.8], -1.0, weights);
         let (x, y, h) = (0.1, 0.7, 1e-5);
         let p = chart.partials(x, y);
         let by = |a: Partials<f64>, b: Partials<f64>, f: fn(Partials<f64>) -> f64| {

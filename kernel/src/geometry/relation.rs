@@ -129,6 +129,14 @@ pub enum Relation {
     Tubes,
     /// The difference of the second's size and the radius of the first's tube.
     SizeOfTube,
+    /// How far the outer (`true`) or the inner rim of a torus, the second, is from the size of the
+    /// first's tube.
+    RimOfTube(bool),
+    /// How far the second's point lies from the spine of a torus, the first.
+    OffSpine,
+    /// How far the second's axis is from running along the spine of a torus, the first, on which its
+    /// point lies.
+    AcrossSpine,
     /// How far a plane is from touching a sphere: negative where it cuts it.
     PlaneOnSphere,
     /// How far a plane along a cylinder is from touching it.
@@ -230,6 +238,20 @@ impl<N: Real> Over<N> {
     /// The distance of parallel axes, measured at the extent's centre.
     fn between_axes(&self) -> N {
         self.across(&minus(&self.foot(), &self.a.point))
+    }
+
+    /// The distance of the second's point from the first's spine.
+    fn off_spine(&self) -> N {
+        let away = self.away();
+        let (out, up) = (self.across(&away) - self.a.size.clone(), self.along(&away));
+        (out.clone() * out + up.clone() * up).sqrt()
+    }
+
+    /// The sine of the angle between the second's axis and the first's spine at the second's point.
+    fn across_spine(&self) -> N {
+        let along = cross(&self.a.direction, &self.away());
+        let d = &self.b.direction;
+        norm(&cross(&along, d)).over(norm(&along) * norm(d))
     }
 
     /// The sine and the cosine of a cone's half angle.
@@ -367,6 +389,15 @@ impl<N: Real> Over<N> {
             Relation::OffLine => self.off_line(),
             Relation::Tubes => a.tube.clone() - b.tube.clone(),
             Relation::SizeOfTube => b.size.clone() - a.tube.clone(),
+            Relation::RimOfTube(outer) => {
+                let rim = match outer {
+                    true => b.size.clone() + b.tube.clone(),
+                    false => b.size.clone() - b.tube.clone(),
+                };
+                rim - a.tube.clone()
+            }
+            Relation::OffSpine => self.off_spine(),
+            Relation::AcrossSpine => self.across_spine() * self.radius.clone(),
             Relation::PlaneOnSphere => self.along(&self.away()).abs() - b.size.clone(),
             Relation::PlaneOnCylinder => {
                 self.along(&minus(&self.foot(), &a.point)).abs() - b.size.clone()

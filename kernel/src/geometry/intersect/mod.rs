@@ -3,6 +3,7 @@
 //! Whether two surfaces are parallel, coaxial, tangent or equal in radius is asked as a distance
 //! over the part's extent and decided by the [`Judge`]; the constructions then take the answer.
 
+mod contact;
 mod plane;
 mod quadric;
 mod rulings;
@@ -63,8 +64,8 @@ pub struct Meeting {
 /// Why an intersection is refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum IntersectionError {
-    /// The curve has a singular point that is no plain crossing.
-    #[error("two surfaces meet in a curve with a singular point beyond a plain crossing, {0}")]
+    /// The curve has a singular point of a kind that is not known.
+    #[error("two surfaces meet in a curve with a singular point of an unknown kind, {0}")]
     Toric(#[from] Unresolved),
     /// Two quadrics meet in a curve with a cusp.
     #[error("two quadrics meet in a curve with a cusp near ({:.6}, {:.6}, {:.6})", place[0], place[1], place[2])]

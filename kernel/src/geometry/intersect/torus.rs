@@ -1,20 +1,16 @@
 //! A torus and another surface: circles where they are coaxial, along a meridian, or Villarceau's;
 //! otherwise the curve through the torus's angles.
 
+use super::contact::{contacts, meridian, parallel};
 use super::{Branch, IntersectionError, Meeting, Node, nappe_parts, place, same_line};
 use crate::geometry::bitrig::BiTrig;
 use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::cut::lies_on;
-use crate::geometry::frame::Frame;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Plane, Surface, Torus};
 use crate::geometry::trace::trace;
-use crate::geometry::trigonometric::divide;
-use crate::number::interval::Interval;
-use crate::number::jet::Jet;
-use crate::number::roots::{Zeros, isolate};
-use crate::number::sign::{Judge, ROUNDING, Side};
-use nalgebra::{Point3, Vector2, Vector3};
+use crate::number::sign::{Judge, Side};
+use nalgebra::{Point3, Vector2};
 use std::f64::consts::TAU;
 
 /// Through the angles of the smaller one: on the other, far from the curve, the form is large, and
@@ -47,33 +43,20 @@ pub(super) fn torus_with(
     {
         return Ok(meeting);
     }
-    let form = form(t, other);
-    let Some(contact) = contact_meridian(t, pair, judge) else {
-        return traced(t, other, &form, judge);
-    };
-    let mut meeting = traced(t, other, &without_meridian(&form, contact), judge)?;
-    // What else lies on the contact circle is a singular point of the whole.
-    let circle = meridian(t, contact);
-    let rest = without_meridian(&form, contact);
-    let along = |phi: Interval| {
-        let p = rest.partials(Interval::point(contact), phi);
-        Jet {
-            v: p.f,
-            d: p.y,
-            dd: p.yy,
-        }
-    };
-    let breaks: Vec<f64> = (0..=8).map(|i| 0.1 + TAU * f64::from(i) / 8.0).collect();
-    if let Zeros::At { roots, .. } = isolate(&along, &breaks, rest.bound() * ROUNDING) {
-        for r in roots.iter().filter(|r| r.t < 0.1 + TAU * (1.0 - ROUNDING)) {
-            let point = Surface::Torus(*t).point(contact, r.t);
-            meeting.nodes.push(Node {
-                point,
-                on: Vec::new(),
-            });
-        }
+    let contacts = contacts(t, pair, judge);
+    let whole = form(t, other);
+    let rest = contacts.iter().fold(whole, |f, c| c.divided_out(&f));
+    let mut meeting = traced(t, other, &rest, judge)?;
+    for contact in &contacts {
+        // What else lies on the contact circle is a singular point of the whole.
+        let shared = contacts.iter().filter_map(|c| contact.crossing(c));
+        let all = contact.zeros(&rest).into_iter().chain(shared);
+        meeting.nodes.extend(all.map(|[theta, phi]| Node {
+            point: Surface::Torus(*t).point(theta, phi),
+            on: Vec::new(),
+        }));
+        meeting.add(Curve::Circle(contact.circle(t)), true, extent);
     }
-    meeting.add(Curve::Circle(circle), true, extent);
     Ok(meeting)
 }
 
@@ -202,28 +185,6 @@ fn at_pass(curve: &Curve, end: f64, passes: &[f64], judge: &Judge) -> f64 {
         .unwrap_or(end)
 }
 
-/// The circle around the axis, `up` along it, with the given radius.
-fn parallel(t: &Torus, up: f64, radius: f64) -> Curve {
-    let frame = t.frame.at(t.frame.origin + t.frame.z * up);
-    Curve::Circle(Circle { frame, radius })
-}
-
-/// The circle of the tube at the angle θ.
-fn meridian(t: &Torus, theta: f64) -> Circle {
-    let out = t.frame.x * theta.cos() + t.frame.y * theta.sin();
-    let centre = t.frame.origin + out * t.major;
-    let frame = Frame {
-        origin: centre,
-        x: out,
-        y: t.frame.z,
-        z: out.cross(&t.frame.z),
-    };
-    Circle {
-        frame,
-        radius: t.minor,
-    }
-}
-
 /// What is coaxial meets in parallel circles: points of the two profiles in a half plane.
 fn coaxial(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
     let other = pair.b.surface;
@@ -261,7 +222,7 @@ fn coaxial(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
     let mut meeting = Meeting::nothing();
     for (p, tangent) in points {
         if p.x > 0.0 {
-            meeting.add(parallel(t, p.y, p.x), tangent, pair.extent);
+            meeting.add(Curve::Circle(parallel(t, p.y, p.x)), tangent, pair.extent);
         }
     }
     Some(meeting)
@@ -363,92 +324,4 @@ fn central_plane(t: &Torus, p: &Plane, pair: &Pair<'_>, judge: &Judge) -> Option
         meeting.cross_at(t.frame.origin + up * (side * reach));
     }
     Some(meeting)
-}
-
-/// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
-/// the tube, a straight pipe or another bend that continues it.
-fn contact_meridian(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<f64> {
-    let (other, extent) = (pair.b.surface, pair.extent);
-    let f = other.frame();
-    let radii = match other {
-        Surface::Sphere(_) | Surface::Cylinder(_) => Relation::SizeOfTube,
-        Surface::Torus(_) => Relation::Tubes,
-        Surface::Plane(_) | Surface::Cone(_) => return None,
-    };
-    if !judge.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
-        return None;
-    }
-    let centre = match other {
-        Surface::Cylinder(_) => f.origin + f.z * (t.frame.origin - f.origin).dot(&f.z),
-        Surface::Torus(u) => {
-            let away = t.frame.origin - f.origin;
-            common_spine_point(t, u, &away, judge)?
-        }
-        _ => f.origin,
-    };
-    let q = t.frame.coordinates(&centre);
-    let theta = q.y.atan2(q.x);
-    let spine = Surface::Torus(Torus { minor: 0.0, ..*t });
-    if !judge.within(spine.distance(&centre)) {
-        return None;
-    }
-    let tangent = t.frame.y * theta.cos() - t.frame.x * theta.sin();
-    let along = match other {
-        Surface::Sphere(_) => tangent,
-        Surface::Cylinder(_) => f.z,
-        _ => {
-            let out = (centre - f.origin).normalize();
-            f.z.cross(&out)
-        }
-    };
-    judge
-        .within(tangent.cross(&along).norm() * extent.radius)
-        .then_some(theta)
-}
-
-/// A point of both spines, where two tori's spine circles touch.
-fn common_spine_point(
-    t: &Torus,
-    u: &Torus,
-    away: &Vector3<f64>,
-    judge: &Judge,
-) -> Option<Point3<f64>> {
-    // Touching circles: the common tangent is perpendicular to both radii, so the point lies on
-    // the line through both centres' feet; try the points of t's spine in u's plane and back.
-    let normal = t.frame.z.cross(&u.frame.z);
-    let candidates: Vec<Point3<f64>> = if judge.within(normal.norm() * t.major) {
-        let d = away - t.frame.z * t.frame.z.dot(away);
-        let dir = d.try_normalize(0.0)?;
-        [1.0, -1.0]
-            .iter()
-            .map(|s| t.frame.origin + dir * (s * t.major))
-            .collect()
-    } else {
-        // The tangent lies in both planes: along their common line; the radii are across it.
-        let line = normal.normalize();
-        let out = t.frame.z.cross(&line);
-        [1.0, -1.0]
-            .iter()
-            .map(|s| t.frame.origin + out * (s * t.major))
-            .collect()
-    };
-    let spine = Surface::Torus(Torus { minor: 0.0, ..*u });
-    candidates
-        .into_iter()
-        .find(|p| judge.within(spine.distance(p)))
-}
-
-/// The form with its double zero along θ = `theta` divided out.
-fn without_meridian(form: &BiTrig, theta: f64) -> BiTrig {
-    let (sin, cos) = theta.sin_cos();
-    let factor = [1.0, -cos, -sin];
-    let mut rest = BiTrig::zero();
-    for j in 0..5 {
-        let column = [0, 1, 2, 3, 4].map(|i| form.0[i][j]);
-        let q = divide(&column, &factor);
-        for (i, c) in q.into_iter().enumerate() {
-            rest.0[i][j] = c;
-        }
-    }
-    rest
 }

@@ -42,26 +42,60 @@ impl Cell {
 /// The cells of the first grid along each angle.
 const GRID: usize = 10;
 
-/// Where the first grid starts, so that symmetric curves do not meet its lines in special points.
-const START: f64 = 0.061_803_4;
+/// Where the first grid starts along each angle, so that symmetric curves do not meet its lines in
+/// special points, nor run through its corners.
+const START: [f64; 2] = [0.061_803_4, 0.041_421_4];
+
+/// Where the lines of the first grid lie: they are free, but for a curve that runs through a corner.
+#[derive(Clone, Copy, Debug)]
+pub struct Layout {
+    /// The size of a zone, as a part of the greatest.
+    pub shrink: f64,
+    /// How far the sides of a zone lie from its point, as parts of its size: low and high, along
+    /// both angles.
+    pub skew: [[f64; 2]; 2],
+    /// Where the lines start along each angle.
+    pub start: [f64; 2],
+}
+
+/// The sides of zones: unequal, so that a curve of a simple slope misses the corners.
+const SKEWS: [[[f64; 2]; 2]; 3] = [
+    [[0.913_7, 1.0], [0.871_3, 0.761_9]],
+    [[0.731_1, 0.653_7], [1.0, 0.941_7]],
+    [[1.0, 0.831_9], [0.537_1, 0.611_3]],
+];
+
+impl Layout {
+    /// One after the other: every skew, then with smaller zones.
+    pub fn of(attempt: usize) -> Self {
+        let n = attempt as i32;
+        let skews = SKEWS.len() as i32;
+        Self {
+            shrink: 0.5_f64.powi(n / skews),
+            skew: SKEWS[attempt % SKEWS.len()],
+            start: START.map(|s| s * f64::from(n + 1)),
+        }
+    }
+}
 
 /// The cells of the first grid, without singular points.
 pub fn plain_grid() -> Vec<Cell> {
-    let all = lines(&[], [1.0; 2]);
-    grid(&all, &all)
+    let layout = Layout::of(0);
+    let [xs, ys] = [0, 1].map(|angle| lines(angle, &[], &layout));
+    grid(&xs, &ys)
 }
 
-/// The lines of the first grid along one angle: even ones, but none through a zone, and the sides
-/// of the zones, given as (centre, size). `skew` makes the sides unequal, so that a curve of a
-/// simple slope misses the corners.
-pub fn lines(zones: &[(f64, f64)], skew: [f64; 2]) -> Vec<f64> {
+/// The lines of the first grid along one `angle`, by its index: even ones, but none through a zone,
+/// and the sides of the zones, given as (centre, size).
+pub fn lines(angle: usize, zones: &[(f64, f64)], layout: &Layout) -> Vec<f64> {
+    let (start, skew) = (layout.start[angle], layout.skew[angle]);
     let mut all: Vec<f64> = (0..GRID)
-        .map(|i| START + TAU * i as f64 / GRID as f64)
+        .map(|i| start + TAU * i as f64 / GRID as f64)
         .collect();
     all.retain(|x| zones.iter().all(|(c, size)| wrap(x - c).abs() > *size));
     for &(c, size) in zones {
         for side in [c - size * skew[0], c + size * skew[1]] {
-            let side = START + (side - START).rem_euclid(TAU);
+            let side = start + (side - start).rem_euclid(TAU);
             let same = all.iter().any(|x| wrap(x - side).abs() < size * SAME);
             let within = |(c, size): &(f64, f64)| {
                 let d = wrap(side - c);

@@ -1,8 +1,8 @@
 //! The pieces of the curve in the cells, joined to closed branches through the roots on the sides
 //! of the cells and through the singular points.
 
-use super::grid::{Cell, grid, lines};
-use super::{STEEP, Singular, Traced, Tracer, Unresolved, near};
+use super::grid::{Cell, Layout, grid, lines};
+use super::{STEEP, Singular, Traced, Tracer, Unresolved};
 use crate::geometry::bitrig::BiTrig;
 use crate::geometry::chart::Chart;
 use crate::geometry::singular::{Pass, SingularPoint};
@@ -22,6 +22,20 @@ type RootId = usize;
 struct Sides {
     roots: Vec<[f64; 2]>,
     known: HashMap<(usize, u64, u64, u64), Vec<RootId>>,
+}
+
+/// The zones along one angle, by its index, as (centre, size): those that lie over one another have
+/// their lines in common, and the size of the least.
+fn zones(points: &[SingularPoint], k: usize, shrink: f64) -> Vec<(f64, f64)> {
+    let size = |p: &SingularPoint| {
+        let over = |q: &&SingularPoint| wrap(p.angles[k] - q.angles[k]).abs() <= p.zone + q.zone;
+        let sizes = points.iter().filter(over).map(|q| q.zone);
+        sizes.fold(p.zone, f64::min)
+    };
+    points
+        .iter()
+        .map(|p| (p.angles[k], size(p) * shrink))
+        .collect()
 }
 
 /// A line's name: lines a period apart are the same.
@@ -48,19 +62,18 @@ impl Tracer<'_> {
         &self,
         torus: &Torus,
         points: &[SingularPoint],
-        shrink: f64,
-        skew: [[f64; 2]; 2],
+        layout: &Layout,
     ) -> Result<Traced, Unresolved> {
-        let zones = |k: usize| -> Vec<(f64, f64)> {
-            let zone = |p: &SingularPoint| (p.angles[k], p.zone * shrink);
-            points.iter().map(zone).collect()
-        };
-        let (xs, ys) = (lines(&zones(0), skew[0]), lines(&zones(1), skew[1]));
+        let zones = [0, 1].map(|k| zones(points, k, layout.shrink));
+        let [xs, ys] = [0, 1].map(|k| lines(k, &zones[k], layout));
         let cells = grid(&xs, &ys);
         let home = |c: &Cell| {
-            points
-                .iter()
-                .position(|p| near(&c.centre(), &p.angles, 0.9 * p.zone * shrink))
+            let centre = c.centre();
+            let holds = |k: usize, i: usize| {
+                let (at, size) = zones[k][i];
+                wrap(centre[k] - at).abs() <= 0.9 * size
+            };
+            (0..points.len()).find(|&i| holds(0, i) && holds(1, i))
         };
         let (own, free): (Vec<Cell>, Vec<Cell>) =
             cells.into_iter().partition(|c| home(c).is_some());

@@ -16,7 +16,7 @@ use super::toric::{Axis, Toric, wrap};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{Contact, Zeros, isolate};
-use grid::Cell;
+use grid::{Cell, Layout};
 
 /// A point where the curve crosses or touches itself, by its angles.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Traced {
     pub close: Vec<[f64; 2]>,
 }
 
-/// The curve has a singular point worse than a crossing, or one that cannot be told from it.
+/// The curve has a singular point of a kind that is not known, or branches too close to be told apart.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("a curve on a torus could not be resolved near the angles ({:.6}, {:.6})", angles[0], angles[1])]
 pub struct Unresolved {
@@ -195,29 +195,19 @@ pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolv
         singular: points,
         close,
     } = singular_points(&tracer)?;
-    let mut shrink = 1.0;
     let mut failed = None;
     for attempt in 0..ATTEMPTS {
-        match tracer.assemble(torus, &points, shrink, SKEWS[attempt % SKEWS.len()]) {
+        match tracer.assemble(torus, &points, &Layout::of(attempt)) {
             Ok(traced) => return Ok(Traced { close, ..traced }),
             Err(e) => failed = failed.or(Some(e)),
         }
-        shrink *= 0.5;
     }
     let angles = points.first().map_or([0.0; 2], |p| p.angles);
     Err(failed.unwrap_or(Unresolved { angles }))
 }
 
-/// How often smaller zones are tried.
-const ATTEMPTS: usize = 9;
-
-/// How far the sides of a zone lie from its point, as parts of its size: low and high, along both
-/// angles.
-const SKEWS: [[[f64; 2]; 2]; 3] = [
-    [[0.913_7, 1.0], [0.871_3, 0.761_9]],
-    [[0.731_1, 0.653_7], [1.0, 0.941_7]],
-    [[1.0, 0.831_9], [0.537_1, 0.611_3]],
-];
+/// How many layouts are tried.
+const ATTEMPTS: usize = 24;
 
 #[cfg(test)]
 mod tests {

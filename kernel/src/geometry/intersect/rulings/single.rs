@@ -2,7 +2,7 @@
 
 use super::{Rulings, apart, surface_of};
 use crate::geometry::curve::{Curve, Line};
-use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node};
+use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place};
 use crate::geometry::quartic::{Height, Quartic, Ruled, Sweep};
 use crate::geometry::surface::Surface;
 use crate::geometry::trigonometric::{Trig1, Trig2, divide, divide_half, trig1, zeros_of};
@@ -18,7 +18,9 @@ impl Rulings<'_> {
     ) -> Result<Meeting, IntersectionError> {
         let mut meeting = Meeting::nothing();
         let shared = self.shared_ruling(judge);
+        let tangent = shared.is_some_and(|u0| self.touches_along(u0, judge));
         let height = match shared {
+            Some(u0) if tangent => self.without_contact(u0),
             Some(u0) => {
                 let (linear, constant) = divide_half(&self.linear, &self.constant, u0);
                 Height::Cubic { linear, constant }
@@ -38,7 +40,7 @@ impl Rulings<'_> {
             None => self.add_single(quartic, shared, judge, &mut meeting),
         }
         if let Some(u0) = shared {
-            self.add_shared(u0, &quartic, judge, &mut meeting);
+            self.add_shared(u0, &quartic, tangent, judge, &mut meeting);
         }
         self.add_apexes(judge, &mut meeting);
         Ok(meeting)
@@ -98,6 +100,36 @@ impl Rulings<'_> {
         (w.is_finite() && on).then_some(u)
     }
 
+    /// Whether the surfaces touch all along the ruling u0 that lies on both.
+    fn touches_along(&self, u0: f64, judge: &Judge) -> bool {
+        let surface = surface_of(&self.base);
+        let Surface::Cone(cone) = self.other else {
+            return false;
+        };
+        let p = self.world(u0, 1.0);
+        let along = match &self.base {
+            Ruled::Cylinder(c) => c.frame.z,
+            Ruled::Cone(c) => (p - c.frame.origin).normalize(),
+        };
+        // Square to the ruling, in the plane of it and the axis.
+        let axis = cone.frame.z;
+        let normal = (axis - along * axis.dot(&along)).normalize();
+        let drift = surface.normal(&p).cross(&normal).norm() * self.extent.radius;
+        judge.coincide("tangent along a ruling", drift, place(&p))
+    }
+
+    /// w = -C/(2B), where both have a double zero at u0: that is of degree one.
+    fn without_contact(&self, u0: f64) -> Height {
+        let factor = [1.0, -u0.cos(), -u0.sin()];
+        let [a, b, c] = divide(&self.constant, &factor);
+        let dot = |k: &Trig1| k.iter().zip(&factor).map(|(k, f)| k * f).sum::<f64>();
+        let linear = dot(&self.linear) / dot(&factor);
+        Height::Rational {
+            linear: [linear, 0.0, 0.0],
+            constant: [a, b, c, 0.0, 0.0],
+        }
+    }
+
     /// The ranges of u over which the single point of a ruling is on the base within reach.
     fn bounded_ranges(&self, q: &Quartic, shared: Option<f64>, reach: f64) -> Vec<[f64; 2]> {
         // |w| = reach, w = 1/reach and the poles, as signs of N - x D with w = N/D.
@@ -153,7 +185,14 @@ impl Rulings<'_> {
     }
 
     /// The ruling common to both surfaces, with the point where the rest of the curve crosses it.
-    fn add_shared(&self, u0: f64, q: &Quartic, judge: &Judge, meeting: &mut Meeting) {
+    fn add_shared(
+        &self,
+        u0: f64,
+        q: &Quartic,
+        tangent: bool,
+        judge: &Judge,
+        meeting: &mut Meeting,
+    ) {
         let surface = surface_of(&self.base);
         let frame = surface.frame();
         let (origin, direction) = match &self.base {
@@ -180,7 +219,7 @@ impl Rulings<'_> {
                 curve: curve.clone(),
                 range,
                 closed: false,
-                tangent: false,
+                tangent,
             };
             meeting.branches.push(branch);
         }

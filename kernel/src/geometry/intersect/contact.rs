@@ -1,0 +1,222 @@
+//! The circles along which a torus and another surface touch: a tube's meridian, where a sphere in
+//! the tube, a straight pipe, another bend or a ring in or around the tube does, and the ring's rim.
+//!
+//! The other surface as a function of the torus's angles has a double zero along each, which is
+//! divided out before what is left is traced.
+
+use super::place;
+use crate::geometry::bitrig::BiTrig;
+use crate::geometry::curve::Circle;
+use crate::geometry::frame::Frame;
+use crate::geometry::relation::{Pair, Relation};
+use crate::geometry::surface::{Surface, Torus};
+use crate::geometry::trigonometric::divide;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Zeros, isolate};
+use crate::number::sign::{Judge, ROUNDING};
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::{PI, TAU};
+
+/// A circle of a torus along which another surface touches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Contact {
+    /// Round the tube, at this θ.
+    Meridian(f64),
+    /// The outer or the inner rim, at this φ.
+    Rim(f64),
+}
+
+impl Contact {
+    /// The circle.
+    pub fn circle(&self, t: &Torus) -> Circle {
+        match *self {
+            Self::Meridian(theta) => meridian(t, theta),
+            Self::Rim(phi) => parallel(t, 0.0, t.major + t.minor * phi.cos()),
+        }
+    }
+
+    /// The form with its double zero along the circle divided out.
+    pub fn divided_out(&self, form: &BiTrig) -> BiTrig {
+        let (Self::Meridian(angle) | Self::Rim(angle)) = *self;
+        let (sin, cos) = angle.sin_cos();
+        let factor = [1.0, -cos, -sin];
+        let mut rest = BiTrig::zero();
+        for j in 0..5 {
+            let entry = |i: usize| match self {
+                Self::Meridian(_) => [i, j],
+                Self::Rim(_) => [j, i],
+            };
+            let column = [0, 1, 2, 3, 4].map(entry).map(|[m, n]| form.0[m][n]);
+            for (i, c) in divide(&column, &factor).into_iter().enumerate() {
+                let [m, n] = entry(i);
+                rest.0[m][n] = c;
+            }
+        }
+        rest
+    }
+
+    /// The angles (θ, φ) of the circle's points at which a form vanishes.
+    pub fn zeros(&self, form: &BiTrig) -> Vec<[f64; 2]> {
+        let along = |x: Interval| match *self {
+            Self::Meridian(theta) => {
+                let p = form.partials(Interval::point(theta), x);
+                Jet {
+                    v: p.f,
+                    d: p.y,
+                    dd: p.yy,
+                }
+            }
+            Self::Rim(phi) => {
+                let p = form.partials(x, Interval::point(phi));
+                Jet {
+                    v: p.f,
+                    d: p.x,
+                    dd: p.xx,
+                }
+            }
+        };
+        let breaks: Vec<f64> = (0..=8).map(|i| 0.1 + TAU * f64::from(i) / 8.0).collect();
+        let Zeros::At { roots, .. } = isolate(&along, &breaks, form.bound() * ROUNDING) else {
+            return Vec::new();
+        };
+        let once = roots.iter().filter(|r| r.t < 0.1 + TAU * (1.0 - ROUNDING));
+        let angles = |t: f64| match *self {
+            Self::Meridian(theta) => [theta, t],
+            Self::Rim(phi) => [t, phi],
+        };
+        once.map(|r| angles(r.t)).collect()
+    }
+
+    /// The angles of the point in which a meridian crosses a rim.
+    pub fn crossing(&self, other: &Self) -> Option<[f64; 2]> {
+        match (*self, *other) {
+            (Self::Meridian(theta), Self::Rim(phi)) => Some([theta, phi]),
+            _ => None,
+        }
+    }
+}
+
+/// The circle around the axis, `up` along it, with the given radius.
+pub(super) fn parallel(t: &Torus, up: f64, radius: f64) -> Circle {
+    let frame = t.frame.at(t.frame.origin + t.frame.z * up);
+    Circle { frame, radius }
+}
+
+/// The circle of the tube at the angle θ.
+pub(super) fn meridian(t: &Torus, theta: f64) -> Circle {
+    let out = t.frame.x * theta.cos() + t.frame.y * theta.sin();
+    let centre = t.frame.origin + out * t.major;
+    let frame = Frame {
+        origin: centre,
+        x: out,
+        y: t.frame.z,
+        z: out.cross(&t.frame.z),
+    };
+    Circle {
+        frame,
+        radius: t.minor,
+    }
+}
+
+/// All circles of a torus, the pair's first, along which the other surface touches it.
+pub(super) fn contacts(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Vec<Contact> {
+    let mut all = Vec::new();
+    all.extend(equal_tubes(t, pair, judge).map(Contact::Meridian));
+    if let Surface::Torus(o) = pair.b.surface {
+        if ring_on_tube(pair, judge).is_some() {
+            let q = t.frame.coordinates(&o.frame.origin);
+            all.push(Contact::Meridian(q.y.atan2(q.x)));
+        }
+        if let Some(outer) = ring_on_tube(&pair.turned(), judge) {
+            all.push(Contact::Rim(if outer { 0.0 } else { PI }));
+        }
+    }
+    all
+}
+
+/// Whether a torus, the second, touches the tube of the first with its outer (`true`) or its inner
+/// rim all round.
+fn ring_on_tube(pair: &Pair<'_>, judge: &Judge) -> Option<bool> {
+    let at = place(&pair.b.surface.frame().origin);
+    let coincide = |question, relation| judge.coincide(question, pair.how(relation), at);
+    let outer = [true, false].into_iter();
+    let mut outer = outer.filter(|&o| coincide("rim on tube", Relation::RimOfTube(o)));
+    let outer = outer.next()?;
+    let on = coincide("centre on spine", Relation::OffSpine)
+        && coincide("axis along spine", Relation::AcrossSpine);
+    on.then_some(outer)
+}
+
+/// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
+/// the tube, a straight pipe or another bend that continues it.
+fn equal_tubes(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<f64> {
+    let (other, extent) = (pair.b.surface, pair.extent);
+    let f = other.frame();
+    let radii = match other {
+        Surface::Sphere(_) | Surface::Cylinder(_) => Relation::SizeOfTube,
+        Surface::Torus(_) => Relation::Tubes,
+        Surface::Plane(_) | Surface::Cone(_) => return None,
+    };
+    if !judge.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
+        return None;
+    }
+    let centre = match other {
+        Surface::Cylinder(_) => f.origin + f.z * (t.frame.origin - f.origin).dot(&f.z),
+        Surface::Torus(u) => {
+            let away = t.frame.origin - f.origin;
+            common_spine_point(t, u, &away, judge)?
+        }
+        _ => f.origin,
+    };
+    let q = t.frame.coordinates(&centre);
+    let theta = q.y.atan2(q.x);
+    let spine = Surface::Torus(Torus { minor: 0.0, ..*t });
+    if !judge.within(spine.distance(&centre)) {
+        return None;
+    }
+    let tangent = t.frame.y * theta.cos() - t.frame.x * theta.sin();
+    let along = match other {
+        Surface::Sphere(_) => tangent,
+        Surface::Cylinder(_) => f.z,
+        _ => {
+            let out = (centre - f.origin).normalize();
+            f.z.cross(&out)
+        }
+    };
+    judge
+        .within(tangent.cross(&along).norm() * extent.radius)
+        .then_some(theta)
+}
+
+/// A point of both spines, where two tori's spine circles touch.
+fn common_spine_point(
+    t: &Torus,
+    u: &Torus,
+    away: &Vector3<f64>,
+    judge: &Judge,
+) -> Option<Point3<f64>> {
+    // Touching circles: the common tangent is perpendicular to both radii, so the point lies on
+    // the line through both centres' feet; try the points of t's spine in u's plane and back.
+    let normal = t.frame.z.cross(&u.frame.z);
+    let candidates: Vec<Point3<f64>> = if judge.within(normal.norm() * t.major) {
+        let d = away - t.frame.z * t.frame.z.dot(away);
+        let dir = d.try_normalize(0.0)?;
+        [1.0, -1.0]
+            .iter()
+            .map(|s| t.frame.origin + dir * (s * t.major))
+            .collect()
+    } else {
+        // The tangent lies in both planes: along their common line; the radii are across it.
+        let line = normal.normalize();
+        let out = t.frame.z.cross(&line);
+        [1.0, -1.0]
+            .iter()
+            .map(|s| t.frame.origin + out * (s * t.major))
+            .collect()
+    };
+    let spine = Surface::Torus(Torus { minor: 0.0, ..*u });
+    candidates
+        .into_iter()
+        .find(|p| judge.within(spine.distance(p)))
+}

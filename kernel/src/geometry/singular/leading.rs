@@ -1,0 +1,345 @@
+//! The branches through a singular point, by the leading terms of F there (Arnold, Gusein-Zade and
+//! Varchenko, Singularities of Differentiable Maps I, 1985).
+//!
+//! Notation: s and y are the offsets of the running and of the other angle, F = Σ k_ij sⁱ yʲ.
+//!
+//! - Where all terms of a degree below n vanish, the leading form is that of degree n. Where its
+//!   real roots are simple, a smooth branch leaves in the direction of each: two for a node (A1),
+//!   one or three for D4, up to four for X9, none where the point stands alone.
+//! - Where the Hessian has rank one, F bends across one direction only. Along the curve y = Y(s) on
+//!   which F_y vanishes F is h(s), and F = k₀₂ (y - Y)² + h_k sᵏ to the least order: A_(k-1). For an
+//!   odd k a cusp, for an even one two branches that touch, or a single point.
+//!
+//! What vanishes is what stays within the band as far as the leading terms do. In the coordinates
+//! of a [`Chart`] these are G(0, κ), and the zone of the point is as far as G and G_κ are nowhere
+//! zero both: then every zero of G belongs to a branch that runs on to σ = 0.
+
+use super::{Pass, SingularPoint, ZONE};
+use crate::geometry::bitrig::{BiTrig, Partials};
+use crate::geometry::chart::{Chart, DEGREE, Taylor, Weights, sheared, taylor};
+use crate::geometry::toric::Axis;
+use crate::geometry::trace::{DEPTH, Tracer, near};
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Contact, Zeros, isolate};
+use crate::number::scalar::Scalar;
+use crate::number::sign::ROUNDING;
+use std::f64::consts::PI;
+
+/// The orders of forms whose roots are told.
+const FORMS: [usize; 2] = [3, 4];
+/// The orders k to which F may vanish along the curve Y: beyond, the band is too wide.
+const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
+/// How far the leading terms lie above what is neglected where they leave the band.
+const LEAD: f64 = 4.0;
+/// Newton's steps towards a degenerate point.
+const STEPS: usize = 12;
+
+/// A critical point with a Hessian of rank two; none where no zone is plain.
+pub(super) fn plain(form: &BiTrig, angles: [f64; 2]) -> Option<SingularPoint> {
+    let at = form.partials(angles[0], angles[1]);
+    let crosses = at.xx * at.yy < at.xy * at.xy;
+    let directions = if crosses {
+        tangents(&at).into()
+    } else {
+        Vec::new()
+    };
+    fold(form, angles, 2, directions)
+}
+
+/// The degenerate point next to `start`, and how far from it F is within the band.
+pub(super) fn degenerate(tracer: &Tracer<'_>, start: [f64; 2]) -> Option<(SingularPoint, f64)> {
+    let flat = || ORDERS.into_iter().find_map(|k| rank_one(tracer, start, k));
+    let crossing = || FORMS.into_iter().find_map(|n| multiple(tracer, start, n));
+    flat().or_else(crossing)
+}
+
+/// The directions in which an indefinite quadratic form vanishes.
+fn tangents(at: &Partials<f64>) -> [[f64; 2]; 2] {
+    let root = (at.xy * at.xy - at.xx * at.yy).max(0.0).sqrt();
+    // a x² + 2 b x y + c y² = 0, in the form that does not cancel.
+    let q = if at.xy >= 0.0 {
+        -at.xy - root
+    } else {
+        -at.xy + root
+    };
+    if q == 0.0 {
+        return [[1.0, 0.0], [0.0, 1.0]];
+    }
+    [[q, at.xx], [at.yy, q]]
+}
+
+/// The point at which all terms of a degree below n vanish, next to `start`.
+fn multiple(tracer: &Tracer<'_>, start: [f64; 2], n: usize) -> Option<(SingularPoint, f64)> {
+    let mut p = start;
+    for _ in 0..STEPS {
+        let k = taylor(tracer.form, p, Axis::Around);
+        let step = toward_multiple(&k, n)?;
+        p = [p[0] + step[0], p[1] + step[1]];
+        if !near(&p, &start, ZONE) {
+            return None;
+        }
+    }
+    let k = taylor(tracer.form, p, Axis::Around);
+    let size = |d: usize| (0..=d).map(|j| k[d - j][j].abs()).sum::<f64>();
+    let reach = (tracer.band / size(n)).powf(1.0 / n as f64);
+    let vanishes = (0..n).all(|d| size(d) * reach.powi(d as i32) <= tracer.band);
+    let leads = reach < ZONE && LEAD * size(n + 1) * reach <= size(n);
+    if !(vanishes && leads) {
+        return None;
+    }
+    let directions = roots_of_form(&k, n)?;
+    let point = fold(tracer.form, p, n, directions)?;
+    Some((point, reach))
+}
+
+/// Gauss and Newton's step towards the point at which the terms of degree n - 1 vanish.
+fn toward_multiple(k: &Taylor, n: usize) -> Option<[f64; 2]> {
+    let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+    let mut right = [0.0; 2];
+    for j in 0..n {
+        let i = n - 1 - j;
+        let by = [(i + 1) as f64 * k[i + 1][j], (j + 1) as f64 * k[i][j + 1]];
+        a += by[0] * by[0];
+        b += by[0] * by[1];
+        c += by[1] * by[1];
+        right[0] -= by[0] * k[i][j];
+        right[1] -= by[1] * k[i][j];
+    }
+    let det = a * c - b * b;
+    let step = [
+        (right[0] * c - right[1] * b) / det,
+        (right[1] * a - right[0] * b) / det,
+    ];
+    step.iter().all(|s| s.is_finite()).then_some(step)
+}
+
+/// The directions in which the terms of degree n vanish; none where two are one.
+fn roots_of_form(k: &Taylor, n: usize) -> Option<Vec<[f64; 2]>> {
+    let form = |angle: Interval| {
+        let turn = Jet {
+            v: angle,
+            d: Interval::point(1.0),
+            dd: Interval::point(0.0),
+        };
+        let (sin, cos) = turn.sin_cos();
+        // Horner's scheme, homogeneous.
+        let mut power = Jet::constant(1.0);
+        let mut sum = Jet::constant(0.0);
+        for i in 0..=n {
+            sum = sum * sin + power.scale(k[i][n - i]);
+            power = power * cos;
+        }
+        sum
+    };
+    let size: f64 = (0..=n).map(|j| k[n - j][j].abs()).sum();
+    // Half a turn, from where no simple slope is.
+    let [from, to] = [ZONE, ZONE + PI];
+    let Zeros::At { roots, .. } = isolate(&form, &[from, to], size * ROUNDING) else {
+        return None;
+    };
+    let simple = roots.iter().all(|r| r.contact == Contact::Simple);
+    let direction = |t: f64| {
+        let (sin, cos) = t.sin_cos();
+        [cos, sin]
+    };
+    simple.then(|| roots.iter().map(|r| direction(r.t)).collect())
+}
+
+/// A point at which branches of different directions cross; none where no zone is plain.
+fn fold(
+    form: &BiTrig,
+    angles: [f64; 2],
+    n: usize,
+    directions: Vec<[f64; 2]>,
+) -> Option<SingularPoint> {
+    let weights = Weights {
+        run: 1,
+        rise: 1,
+        form: n,
+    };
+    let chart = |axis| Chart::new(form, angles, axis, &[], 1.0, weights);
+    let charts = [Axis::Around, Axis::Tube].map(chart);
+    let zone = zone(|zone| charts.iter().all(|c| is_plain(c, zone, 1.0)))?;
+    let pass = |[x, y]: [f64; 2]| {
+        let steep = y.abs() > x.abs();
+        Pass {
+            chart: charts[usize::from(steep)].clone(),
+            kappa: if steep { x / y } else { y / x },
+        }
+    };
+    Some(SingularPoint {
+        angles,
+        passes: directions.into_iter().map(pass).collect(),
+        zone,
+    })
+}
+
+/// The greatest zone of which something holds.
+fn zone(holds: impl Fn(f64) -> bool) -> Option<f64> {
+    let zones = (0..DEPTH as i32).map(|n| ZONE * 0.5_f64.powi(n));
+    zones.into_iter().find(|&z| holds(z))
+}
+
+/// How often the range of κ is halved to find G and G_κ apart from zero.
+const HALVINGS: u32 = 24;
+
+/// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
+fn is_plain(chart: &Chart, sigma: f64, kappa: f64) -> bool {
+    let run = Interval::new(-sigma, sigma);
+    let mut stack = vec![(Interval::new(-kappa, kappa), 0)];
+    while let Some((k, depth)) = stack.pop() {
+        let g = chart.partials_over(run, k);
+        if !(g.f.has_zero() && g.y.has_zero()) {
+            continue;
+        }
+        if depth >= HALVINGS {
+            return false;
+        }
+        let middle = k.mid();
+        stack.push((Interval::new(k.lo, middle), depth + 1));
+        stack.push((Interval::new(middle, k.hi), depth + 1));
+    }
+    true
+}
+
+/// F next to a point at which it bends along the other angle more than along the running one.
+struct Sheet {
+    axis: Axis,
+    /// Y by the powers of s.
+    trend: Vec<f64>,
+    /// k₀₂ of F by the powers of s and y - Y(s).
+    bend: f64,
+    /// h by the powers of s.
+    along: Vec<f64>,
+}
+
+impl Sheet {
+    /// The sheet at a point next to which F_y vanishes; none where it nowhere does.
+    fn at(form: &BiTrig, p: [f64; 2]) -> Self {
+        let at = form.partials(p[0], p[1]);
+        let axis = match at.yy.abs() >= at.xx.abs() {
+            true => Axis::Around,
+            false => Axis::Tube,
+        };
+        let mut k = taylor(form, p, axis);
+        let bend = k[0][2];
+        let mut trend = vec![0.0; DEGREE];
+        // Each power of s is left in F_y by one term, which the shear by its own takes away.
+        for (i, y) in trend.iter_mut().enumerate().skip(1) {
+            let c = -0.5 * k[i][1] / bend;
+            k = sheared(&k, i, c);
+            *y = c;
+        }
+        let along = k.iter().map(|row| row[0]).collect();
+        Self {
+            axis,
+            trend,
+            bend,
+            along,
+        }
+    }
+}
+
+/// The point of rank one next to `start` at which F vanishes to the order k along Y.
+fn rank_one(tracer: &Tracer<'_>, start: [f64; 2], k: usize) -> Option<(SingularPoint, f64)> {
+    let (form, band) = (tracer.form, tracer.band);
+    let mut p = start;
+    for _ in 0..STEPS {
+        let sheet = Sheet::at(form, p);
+        let at = form.partials(p[0], p[1]);
+        let across = match sheet.axis {
+            Axis::Around => at.y,
+            Axis::Tube => at.x,
+        };
+        let s = -sheet.along[k - 1] / (k as f64 * sheet.along[k]);
+        let y = -0.5 * across / sheet.bend + sheet.trend[1] * s;
+        let step = match sheet.axis {
+            Axis::Around => [s, y],
+            Axis::Tube => [y, s],
+        };
+        p = [p[0] + step[0], p[1] + step[1]];
+        if !near(&p, &start, ZONE) {
+            return None;
+        }
+    }
+    let sheet = Sheet::at(form, p);
+    let last = sheet.along[k].abs();
+    // Where the leading term leaves the band.
+    let reach = (band / last).powf(1.0 / k as f64);
+    let vanishes = (0..k).all(|j| sheet.along[j].abs() * reach.powi(j as i32) <= band);
+    let leads = sheet.bend.abs() * reach * reach >= 2.0 * LEAD * band
+        && reach < ZONE
+        && LEAD * sheet.along[k + 1].abs() * reach <= last;
+    if !(vanishes && leads) {
+        return None;
+    }
+    Some((rank_one_branches(form, p, &sheet, k)?, reach))
+}
+
+/// The branches through a point of rank one; none where no zone is plain.
+fn rank_one_branches(
+    form: &BiTrig,
+    angles: [f64; 2],
+    sheet: &Sheet,
+    k: usize,
+) -> Option<SingularPoint> {
+    let odd = k % 2 == 1;
+    let weights = match odd {
+        true => Weights {
+            run: 2,
+            rise: k,
+            form: 2 * k,
+        },
+        false => Weights {
+            run: 1,
+            rise: k / 2,
+            form: k,
+        },
+    };
+    let ratio = sheet.along[k] / sheet.bend;
+    let kappa = ratio.abs().sqrt();
+    // Y as far as its terms weigh no more than κ.
+    let trend = &sheet.trend[1..=k / 2];
+    let chart = |side: f64| Chart::new(form, angles, sheet.axis, trend, side, weights);
+    // A cusp lies where the second term has the other sign, and two branches do on both sides.
+    let side = if odd { -ratio.signum() } else { 1.0 };
+    let own = chart(side);
+    let other = odd.then(|| chart(-side));
+    let across = usize::from(sheet.axis == Axis::Around);
+    let bend = form.derivative(across).derivative(across);
+    let zone = zone(|zone| {
+        let [x, y] = angles.map(|c| Interval::around(c, zone));
+        let sigma = if odd { zone.sqrt() } else { zone };
+        let holds = |c: &Chart| holds_both(c, sigma, 2.0 * kappa);
+        !bend.value(x, y).has_zero() && holds(&own) && other.iter().all(holds)
+    })?;
+    let kappas = match (odd, ratio < 0.0) {
+        (true, _) => vec![kappa],
+        (false, true) => vec![-kappa, kappa],
+        (false, false) => Vec::new(),
+    };
+    let pass = |kappa| Pass {
+        chart: own.clone(),
+        kappa,
+    };
+    Some(SingularPoint {
+        angles,
+        passes: kappas.into_iter().map(pass).collect(),
+        zone,
+    })
+}
+
+/// Whether all that a function of one bend has of zeros over |σ| lies at less than |κ|, each on a
+/// branch through the point.
+fn holds_both(chart: &Chart, sigma: f64, kappa: f64) -> bool {
+    let run = Interval::new(-sigma, sigma);
+    let [low, high] = [-kappa, kappa].map(|k| chart.partials_over(run, Interval::point(k)));
+    let outside = |g: &Partials<Interval>| !g.f.has_zero() && !g.y.has_zero();
+    outside(&low)
+        && outside(&high)
+        && (low.y.hi < 0.0) != (high.y.hi < 0.0)
+        && (low.f.hi < 0.0) == (high.f.hi < 0.0)
+        && (high.f.hi < 0.0) == (high.y.hi < 0.0)
+        && is_plain(chart, sigma, kappa)
+}

@@ -5,6 +5,7 @@
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::brep::check::check;
+use premio_tests::random::tree;
 
 /// A pair in PADL, `D` apart, and the number of its solids where it is apart, touches, overlaps.
 type Family = (&'static str, &'static str, [usize; 3]);
@@ -69,4 +70,22 @@ fn near_misses_are_close_calls_on_either_side() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Random trees in which nothing is near, with what seems to be.
+const CLEAR: [(u64, &str); 3] = [
+    (22960, "a curve that leaves a plane with the fourth power"),
+    (26981, "a curve next to the ruling along which it touches"),
+    (27750, "a curve that touches a ruling"),
+];
+
+#[test]
+fn what_leads_on_to_a_contact_is_no_close_call() {
+    for (seed, what) in CLEAR {
+        let text = tree(seed).to_string();
+        let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+        let part = evaluate(&read.unwrap().tree, &EvaluationOptions::default()).unwrap();
+        let calls = &part.decisions.close_calls;
+        assert!(calls.is_empty(), "seed {seed}, {what}: {calls:?}");
+    }
 }

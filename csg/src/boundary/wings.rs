@@ -102,6 +102,7 @@ pub(super) fn boundary(concern: &Concern<'_>) -> Result<RawBoundary, EvaluationE
     let point = |c: &Corner| RawPoint {
         place: c.point,
         surfaces: c.carriers.clone(),
+        nodes: c.nodes.clone(),
     };
     Ok(RawBoundary {
         edges: joined.into_iter().map(raw).collect(),

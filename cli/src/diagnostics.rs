@@ -100,6 +100,7 @@ pub fn close_calls(name: &str, resolution: f64, calls: &[CloseCall]) -> String {
         question,
         place: [x, y, z],
         distance,
+        ..
     } in calls.iter().take(LISTED)
     {
         let distance = distance.abs();

@@ -5,6 +5,8 @@
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::brep::check::check;
+use premio_kernel::number::sign::CloseCall;
+use premio_tests::random::tree;
 
 /// A pair in PADL, `D` apart, and the number of its solids where it is apart, touches, overlaps.
 type Family = (&'static str, &'static str, [usize; 3]);
@@ -69,4 +71,113 @@ fn near_misses_are_close_calls_on_either_side() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Random trees in which nothing of the boundary is near, with what seems to be.
+const CLEAR: [(u64, &str); 21] = [
+    (22960, "a curve that leaves a plane with the fourth power"),
+    (26981, "a curve next to the ruling along which it touches"),
+    (27750, "a curve that touches a ruling"),
+    (
+        21101,
+        "a rim on the circle along which a torus touches its disc, taken away",
+    ),
+    (
+        22334,
+        "a rim on the ruling along which a cylinder touches it, within others",
+    ),
+    (
+        22594,
+        "a face on the ruling along which a cylinder touches it, one of them covered",
+    ),
+    (22793, "a torus on a disc, where two others hold both"),
+    (23364, "a torus on the plane of a face beyond the face"),
+    (
+        23531,
+        "a torus on a disc next to another disc's plane, all covered",
+    ),
+    (
+        25153,
+        "a torus on a wedge, next to another torus, within others",
+    ),
+    (26149, "a face next to the rim of a frustum that is covered"),
+    (26229, "a torus on the planes of two faces beyond them"),
+    (26393, "a torus on a disc that is taken away"),
+    (
+        27670,
+        "a sphere on the plane of a wedge that lies elsewhere",
+    ),
+    (11615, "a torus on the plane of a block beyond its face"),
+    (12973, "a torus on the face of a wedge that is taken away"),
+    (10662, "a torus on the plane of a wedge beyond its face"),
+    (8228, "a torus on a wedge's edge, taken away"),
+    (9448, "a torus on the plane of a block beyond its face"),
+    (
+        26380,
+        "short edges beside a disc that they leave where a torus touches it",
+    ),
+    (
+        9188,
+        "short edges beside a torus that they leave where a disc touches it",
+    ),
+];
+
+/// The close calls of a random tree.
+fn calls(seed: u64) -> Vec<CloseCall> {
+    let text = tree(seed).to_string();
+    let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+    let part = evaluate(&read.unwrap().tree, &EvaluationOptions::default()).unwrap();
+    part.decisions.close_calls
+}
+
+#[test]
+fn what_cannot_change_the_boundary_is_no_close_call() {
+    for (seed, what) in CLEAR {
+        let calls = calls(seed);
+        assert!(calls.is_empty(), "seed {seed}, {what}: {calls:?}");
+    }
+}
+
+/// Two tori touch at a point from above and below. A sphere passes by it 1.3e-4 away: its edge on
+/// one torus runs above the other by the gap between them there.
+#[test]
+fn a_gap_that_narrows_towards_a_touch_is_a_close_call() {
+    let calls = calls(21819);
+    let [call] = calls.as_slice() else {
+        panic!("{calls:?}")
+    };
+    assert!((call.distance - 5.370_408_9e-9).abs() < 1e-15, "{call:?}");
+}
+
+#[test]
+fn a_near_miss_counts_where_both_have_faces() {
+    let block = "BLO(X=4,Y=4,Z=2)";
+    let ball = |x: &str, y: &str, r: &str, z: &str| {
+        format!("{block} UN (SPH(R={r}) AT (MOVX={x},MOVY={y},MOVZ={z}+D))")
+    };
+    let cover = "(BLO(X=1.6,Y=1.6,Z=1.5) AT (MOVX=1.2,MOVY=1.2,MOVZ=1.3))";
+    let slot = "(BLO(X=0.1,Y=4,Z=5) AT (MOVX=1.95))";
+    let on_top = ball("2", "2", "1", "3");
+    #[rustfmt::skip]
+    let parts = [
+        (on_top.clone(), true),
+        // Above the plane of the face, but not above the face.
+        (ball("4.8", "4.8", "1.5", "3.5"), false),
+        // Covered, taken away, all that is left, cut out.
+        (format!("({on_top}) UN {cover}"), false),
+        (format!("({on_top}) DIF {cover}"), false),
+        (format!("({on_top}) INT {cover}"), true),
+        (format!("({on_top}) DIF {slot}"), false),
+        // Above the plane 2e-5 beyond the edge, which is 2e-10 further away.
+        (ball("4.00002", "2", "1", "3"), true),
+        // The same beyond a corner, and far enough away.
+        (ball("4.00002", "4.00002", "1", "3"), true),
+        (ball("4.001", "2", "1", "3"), false),
+    ];
+    for (pair, told) in parts {
+        for gap in ["0.000000001", "-0.000000001"] {
+            let calls = part(&pair, gap).decisions.close_calls;
+            assert_eq!(calls.is_empty(), !told, "{pair} at {gap}: {calls:?}");
+        }
+    }
 }

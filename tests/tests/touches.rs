@@ -135,3 +135,23 @@ proptest! {
         }
     }
 }
+
+/// Two tori touch at (3, 0, 0). The bottom of a cylinder that ends beside it passes by in a plane
+/// five resolutions above: its plane meets both tori in one point, which is none of the boundary.
+#[test]
+fn what_lies_next_to_a_touch_is_no_other() {
+    let torus =
+        |x: f64| json!({"prim": "torus", "R": 2, "r": 1, "transform": [{"translate": [x, 0, 0]}]});
+    let cylinder = json!({"prim": "cylinder", "r": 0.5, "h": 0.1,
+        "transform": [{"translate": [3.4, 0.4, 7e-10]}]});
+    let all = json!({"op": "union", "children": [torus(0.0), torus(6.0), cylinder]});
+    let text = all.to_string();
+    let read = read("part", text.as_bytes(), Format::Json, &Options::default());
+    let part = evaluate(&read.unwrap().tree, &EvaluationOptions::default()).unwrap();
+    let places = &part.brep.geometry.touches;
+    let [place] = places.as_slice() else {
+        panic!("{places:?}")
+    };
+    assert!((place - Point3::new(3.0, 0.0, 0.0)).norm() < part.resolution);
+    assert!(part.decisions.close_calls.is_empty());
+}

@@ -5,8 +5,9 @@
 
 use super::EvaluationError;
 use super::carriers::{Merged, Source, merge};
+use super::concern::{Between, Unlisted};
 use super::corners::{Corner, Corners};
-use super::cuts::CLOSE_PASS;
+use super::cuts::{CLOSE_PASS, Later};
 use super::halfspaces::Solids;
 use crate::tree::Tree;
 use premio_kernel::brep::topology::Sense;
@@ -64,6 +65,8 @@ pub(super) struct Arrangement {
     pub meetings: Vec<Meeting>,
     /// The corners.
     pub corners: Vec<Corner>,
+    /// The close calls of which it is not yet known whether they concern the boundary.
+    pub calls: Vec<Unlisted>,
     /// The solids' boxes.
     pub tree: SolidTree,
 }
@@ -91,21 +94,24 @@ pub(super) fn arrange(
         sides,
         meetings: Vec::new(),
         corners: Vec::new(),
+        calls: Vec::new(),
         tree,
     };
     let mut corners = Corners::new(judge.band());
     for (pair, supports) in found.pairs(solids, reach) {
         found.add_pair(pair, &supports, &sources, extent, judge, &mut corners)?;
     }
-    let mut wide = Vec::new();
+    let mut later = Later::default();
     for i in 0..found.meetings.len() {
-        found.cut_meeting(i, solids, judge, &mut corners, &mut wide);
+        found.cut_meeting(i, solids, judge, &mut corners, &mut later);
     }
+    found.calls.append(&mut later.calls);
     // The best known first: the others are put where they are.
-    wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
-    for w in &wide {
+    later.wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+    for w in &later.wide {
         found.place_wide(w, judge, &mut corners);
     }
+    found.calls.append(&mut corners.calls);
     found.corners = corners.all;
     found.share_corners(judge);
     for m in &mut found.meetings {
@@ -161,7 +167,14 @@ impl Arrangement {
     ) -> Result<(), EvaluationError> {
         let exact = [a, b].map(|c| move || sources[c].exact());
         let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
-        let met = meet(carrier(a, 0), carrier(b, 1), extent, judge)?;
+        let own = judge.another();
+        let met = meet(carrier(a, 0), carrier(b, 1), extent, &own)?;
+        for call in judge.take(own) {
+            match call.local {
+                true => self.calls.push((call, Between::Carriers([a, b]))),
+                false => judge.list(call),
+            }
+        }
         let mut kept: Vec<Vec<usize>> = Vec::new();
         for branch in &met.branches {
             kept.push(self.add_branch(a, b, branch, supports, judge));

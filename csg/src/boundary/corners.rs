@@ -1,7 +1,8 @@
 //! The corners: points where curves are cut, equal ones made one.
 
+use super::concern::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Side};
 use std::collections::HashMap;
 
 /// A point where a curve is cut.
@@ -11,12 +12,24 @@ pub(super) struct Corner {
     pub point: Point3<f64>,
     /// The carriers through it, in order.
     pub carriers: Vec<usize>,
+    /// The pairs of carriers that have it by themselves: where they touch, where their curve
+    /// crosses itself, an apex.
+    pub nodes: Vec<[usize; 2]>,
+}
+
+impl Corner {
+    /// Whether a carrier passes through it.
+    pub fn is_on(&self, carrier: usize) -> bool {
+        self.carriers.binary_search(&carrier).is_ok()
+    }
 }
 
 /// Corners by place, so that equal ones are one.
 pub(super) struct Corners {
     /// In the order in which they were found.
     pub all: Vec<Corner>,
+    /// The close calls met.
+    pub calls: Vec<Unlisted>,
     grid: HashMap<[i64; 3], Vec<usize>>,
     cell: f64,
 }
@@ -25,6 +38,7 @@ impl Corners {
     pub fn new(band: f64) -> Self {
         Self {
             all: Vec::new(),
+            calls: Vec::new(),
             grid: HashMap::new(),
             cell: 256.0 * band,
         }
@@ -34,9 +48,47 @@ impl Corners {
         [0, 1, 2].map(|i| (p[i] / self.cell).floor() as i64)
     }
 
-    /// The corner at `p`, which the given carriers pass through.
+    /// The corner at `p`, which the given carriers define, or are known to pass through.
     pub fn at(&mut self, p: &Point3<f64>, carriers: &[usize], judge: &Judge) -> usize {
-        let reach = judge.reach();
+        let v = self.found(p, carriers, judge);
+        let corner = &mut self.all[v];
+        for &c in carriers {
+            if let Err(at) = corner.carriers.binary_search(&c) {
+                corner.carriers.insert(at, c);
+            }
+        }
+        if let [a, b] = *carriers {
+            corner.nodes.push([a, b]);
+        }
+        v
+    }
+
+    /// The corner that coincides with `p`, or a new one.
+    fn found(&mut self, p: &Point3<f64>, carriers: &[usize], judge: &Judge) -> usize {
+        let new = self.all.len();
+        if let Some((d, v)) = self.nearest(p, judge.reach()) {
+            let (side, call) = judge.decide("point on point", d, [p.x, p.y, p.z]);
+            let one = side == Side::On;
+            let between = match one {
+                true => Between::CornerAndPoint(v, carriers.to_vec()),
+                false => Between::Corners([v, new]),
+            };
+            self.calls.extend(call.map(|call| (call, between)));
+            if one {
+                return v;
+            }
+        }
+        self.all.push(Corner {
+            point: *p,
+            carriers: Vec::new(),
+            nodes: Vec::new(),
+        });
+        self.grid.entry(self.key(p)).or_default().push(new);
+        new
+    }
+
+    /// The corner nearest to `p` that is nearer than `reach`, with its distance.
+    fn nearest(&self, p: &Point3<f64>, reach: f64) -> Option<(f64, usize)> {
         let lo = self.key(&(p - Vector3::repeat(reach)));
         let hi = self.key(&(p + Vector3::repeat(reach)));
         let mut best: Option<(f64, usize)> = None;
@@ -52,25 +104,6 @@ impl Corners {
                 }
             }
         }
-        if let Some((d, v)) = best
-            && d < reach
-            && judge.coincide("point on point", d, [p.x, p.y, p.z])
-        {
-            for &c in carriers {
-                if let Err(at) = self.all[v].carriers.binary_search(&c) {
-                    self.all[v].carriers.insert(at, c);
-                }
-            }
-            return v;
-        }
-        let v = self.all.len();
-        let mut carriers = carriers.to_vec();
-        carriers.sort_unstable();
-        self.all.push(Corner {
-            point: *p,
-            carriers,
-        });
-        self.grid.entry(self.key(p)).or_default().push(v);
-        v
+        best.filter(|b| b.0 < reach)
     }
 }

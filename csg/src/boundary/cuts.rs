@@ -2,6 +2,7 @@
 //! beforehand.
 
 use super::arrangement::{Arrangement, Cut, Meeting, common};
+use super::concern::{Between, Unlisted};
 use super::corners::Corners;
 use super::halfspaces::Solids;
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -27,6 +28,15 @@ pub(super) struct Wide {
     pub reach: f64,
 }
 
+/// What is met on the way and dealt with when all curves are cut.
+#[derive(Default)]
+pub(super) struct Later {
+    /// The contacts of high order.
+    pub wide: Vec<Wide>,
+    /// The close calls.
+    pub calls: Vec<Unlisted>,
+}
+
 impl Arrangement {
     /// Cuts a curve by the carriers of all faces that come near it.
     pub(super) fn cut_meeting(
@@ -35,7 +45,7 @@ impl Arrangement {
         solids: &Solids,
         judge: &Judge,
         corners: &mut Corners,
-        wide: &mut Vec<Wide>,
+        later: &mut Later,
     ) {
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
@@ -54,7 +64,7 @@ impl Arrangement {
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for faces in near.chunk_by(|a, b| a.0 == b.0) {
-            match self.cuts_by(index, faces, &known, judge, corners, wide) {
+            match self.cuts_by(index, faces, &known, judge, corners, later) {
                 Some(found) => cuts.extend(found),
                 None => holding.push(faces[0].0),
             }
@@ -73,7 +83,7 @@ impl Arrangement {
         known: &[Cut],
         judge: &Judge,
         corners: &mut Corners,
-        wide: &mut Vec<Wide>,
+        later: &mut Later,
     ) -> Option<Vec<Cut>> {
         let c = faces[0].0;
         let m = &self.meetings[index];
@@ -85,18 +95,23 @@ impl Arrangement {
         let at_special =
             |p: &Point3<f64>| special.iter().any(|s| (s.1 - p).norm() <= judge.reach());
         let (roots, misses) = m.meet(&self.carriers[c], faces, judge)?;
+        let mut note = |question, distance, p: &Point3<f64>| {
+            let (_, call) = judge.decide(question, distance, (*p).into());
+            let call = call.map(|call| (call, Between::Curve(index, c)));
+            later.calls.extend(call);
+        };
         for r in roots {
             let p = m.curve.point(r.t);
             if special.iter().any(|s| m.holds_within(r.lo, r.hi, s.0)) || at_special(&p) {
                 continue;
             }
             if let Some(margin) = r.margin {
-                judge.note("curve on surface", margin, p.coords.into());
+                note("curve on surface", margin, &p);
             }
             let reach = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
             let reach = reach[0].max(reach[1]);
             if reach > judge.reach() {
-                wide.push(Wide {
+                later.wide.push(Wide {
                     meeting: index,
                     carrier: c,
                     t: r.t,
@@ -115,7 +130,7 @@ impl Arrangement {
         for (t, value) in misses {
             let p = m.curve.point(t);
             if !at_special(&p) {
-                judge.note("curve beside surface", value, p.coords.into());
+                note("curve beside surface", value, &p);
             }
         }
         Some(cuts)

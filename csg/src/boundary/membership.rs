@@ -2,6 +2,7 @@
 //! point. Only those need be named; all others are taken as not holding it.
 
 use crate::tree::{Node, NodeId, Operation, Tree};
+use std::collections::BTreeMap;
 
 /// The tree, turned over so that a few leaves can be followed upwards.
 pub(super) struct Membership<'a> {
@@ -15,6 +16,23 @@ struct Count {
     node: NodeId,
     first: bool,
     others: usize,
+}
+
+/// What a point may be in of the children of an operation: some it is in, some it may be in.
+#[derive(Default)]
+struct Choice {
+    first: Option<Hold>,
+    /// How many of the others it is in.
+    held: usize,
+    /// How many of the others it may be in.
+    open: usize,
+}
+
+/// Whether a point is in something for sure.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Hold {
+    Held,
+    Open,
 }
 
 impl<'a> Membership<'a> {
@@ -89,5 +107,123 @@ impl<'a> Membership<'a> {
                 ..
             } => count.first && count.others == 0,
         }
+    }
+
+    /// Of the primitives that a point may be in or not, `open`, those on which it depends whether
+    /// the point is material; it is in those named `held`, and in no others. Every primitive stands
+    /// in the tree once, so that all choices are free.
+    pub fn deciding(&self, held: &[NodeId], open: &[NodeId]) -> Vec<NodeId> {
+        let choices = self.choices(held, open);
+        let decides = |leaf: &NodeId| {
+            let mut node = *leaf;
+            while let Some((parent, place)) = self.parents[node.index()] {
+                let choice = choices.get(&parent);
+                if !choice.is_some_and(|c| self.follows(parent, place, c)) {
+                    return false;
+                }
+                node = parent;
+            }
+            true
+        };
+        open.iter().copied().filter(decides).collect()
+    }
+
+    /// What the operations above some primitives may hold.
+    fn choices(&self, held: &[NodeId], open: &[NodeId]) -> BTreeMap<NodeId, Choice> {
+        let mut done = BTreeMap::new();
+        let mut waiting: BTreeMap<NodeId, Choice> = BTreeMap::new();
+        let named = |list: &[NodeId], hold| list.iter().map(move |&n| (n, hold)).collect();
+        let mut found: Vec<(NodeId, Hold)> = named(held, Hold::Held);
+        found.extend::<Vec<_>>(named(open, Hold::Open));
+        loop {
+            for (node, hold) in found.drain(..) {
+                let Some((parent, place)) = self.parents[node.index()] else {
+                    continue;
+                };
+                let choice = waiting.entry(parent).or_default();
+                match (place, hold) {
+                    (0, _) => choice.first = Some(hold),
+                    (_, Hold::Held) => choice.held += 1,
+                    (_, Hold::Open) => choice.open += 1,
+                }
+            }
+            let Some((node, choice)) = waiting.pop_last() else {
+                return done;
+            };
+            found.extend(self.hold(node, &choice).map(|hold| (node, hold)));
+            done.insert(node, choice);
+        }
+    }
+
+    /// Whether a point is in an operation's result; none where it cannot be.
+    fn hold(&self, node: NodeId, choice: &Choice) -> Option<Hold> {
+        let Node::Operation { op, children } = &self.tree[node] else {
+            return None;
+        };
+        let first_held = choice.first == Some(Hold::Held);
+        let present = usize::from(choice.first.is_some()) + choice.held + choice.open;
+        let (possible, sure) = match op {
+            Operation::Union => (present > 0, first_held || choice.held > 0),
+            Operation::Intersection => {
+                let all = present == children.len();
+                (all, first_held && choice.open == 0)
+            }
+            Operation::Difference => {
+                let left = choice.first.is_some() && choice.held == 0;
+                (left, first_held && choice.open == 0)
+            }
+        };
+        possible.then_some(if sure { Hold::Held } else { Hold::Open })
+    }
+
+    /// Whether the others can be chosen so that an operation's result is what an open child is, or
+    /// the opposite.
+    fn follows(&self, node: NodeId, place: usize, choice: &Choice) -> bool {
+        let Node::Operation { op, children } = &self.tree[node] else {
+            return false;
+        };
+        match op {
+            Operation::Union => choice.first != Some(Hold::Held) && choice.held == 0,
+            Operation::Intersection => {
+                let present = usize::from(choice.first.is_some()) + choice.held + choice.open;
+                present == children.len()
+            }
+            Operation::Difference => choice.held == 0 && (place == 0 || choice.first.is_some()),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
+mod tests {
+    use super::*;
+    use crate::reader::{Format, Options, read};
+
+    /// Of the primitives of a part that are open, by their places in the text, those that decide.
+    fn deciding(part: &str, held: &[usize], open: &[usize]) -> Vec<usize> {
+        let text = format!("A = SPH(R=1)\nP = {part}\n");
+        let tree = read("part", text.as_bytes(), Format::Padl, &Options::default());
+        let tree = tree.unwrap().tree;
+        let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
+        let named = |list: &[usize]| -> Vec<NodeId> { list.iter().map(|&i| leaves[i]).collect() };
+        let found = Membership::new(&tree).deciding(&named(held), &named(open));
+        let place = |id| leaves.iter().position(|l| *l == id).unwrap();
+        found.into_iter().map(place).collect()
+    }
+
+    #[test]
+    fn what_the_others_cover_does_not_decide() {
+        assert_eq!(deciding("A UN A", &[], &[0, 1]), [0, 1]);
+        assert!(deciding("A UN A", &[0], &[1]).is_empty());
+        assert_eq!(deciding("A INT A", &[0], &[1]), [1]);
+        assert!(deciding("A INT A", &[], &[1]).is_empty());
+        assert_eq!(deciding("A DIF A", &[], &[0, 1]), [0, 1]);
+        assert!(deciding("A DIF A", &[1], &[0]).is_empty());
+        assert!(deciding("A DIF A", &[], &[1]).is_empty());
+        // Taken away from what is added to.
+        assert!(deciding("(A DIF A) UN A", &[2], &[0, 1]).is_empty());
+        assert_eq!(deciding("(A DIF A) UN A", &[1], &[0, 2]), [2]);
+        assert_eq!(deciding("(A DIF A) UN A", &[0], &[1, 2]), [1, 2]);
+        assert_eq!(deciding("(A UN A) INT A", &[0], &[1, 2]), [2]);
     }
 }

@@ -3,11 +3,12 @@
 //! `halfspaces` gives every primitive as half spaces, `carriers` the distinct surfaces of these,
 //! `arrangement` the curves in which they meet, `cuts` the common points of these, which `corners`
 //! makes one, and `pieces` what lies between. `membership` asks the tree whether a choice of sides
-//! is material; `wings` decides which pieces are edges, and where their faces lie. The kernel
-//! assembles the rest.
+//! is material; `wings` decides which pieces are edges, and where their faces lie; `concern` tells
+//! the close calls on which the boundary depends. The kernel assembles the rest.
 
 mod arrangement;
 mod carriers;
+mod concern;
 mod corners;
 mod cuts;
 mod exact;
@@ -120,7 +121,14 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
         radius: 0.75 * size,
     };
     let arrangement = arrangement::arrange(tree, &solids, &extent, &judge)?;
-    let raw = wings::boundary(tree, &solids, arrangement, &judge)?;
+    let concern = concern::Concern {
+        solids: &solids,
+        arrangement: &arrangement,
+        membership: &membership::Membership::new(tree),
+        judge: &judge,
+    };
+    concern.list();
+    let raw = wings::boundary(&concern)?;
     let brep = assemble(raw, &judge)?;
     let decisions = judge.decisions();
     Ok(Evaluation {

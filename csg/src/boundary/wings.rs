@@ -9,11 +9,12 @@
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;
+use super::concern::Concern;
 use super::corners::Corner;
 use super::halfspaces::Solids;
 use super::membership::Membership;
 use super::pieces::{Piece, pieces};
-use crate::tree::{NodeId, Tree};
+use crate::tree::NodeId;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::assemble::{RawBoundary, RawEdge, RawPoint, Wing};
 use premio_kernel::brep::topology::Sense;
@@ -60,7 +61,7 @@ impl Look {
 struct Classifier<'a> {
     solids: &'a Solids,
     arrangement: &'a Arrangement,
-    membership: Membership<'a>,
+    membership: &'a Membership<'a>,
     judge: &'a Judge,
 }
 
@@ -68,27 +69,27 @@ struct Classifier<'a> {
 /// passes through the first.
 const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
 
-pub(super) fn boundary(
-    tree: &Tree,
-    solids: &Solids,
-    arrangement: Arrangement,
-    judge: &Judge,
-) -> Result<RawBoundary, EvaluationError> {
-    let membership = Membership::new(tree);
+pub(super) fn boundary(concern: &Concern<'_>) -> Result<RawBoundary, EvaluationError> {
+    let Concern {
+        solids,
+        arrangement,
+        membership,
+        judge,
+    } = *concern;
     let classifier = Classifier {
         solids,
-        arrangement: &arrangement,
+        arrangement,
         membership,
         judge,
     };
     let mut edges: Vec<(Piece, Vec<Wing>)> = Vec::new();
-    for piece in pieces(&arrangement, judge) {
+    for piece in pieces(arrangement, judge) {
         let wings = classifier.wings(&piece)?;
         if !wings.is_empty() {
             edges.push((piece, wings));
         }
     }
-    let joined = join(edges, &arrangement);
+    let joined = join(edges, arrangement);
     let whole = classifier.whole_surfaces(&joined);
     let raw = |e: Joined| RawEdge {
         curve: e.piece.meeting,
@@ -101,13 +102,18 @@ pub(super) fn boundary(
     let point = |c: &Corner| RawPoint {
         place: c.point,
         surfaces: c.carriers.clone(),
+        nodes: c.nodes.clone(),
     };
     Ok(RawBoundary {
         edges: joined.into_iter().map(raw).collect(),
         whole,
         points: arrangement.corners.iter().map(point).collect(),
-        curves: arrangement.meetings.into_iter().map(|m| m.curve).collect(),
-        surfaces: arrangement.carriers,
+        curves: arrangement
+            .meetings
+            .iter()
+            .map(|m| m.curve.clone())
+            .collect(),
+        surfaces: arrangement.carriers.clone(),
     })
 }
 
@@ -138,11 +144,9 @@ impl Classifier<'_> {
         let Some((t, look)) = best else {
             return Ok(Vec::new());
         };
-        // A surface stays close along the whole piece without holding it: its plain sign decides,
-        // and the close call is listed.
+        // A surface that stays close along the whole piece without holding it: its plain sign
+        // decides. Where it comes nearest was asked when the curve was cut, and of its corners.
         let p = curve.point(t);
-        self.judge
-            .note("point beside surface", look.margin, p.coords.into());
         self.wings_at(piece, &p, &curve.tangent(t), &look.near)
     }
 

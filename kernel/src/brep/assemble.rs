@@ -56,6 +56,9 @@ pub struct RawPoint {
     pub place: Point3<f64>,
     /// The indices of all surfaces through it.
     pub surfaces: Vec<usize>,
+    /// The pairs of surfaces that have it by themselves: where they touch, where their curve
+    /// crosses itself, an apex.
+    pub nodes: Vec<[usize; 2]>,
 }
 
 /// All edges of a boundary, and the closed surfaces that are faces without an edge.

@@ -35,8 +35,22 @@ pub(super) fn touches(
         if bounded + open.clone().count() < 2 {
             continue;
         }
-        let faces: Vec<FaceId> = open.filter_map(|&s| faces.holding(s, &at.place)).collect();
+        let held = open.filter_map(|&s| Some((s, faces.holding(s, &at.place)?)));
+        let (surfaces, faces): (Vec<usize>, Vec<FaceId>) = held.unzip();
         if bounded + faces.len() < 2 {
+            continue;
+        }
+        // Next to a touch of two faces other points are on both, too, within the resolution.
+        let touching = |node: &[usize; 2]| {
+            let named = |s| {
+                names
+                    .surface_of
+                    .get(s)
+                    .is_some_and(|s| surfaces.contains(s))
+            };
+            node.iter().all(named)
+        };
+        if bounded == 0 && !at.nodes.iter().any(touching) {
             continue;
         }
         let touch = Touch {

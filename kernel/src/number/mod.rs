@@ -5,6 +5,7 @@ pub mod bisection;
 pub mod enclosure;
 pub mod interval;
 pub mod jet;
+mod profile;
 pub mod quadrature;
 pub mod rational;
 pub mod real;

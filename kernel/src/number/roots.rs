@@ -9,6 +9,7 @@
 use super::bisection::{bisect, bisect_newton};
 use super::interval::Interval;
 use super::jet::Jet;
+use super::profile::Profile;
 use super::scalar::Scalar;
 use super::sign::CLOSE;
 
@@ -43,11 +44,12 @@ pub struct Root {
 pub enum Zeros {
     /// The function is within the band throughout.
     Everywhere,
-    /// The roots in order, and extrema that were found to be apart.
+    /// The roots, and what was found to be apart from zero by little.
     At {
         /// In increasing order.
         roots: Vec<Root>,
-        /// Extrema apart from zero: (parameter, value).
+        /// Where the function turns back next to zero: (parameter, value). What leads on to a root
+        /// is none of them, however slowly it does.
         misses: Vec<(f64, f64)>,
     },
 }
@@ -80,9 +82,6 @@ const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 /// A function that leaves the band by no more than this has not left it: next to the band's edge
 /// rounding takes it in and out.
 const FRINGE: f64 = 1.0 + 1.0 / 64.0;
-
-/// A function that changes by less than this part of its value is level.
-const LEVEL: f64 = 1.0 / 64.0;
 
 /// A function whose roots are sought.
 pub trait Function {
@@ -136,21 +135,12 @@ struct Search<'a, F> {
     reach: f64,
     floor: f64,
     clusters: Vec<Cluster>,
-    misses: Vec<Miss>,
-}
-
-/// An extremum apart from zero, or the least value of a stretch that is nowhere near nor far.
-#[derive(Clone, Copy)]
-struct Miss {
-    lo: f64,
-    hi: f64,
-    t: f64,
-    value: f64,
+    profile: Profile,
 }
 
 /// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
-/// resolution. A closed curve passes its whole period and is wrapped by the caller. Of the misses
-/// some are told.
+/// resolution. A closed curve passes its whole period and is wrapped by the caller. No misses are
+/// sought.
 pub fn isolate<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
     search(f, breaks, band, band)
 }
@@ -174,7 +164,7 @@ fn search<F: Function>(f: &F, breaks: &[f64], band: f64, reach: f64) -> Zeros {
         reach,
         floor,
         clusters: Vec::new(),
-        misses: Vec::new(),
+        profile: Profile::default(),
     };
     for pair in breaks.windows(2) {
         search.piece(pair[0], pair[1]);
@@ -228,6 +218,7 @@ impl<F: Function> Search<'_, F> {
     }
 
     fn cluster(&mut self, lo: f64, hi: f64, t: f64, kind: Kind, margin: Option<f64>) {
+        self.profile.mark(t, 0.0);
         self.clusters.push(Cluster {
             lo,
             hi,
@@ -235,29 +226,6 @@ impl<F: Function> Search<'_, F> {
             kind,
             margin,
         });
-    }
-
-    /// Keeps a miss, the least of those of pieces that follow one another.
-    fn miss(&mut self, lo: f64, hi: f64, t: f64, value: f64) {
-        match self.misses.last_mut() {
-            Some(last) if last.hi >= lo => {
-                last.hi = hi;
-                if value.abs() < last.value.abs() {
-                    (last.t, last.value) = (t, value);
-                }
-            }
-            _ => self.misses.push(Miss { lo, hi, t, value }),
-        }
-    }
-
-    /// Whether a miss is the least value around: a stretch may lead on to a root, or a lesser one.
-    fn is_least(&self, miss: &Miss) -> bool {
-        let width = miss.hi - miss.lo;
-        let falls = |t: f64, way: f64| {
-            let fall = -self.slope(t) * miss.value.signum() * way * width;
-            t == miss.t && fall > LEVEL * miss.value.abs()
-        };
-        width == 0.0 || !(falls(miss.lo, -1.0) || falls(miss.hi, 1.0))
     }
 
     /// Works through [a, b] in order, by halving with a stack of its own.
@@ -268,19 +236,19 @@ impl<F: Function> Search<'_, F> {
             let m = 0.5 * (a + b);
             let x = Interval { lo: a, hi: b };
             if self.is_clear(self.f.reach(x)) {
+                self.profile.mark(m, f64::INFINITY);
                 continue;
             }
             let small = b - a <= SMALL * (whole.1 - whole.0);
             let jet = self.narrowed(self.f.over(x), x - Interval::point(m), m, small);
             let v = jet.v;
             if self.is_clear(v) {
+                self.profile.mark(m, f64::INFINITY);
                 continue;
             }
             let misses = v.lo > self.band || v.hi < -self.band;
             if misses && (v.magnitude() <= self.reach || b - a <= self.floor) {
-                for t in [a, m, b] {
-                    self.miss(a, b, t, self.value(t));
-                }
+                self.beside(a, b);
                 continue;
             }
             if v.magnitude() <= self.band {
@@ -324,8 +292,22 @@ impl<F: Function> Search<'_, F> {
         }
     }
 
+    /// Marks a stretch that lies next to zero, and has no root.
+    fn beside(&mut self, a: f64, b: f64) {
+        let (da, db) = (self.slope(a), self.slope(b));
+        let inside = if da * db < 0.0 {
+            bisect(a, b, da, |t| self.slope(t))
+        } else {
+            0.5 * (a + b)
+        };
+        for t in [a, inside, b] {
+            self.profile.mark(t, self.value(t));
+        }
+    }
+
     fn monotone(&mut self, a: f64, b: f64) {
         let (fa, fb) = (self.value(a), self.value(b));
+        self.profile.mark(a, fa);
         match (self.sign(fa), self.sign(fb)) {
             (0, 0) => self.cluster(a, b, 0.5 * (a + b), Kind::Level, Some(0.0)),
             (0, _) => {
@@ -342,6 +324,7 @@ impl<F: Function> Search<'_, F> {
             }
             _ => {}
         }
+        self.profile.mark(b, fb);
     }
 
     /// The zero of a monotone function one of whose ends is within the band, or that end.
@@ -356,12 +339,6 @@ impl<F: Function> Search<'_, F> {
     fn convex(&mut self, a: f64, b: f64) {
         let (da, db) = (self.slope(a), self.slope(b));
         if da * db >= 0.0 {
-            for (t, slope) in [(a, da), (b, db)] {
-                let value = self.value(t);
-                if slope == 0.0 && self.sign(value) != 0 {
-                    self.miss(t, t, t, value);
-                }
-            }
             return self.monotone(a, b);
         }
         let t = bisect(a, b, da, |t| self.slope(t));
@@ -370,7 +347,6 @@ impl<F: Function> Search<'_, F> {
             let (lo, hi) = (self.limit(t, a), self.limit(t, b));
             return self.cluster(lo, hi, t, Kind::Extremum, Some(extremum.abs()));
         }
-        self.miss(t, t, t, extremum);
         self.monotone(a, t);
         self.monotone(t, b);
     }
@@ -439,11 +415,10 @@ impl<F: Function> Search<'_, F> {
             let crosses = sign_between(i) != sign_between(i + 1);
             self.root(group, crosses)
         });
-        let misses = self.misses.iter().filter(|m| self.is_least(m));
-        Zeros::At {
-            roots: roots.collect(),
-            misses: misses.map(|m| (m.t, m.value)).collect(),
-        }
+        let roots = roots.collect();
+        let mut misses = self.profile.turns(|t| self.value(t));
+        misses.retain(|m| m.1.abs() > self.band && m.1.abs() < self.reach);
+        Zeros::At { roots, misses }
     }
 
     /// One root from the clusters that touch one another.
@@ -556,8 +531,16 @@ mod tests {
             assert!((above[0] - near).abs() < 1e-15);
             // What leads on to a root is no miss, however slowly it does.
             let flat = misses(|t| t * t * t * t, breaks);
-            assert!(flat.iter().all(|v| v.abs() > 1e-9), "{flat:?}");
+            assert!(flat.is_empty(), "{flat:?}");
         }
+        // Nor is a short piece of it that is hardly steeper than level.
+        let flat = misses(|t| t * t * t * t, &[-1.0, 2e-3, 2.005e-3, 1.0]);
+        assert!(flat.is_empty(), "{flat:?}");
+        // Between two roots the greatest value is told.
+        let between = misses(|t| t * t - k(near), &[-1.0, 1.0]);
+        assert_eq!(between, [-near]);
+        // A closed curve may start at its nearest.
+        assert_eq!(misses(|t| t * t + k(near), &[0.0, 1.0]), [near]);
         assert_eq!(misses(|t| t * k(0.0) + k(near), &[0.0, 4.0]), [near]);
         assert!(misses(|t| t - k(near), &[-1.0, 0.0, 1.0]).is_empty());
     }

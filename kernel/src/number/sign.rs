@@ -64,6 +64,8 @@ pub struct CloseCall {
     pub place: [f64; 3],
     /// The distance that decided, in the part's unit.
     pub distance: f64,
+    /// Whether it concerns nothing but the place: else all of what was asked about.
+    pub local: bool,
 }
 
 /// How the decisions of one evaluation were made.
@@ -154,13 +156,72 @@ impl Judge {
 
     /// The side on which the signed `distance` lies; `place` is where it was measured.
     pub fn side(&self, question: &'static str, distance: impl Distance, place: [f64; 3]) -> Side {
+        let (side, call) = self.decide(question, distance, place);
+        call.into_iter().for_each(|call| self.list(call));
+        side
+    }
+
+    /// The same of a point that the two things may have in common: it concerns nothing else.
+    pub fn contact(
+        &self,
+        question: &'static str,
+        distance: impl Distance,
+        place: [f64; 3],
+    ) -> Side {
+        let (side, call) = self.decide(question, distance, place);
+        let local = |call| CloseCall {
+            local: true,
+            ..call
+        };
+        call.into_iter().for_each(|call| self.list(local(call)));
+        side
+    }
+
+    /// The side, and the close call that it may be, counted but not yet listed: for who knows
+    /// whether anything depends on it.
+    pub fn decide(
+        &self,
+        question: &'static str,
+        distance: impl Distance,
+        place: [f64; 3],
+    ) -> (Side, Option<CloseCall>) {
         let range = distance.range();
         let (side, effort) = match side_of(range.lo, range.hi, self.band, -self.band) {
             Some(side) => (side, Effort::Filter),
             None => (self.refined_side(&distance), Effort::MoreBits),
         };
-        self.count(question, side, effort, range.mid(), place);
-        side
+        self.count(side, effort);
+        let distance = range.mid();
+        let size = distance.abs();
+        let is_close = size * CLOSE > self.band && size < self.reach();
+        let call = is_close.then_some(CloseCall {
+            question,
+            place,
+            distance,
+            local: false,
+        });
+        (side, call)
+    }
+
+    /// Lists a close call.
+    pub fn list(&self, call: CloseCall) {
+        self.decisions.borrow_mut().close_calls.push(call);
+    }
+
+    /// Another judge of the same resolution, who has decided nothing yet.
+    pub fn another(&self) -> Self {
+        Self::new(self.band)
+    }
+
+    /// Takes over what another judge has counted, and gives the close calls, not yet listed.
+    pub fn take(&self, other: Self) -> Vec<CloseCall> {
+        let other = other.decisions.into_inner();
+        let mut decisions = self.decisions.borrow_mut();
+        decisions.filtered += other.filtered;
+        decisions.refined += other.refined;
+        decisions.exact += other.exact;
+        decisions.coincident += other.coincident;
+        other.close_calls
     }
 
     /// Whether two things `distance` apart coincide.
@@ -204,32 +265,12 @@ impl Judge {
         distance.abs() < self.reach()
     }
 
-    /// Counts one decision made on `distance`.
-    pub fn note(&self, question: &'static str, distance: f64, place: [f64; 3]) {
-        self.side(question, distance, place);
-    }
-
-    fn count(
-        &self,
-        question: &'static str,
-        side: Side,
-        effort: Effort,
-        distance: f64,
-        place: [f64; 3],
-    ) {
-        let size = distance.abs();
+    fn count(&self, side: Side, effort: Effort) {
         let mut decisions = self.decisions.borrow_mut();
         match (side, effort) {
             (_, Effort::MoreBits) => decisions.refined += 1,
             (Side::On, _) => decisions.coincident += 1,
             _ => decisions.filtered += 1,
-        }
-        if size * CLOSE > self.band && size < self.reach() {
-            decisions.close_calls.push(CloseCall {
-                question,
-                place,
-                distance,
-            });
         }
     }
 

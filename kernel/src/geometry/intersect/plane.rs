@@ -38,7 +38,7 @@ pub(super) fn plane_plane(p: &Plane, q: &Plane, pair: &Pair<'_>, judge: &Judge) 
 pub(super) fn plane_sphere(p: &Plane, s: &Sphere, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let h = height(p, &s.frame.origin);
     let foot = s.frame.origin - p.frame.z * h;
-    match judge.side(
+    match judge.contact(
         "plane on sphere",
         pair.how(Relation::PlaneOnSphere),
         place(&foot),
@@ -112,7 +112,7 @@ pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &J
 pub(super) fn plane_cone(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let apex = c.frame.origin;
     let h = height(p, &apex);
-    match judge.side("apex on plane", pair.how(Relation::Height), place(&apex)) {
+    match judge.contact("apex on plane", pair.how(Relation::Height), place(&apex)) {
         Side::On => plane_through_apex(p, c, pair, judge),
         _ => plane_beside_apex(p, c, h, pair, judge),
     }

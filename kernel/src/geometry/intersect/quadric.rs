@@ -77,13 +77,13 @@ fn parallel_cylinders(c: &Cylinder, d: &Cylinder, pair: &Pair<'_>, judge: &Judge
 
 fn cones(c: &Cone, d: &Cone, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, IntersectionError> {
     let at = place(&c.frame.origin);
-    if judge.coincide("apex on apex", pair.how(Relation::Between), at) {
+    if judge.contact("apex on apex", pair.how(Relation::Between), at) == Side::On {
         return Ok(common_apex(c, pair.b.surface, pair.extent, judge));
     }
     let turned = pair.turned();
     let on_quadric = |pair: &Pair<'_>, apex: &Cone| {
         let at = place(&apex.frame.origin);
-        judge.coincide("apex on quadric", pair.how(Relation::PointOnQuadric), at)
+        judge.contact("apex on quadric", pair.how(Relation::PointOnQuadric), at) == Side::On
     };
     if on_quadric(&turned, c) && !on_quadric(pair, d) {
         return over_rulings(Ruled::Cone(*d), &turned, judge);
@@ -148,7 +148,7 @@ fn over_rulings(base: Ruled, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, 
         Ruled::Cylinder(_) => judge.within(rulings.lead * pair.extent.radius),
         Ruled::Cone(c) => {
             let away = pair.turned().how(Relation::PointOnQuadric);
-            judge.coincide("apex on quadric", away, place(&c.frame.origin))
+            judge.contact("apex on quadric", away, place(&c.frame.origin)) == Side::On
         }
     };
     if flat {

@@ -18,12 +18,14 @@ pub(super) fn sphere_sphere(s: &Sphere, t: &Sphere, pair: &Pair<'_>, judge: &Jud
     let axis = away / d;
     let x = 0.5 * (d + (r - q) * (r + q) / d);
     let foot = s.frame.origin + axis * x;
-    let side = |gap| judge.side("sphere on sphere", pair.how(gap), place(&foot));
     // Apart outside, or one within the other: both gaps are negative where they meet.
-    let outer = side(Relation::SphereBesideSphere);
-    match (outer, side(Relation::SphereInSphere)) {
-        (Side::On, _) => Meeting::touch(s.frame.origin + axis * r),
-        (_, Side::On) => Meeting::touch(s.frame.origin + axis * r.copysign(r - q)),
+    let beside = s.frame.origin + axis * r;
+    let within = s.frame.origin + axis * r.copysign(r - q);
+    let side = |gap, at| judge.contact("sphere on sphere", pair.how(gap), place(at));
+    let outer = side(Relation::SphereBesideSphere, &beside);
+    match (outer, side(Relation::SphereInSphere, &within)) {
+        (Side::On, _) => Meeting::touch(beside),
+        (_, Side::On) => Meeting::touch(within),
         (Side::Inside, Side::Inside) => {
             // Heron: the product of the four gaps, none of which cancels.
             let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);

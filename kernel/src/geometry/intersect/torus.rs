@@ -98,7 +98,7 @@ fn traced(
     let mut meeting = Meeting::nothing();
     for [theta, phi] in &traced.close {
         let p = Surface::Torus(*t).point(*theta, *phi);
-        judge.note("torus touches surface", other.distance(&p), p.coords.into());
+        judge.contact("torus touches surface", other.distance(&p), p.coords.into());
     }
     // The form knows both nappes of a cone: each branch is cut to the one that is meant.
     let mut parts: Vec<Vec<(usize, [f64; 2])>> = Vec::new();

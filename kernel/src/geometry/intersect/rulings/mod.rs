@@ -192,7 +192,7 @@ impl<'a> Rulings<'a> {
         } else {
             distance
         };
-        judge.side("ruling on quadric", signed, place(&self.world(u, w)))
+        judge.contact("ruling on quadric", signed, place(&self.world(u, w)))
     }
 
     /// The planar conic w = plane(u), where it lies on the base and on the other surface.

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 32] = [
+const MENDED: [(u64, &str); 33] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -77,6 +77,7 @@ const MENDED: [(u64, &str); 32] = [
     (20994, "an edge along a wedge thinner than the resolution"),
     (23640, "a sphere across the spine of a torus"),
     (23783, "a sphere with a long narrow hole, for the mesh"),
+    (32313, "an edge through the apex of a cone"),
     (9615, "an edge just inside an equator of its own torus"),
 ];
 

@@ -106,14 +106,20 @@ fn touches(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Juncti
             Some(edge) => touch.edges.contains(&edge),
             None => strand.faces.iter().any(|f| touch.faces.contains(&f.0)),
         };
-        let passing = |strand: &Strand<'_>| {
+        let meeting = |strand: &Strand<'_>| {
             let at = settle(strand, strand.curve.parameter(place), near)?;
             let met = (strand.curve.point(at.t) - place).norm() <= near;
-            (met && !at.at_end).then_some(at.t)
+            met.then_some(at)
         };
         let all = strands.iter_mut().filter(|strand| within(strand));
-        let met: Vec<_> = all.filter_map(|s| Some((passing(s)?, s))).collect();
+        let met: Vec<_> = all.filter_map(|s| Some((meeting(s)?, s))).collect();
+        // Limbs that end there, at an apex, may hide one that passes.
         if met.len() < if touch.fans > 0 { 1 } else { 2 } {
+            continue;
+        }
+        let passing = met.into_iter().filter(|(at, _)| !at.at_end);
+        let passing: Vec<_> = passing.collect();
+        if passing.is_empty() {
             continue;
         }
         let junction = match touch.vertex {
@@ -121,11 +127,11 @@ fn touches(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Juncti
             None => junctions.add(JunctionKind::T, Site::Alone, place),
         };
         junctions.crowd(junction);
-        for (t, strand) in met {
+        for (at, strand) in passing {
             let contours = &mut junctions.list[junction as usize].contours;
             contours.push(strand.contour);
             strand.splits.push(Split {
-                t,
+                t: at.t,
                 junction,
                 change: Change::Correct,
             });

@@ -11,6 +11,7 @@ use premio_csg::rays::{Clearance, Crossing, Material, Surfaces};
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::Contours;
 use premio_visibility::projection::Projection;
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -198,6 +199,24 @@ impl Search<'_> {
         })
     }
 
+    /// Next to an edge at which material, or a gap, ends that is met in one of two lines of sight
+    /// only: the depth of its far side where the near one falls so steeply to the edge that from one
+    /// line of sight to the next it is more than `deep`.
+    fn steep_until(&self, change: &Change, index: usize, deep: f64) -> Option<f64> {
+        let [first, second] = &change.met;
+        let [a, b] = change.at;
+        let (longer, from, other) = match first.len().cmp(&second.len()) {
+            Ordering::Greater => (first, a, b),
+            Ordering::Less => (second, b, a),
+            Ordering::Equal => return None,
+        };
+        let (near, far) = (longer.get(index)?, longer.get(index + 1)?);
+        let next = self.met([0, 1].map(|i| 2.0 * from[i] - other[i]))?;
+        let next = next.get(index)?;
+        let steep = next.surface == near.surface && (next.at - near.at).abs() > deep;
+        steep.then_some(far.at.max(near.at))
+    }
+
     /// What a change lacks; none where a contour explains it.
     fn lack(&self, change: &Change, images: &Images<'_>) -> Option<Missing> {
         let [a, b] = change.at;
@@ -219,16 +238,8 @@ impl Search<'_> {
             .into_iter()
             .filter_map(|met| met.get(index))
             .fold(f64::INFINITY, |least, c| c.at.min(least));
-        // Material, or a gap, that ends at an edge is still this thick next to it where it is steep.
-        let longer = if first.len() > second.len() {
-            first
-        } else {
-            second
-        };
-        let thick = first.len() != second.len();
-        let beyond = longer.get(index + 1).filter(|_| thick);
-        let until = beyond.map_or(depth, |c| c.at.max(depth));
         let deep = deep(depth);
+        let until = self.steep_until(change, index, deep).unwrap_or(depth);
         let there = |p: &Passing| p.depth[0] - deep <= until && depth <= p.depth[1] + deep;
         let lack = if !images.any(a, near, |_| true) {
             Lack::Contour

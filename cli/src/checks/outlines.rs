@@ -211,10 +211,14 @@ impl Search<'_> {
             Ordering::Equal => return None,
         };
         let (near, far) = (longer.get(index)?, longer.get(index + 1)?);
-        let next = self.met([0, 1].map(|i| 2.0 * from[i] - other[i]))?;
-        let next = next.get(index)?;
-        let steep = next.surface == near.surface && (next.at - near.at).abs() > deep;
-        steep.then_some(far.at.max(near.at))
+        // The edge is between the two, on either side of their middle.
+        let steep = |part: f64| {
+            let met = self.met([0, 1].map(|i| from[i] + part * (other[i] - from[i])));
+            let met = met.unwrap_or_default();
+            let next = met.get(index).filter(|next| next.surface == near.surface);
+            next.is_some_and(|next| (next.at - near.at).abs() > deep)
+        };
+        (steep(0.5) || steep(-1.0)).then_some(far.at.max(near.at))
     }
 
     /// What a change lacks; none where a contour explains it.

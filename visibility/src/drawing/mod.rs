@@ -280,14 +280,16 @@ impl Draft<'_> {
     fn refine(&self, contour: &Contour, [a, b]: [f64; 2], depth: u32, out: &mut Vec<Point2<f64>>) {
         let (p, q) = (self.point(contour, a), self.point(contour, b));
         let chord = q - p;
-        let length = chord.norm();
+        let square = chord.norm_squared();
+        // From the chord, not from its line: next to a cusp the image runs on and comes back.
         let off = |part: f64| {
             let d = self.point(contour, a + (b - a) * part) - p;
-            if length > 0.0 {
-                (chord.x * d.y - chord.y * d.x).abs() / length
+            let foot = if square > 0.0 {
+                d.dot(&chord) / square
             } else {
-                d.norm()
-            }
+                0.0
+            };
+            (d - chord * foot.clamp(0.0, 1.0)).norm()
         };
         let worst = [0.25, 0.5, 0.75].into_iter().map(off).fold(0.0, f64::max);
         // Half the distance: the largest deviation lies between the three places.

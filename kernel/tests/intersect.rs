@@ -210,6 +210,22 @@ fn pairs_on_a_grid_meet_in_all_their_curves() {
     }
 }
 
+/// How far the parts of the named pairs reach.
+const REACH: f64 = 10.0;
+
+fn judge() -> Judge {
+    Judge::new(1e-11 * REACH)
+}
+
+/// Two surfaces that meet around the origin.
+fn met(a: &Surface, b: &Surface) -> Meeting {
+    let extent = Extent {
+        centre: Point3::origin(),
+        radius: REACH,
+    };
+    meet(Carrier::given(a), Carrier::given(b), &extent, &judge()).expect("they meet")
+}
+
 /// The torus touches the cone's other nappe, close to the apex: no point of the cone.
 #[test]
 fn no_node_lies_on_the_other_nappe() {
@@ -230,41 +246,19 @@ fn no_node_lies_on_the_other_nappe() {
         major: 1.5,
         minor: 0.5,
     });
-    let extent = Extent {
-        centre: Point3::origin(),
-        radius: 10.0,
-    };
-    let judge = Judge::new(1e-11 * extent.radius);
-    let meeting = meet(
-        Carrier::given(&torus),
-        Carrier::given(&cone),
-        &extent,
-        &judge,
-    )
-    .expect("torus and cone meet");
+    let meeting = met(&torus, &cone);
     for node in &meeting.nodes {
         let away = [torus, cone].map(|s| s.distance(&node.point).abs());
         assert!(
-            away.iter().all(|&d| judge.within(d)),
+            away.iter().all(|&d| judge().within(d)),
             "{node:?} lies {away:?} off"
         );
     }
 }
 
-/// A torus (4, 1) about z at the origin, meeting another surface.
+/// The torus (4, 1) about z at the origin, and another surface.
 fn on_a_ring(other: &Surface) -> Meeting {
-    let torus = Surface::Torus(Torus {
-        frame: Frame::world(),
-        major: 4.0,
-        minor: 1.0,
-    });
-    let extent = Extent {
-        centre: Point3::origin(),
-        radius: 10.0,
-    };
-    let judge = Judge::new(1e-11 * extent.radius);
-    let [a, b] = [&torus, other].map(Carrier::given);
-    meet(a, b, &extent, &judge).expect("they meet")
+    met(&torus(Point3::origin(), Vector3::z(), 4.0, 1.0), other)
 }
 
 /// The centres and radii of the circles among the branches.
@@ -326,12 +320,7 @@ fn torus(origin: Point3<f64>, axis: Vector3<f64>, major: f64, minor: f64) -> Sur
 /// The radii of the circles along which two tori touch, and the points where other curves pass them,
 /// or they each other.
 fn contact_circles(a: &Surface, b: &Surface) -> (Vec<f64>, usize) {
-    let extent = Extent {
-        centre: Point3::origin(),
-        radius: 10.0,
-    };
-    let judge = Judge::new(1e-11 * extent.radius);
-    let meeting = meet(Carrier::given(a), Carrier::given(b), &extent, &judge).expect("tori meet");
+    let meeting = met(a, b);
     let radius = |branch: &Branch| match (&branch.curve, branch.tangent) {
         (Curve::Circle(c), true) => c.radius,
         other => panic!("{other:?}"),

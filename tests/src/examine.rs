@@ -140,12 +140,12 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Opti
         return Some(format!("methods in {name}: not the same pieces"));
     }
     let both = carried.contours.iter().zip(&counted.contours);
-    let told = |contour: &Contour, a: &Piece, b: &Piece| {
+    let differ = |contour: &Contour, a: &Piece, b: &Piece| {
         let apart = a.qi.abs_diff(b.qi) as usize;
         a.t != b.t || apart > 0 && apart > lies_on(evaluation, contour, a)
     };
     both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(move |pair| (a, pair)))
-        .find(|(contour, (a, b))| told(contour, a, b))
+        .find(|(contour, (a, b))| differ(contour, a, b))
         .map(|(contour, (a, b))| {
             let (id, [from, to]) = (contour.id, a.t);
             format!(

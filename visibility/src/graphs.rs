@@ -26,9 +26,6 @@ const SAME: f64 = 16.0;
 /// Curves that are together over no more than this, in multiples of the resolution, cross there or
 /// touch.
 const SHORT: f64 = 256.0;
-/// Places of a stretch that tell whether it falls on another: graphs over one direction that are
-/// no further from each other at any of them have no room to part between them.
-const PLACES: usize = 9;
 /// Newton's steps that follow a curve beyond the end of a stretch, by far less than the stretch.
 const BEYOND: usize = 3;
 
@@ -294,11 +291,6 @@ impl<'x> Graphs<'x> {
         };
         if self.transversal() {
             return common.roots.extend(self.once([lo, hi], band));
-        }
-        // Isolation would have to narrow everything down to the resolution.
-        let at = |k: usize| lo + (hi - lo) * (k as f64 / (PLACES - 1) as f64);
-        if (0..PLACES).all(|k| self.gap(at(k)).v.abs() <= band) {
-            return common.shared.push(Shared::new(self, [lo, hi]));
         }
         match isolate(&self, &[lo, hi], band) {
             Zeros::Everywhere => common.shared.push(Shared::new(self, [lo, hi])),

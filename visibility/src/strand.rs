@@ -12,7 +12,7 @@ use premio_kernel::brep::locate::Place;
 use premio_kernel::brep::topology::{EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::section::plane_roots;
-use premio_kernel::geometry::surface::{Plane, Surface};
+use premio_kernel::geometry::surface::{Plane, Surface, Torus};
 use premio_kernel::geometry::trace::Unresolved;
 use premio_kernel::number::roots::{Root, Zeros};
 
@@ -329,28 +329,7 @@ impl Trim<'_, '_, '_, '_> {
         let band = self.scene.band;
         let mut found = Vec::new();
         match brep.surface(face) {
-            Surface::Torus(s) => {
-                // Where limbs cross one another is known better than where an edge meets them.
-                let nodes = limbs
-                    .iter()
-                    .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
-                let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * band));
-                match torus_limb_on(s, sight, curve, range, band) {
-                    // Where the edge runs along one limb, others cross both at the limb's nodes.
-                    Zeros::Everywhere => {
-                        found.extend(range);
-                        found.extend(nodes);
-                    }
-                    Zeros::At { roots, .. } => {
-                        let nodes: Vec<f64> = nodes.collect();
-                        let place = |r: &Root| {
-                            let node = nodes.iter().find(|&&t| r.lo <= t && t <= r.hi);
-                            node.copied().unwrap_or(r.t)
-                        };
-                        found.extend(roots.iter().map(place));
-                    }
-                }
-            }
+            Surface::Torus(s) => self.torus_meets(s, edge, limbs, &mut found),
             surface => {
                 if let Some(plane) = polar_plane(surface, sight) {
                     if runs_in(curve, range, &plane, band) {
@@ -367,6 +346,32 @@ impl Trim<'_, '_, '_, '_> {
             }
         }
         found
+    }
+
+    /// The same on a torus: at the limbs' nodes, where an edge passes through one, which are known
+    /// better than where it meets the limbs.
+    fn torus_meets(&self, s: &Torus, edge: EdgeId, limbs: &[Limb], found: &mut Vec<f64>) {
+        let (brep, band) = (self.scene.brep, self.scene.band);
+        let (curve, range) = (brep.curve(edge), brep.range(edge));
+        let nodes = limbs
+            .iter()
+            .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
+        let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * band));
+        match torus_limb_on(s, &self.scene.projection.sight, curve, range, band) {
+            // Where the edge runs along one limb, others cross both there.
+            Zeros::Everywhere => {
+                found.extend(range);
+                found.extend(nodes);
+            }
+            Zeros::At { roots, .. } => {
+                let nodes: Vec<f64> = nodes.collect();
+                let place = |r: &Root| {
+                    let node = nodes.iter().find(|&&t| r.lo <= t && t <= r.hi);
+                    node.copied().unwrap_or(r.t)
+                };
+                found.extend(roots.iter().map(place));
+            }
+        }
     }
 
     /// The junction where a limb ends on an edge, shared by the faces on both sides.

@@ -7,9 +7,9 @@
 //!
 //! a weighted blow-up (Arnold, Gusein-Zade and Varchenko, Singularities of Differentiable Maps I,
 //! 1985): where n branches cross (a, b, w) = (1, 1, n), where two touch (1, 2, 4), (1, 3, 6), ...,
-//! at a cusp (2, 3, 6), (2, 5, 10), .... What of F is of less weight vanishes, so G(σ, κ) = 0 passes through (0, κ₀) with
-//! G_κ ≠ 0: Newton's steps and enclosures are as good there as anywhere else. F is Taylor's
-//! polynomial about the point, with a bound of what is left.
+//! at a cusp (2, 3, 6), (2, 5, 10), .... What of F is of less weight vanishes, so G(σ, κ) = 0 passes
+//! through (0, κ₀) with G_κ ≠ 0: Newton's steps and enclosures are as good there as anywhere else. F
+//! is Taylor's polynomial about the point, with a bound of what is left.
 
 use super::bitrig::{BiTrig, Partials};
 use super::toric::Axis;

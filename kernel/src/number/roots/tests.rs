@@ -1,0 +1,125 @@
+use super::*;
+
+fn roots(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<Root> {
+    match isolate(&|t| f(Jet::variable(t)), breaks, 1e-11) {
+        Zeros::At { roots, .. } => roots,
+        Zeros::Everywhere => panic!("everywhere"),
+    }
+}
+
+fn k(x: f64) -> Jet<Interval> {
+    Jet::constant(x)
+}
+
+fn misses(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<f64> {
+    match isolate_closely(&|t| f(Jet::variable(t)), breaks, 1e-11) {
+        Zeros::At { misses, .. } => misses.iter().map(|m| m.1).collect(),
+        Zeros::Everywhere => panic!("everywhere"),
+    }
+}
+
+#[test]
+fn what_nearly_touches_is_told_once() {
+    let near = 5e-10;
+    for breaks in [&[-1.0, 1.0][..], &[-1.0, 0.0, 1.0]] {
+        let above = misses(|t| t * t + k(near), breaks);
+        assert_eq!(above.len(), 1, "{above:?}");
+        assert!((above[0] - near).abs() < 1e-15);
+        // What leads on to a root is no miss, however slowly it does.
+        let flat = misses(|t| t * t * t * t, breaks);
+        assert!(flat.is_empty(), "{flat:?}");
+    }
+    // Nor is a short piece of it that is hardly steeper than level.
+    let flat = misses(|t| t * t * t * t, &[-1.0, 2e-3, 2.005e-3, 1.0]);
+    assert!(flat.is_empty(), "{flat:?}");
+    // Between two roots the greatest value is told.
+    let between = misses(|t| t * t - k(near), &[-1.0, 1.0]);
+    assert_eq!(between, [-near]);
+    // A closed curve may start at its nearest.
+    assert_eq!(misses(|t| t * t + k(near), &[0.0, 1.0]), [near]);
+    assert_eq!(misses(|t| t * k(0.0) + k(near), &[0.0, 4.0]), [near]);
+    assert!(misses(|t| t - k(near), &[-1.0, 0.0, 1.0]).is_empty());
+}
+
+#[test]
+fn simple_roots_are_found_in_order() {
+    let r = roots(
+        |t| (t - k(0.25)) * (t - k(0.5)) * (t + k(2.0)),
+        &[-3.0, 1.0],
+    );
+    let t: Vec<f64> = r.iter().map(|r| r.t).collect();
+    assert_eq!(t.len(), 3);
+    for (a, b) in t.iter().zip([-2.0, 0.25, 0.5]) {
+        assert!((a - b).abs() < 1e-14);
+    }
+    assert!(r.iter().all(|r| r.contact == Contact::Simple));
+}
+
+#[test]
+fn a_double_root_touches_and_a_triple_one_crosses() {
+    let r = roots(|t| (t - k(0.3)).square() * (t + k(1.0)), &[0.0, 1.0]);
+    assert_eq!(r.len(), 1);
+    assert_eq!(r[0].contact, Contact::Touching);
+    assert!((r[0].t - 0.3).abs() < 1e-12);
+    let r = roots(|t| (t - k(0.3)).square() * (t - k(0.3)), &[0.0, 1.0]);
+    assert_eq!(r.len(), 1);
+    assert_eq!(r[0].contact, Contact::Inflected);
+    assert!((r[0].t - 0.3).abs() < 1e-8);
+}
+
+#[test]
+fn roots_apart_by_more_than_the_band_stay_apart() {
+    // The extremum is -1e-10, ten times the band.
+    let r = roots(|t| (t - k(0.3)).square() - k(1e-10), &[0.0, 1.0]);
+    assert_eq!(r.len(), 2);
+    // The extremum is 1e-10: no root.
+    let r = roots(|t| (t - k(0.3)).square() + k(1e-10), &[0.0, 1.0]);
+    assert!(r.is_empty());
+}
+
+#[test]
+fn rounding_at_the_edge_of_the_band_makes_no_roots() {
+    // A triple root, and noise of a thousandth of the band.
+    let noise = |t: Interval| Interval::point(1e-14 * (t.mid() * 1e9).sin());
+    let f = |t: Interval| {
+        let x = Jet::variable(t) - k(0.3);
+        let mut y = x.square() * x;
+        y.v = y.v + noise(t);
+        y
+    };
+    let Zeros::At { roots, .. } = isolate(&f, &[0.0, 1.0], 1e-11) else {
+        panic!("everywhere");
+    };
+    assert_eq!(roots.len(), 1);
+    assert!(roots[0].lo < 0.3 && roots[0].hi > 0.3);
+}
+
+#[test]
+fn trigonometric_roots_and_a_zero_function() {
+    let r = roots(|t| t.sin_cos().0, &[0.5, 7.0]);
+    assert_eq!(r.len(), 2);
+    assert!((r[0].t - std::f64::consts::PI).abs() < 1e-15);
+    let z = isolate(&|t| Jet::variable(t).scale(0.0), &[0.0, 1.0], 1e-11);
+    assert_eq!(z, Zeros::Everywhere);
+}
+
+#[test]
+fn a_crossing_lies_in_its_cluster() {
+    // Flat next to 0, where it touches; the crossing is where it has long bent away again, and
+    // the pieces next to it are within the band.
+    let f = |t: Jet<Interval>| t.square() * t.square() * (k(1.0) - t).scale(1e-8);
+    let r = roots(f, &[0.0, 0.5, 1.0 - 1e-4, 1.0 + 1e-4, 1.5]);
+    let [touch, crossing] = r.as_slice() else {
+        panic!("{r:?}")
+    };
+    assert_eq!(touch.contact, Contact::Touching);
+    assert_eq!(crossing.contact, Contact::Simple);
+    assert!((crossing.t - 1.0).abs() < 1e-12, "{crossing:?}");
+}
+
+#[test]
+fn a_root_at_the_very_end_is_kept() {
+    let r = roots(|t| t - k(1.0), &[0.0, 1.0]);
+    assert_eq!(r.len(), 1);
+    assert!((r[0].t - 1.0).abs() < 1e-11);
+}

@@ -167,7 +167,7 @@ impl Search<'_> {
         let ray = self.window.ray(at);
         let length = ray.direction.norm();
         let least = self.clearance.size * ROUNDING / length;
-        let mut met = self.surfaces.crossings(&ray, least);
+        let mut met = self.surfaces.crossings(&ray, least)?;
         let nearer = met.iter().filter(|c| c.at <= self.window.near).count();
         // Where the near plane cuts material there is a face that the tree does not have.
         if nearer % 2 == 1 {

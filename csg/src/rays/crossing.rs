@@ -142,20 +142,31 @@ impl<'a> Surfaces<'a> {
         }
     }
 
-    /// Where a line enters and leaves material, in order. Gaps, then slivers, no longer than
-    /// `least` are closed.
-    pub fn crossings(&self, ray: &Ray, least: f64) -> Vec<Crossing> {
+    /// Where a line enters and leaves material, in order; gaps, then slivers, no longer than `least`
+    /// are closed. None where another surface is met no farther than that from one of them: the
+    /// two touch there, and rounding tells which is met.
+    pub fn crossings(&self, ray: &Ray, least: f64) -> Option<Vec<Crossing>> {
         let mut joined: Vec<[Event; 2]> = Vec::new();
         let material = self.material;
-        material.cross_leaves(ray, &mut material.scratch(), |span| {
-            match joined.last_mut() {
-                Some(last) if span[0].at - last[1].at <= least => last[1] = span[1],
-                _ => joined.push(span),
-            }
+        let mut scratch = material.scratch();
+        material.cross_leaves(ray, &mut scratch, |span| match joined.last_mut() {
+            Some(last) if span[0].at - last[1].at <= least => last[1] = span[1],
+            _ => joined.push(span),
         });
         joined.retain(|[lo, hi]| hi.at - lo.at > least);
-        let ends = joined.iter().flatten();
-        ends.filter_map(|event| self.crossing(ray, event)).collect()
+        let met = |event: &Event| {
+            let crossing = self.crossing(ray, event)?;
+            let first = scratch.events.partition_point(|e| e.at < event.at - least);
+            let near = scratch.events[first..].iter();
+            let near = near.take_while(|e| e.at <= event.at + least);
+            let mut others = near.filter(|e| e.leaf != event.leaf);
+            let alone = others.all(|e| {
+                let other = self.crossing(ray, e);
+                other.is_some_and(|other| other.surface == crossing.surface)
+            });
+            alone.then_some(crossing)
+        };
+        joined.iter().flatten().map(met).collect()
     }
 
     fn crossing(&self, ray: &Ray, event: &Event) -> Option<Crossing> {

@@ -140,6 +140,17 @@ fn a_visible_piece_that_is_said_to_be_hidden_is_missed() {
     assert!(marked > 20, "{marked}");
 }
 
+/// Two cones touch along a ruling, in the plane of a third one's base: which of them is met next to
+/// it is not to be told.
+#[test]
+fn surfaces_that_touch_are_not_told_apart() {
+    let part =
+        Part::of("P = CON(R=2, H=2) UN CON(R=2, H=2) AT (ROTY=90) UN CON(R=2, H=2) AT (ROTX=90)");
+    let found = part.outlines(&part.contours(&part.view("along z")));
+    assert!(found.missing.is_empty(), "{found}");
+    assert!(found.explained > 30, "{found}");
+}
+
 #[test]
 fn contours_on_one_another_are_told_apart_by_depth() {
     let part = Part::of("P = CYL(R=1, H=2)");

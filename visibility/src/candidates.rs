@@ -12,24 +12,29 @@ use std::f64::consts::TAU;
 /// A link of a chain: its box in the image, and the strand it belongs to.
 type Link = (ImageBox, u32);
 
-/// So few links are compared each with each in less time than a tree of them takes to build.
+/// So few links are swept in less time than a tree of them takes to build.
 const FEW: usize = 192;
 
 /// A contour is cut into links of about this part of the image's size.
 const LINKS: f64 = 24.0;
 
-/// The parameters at which the image of a conic runs along x or along y.
-fn extremes(image: &Image) -> ([f64; 4], usize) {
+/// The parameters at which the image of a conic runs along x or along y, those of a closed one in
+/// the turn that begins at `lo`.
+fn extremes(image: &Image, lo: f64) -> ([f64; 4], usize) {
     let mut found = ([0.0; 4], 0);
     let Image::Conic { basis, map, .. } = image else {
         return found;
+    };
+    let within = |t: f64| match basis {
+        Basis::Circular => lo + (t - lo).rem_euclid(TAU),
+        _ => t,
     };
     let q = map.row(2).transpose();
     for i in 0..2 {
         let p = map.row(i).transpose();
         let flat = Image::turns_of(*basis, &p, &q);
         for t in flat.into_iter().flatten() {
-            found.0[found.1] = t;
+            found.0[found.1] = within(t);
             found.1 += 1;
         }
     }
@@ -42,28 +47,19 @@ fn links(strand: &Strand<'_>, projection: &Projection, step: f64, push: &mut imp
         return strand.stretches.iter().for_each(|s| push(s.bounds));
     }
     let [lo, hi] = strand.range;
-    let (turns, count) = extremes(&strand.image);
+    let (turns, count) = extremes(&strand.image, lo);
     let point = |t: f64| flat_of(projection, &strand.curve.point(t));
-    let chain = |from: f64, to: f64| {
-        let mut b = ImageBox::EMPTY.with(point(from)).with(point(to));
-        for &t in &turns[..count] {
-            let t = match strand.image {
-                Image::Conic {
-                    basis: Basis::Circular,
-                    ..
-                } => from + (t - from).rem_euclid(TAU),
-                _ => t,
-            };
-            if t > from && t < to {
-                b = b.with(point(t));
-            }
+    let chain = |[from, to]: [f64; 2], ends: [[f64; 2]; 2]| {
+        let mut b = ImageBox::EMPTY.with(ends[0]).with(ends[1]);
+        for &t in turns[..count].iter().filter(|t| **t > from && **t < to) {
+            b = b.with(point(t));
         }
         for &t in strand.turns.iter().filter(|t| **t > from && **t < to) {
             b = b.with(point(t));
         }
         b
     };
-    let whole = chain(lo, hi);
+    let whole = chain([lo, hi], [point(lo), point(hi)]);
     let [w, h] = whole.sides();
     let thick = match strand.image {
         Image::Line { .. } => w.min(h),
@@ -73,9 +69,12 @@ fn links(strand: &Strand<'_>, projection: &Projection, step: f64, push: &mut imp
     if n <= 1.0 {
         return push(whole);
     }
-    for k in 0..n as usize {
-        let at = |k: usize| lo + (hi - lo) * (k as f64 / n);
-        push(chain(at(k), at(k + 1)));
+    let mut from = (lo, point(lo));
+    for k in 1..=n as usize {
+        let t = lo + (hi - lo) * (k as f64 / n);
+        let to = (t, point(t));
+        push(chain([from.0, to.0], [from.1, to.1]));
+        from = to;
     }
 }
 
@@ -112,7 +111,7 @@ pub fn candidates(
         strand.hull = hull;
     }
     let mut pairs = if all.len() <= FEW {
-        few_meeting(&all)
+        few_meeting(&mut all)
     } else {
         many_meeting(&all)
     };
@@ -124,13 +123,15 @@ pub fn candidates(
     pairs
 }
 
-/// The pairs of strands whose links meet, by comparing all.
-fn few_meeting(links: &[Link]) -> Vec<(u32, u32)> {
+/// The pairs of strands whose links meet, by a sweep along x.
+fn few_meeting(links: &mut [Link]) -> Vec<(u32, u32)> {
+    links.sort_unstable_by(|(a, _), (b, _)| a.min[0].total_cmp(&b.min[0]));
     let mut pairs = Vec::new();
     for (k, (a, i)) in links.iter().enumerate() {
-        for (b, j) in &links[k + 1..] {
+        let beside = links[k + 1..].iter();
+        for (b, j) in beside.take_while(|(b, _)| b.min[0] <= a.max[0]) {
             if i != j && a.meets(b) {
-                pairs.push((*i, *j));
+                pairs.push((*i.min(j), *i.max(j)));
             }
         }
     }

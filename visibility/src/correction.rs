@@ -91,8 +91,8 @@ struct Seen {
 #[derive(Debug)]
 pub struct Corrections<'s, 'a> {
     scene: &'s Scene<'a>,
-    /// By vertex: the pairs of coedges that come to it and leave it.
-    corners: Vec<Vec<[CoedgeId; 2]>>,
+    /// The pairs of coedges that come to a vertex and leave it, in the order of the vertices.
+    corners: Vec<(VertexId, [CoedgeId; 2])>,
     /// By vertex: what is seen there, once it was asked for.
     seen: Vec<OnceCell<Seen>>,
 }
@@ -102,15 +102,16 @@ impl<'s, 'a> Corrections<'s, 'a> {
     pub fn new(scene: &'s Scene<'a>) -> Self {
         let topology = &scene.brep.topology;
         let vertices = topology.vertices as usize;
-        let mut corners = vec![Vec::new(); vertices];
+        let mut corners = Vec::with_capacity(topology.coedges.len());
         for ring in &topology.loops {
             let next = ring.coedges.iter().cycle().skip(1);
             for (&to, &from) in ring.coedges.iter().zip(next) {
                 if let Some([_, at]) = topology.run(to) {
-                    corners[at.index()].push([to, from]);
+                    corners.push((at, [to, from]));
                 }
             }
         }
+        corners.sort_by_key(|(at, _)| at.index());
         Self {
             scene,
             corners,
@@ -146,7 +147,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let topology = &self.scene.brep.topology;
         let p = self.scene.brep.point(vertex);
         let (towards, _) = self.scene.projection.towards_eye(&p);
-        let corner = |&[to, from]: &[CoedgeId; 2]| {
+        let corner = |&(_, [to, from]): &(VertexId, [CoedgeId; 2])| {
             let face = topology.face_of(from);
             let sides = [to, from].map(|c| topology.coedge(c).edge);
             let directions = || {
@@ -155,12 +156,11 @@ impl<'s, 'a> Corrections<'s, 'a> {
             };
             self.corner(face, sides, &p, &towards, directions)
         };
+        let before = |id: usize| self.corners.partition_point(|(at, _)| at.index() < id);
+        let here = &self.corners[before(vertex.index())..before(vertex.index() + 1)];
         Seen {
             towards,
-            corners: self.corners[vertex.index()]
-                .iter()
-                .filter_map(corner)
-                .collect(),
+            corners: here.iter().filter_map(corner).collect(),
         }
     }
 

@@ -62,7 +62,7 @@ pub fn cross(
         (Image::Conic { .. }, Image::Conic { .. }) => conics(a, b, near, found),
         (Image::Conic { .. }, _) => line_and_conic(b, a, near, &mut |s, t| found(t, s)),
         (_, Image::Conic { .. }) => line_and_conic(a, b, near, found),
-        _ => lines(a, b, projection, near, found),
+        _ => lines(a, b, near, found),
     }
 }
 
@@ -78,13 +78,7 @@ fn at(strand: &Strand<'_>, t: f64) -> Vector3<f64> {
 }
 
 /// Both on lines.
-fn lines(
-    a: &Strand<'_>,
-    b: &Strand<'_>,
-    projection: &Projection,
-    near: f64,
-    found: &mut impl FnMut(f64, f64),
-) -> Overlap {
+fn lines(a: &Strand<'_>, b: &Strand<'_>, near: f64, found: &mut impl FnMut(f64, f64)) -> Overlap {
     let (Some(la), Some(lb)) = (a.image.line(), b.image.line()) else {
         return Overlap::No;
     };
@@ -93,7 +87,7 @@ fn lines(
         let most = near * l.x.hypot(l.y);
         [lo, hi, 0.5 * (lo + hi)]
             .iter()
-            .all(|t| l.dot(&projection.homogeneous(&s.curve.point(*t))).abs() <= most)
+            .all(|t| l.dot(&at(s, *t)).abs() <= most)
     };
     if on(a, lb) && on(b, la) {
         return Overlap::Yes;

@@ -112,37 +112,36 @@ impl Chain {
                 junctions.crowd(id);
             }
         }
-        let mut stops: Vec<(f64, Option<u32>)> = Vec::with_capacity(splits.len() + 2);
         let mut between: Vec<Change> = splits.iter().map(|s| s.change).collect();
         let inner = splits.iter().map(|s| (s.t, Some(s.junction)));
-        match splits.first() {
+        let (first, inner, last) = match splits.first() {
             Some(first) if strand.closed => {
-                stops.extend(inner);
-                stops.push((first.t + (hi - lo), Some(first.junction)));
                 between.remove(0);
+                let junction = Some(first.junction);
+                let last = (first.t + (hi - lo), junction);
+                ((first.t, junction), inner.skip(1), last)
             }
-            _ => {
-                stops.push((lo, strand.ends[0]));
-                stops.extend(inner);
-                stops.push((hi, strand.ends[1]));
-            }
+            _ => ((lo, strand.ends[0]), inner.skip(0), (hi, strand.ends[1])),
+        };
+        let mut spans: Vec<Span> = Vec::with_capacity(splits.len() + 1);
+        let mut from = first;
+        for to in inner.chain([last]) {
+            spans.push(Span {
+                range: [from.0, to.0],
+                ends: [from.1, to.1],
+            });
+            from = to;
         }
         // Contours that are not apart by the time of the next junction are not passed plainly.
-        for (around, change) in stops.windows(3).zip(&mut between) {
-            let [before, at, after] = [0, 1, 2].map(|k| around[k].0);
+        for (around, change) in spans.windows(2).zip(&mut between) {
+            let [before, at] = around[0].range;
+            let after = around[1].range[1];
             let way = (at - before).min(after - at) * strand.curve.derivative(at).norm();
             if matches!(change, Change::Pass(passing) if way * passing.aside <= near) {
                 *change = Change::Correct;
             }
         }
-        let span = |w: &[(f64, Option<u32>)]| Span {
-            range: [w[0].0, w[1].0],
-            ends: [w[0].1, w[1].1],
-        };
-        Self {
-            spans: stops.windows(2).map(span).collect(),
-            between,
-        }
+        Self { spans, between }
     }
 }
 
@@ -199,8 +198,8 @@ struct Carrying<'s, 'a> {
     corrections: Corrections<'s, 'a>,
     /// By junction: what hides all contours there, less the faces through the junction.
     beyond: Vec<Option<Count>>,
-    /// By junction: the strands through it.
-    through: Vec<Vec<u32>>,
+    /// The strands through the junctions: junction and strand, in order.
+    through: Vec<(u32, u32)>,
     /// By strand: what hides each span.
     counts: Vec<Vec<Option<Count>>>,
     /// The strands that are connected to what is known.
@@ -216,14 +215,13 @@ impl<'s, 'a> Carrying<'s, 'a> {
         chains: &'s [Chain],
         junctions: &'s Junctions<'s>,
     ) -> Self {
-        let mut through: Vec<Vec<u32>> = vec![Vec::new(); junctions.list.len()];
+        let mut through: Vec<(u32, u32)> = Vec::with_capacity(2 * junctions.list.len());
         for (i, chain) in chains.iter().enumerate() {
-            for id in chain.spans.iter().flat_map(|s| s.ends).flatten() {
-                if through[id as usize].last() != Some(&(i as u32)) {
-                    through[id as usize].push(i as u32);
-                }
-            }
+            let ids = chain.spans.iter().flat_map(|s| s.ends).flatten();
+            through.extend(ids.map(|id| (id, i as u32)));
         }
+        through.sort_unstable();
+        through.dedup();
         Self {
             scene,
             strands,
@@ -334,8 +332,10 @@ impl<'s, 'a> Carrying<'s, 'a> {
             Some(known) => self.sound &= known.qi == beyond.qi,
             None => {
                 self.beyond[junction as usize] = Some(beyond);
-                let others = self.through[junction as usize].iter().rev();
-                self.next.extend(others.filter(|&&o| o != i as u32));
+                let first = self.through.partition_point(|t| t.0 < junction);
+                let past = self.through.partition_point(|t| t.0 <= junction);
+                let others = self.through[first..past].iter().rev().map(|t| t.1);
+                self.next.extend(others.filter(|&o| o != i as u32));
             }
         }
     }

@@ -268,9 +268,8 @@ impl Search<'_, '_, '_, '_> {
 
     fn crossing(&mut self, (i, a, t): At<'_, '_>, (j, b, s): At<'_, '_>) {
         let near = LOOSE * self.scene.band;
-        let (Some(t), Some(s)) = (self.settle(a, t), self.settle(b, s)) else {
-            return;
-        };
+        let Some(t) = self.settle(a, t) else { return };
+        let Some(s) = self.settle(b, s) else { return };
         if self.at_shared(a, t.t, b, s.t) {
             return;
         }
@@ -370,35 +369,47 @@ impl Search<'_, '_, '_, '_> {
     /// Notes where `far` passes behind the junctions of `near` in the image: contours that only
     /// touch it there end there, or begin to be hidden, so that it may enter what lies between them.
     fn pass_behind(&mut self, near: &Strand<'_>, (strand, far): (u32, &Strand<'_>)) {
-        let margin = 2.0 * LOOSE * self.scene.band;
         for (id, s) in near.junctions() {
             if !far.hull.holds(self.junctions.image(id)) {
                 continue;
             }
             let q = near.curve.point(s);
-            let mut met = Vec::new();
-            parameters_at(far, &q, self.scene, &mut |t| met.push(t));
-            for t in met {
-                let Some(Settled { t, at_end: false }) = self.settle(far, t) else {
-                    continue;
-                };
-                let p = far.curve.point(t);
-                let (v, _) = self.scene.projection.towards_eye(&p);
-                let before = (q - p).dot(&v) > margin && self.apart(&p, &q) <= margin;
-                // A cusp's own contour falls on it in the image a long way.
-                let own = |&(other, from): &(u32, f64)| {
-                    other == id && self.straight(far, nearest_turn(far, from, t), t)
-                };
-                let own = far.junctions().any(|at| own(&at));
-                if before && !own && !self.is_turned_away(near, &q, &v) {
-                    self.behind.push(Behind {
-                        strand,
-                        t,
-                        contours: [near.contour, far.contour],
-                    });
-                }
-            }
+            let mut behind = std::mem::take(&mut self.behind);
+            parameters_at(far, &q, self.scene, &mut |t| {
+                behind.extend(self.behind_at(near, (id, &q), (strand, far, t)));
+            });
+            self.behind = behind;
         }
+    }
+
+    /// The same for one junction at a point of `near`, and one parameter of `far` there.
+    fn behind_at(
+        &self,
+        near: &Strand<'_>,
+        (id, q): (u32, &Point3<f64>),
+        (strand, far, t): At<'_, '_>,
+    ) -> Option<Behind> {
+        let margin = 2.0 * LOOSE * self.scene.band;
+        let Settled { t, at_end: false } = self.settle(far, t)? else {
+            return None;
+        };
+        let p = far.curve.point(t);
+        let (v, _) = self.scene.projection.towards_eye(&p);
+        if (q - p).dot(&v) <= margin || self.apart(&p, q) > margin {
+            return None;
+        }
+        // A cusp's own contour falls on it in the image a long way.
+        let own = |(other, from): (u32, f64)| {
+            other == id && self.straight(far, nearest_turn(far, from, t), t)
+        };
+        if far.junctions().any(own) || self.is_turned_away(near, q, &v) {
+            return None;
+        }
+        Some(Behind {
+            strand,
+            t,
+            contours: [near.contour, far.contour],
+        })
     }
 
     /// Whether all faces along a strand are turned away at a point of it, or seen edge-on, so that

@@ -142,17 +142,24 @@ pub enum Site {
     Alone,
 }
 
+/// What is known of a junction, besides what the view reports.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    site: Site,
+    /// Its image at depth one.
+    image: [f64; 2],
+    /// Whether another contour passes before it or next to it in the image.
+    crowded: bool,
+}
+
 /// All junctions.
 #[derive(Debug)]
 pub struct Junctions<'p> {
     projection: &'p Projection,
     /// By their ids.
     pub list: Vec<Junction>,
-    sites: Vec<Site>,
-    /// By junction: its image at depth one.
-    images: Vec<[f64; 2]>,
-    /// By junction: whether another contour passes before it or next to it in the image.
-    crowded: Vec<bool>,
+    /// By junction: what is known of it besides.
+    known: Vec<Known>,
     vertices: Vec<Option<u32>>,
 }
 
@@ -161,10 +168,8 @@ impl<'p> Junctions<'p> {
     pub fn new(projection: &'p Projection, vertices: usize) -> Self {
         Self {
             projection,
-            list: Vec::new(),
-            sites: Vec::new(),
-            images: Vec::new(),
-            crowded: Vec::new(),
+            list: Vec::with_capacity(2 * vertices),
+            known: Vec::with_capacity(2 * vertices),
             vertices: vec![None; vertices],
         }
     }
@@ -179,20 +184,22 @@ impl<'p> Junctions<'p> {
             point3: (*p).into(),
             contours: Vec::new(),
         });
-        self.sites.push(site);
-        self.images.push(flat_of(self.projection, p));
-        self.crowded.push(false);
+        self.known.push(Known {
+            site,
+            image: flat_of(self.projection, p),
+            crowded: false,
+        });
         id
     }
 
     /// What a junction lies on.
     pub fn site(&self, id: u32) -> Site {
-        self.sites[id as usize]
+        self.known[id as usize].site
     }
 
     /// Its image at depth one.
     pub fn image(&self, id: u32) -> [f64; 2] {
-        self.images[id as usize]
+        self.known[id as usize].image
     }
 
     /// Its kind.
@@ -202,12 +209,12 @@ impl<'p> Junctions<'p> {
 
     /// Notes that another contour passes a junction in the image.
     pub fn crowd(&mut self, id: u32) {
-        self.crowded[id as usize] = true;
+        self.known[id as usize].crowded = true;
     }
 
     /// Whether another contour passes it in the image.
     pub fn is_crowded(&self, id: u32) -> bool {
-        self.crowded[id as usize]
+        self.known[id as usize].crowded
     }
 
     /// The junction at a vertex.

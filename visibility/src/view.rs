@@ -94,7 +94,11 @@ pub fn contours_by(
     let started = Instant::now();
     let found = pieces(&scene, &mut strands, &mut junctions, method);
     for (strand, pieces) in strands.iter().zip(found) {
-        contours[strand.contour as usize].pieces.extend(pieces);
+        let all = &mut contours[strand.contour as usize].pieces;
+        match all.is_empty() {
+            true => *all = pieces,
+            false => all.extend(pieces),
+        }
     }
     let mut junctions = junctions.list;
     for contour in &contours {
@@ -139,6 +143,7 @@ pub fn part_size(brep: &Brep) -> f64 {
 }
 
 /// An arc on its way to become strands of a contour.
+#[derive(Clone)]
 struct Source<'a> {
     curve: &'a Curve,
     range: [f64; 2],
@@ -181,12 +186,13 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 limb: false,
                 marks: limbs.on_edges[edge.index()].clone(),
             };
-            let contour = self.contour(&source, Kind::Boundary);
+            let seen = self.image(&source);
+            let contour = self.contour(&source, &seen, Kind::Boundary);
             self.contours.push(Contour {
                 smooth: entity.smooth,
                 ..contour
             });
-            self.strand(source);
+            self.strand(source, seen);
         }
     }
 
@@ -203,15 +209,21 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 limb: true,
                 marks: arc.marks.clone(),
             };
-            let contour = self.contour(&source, Kind::Limb);
+            let seen = self.image(&source);
+            let contour = self.contour(&source, &seen, Kind::Limb);
             self.contours.push(contour);
-            self.strand(source);
+            self.strand(source, seen);
         }
     }
 
-    fn contour(&self, source: &Source<'_>, kind: Kind) -> Contour {
-        let projection = self.scene.projection;
-        let seen = image(source.curve, source.range, projection, self.scene.band);
+    fn image(&self, source: &Source<'_>) -> Image {
+        let Scene {
+            projection, band, ..
+        } = *self.scene;
+        image(source.curve, source.range, projection, band)
+    }
+
+    fn contour(&self, source: &Source<'_>, seen: &Image, kind: Kind) -> Contour {
         let mut faces: Vec<FaceId> = source.faces.iter().map(|f| f.0).collect();
         if kind == Kind::Limb {
             faces.push(source.faces[0].0);
@@ -223,13 +235,13 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             faces,
             edge: source.edge,
             curve3: source.curve.clone(),
-            curve2: image_curve(&seen, source, projection),
+            curve2: image_curve(seen, source, self.scene.projection),
             pieces: Vec::new(),
         }
     }
 
     /// Cuts an arc at the near plane and keeps what lies beyond.
-    fn strand(&mut self, source: Source<'a>) {
+    fn strand(&mut self, source: Source<'a>, seen: Image) {
         let projection = self.scene.projection;
         let hull = bounds(source.curve, source.range);
         let corner = |k: usize| {
@@ -244,8 +256,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         };
         let least = (0..8).map(corner).fold(f64::INFINITY, f64::min);
         if least > projection.near {
-            let (range, closed, ends) = (source.range, source.closed, source.ends);
-            return self.push(&source, range, closed, ends);
+            return self.push(source, seen);
         }
         let [lo, hi] = source.range;
         let plane = Plane {
@@ -283,20 +294,23 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         for pair in stops.windows(2) {
             let middle = source.curve.point(0.5 * (pair[0].0 + pair[1].0));
             if projection.depth(&middle) > projection.near {
-                self.push(
-                    &source,
-                    [pair[0].0, pair[1].0],
-                    whole,
-                    [pair[0].1, pair[1].1],
-                );
+                let part = Source {
+                    range: [pair[0].0, pair[1].0],
+                    closed: whole,
+                    ends: [pair[0].1, pair[1].1],
+                    ..source.clone()
+                };
+                let seen = self.image(&part);
+                self.push(part, seen);
             }
         }
     }
 
-    fn push(&mut self, source: &Source<'a>, range: [f64; 2], closed: bool, ends: [Option<u32>; 2]) {
+    /// Makes a strand of an arc that is not cut.
+    fn push(&mut self, source: Source<'a>, mut seen: Image) {
+        let (range, closed) = (source.range, source.closed);
         let [lo, hi] = range;
         let (projection, band) = (self.scene.projection, self.scene.band);
-        let mut seen = image(source.curve, range, projection, band);
         if let Image::General = seen {
             let brep = self.scene.brep;
             let surfaces = source.faces.iter().map(|f| brep.surface(f.0));
@@ -350,10 +364,10 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             curve: source.curve,
             range,
             closed,
-            ends,
+            ends: source.ends,
             contour: source.contour,
             edge: source.edge,
-            faces: source.faces.clone(),
+            faces: source.faces,
             limb: source.limb,
             image: seen,
             turns,

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 33] = [
+const MENDED: [(u64, &str); 34] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -79,13 +79,14 @@ const MENDED: [(u64, &str); 33] = [
     (23783, "a sphere with a long narrow hole, for the mesh"),
     (32313, "an edge through the apex of a cone"),
     (9615, "an edge just inside an equator of its own torus"),
+    (31400, "a face seen almost edge-on next to its vertex"),
 ];
 
 /// The views in which they were wrong.
 const MENDED_IN: [&str; 3] = ["perspective 3", "orthographic 1", "along z"];
 
 /// Trees that were wrong along the other axes.
-const MENDED_ALONG: [(u64, &str); 8] = [
+const MENDED_ALONG: [(u64, &str); 9] = [
     (122, "a slit along the top of a torus"),
     (237, "a limb that ends at a vertex of three edges"),
     (
@@ -103,6 +104,10 @@ const MENDED_ALONG: [(u64, &str); 8] = [
     (22229, "edges along limbs of a torus"),
     (28215, "a cone along one of its rulings"),
     (22433, "a limb tangent to another where that one ends"),
+    (
+        33461,
+        "a fin between circles that touch, thinner than the resolution",
+    ),
 ];
 
 /// The views in which those were wrong.

@@ -29,6 +29,8 @@ const HALVINGS: usize = 17;
 const NEAR: f64 = 4.0;
 /// How many times the depth of a round surface next to its limb a contour may be off in depth.
 const DEEP: f64 = 16.0;
+/// Where a face's slope is looked at, in intervals between two lines of sight.
+const PROBES: [f64; 4] = [0.5, -1.0, 0.0625, -0.0625];
 /// How many missing contours are named.
 const NAMED: usize = 5;
 
@@ -211,14 +213,16 @@ impl Search<'_> {
             Ordering::Equal => return None,
         };
         let (near, far) = (longer.get(index)?, longer.get(index + 1)?);
-        // The edge is between the two, on either side of their middle.
+        // The edge is between the two, on either side of their middle, and so may the face's other
+        // edge be.
         let steep = |part: f64| {
             let met = self.met([0, 1].map(|i| from[i] + part * (other[i] - from[i])));
             let met = met.unwrap_or_default();
             let next = met.get(index).filter(|next| next.surface == near.surface);
-            next.is_some_and(|next| (next.at - near.at).abs() > deep)
+            next.is_some_and(|next| (next.at - near.at).abs() > deep * part.abs())
         };
-        (steep(0.5) || steep(-1.0)).then_some(far.at.max(near.at))
+        let steep = PROBES.into_iter().any(steep);
+        steep.then_some(far.at.max(near.at))
     }
 
     /// What a change lacks; none where a contour explains it.

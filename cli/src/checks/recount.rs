@@ -97,8 +97,10 @@ impl Recount {
                 let mut wrong = None;
                 for part in SAMPLES {
                     let place = contour.curve3.point(lo + part * (hi - lo));
-                    // Where a piece ends, another contour is near.
-                    let short = ends.map(|e| (e - place).norm() < NEAR * clearance.aside);
+                    // Where a piece ends in the image, another contour is near.
+                    let (towards, _) = sight(&place);
+                    let aside = ends.map(|e| (e - place).cross(&towards).norm());
+                    let short = aside.map(|aside| aside < NEAR * clearance.aside);
                     let unclear = end_on || (open && short.contains(&true));
                     let counted = material.invisibility(&place, sight, clearance);
                     let (counted, folds) = match counted {

@@ -127,9 +127,10 @@ impl<'a> Checker<'a> {
         let volume = mass(&self.evaluation.brep).volume;
         let mut estimate = self.material.volume(rays, 1);
         let mut off = self.deviation(&estimate, volume);
-        // Chance alone exceeds the bound now and then: fresh rays decide.
+        // Chance alone exceeds the bound now and then, or misses a small part: fresh rays decide.
         if off > DEVIATIONS {
-            estimate = self.material.volume(rays.saturating_mul(AGAIN), 2);
+            let (part, more) = (&self.evaluation.bounds, rays.saturating_mul(AGAIN));
+            estimate = self.material.volume_about(part, more, 2);
             off = self.deviation(&estimate, volume);
         }
         let Estimate {

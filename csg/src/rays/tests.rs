@@ -1,6 +1,7 @@
 use super::*;
 use crate::builder::Builder;
 use crate::reader::{Format, Options, read};
+use premio_kernel::geometry::bounds::Box3;
 use std::f64::consts::PI;
 
 fn material(padl: &str) -> Material {
@@ -46,6 +47,39 @@ fn volumes_of_operations() {
     let touching = "BLO(X=1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=1)";
     assert_volume(&format!("P = ({touching}) {moved}"), 2.0);
     assert_volume("P = SPH(R=2) DIF SPH(R=1)", 28.0 / 3.0 * PI);
+}
+
+/// Small balls, two of them in the box: rays through the box of all meet none.
+#[test]
+fn small_parts_of_large_trees_are_measured() {
+    let balls = material(
+        "P = SPH(R=0.01) UN SPH(R=0.01) AT (MOVX=0.03) UN SPH(R=0.01) AT (MOVX=5, MOVY=5, MOVZ=5)",
+    );
+    let ball = 4e-6 / 3.0 * PI;
+    let part = Box3 {
+        min: [-0.01, -0.01, -0.01],
+        max: [0.04, 0.01, 0.01],
+    };
+    assert_eq!(balls.volume(1000, 1).value, 0.0);
+    let about = balls.volume_about(&part, 20_000, 1);
+    assert!(about.deviation(2.0 * ball, 0.0) < 5.0, "{about:?}");
+    assert!(about.standard_error < 1e-2 * ball, "{about:?}");
+}
+
+/// What lies in a box and what does not is the whole.
+#[test]
+fn volumes_about_a_box_are_whole() {
+    let part = material("P = CYL(R=2, H=3) DIF SPH(R=1)");
+    let volume = 12.0 * PI - 2.0 / 3.0 * PI;
+    for (min, max) in [
+        ([-1.0, -1.0, -1.0], [1.0, 0.5, 2.0]),
+        ([-3.0, -3.0, -3.0], [3.0, 3.0, 5.0]),
+        ([5.0, 5.0, 5.0], [6.0, 6.0, 6.0]),
+    ] {
+        let about = part.volume_about(&Box3 { min, max }, 20_000, 1);
+        assert!(about.deviation(volume, 0.0) < 5.0, "{about:?}");
+        assert!(about.standard_error < 2e-3 * volume, "{about:?}");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The volume by rays: the mean length of material on parallel lines.
 
+use super::shape::clip;
 use super::{Material, Ray};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Box3;
@@ -36,10 +37,43 @@ impl Material {
     /// The volume by about `rays` rays along a direction in general position: low-discrepancy
     /// grids at random places, which `seed` chooses.
     pub fn volume(&self, rays: usize, seed: u64) -> Estimate {
-        if self.bounds.min[0] > self.bounds.max[0] {
+        let length = |_: &Ray, [lo, hi]: [f64; 2]| hi - lo;
+        self.measured(&self.bounds, length, rays, seed)
+    }
+
+    /// The same, with as many rays for what lies in a box as for what does not: a small part of a
+    /// large tree is missed otherwise.
+    pub fn volume_about(&self, part: &Box3, rays: usize, seed: u64) -> Estimate {
+        let within = |ray: &Ray, span: [f64; 2]| {
+            let mut inside = span;
+            let met = (0..3).all(|i| {
+                let (from, along) = (ray.origin[i], ray.direction[i]);
+                clip(&mut inside, part.min[i] - from, -along)
+                    && clip(&mut inside, from - part.max[i], along)
+            });
+            if met { inside[1] - inside[0] } else { 0.0 }
+        };
+        let beyond = |ray: &Ray, span: [f64; 2]| span[1] - span[0] - within(ray, span);
+        let near = self.measured(part, within, rays, seed);
+        let far = self.measured(&self.bounds, beyond, rays, seed);
+        Estimate {
+            value: near.value + far.value,
+            standard_error: near.standard_error.hypot(far.standard_error),
+        }
+    }
+
+    /// The integral of a length along rays through a box, of each span of material.
+    fn measured(
+        &self,
+        bounds: &Box3,
+        length: impl Fn(&Ray, [f64; 2]) -> f64,
+        rays: usize,
+        seed: u64,
+    ) -> Estimate {
+        if bounds.min[0] > bounds.max[0] {
             return Estimate::default();
         }
-        let window = Window::around(self);
+        let window = Window::around(bounds);
         let mut scratch = self.scratch();
         let each = (rays / GRIDS).max(1);
         let mut random = SplitMix(seed);
@@ -50,7 +84,7 @@ impl Material {
             for k in 0..each {
                 let at = |i: usize| (shift[i] + k as f64 * STEPS[i]).fract();
                 let ray = window.ray(at(0), at(1));
-                self.cross(&ray, &mut scratch, |[lo, hi]| sum += hi - lo);
+                self.cross(&ray, &mut scratch, |span| sum += length(&ray, span));
             }
             *mean = sum / each as f64 * window.area();
         }
@@ -72,7 +106,7 @@ impl Material {
         if self.bounds.min[0] > self.bounds.max[0] {
             return extent;
         }
-        let window = Window::around(self);
+        let window = Window::around(&self.bounds);
         let mut scratch = self.scratch();
         for k in 0..rays {
             let [u, v] = STEPS.map(|step| ((k as f64 + 0.5) * step).fract());
@@ -87,7 +121,7 @@ impl Material {
     }
 }
 
-/// A rectangle across the direction of the rays that the whole part is behind.
+/// A rectangle across the direction of the rays that a whole box is behind.
 struct Window {
     frame: Frame,
     min: [f64; 2],
@@ -95,8 +129,7 @@ struct Window {
 }
 
 impl Window {
-    fn around(material: &Material) -> Self {
-        let bounds = &material.bounds;
+    fn around(bounds: &Box3) -> Self {
         // No turn of a whole number of degrees brings an axis to this direction.
         let direction = Vector3::new(1.0, SQRT_2, PI).normalize();
         let frame = Frame::about(bounds.centre(), direction);

@@ -19,6 +19,10 @@ use premio_kernel::number::sign::ROUNDING;
 /// The tangent of the greatest angle between a stretch's direction and its cone's sides.
 const NARROW: f64 = 0.5;
 
+/// The sine of an angle by which the sides of a cusp hardly turn: there they are so close to each
+/// other, in the size of the way to it, as no two curves of a part cross.
+const SLIGHT: f64 = 1.0 / 64.0;
+
 /// How the image of a stretch runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
@@ -200,13 +204,14 @@ pub fn passes(
 /// the first.
 ///
 /// A graph over one direction does not cross itself, nor does a convex arc that turns by less than
-/// half a turn, nor the two sides of a cusp before either has turned far from it.
+/// half a turn, nor the two sides of a cusp as long as they bend away from each other, or have
+/// hardly turned from its line.
 pub fn simple_run<'s>(mut all: impl Iterator<Item = &'s Stretch>) -> usize {
     let Some(first) = all.next().and_then(|s| s.course) else {
         return 0;
     };
     let mut length = 0;
-    let (mut graph, mut convex, mut cusp) = (true, true, true);
+    let (mut graph, mut convex, mut cusp, mut away) = (true, true, true, true);
     let (mut dots, mut turned, mut last) = (0, 0.0, first);
     for stretch in all {
         let Some(course) = stretch.course else {
@@ -219,10 +224,11 @@ pub fn simple_run<'s>(mut all: impl Iterator<Item = &'s Stretch>) -> usize {
             dots == 0 && cos - sin.abs() * course.spread > 0.0 && cos > first.spread * sin.abs();
         let (step_cos, step_sin) = between(&last, &course);
         turned += step_sin.atan2(step_cos).abs() + course.spread.atan();
-        convex &= dots == 0 && first.bend.is_some() && course.bend == first.bend;
-        convex &= turned < std::f64::consts::PI;
-        // On either side the direction's line stays next to the cusp's.
-        cusp &= dots <= 1 && (cos > 0.0) == (dots == 0) && sin.abs() <= NARROW;
+        let bends_on = first.bend.is_some() && course.bend == first.bend;
+        away &= bends_on;
+        convex &= bends_on && dots == 0 && turned < std::f64::consts::PI;
+        let most = if away { NARROW } else { SLIGHT };
+        cusp &= dots <= 1 && (cos > 0.0) == (dots == 0) && sin.abs() <= most;
         if !(graph || convex || cusp) {
             break;
         }

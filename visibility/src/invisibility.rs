@@ -275,7 +275,8 @@ impl<'s, 'a> Carrying<'s, 'a> {
             let change = between.and_then(|b| self.chains[i].between.get(b));
             let then = if backward { k.wrapping_sub(1) } else { k + 1 };
             known = match change {
-                Some(Change::Pass(passing)) => {
+                // What is counted where contours fall on one another is not carried on.
+                Some(Change::Pass(passing)) if now.plain => {
                     let p = self.strands[i].curve.point(span.range[exit]);
                     let passing = if backward {
                         passing.reversed()
@@ -285,7 +286,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
                     carry(self.scene, &p, now.clone(), &passing)
                 }
                 Some(Change::Correct) => self.enter(i, then, entry),
-                None => None,
+                Some(Change::Pass(_)) | None => None,
             };
             self.counts[i][k] = Some(now);
         }

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 34] = [
+const MENDED: [(u64, &str); 35] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -80,13 +80,17 @@ const MENDED: [(u64, &str); 34] = [
     (32313, "an edge through the apex of a cone"),
     (9615, "an edge just inside an equator of its own torus"),
     (31400, "a face seen almost edge-on next to its vertex"),
+    (
+        36160,
+        "an edge below a fin that is narrower than lines of sight tell",
+    ),
 ];
 
 /// The views in which they were wrong.
 const MENDED_IN: [&str; 3] = ["perspective 3", "orthographic 1", "along z"];
 
 /// Trees that were wrong along the other axes.
-const MENDED_ALONG: [(u64, &str); 9] = [
+const MENDED_ALONG: [(u64, &str); 12] = [
     (122, "a slit along the top of a torus"),
     (237, "a limb that ends at a vertex of three edges"),
     (
@@ -108,6 +112,12 @@ const MENDED_ALONG: [(u64, &str); 9] = [
         33461,
         "a fin between circles that touch, thinner than the resolution",
     ),
+    (34295, "sides of a cusp that bend back and cross"),
+    (
+        37930,
+        "the far half of a torus's top circle, behind its near half",
+    ),
+    (38677, "a limb on another one, in front of an edge"),
 ];
 
 /// The views in which those were wrong.

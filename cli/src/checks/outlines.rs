@@ -249,11 +249,13 @@ impl Search<'_> {
         let deep = deep(depth);
         let until = self.steep_until(change, index, deep).unwrap_or(depth);
         let there = |p: &Passing| p.depth[0] - deep <= until && depth <= p.depth[1] + deep;
+        // What begins there nearer to the eye may be narrower than the interval.
+        let before = |p: &Passing| p.depth[1] < depth;
         let lack = if !images.any(a, near, |_| true) {
             Lack::Contour
         } else if !images.any(a, near, there) {
             Lack::Depth
-        } else if index == 0 && !images.any(a, near, |p| p.visible && there(p)) {
+        } else if index == 0 && !images.any(a, near, |p| p.visible && (there(p) || before(p))) {
             Lack::Visible
         } else {
             return None;

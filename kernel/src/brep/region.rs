@@ -189,7 +189,7 @@ impl Sorter<'_> {
             let heading = walk.direction(&start.point).dot(&start.left);
             below |= heading >= SLANT;
             across += usize::from(heading.abs() < SLANT);
-            if heading >= SLANT && self.follow_down(ring, start, vec![walk]) {
+            if heading >= SLANT && self.follow_down(ring, start, vec![walk], attempt) {
                 return None;
             }
         }
@@ -197,7 +197,9 @@ impl Sorter<'_> {
             return None;
         }
         let turn = 0.5 + 0.7 * attempt as f64;
-        let turned = starts.iter().any(|start| self.turn_down(ring, start, turn));
+        let turned = starts
+            .iter()
+            .any(|start| self.turn_down(ring, start, turn, attempt));
         let place = starts.first().map_or([0.0; 3], |s| s.point.into());
         (!turned).then_some(RegionError { place })
     }
@@ -209,8 +211,15 @@ impl Sorter<'_> {
     }
 
     /// Follows legs of which the last goes down. Where loops pass through a cone's apex it goes
-    /// around just before it, to the loop that bounds the sector it came through.
-    fn follow_down(&mut self, ring: usize, start: &Start, mut legs: Vec<Walk>) -> bool {
+    /// around just before it, to the loop that bounds the sector it came through; farther away with
+    /// each attempt, for loops that are tangent there.
+    fn follow_down(
+        &mut self,
+        ring: usize,
+        start: &Start,
+        mut legs: Vec<Walk>,
+        attempt: usize,
+    ) -> bool {
         let mut goal = None;
         if let Surface::Cone(c) = self.surface
             && let Some(down) = legs.pop()
@@ -222,7 +231,8 @@ impl Sorter<'_> {
                 .into_iter()
                 .any(|i| self.arcs.ends_at(i, &apex, self.band));
             if passed {
-                let height = height - (height * self.band).sqrt();
+                let near = (self.band / height).powf(1.0 / (2 + attempt) as f64);
+                let height = height * (1.0 - near);
                 let corner = down.point(height);
                 let round = Walk::parallel(self.surface, &corner, Sense::Along, self.band);
                 legs.push(down.upto(height));
@@ -236,7 +246,7 @@ impl Sorter<'_> {
     }
 
     /// A turn along the parallel into the face, then down.
-    fn turn_down(&mut self, ring: usize, start: &Start, turn: f64) -> bool {
+    fn turn_down(&mut self, ring: usize, start: &Start, turn: f64, attempt: usize) -> bool {
         let p = &start.point;
         let Some(round) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
             return false;
@@ -244,7 +254,10 @@ impl Sorter<'_> {
         let round = round.toward(p, &start.left);
         let length = turn * self.surface.frame().coordinates(p).xy().norm();
         match self.down(&round.point(length)) {
-            Some(down) => self.follow_down(ring, start, vec![round.upto(length), down]),
+            Some(down) => {
+                let legs = vec![round.upto(length), down];
+                self.follow_down(ring, start, legs, attempt)
+            }
             None => false,
         }
     }

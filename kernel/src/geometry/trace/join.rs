@@ -268,7 +268,8 @@ fn node_segment(index: usize, pass: &Pass, end: &Reached) -> Option<Segment> {
             return None;
         }
         let steep = g.x.over(g.y).magnitude();
-        if steep * end.sigma.abs() <= margin {
+        let reach = steep * end.sigma.abs();
+        if reach <= margin {
             return Some(Segment {
                 axis: chart.axis,
                 from: 0.0,
@@ -280,6 +281,8 @@ fn node_segment(index: usize, pass: &Pass, end: &Reached) -> Option<Segment> {
                 chart: Some(index),
             });
         }
+        // What is known of the slopes may be much more than they are.
+        margin = margin.max(reach);
     }
     None
 }

@@ -59,7 +59,8 @@ pub enum Asked {
     /// All of them.
     All,
     /// Those turned towards the eye, and of the others those met on their boundary only: whether
-    /// the line passes through the inside of a face turned away does not count.
+    /// the line passes through the inside of a face turned away does not count. Also those that
+    /// touch the origin, as not plain.
     Hiding,
 }
 
@@ -293,10 +294,22 @@ impl<'a> Scene<'a> {
             Own::Through | Own::Tangent => 0.0,
         };
         for &(s, touch) in &meetings.at[..meetings.count] {
+            let p = ray.origin + ray.towards * s;
+            if asked == Asked::Hiding && s.abs() < least {
+                // Touched by another face, it may be this one that hides what is next to it.
+                if self.locator.place(face, &p) != Place::Outside {
+                    report(Hit {
+                        at: s,
+                        face,
+                        front: false,
+                        plain: false,
+                    });
+                }
+                continue;
+            }
             if s <= least || s >= ray.length {
                 continue;
             }
-            let p = ray.origin + ray.towards * s;
             let front = touch || self.brep.outward(face, &p).dot(&ray.towards) > 0.0;
             let locator = self.locator.face(face);
             let place = match asked {

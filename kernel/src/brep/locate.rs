@@ -281,12 +281,18 @@ impl<'a> FaceLocator<'a> {
                 first.note(Met {
                     at,
                     passage,
-                    curve: std::ptr::from_ref(arc.curve),
+                    arc: i,
                 });
             };
             walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
         });
-        first.outcome(self.band)
+        first.outcome(self.band, |a, b| self.is_one_edge(a, b))
+    }
+
+    /// Whether two arcs are of one edge, which then has the face on both of its sides.
+    fn is_one_edge(&self, a: usize, b: usize) -> bool {
+        let [a, b] = [a, b].map(|i| &self.arcs.all[i]);
+        std::ptr::eq(a.curve, b.curve) && a.range == b.range
     }
 }
 
@@ -295,7 +301,7 @@ impl<'a> FaceLocator<'a> {
 struct Met {
     at: f64,
     passage: Passage,
-    curve: *const Curve,
+    arc: usize,
 }
 
 /// The first three meetings of a walk, in order.
@@ -318,7 +324,7 @@ impl First {
         }
     }
 
-    fn outcome(&self, band: f64) -> Outcome {
+    fn outcome(&self, band: f64, one_edge: impl Fn(usize, usize) -> bool) -> Outcome {
         let [Some(first), second, third] = self.met else {
             return Outcome::Nothing;
         };
@@ -329,8 +335,7 @@ impl First {
                 Passage::Leaving => Outcome::Found(Place::Inside),
                 Passage::Unclear => Outcome::Unclear,
             },
-            // An edge with the face on both of its sides.
-            (Some(second), None) if first.curve == second.curve => {
+            (Some(second), None) if one_edge(first.arc, second.arc) => {
                 match (first.passage, second.passage) {
                     (Passage::Entering, Passage::Leaving)
                     | (Passage::Leaving, Passage::Entering) => Outcome::Found(Place::Inside),

@@ -85,7 +85,10 @@ const MENDED: [(u64, &str); 37] = [
         "an edge below a fin that is narrower than lines of sight tell",
     ),
     (43837, "an edge that touches a spherical cavity"),
-    (45204, "branches of one curve that touch, and a face between them"),
+    (
+        45204,
+        "branches of one curve that touch, and a face between them",
+    ),
 ];
 
 /// The views in which they were wrong.

@@ -113,16 +113,16 @@ impl Chain {
             }
         }
         let mut between: Vec<Change> = splits.iter().map(|s| s.change).collect();
-        let inner = splits.iter().map(|s| (s.t, Some(s.junction)));
-        let (first, inner, last) = match splits.first() {
-            Some(first) if strand.closed => {
+        let (first, inner, last) = match splits.split_first() {
+            Some((first, inner)) if strand.closed => {
                 between.remove(0);
                 let junction = Some(first.junction);
                 let last = (first.t + (hi - lo), junction);
-                ((first.t, junction), inner.skip(1), last)
+                ((first.t, junction), inner, last)
             }
-            _ => ((lo, strand.ends[0]), inner.skip(0), (hi, strand.ends[1])),
+            _ => ((lo, strand.ends[0]), &splits[..], (hi, strand.ends[1])),
         };
+        let inner = inner.iter().map(|s| (s.t, Some(s.junction)));
         let mut spans: Vec<Span> = Vec::with_capacity(splits.len() + 1);
         let mut from = first;
         for to in inner.chain([last]) {

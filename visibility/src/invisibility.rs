@@ -257,10 +257,13 @@ impl<'s, 'a> Carrying<'s, 'a> {
     /// Counts along a strand, from the end at which something is known.
     fn strand(&mut self, i: usize) {
         let n = self.chains[i].spans.len();
-        let enter = |k: usize, which: usize| self.enter(i, k, which);
-        let (first, last) = (enter(0, 0), enter(n - 1, 1));
-        let backward = first.is_none() && last.is_some();
-        let mut known = if backward { last } else { first };
+        let first = self.enter(i, 0, 0);
+        let last = match first {
+            Some(_) => None,
+            None => self.enter(i, n - 1, 1),
+        };
+        let backward = last.is_some();
+        let mut known = first.or(last);
         for step in 0..n {
             let k = if backward { n - 1 - step } else { step };
             let [entry, exit] = if backward { [1, 0] } else { [0, 1] };

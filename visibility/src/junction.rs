@@ -246,6 +246,9 @@ impl Search<'_, '_, '_, '_> {
 
     /// Whether the image between two parameters is straight to within the resolution.
     fn straight(&self, strand: &Strand<'_>, from: f64, to: f64) -> bool {
+        if let Image::Line { .. } = strand.image {
+            return true;
+        }
         let [p, m, q] = [from, 0.5 * (from + to), to].map(|t| strand.curve.point(t));
         let chord = Point3::from((p.coords + q.coords) * 0.5);
         self.apart(&m, &chord) <= LOOSE * self.scene.band

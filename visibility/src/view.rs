@@ -80,11 +80,12 @@ pub fn contours_by(
         ..Seconds::default()
     };
     let started = Instant::now();
+    let all = brep.topology.edges.len() + limbs.arcs.len();
     let mut weave = Weave {
         scene: &scene,
         junctions: &mut junctions,
-        contours: Vec::new(),
-        strands: Vec::new(),
+        contours: Vec::with_capacity(all),
+        strands: Vec::with_capacity(all),
     };
     weave.edges(&limbs);
     weave.limbs(&limbs);

@@ -19,8 +19,8 @@ use premio_kernel::number::sign::ROUNDING;
 /// The tangent of the greatest angle between a stretch's direction and its cone's sides.
 const NARROW: f64 = 0.5;
 
-/// The sine of an angle by which the sides of a cusp hardly turn: there they are so close to each
-/// other, in the size of the way to it, as no two curves of a part cross.
+/// The sine of the angle up to which the sides of a cusp are taken not to cross, without proof: so
+/// slight a turn hardly brings a curve back over the way it came.
 const SLIGHT: f64 = 1.0 / 64.0;
 
 /// How the image of a stretch runs.

@@ -350,9 +350,8 @@ impl Sorter<'_> {
     /// The arc that runs over the same edge the other way.
     fn twin(&self, arc: usize) -> Option<usize> {
         let a = &self.arcs.all[arc];
-        self.arcs.all.iter().position(|b| {
-            std::ptr::eq(a.curve, b.curve) && a.range == b.range && a.sense != b.sense
-        })
+        let mut all = self.arcs.all.iter();
+        all.position(|b| a.shares_edge(b) && a.sense != b.sense)
     }
 
     /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.

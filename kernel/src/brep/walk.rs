@@ -29,6 +29,14 @@ pub struct DirectedArc<'a> {
     pub sense: Sense,
 }
 
+impl DirectedArc<'_> {
+    /// Whether both are of one edge: if a face has two such arcs, it lies on both sides of the edge.
+    /// Several edges may be of one curve.
+    pub fn shares_edge(&self, other: &Self) -> bool {
+        std::ptr::eq(self.curve, other.curve) && self.range == other.range
+    }
+}
+
 /// What a walk does where it meets an arc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Passage {

@@ -38,15 +38,58 @@ pub enum Sweep {
     },
 }
 
+/// The other quadric along the rulings: k w^2 + 2 B(u) w + C(u).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Along {
+    /// k.
+    pub lead: f64,
+    /// B.
+    pub linear: Trig1,
+    /// C, where k is so small beside B that -B and ±√Δ may cancel.
+    pub constant: Option<Trig2>,
+}
+
+/// The part of B^2 that k C is no more than where digits would be lost.
+const CANCELLING: f64 = 1.0 / 256.0;
+
+impl Along {
+    pub(super) fn new(lead: f64, linear: Trig1, constant: Trig2) -> Self {
+        let size = |k: &[f64]| k.iter().map(|c| c.abs()).sum::<f64>();
+        let cancels = lead.abs() * size(&constant) <= CANCELLING * size(&linear).powi(2);
+        Self {
+            lead,
+            linear,
+            constant: cancels.then_some(constant),
+        }
+    }
+
+    /// Δ, where its coefficients are known to be the given ones.
+    fn radicand<S: Scalar>(&self, whole: &Trig2, at: (S, S)) -> S {
+        match &self.constant {
+            Some(constant) => {
+                trig1(&self.linear, at).square() - trig2(constant, at).scale(self.lead)
+            }
+            None => trig2(whole, at),
+        }
+    }
+
+    /// (-B + r)/k for a square root r of Δ, as (numerator, denominator): C/(-B - r) is the same.
+    fn quotient<S: Scalar>(&self, root: S, at: (S, S)) -> (S, S) {
+        let linear = trig1(&self.linear, at);
+        match &self.constant {
+            Some(constant) if root.is_like(linear) => (trig2(constant, at), -(linear + root)),
+            _ => (root - linear, S::constant(self.lead)),
+        }
+    }
+}
+
 /// The height w over the angle u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Height {
     /// (-B ± √Δ)/k with Δ positive everywhere.
     Whole {
-        /// k.
-        lead: f64,
-        /// B.
-        linear: Trig1,
+        /// k, B and C.
+        along: Along,
         /// Δ.
         radicand: Trig2,
         /// +1 or -1.
@@ -54,10 +97,8 @@ pub enum Height {
     },
     /// (-B + s √q)/k where s vanishes at the ends of the sweep and at `node`.
     Deflated {
-        /// k.
-        lead: f64,
-        /// B.
-        linear: Trig1,
+        /// k, B and C.
+        along: Along,
         /// q, positive, of degree one.
         rest: Trig1,
         /// Where the curve crosses itself.
@@ -118,17 +159,12 @@ impl Quartic {
     fn quotient<S: Scalar>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
         match &self.height {
             Height::Whole {
-                lead,
-                linear,
+                along,
                 radicand,
                 sign,
-            } => {
-                let root = trig2(radicand, at).sqrt().scale(*sign);
-                (root - trig1(linear, at), S::constant(*lead))
-            }
+            } => along.quotient(along.radicand(radicand, at).sqrt().scale(*sign), at),
             Height::Deflated {
-                lead,
-                linear,
+                along,
                 rest,
                 node,
                 sign,
@@ -140,7 +176,7 @@ impl Quartic {
                 if let Sweep::Oval { half, .. } = self.sweep {
                     root = root * oval_factor(t, half);
                 }
-                (root - trig1(linear, at), S::constant(*lead))
+                along.quotient(root, at)
             }
             Height::Rational { linear, constant } => {
                 (-trig2(constant, at), trig1(linear, at).scale(2.0))

@@ -69,13 +69,21 @@ pub fn value(curve: &Curve) -> Value {
             placed("ellipse", "center", &c.frame),
             &[("a", c.a), ("b", c.b)],
         ),
-        Curve::Parabola(c) => with(
-            placed("parabola", "vertex", &c.frame),
-            &[("focal", c.focal)],
-        ),
         Curve::Hyperbola(c) => with(
             placed("hyperbola", "center", &c.frame),
             &[("a", c.a), ("b", c.b)],
+        ),
+        Curve::Conic(c) if c.is_parabola() => with(
+            placed("parabola", "vertex", &c.frame),
+            &[("focal", 0.5 / c.curvature)],
+        ),
+        Curve::Conic(c) => with(
+            placed("conic", "point", &c.frame),
+            &[
+                ("curvature", c.curvature),
+                ("shear", c.shear),
+                ("flatness", c.flatness),
+            ],
         ),
         Curve::Quartic(q) => quartic(q),
         Curve::Toric(c) => toric(c),
@@ -99,19 +107,17 @@ fn quartic(q: &Quartic) -> Value {
     };
     let height = match &q.height {
         Height::Whole {
-            lead,
-            linear,
+            along,
             radicand,
             sign,
-        } => json!({"form": "whole", "lead": lead, "linear": linear,
+        } => json!({"form": "whole", "lead": along.lead, "linear": along.linear,
             "radicand": radicand, "sign": sign}),
         Height::Deflated {
-            lead,
-            linear,
+            along,
             rest,
             node,
             sign,
-        } => json!({"form": "deflated", "lead": lead, "linear": linear, "rest": rest,
+        } => json!({"form": "deflated", "lead": along.lead, "linear": along.linear, "rest": rest,
             "node": node, "sign": sign}),
         Height::Rational { linear, constant } => {
             json!({"form": "rational", "linear": linear, "constant": constant})

@@ -318,4 +318,7 @@ impl Scalar for Interval {
     fn sinc(self) -> Self {
         self.sinc_jet()[0]
     }
+    fn is_like(self, o: Self) -> bool {
+        (self * o).lo > 0.0
+    }
 }

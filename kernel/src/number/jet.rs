@@ -143,4 +143,7 @@ impl<S: Base> Scalar for Jet<S> {
         let [h, dh, ddh] = self.v.sinc_with_derivatives();
         self.chain(h, dh, ddh)
     }
+    fn is_like(self, o: Self) -> bool {
+        self.v.is_like(o.v)
+    }
 }

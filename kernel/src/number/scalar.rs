@@ -25,6 +25,8 @@ pub trait Scalar:
     fn sinh_cosh(self) -> (Self, Self);
     /// sin x / x, for 0 <= x <= pi.
     fn sinc(self) -> Self;
+    /// Whether it surely has the sign of another: their sum does not cancel.
+    fn is_like(self, o: Self) -> bool;
 }
 
 /// The scalar product of a constant vector and a vector of scalars.
@@ -98,5 +100,8 @@ impl Scalar for f64 {
     }
     fn sinc(self) -> Self {
         sinc_jet(self)[0]
+    }
+    fn is_like(self, o: Self) -> bool {
+        self * o > 0.0
     }
 }

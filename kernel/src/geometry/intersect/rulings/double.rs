@@ -6,7 +6,7 @@
 use super::{Rulings, apart};
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place, positive_parts};
-use crate::geometry::quartic::{Height, Quartic, Ruled, Sweep};
+use crate::geometry::quartic::{Along, Height, Quartic, Ruled, Sweep};
 use crate::geometry::trigonometric::{Trig1, between, derivative, divide, trig1, zeros_of};
 use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
@@ -96,15 +96,14 @@ impl Rulings<'_> {
             sweep,
             height,
         };
-        let (lead, linear) = (self.lead, self.linear);
+        let along = Along::new(self.lead, self.linear, self.constant);
         if structure.arcs.is_empty() && structure.positive {
             match structure.nodes.first() {
                 None => {
                     for sign in [1.0, -1.0] {
                         let radicand = self.radicand;
                         let height = Height::Whole {
-                            lead,
-                            linear,
+                            along,
                             radicand,
                             sign,
                         };
@@ -115,8 +114,7 @@ impl Rulings<'_> {
                     let half = between(node, node).map(|k| -k);
                     let rest = divide(&self.radicand, &half);
                     let height = Height::Deflated {
-                        lead,
-                        linear,
+                        along,
                         rest,
                         node: Some(node),
                         sign: 1.0,
@@ -141,8 +139,7 @@ impl Rulings<'_> {
                 at = vec![(n, t), (n, TAU - t)];
             }
             let height = Height::Deflated {
-                lead,
-                linear,
+                along,
                 rest,
                 node,
                 sign: 1.0,

@@ -208,9 +208,16 @@ fn conic_parameters(
                 });
             }
         }
-        Basis::Parabolic => {
-            let k = binary([0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], g);
-            crossings(&k, [lo, hi], touches, found);
+        Basis::Graph {
+            curvature,
+            shear,
+            flatness,
+        } => {
+            let rest = [1.0, 2.0 * shear, curvature * flatness];
+            let k = binary([0.0, 0.0, 2.0 * curvature], [0.0, 2.0, 0.0], rest, g);
+            let ends = [lo, hi].map(|t| basis.slope_of(t));
+            let t = |m: f64| basis.height_of(m).unwrap_or(f64::NAN);
+            crossings(&k, ends, &|m, v| touches(t(m), v), &mut |m| found(t(m)));
         }
         Basis::Hyperbolic => {
             // 2 e b = (e² + 1, e² - 1, 2 e) with e = exp t.

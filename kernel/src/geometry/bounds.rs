@@ -227,14 +227,14 @@ fn piece_box(curve: &Curve, a: f64, b: f64) -> Box3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::curve::{Circle, Parabola};
+    use super::super::curve::{Circle, Conic};
     use super::*;
     use nalgebra::Vector3;
 
     #[test]
     fn an_extreme_in_the_middle_of_a_range_is_in_the_tight_box() {
         let frame = Frame::about(Point3::origin(), Vector3::z());
-        let parabola = Curve::Parabola(Parabola { frame, focal: 0.25 });
+        let parabola = Curve::Conic(Conic::about_vertex(frame, 0.5, 0.0));
         let b = tight_bounds(&parabola, [-1.5, 1.5]);
         assert!(b.holds(&parabola.point(0.0)), "{b:?}");
         assert!(!b.grown(-1e-9).holds(&parabola.point(0.0)), "{b:?}");
@@ -251,10 +251,8 @@ mod tests {
                 frame: f,
                 radius: 2.0,
             }),
-            Curve::Parabola(Parabola {
-                frame: f,
-                focal: 0.7,
-            }),
+            Curve::Conic(Conic::about_vertex(f, 1.4, 0.0)),
+            Curve::Conic(Conic::about_vertex(f, 1.4, -0.02)),
         ];
         for c in &curves {
             for (lo, hi) in [(0.0, TAU), (0.3, 1.1), (4.0, 9.0)] {

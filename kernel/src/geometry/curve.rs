@@ -55,15 +55,6 @@ pub struct Ellipse {
     pub b: f64,
 }
 
-/// A parabola, (t^2/(4 f), t) in its frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parabola {
-    /// Origin at the vertex, x along the axis into the curve.
-    pub frame: Frame,
-    /// The focal length f.
-    pub focal: f64,
-}
-
 /// One branch of a hyperbola, (a cosh t, b sinh t) in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hyperbola {
@@ -75,6 +66,46 @@ pub struct Hyperbola {
     pub b: f64,
 }
 
+/// A conic about one of its points, as a graph over the tangent there: κ y² + 2 β x y + α x² = 2 x,
+/// and the parameter is y. For a parabola, and what is so long that the way to its centre would take
+/// its digits; meant is the part on which x is single.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conic {
+    /// Origin at the point, x along the inner normal.
+    pub frame: Frame,
+    /// κ: the curvature at the point.
+    pub curvature: f64,
+    /// β: zero at a vertex.
+    pub shear: f64,
+    /// α: with β zero it is positive for an ellipse, zero for a parabola, negative for a hyperbola.
+    pub flatness: f64,
+}
+
+impl Conic {
+    /// A conic about its vertex, by its semi-latus rectum p and k: y² = 2 p x - k x².
+    pub fn about_vertex(frame: Frame, rectum: f64, k: f64) -> Self {
+        Self {
+            frame,
+            curvature: 1.0 / rectum,
+            shear: 0.0,
+            flatness: k / rectum,
+        }
+    }
+
+    /// x over y: κ y²/(r + √(r² - κ α y²)) with r = 1 - β y.
+    fn height<S: Scalar>(&self, y: S) -> S {
+        let bend = y.square().scale(self.curvature);
+        let rest = S::constant(1.0) - y.scale(self.shear);
+        let root = (rest.square() - bend.scale(self.flatness)).sqrt();
+        bend.over(rest + root)
+    }
+
+    /// Whether it is a parabola.
+    pub fn is_parabola(&self) -> bool {
+        self.shear == 0.0 && self.flatness == 0.0
+    }
+}
+
 /// A curve in space.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
@@ -84,10 +115,10 @@ pub enum Curve {
     Circle(Circle),
     /// An ellipse.
     Ellipse(Ellipse),
-    /// A parabola.
-    Parabola(Parabola),
     /// A branch of a hyperbola.
     Hyperbola(Hyperbola),
+    /// A conic about one of its points.
+    Conic(Conic),
     /// A branch of the intersection of two quadrics.
     Quartic(Box<Quartic>),
     /// A curve on a torus.
@@ -109,8 +140,9 @@ impl Curve {
             Self::Line(_) => "line",
             Self::Circle(_) => "circle",
             Self::Ellipse(_) => "ellipse",
-            Self::Parabola(_) => "parabola",
             Self::Hyperbola(_) => "hyperbola",
+            Self::Conic(c) if c.is_parabola() => "parabola",
+            Self::Conic(_) => "conic",
             Self::Quartic(_) => "quartic",
             Self::Toric(_) => "toric",
         }
@@ -120,7 +152,7 @@ impl Curve {
     pub fn period(&self) -> Option<f64> {
         match self {
             Self::Circle(_) | Self::Ellipse(_) => Some(TAU),
-            Self::Line(_) | Self::Parabola(_) | Self::Hyperbola(_) => None,
+            Self::Line(_) | Self::Hyperbola(_) | Self::Conic(_) => None,
             Self::Quartic(q) => q.period(),
             Self::Toric(c) => c.closed.then(|| c.length()),
         }
@@ -155,15 +187,12 @@ impl Curve {
                 c.frame
                     .world_of([k.scale(c.a), s.scale(c.b), S::constant(0.0)])
             }
-            Self::Parabola(c) => {
-                c.frame
-                    .world_of([t.square().scale(0.25 / c.focal), t, S::constant(0.0)])
-            }
             Self::Hyperbola(c) => {
                 let (s, k) = t.sinh_cosh();
                 c.frame
                     .world_of([k.scale(c.a), s.scale(c.b), S::constant(0.0)])
             }
+            Self::Conic(c) => c.frame.world_of([c.height(t), t, S::constant(0.0)]),
             Self::Quartic(q) => q.at(t),
             Self::Toric(_) => return None,
         })
@@ -276,7 +305,7 @@ impl Curve {
                 let q = c.frame.coordinates(p);
                 self.polish(p, turn((q.y / c.b).atan2(q.x / c.a)))
             }
-            Self::Parabola(c) => self.polish(p, c.frame.coordinates(p).y),
+            Self::Conic(c) => self.polish(p, c.frame.coordinates(p).y),
             Self::Hyperbola(c) => self.polish(p, (c.frame.coordinates(p).y / c.b).asinh()),
             Self::Quartic(q) => self.polish(p, self.quartic_parameter(q, p)),
             Self::Toric(c) => {
@@ -336,16 +365,17 @@ impl Curve {
                 let half = (radius * radius - away * away).max(0.0).sqrt();
                 (away <= radius).then_some([t - half, t + half])
             }
-            Self::Parabola(c) => {
-                // The distance from the vertex grows with |t|, and is at least |t|.
-                let reach = (c.frame.origin - centre).norm() + radius;
-                let t = reach.min((4.0 * c.focal * reach).sqrt());
-                Some([-t, t])
-            }
             Self::Hyperbola(c) => {
                 let reach = (c.frame.origin - centre).norm() + radius;
                 let t = (reach / c.a).max(1.0).acosh().min((reach / c.b).asinh());
                 (reach >= c.a).then_some([-t, t])
+            }
+            Self::Conic(c) => {
+                // κ y² = 2 x - 2 β x y - α x², and x as y are no more than the distance.
+                let reach = (c.frame.origin - centre).norm() + radius;
+                let most = 2.0 + reach * (2.0 * c.shear.abs() + (-c.flatness).max(0.0));
+                let t = reach.min((reach * most / c.curvature).sqrt());
+                Some([-t, t])
             }
             Self::Toric(c) => Some([0.0, c.length()]),
             Self::Quartic(_) | Self::Circle(_) | Self::Ellipse(_) => {

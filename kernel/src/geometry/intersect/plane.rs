@@ -1,7 +1,7 @@
 //! A plane and another surface: lines and conics in closed form.
 
-use super::{Branch, Meeting, Node, place};
-use crate::geometry::curve::{Circle, Curve, Ellipse, Hyperbola, Line, Parabola};
+use super::{Branch, Extent, Meeting, Node, place};
+use crate::geometry::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
 use crate::geometry::frame::Frame;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere};
@@ -55,6 +55,13 @@ pub(super) fn plane_sphere(p: &Plane, s: &Sphere, pair: &Pair<'_>, judge: &Judge
     }
 }
 
+/// How many times as far as what is asked about lies the centre of a conic that is told from a
+/// point of it.
+const FAR: f64 = 256.0;
+
+/// How many times as far as what is asked about lies a vertex that a long ellipse is told from.
+const NEAR: f64 = 16.0;
+
 pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &Judge) -> Meeting {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
@@ -102,11 +109,56 @@ pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &J
             pair.extent,
         );
     } else {
-        let frame = Frame::toward(centre, n, z);
         let (a, b) = (c.radius / cos.abs(), c.radius);
+        if a > FAR * pair.extent.radius {
+            add_long_section(p, c, pair.extent, &mut meeting);
+            return meeting;
+        }
+        let frame = Frame::toward(centre, n, z);
         meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, pair.extent);
     }
     meeting
+}
+
+/// A plane nearly along a cylinder's axis: as much of the ellipse as can lie in the extent.
+///
+/// With X along the plane's steepest line from the point next to the extent's centre, and Y across,
+/// the points at X have the distance h + c X from the axis in the direction of the plane's normal:
+/// (h + c X)² + Y² = r².
+fn add_long_section(p: &Plane, s: &Cylinder, extent: &Extent, meeting: &mut Meeting) {
+    let (n, z, r) = (p.frame.z, s.frame.z, s.radius);
+    let middle = s.frame.origin + z * (extent.centre - s.frame.origin).dot(&z);
+    let c = -n.dot(&z);
+    let outward = (n + z * c).normalize();
+    let h = -height(p, &middle) / n.dot(&outward);
+    let foot = middle + outward * h;
+    let steep = Frame::toward(foot, n, z);
+    let vertex = |side: f64| (side * r - h) / c;
+    let side = if vertex(1.0).abs() < vertex(-1.0).abs() {
+        1.0
+    } else {
+        -1.0
+    };
+    if vertex(side).abs() <= NEAR * extent.radius {
+        let inward = steep.x * -(side * c).signum();
+        let frame = Frame::toward(foot + steep.x * vertex(side), n, inward);
+        let conic = Conic::about_vertex(frame, r * c.abs(), c * c);
+        meeting.add(Curve::Conic(conic), false, extent);
+    } else if h.abs() < r {
+        let half = ((r - h) * (r + h)).sqrt();
+        for y in [-half, half] {
+            let slope = y.hypot(h * c);
+            let normal = steep.x * (-h * c / slope) - steep.y * (y / slope);
+            let unit = 1.0 / (slope * slope * slope);
+            let conic = Conic {
+                frame: Frame::toward(foot + steep.y * y, n, normal),
+                curvature: (c * r).powi(2) * unit,
+                shear: h * c * y * (1.0 - c * c) * unit,
+                flatness: ((c * c * h).powi(2) + y * y) * unit,
+            };
+            meeting.add(Curve::Conic(conic), false, extent);
+        }
+    }
 }
 
 pub(super) fn plane_cone(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Meeting {
@@ -212,10 +264,7 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge
         if -h / rates[1 - i] > 0.0 {
             let frame = Frame::toward(vertex(1 - i), n, rulings[i]);
             meeting.add(
-                Curve::Parabola(Parabola {
-                    frame,
-                    focal: 0.5 * rectum,
-                }),
+                Curve::Conic(Conic::about_vertex(frame, rectum, 0.0)),
                 false,
                 pair.extent,
             );
@@ -223,22 +272,33 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge
         return meeting;
     }
     let ahead = rates.map(|r| -h / r > 0.0);
-    let (v, o) = match ahead {
-        [true, _] => (vertex(0), vertex(1)),
-        [false, true] => (vertex(1), vertex(0)),
+    let near = match ahead {
+        // The vertex that is nearer to the apex.
+        [true, true] => usize::from(rates[1].abs() > rates[0].abs()),
+        [true, false] => 0,
+        [false, true] => 1,
         [false, false] => return meeting,
     };
-    let a = 0.5 * (v - o).norm();
+    // From vertex to vertex without the apex's coordinates: next to it they would take its digits.
+    let product = rates[0] * rates[1];
+    let a = h.abs() * c.sin * c.cos / product.abs();
     let b = (rectum * a).sqrt();
-    let frame = Frame::toward(o + (v - o) * 0.5, n, v - o);
-    if ahead == [true, true] {
-        meeting.add(Curve::Ellipse(Ellipse { frame, a, b }), false, pair.extent);
+    let along = (w * cos - z * n.dot(&w)) * (h * product).signum();
+    let x = if near == 0 { -along } else { along };
+    let vertex = vertex(near);
+    let closed = ahead == [true, true];
+    let curve = if a > FAR * ((vertex - pair.extent.centre).norm() + pair.extent.radius) {
+        let outward = if closed { 1.0 } else { -1.0 };
+        let frame = Frame::toward(vertex, n, -x * outward);
+        Curve::Conic(Conic::about_vertex(frame, rectum, outward * rectum / a))
     } else {
-        meeting.add(
-            Curve::Hyperbola(Hyperbola { frame, a, b }),
-            false,
-            pair.extent,
-        );
-    }
+        let frame = Frame::toward(vertex - x * a, n, x);
+        if closed {
+            Curve::Ellipse(Ellipse { frame, a, b })
+        } else {
+            Curve::Hyperbola(Hyperbola { frame, a, b })
+        }
+    };
+    meeting.add(curve, false, pair.extent);
     meeting
 }

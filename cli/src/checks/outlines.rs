@@ -29,8 +29,6 @@ const HALVINGS: usize = 17;
 const NEAR: f64 = 4.0;
 /// How many times the depth of a round surface next to its limb a contour may be off in depth.
 const DEEP: f64 = 16.0;
-/// Where a face's slope is looked at, in intervals between two lines of sight.
-const PROBES: [f64; 4] = [0.5, -1.0, 0.0625, -0.0625];
 /// How many missing contours are named.
 const NAMED: usize = 5;
 
@@ -201,28 +199,24 @@ impl Search<'_> {
         })
     }
 
-    /// Next to an edge at which material, or a gap, ends that is met in one of two lines of sight
-    /// only: the depth of its far side where the near one falls so steeply to the edge that from one
-    /// line of sight to the next it is more than `deep`.
+    /// Where the surface that a change begins with falls so steeply to its edge that from one line of
+    /// sight to the next it is more than `deep`: the depth down to which the edge may be. That is of
+    /// what is met instead, or of the far side of what ends there.
     fn steep_until(&self, change: &Change, index: usize, deep: f64) -> Option<f64> {
         let [first, second] = &change.met;
         let [a, b] = change.at;
-        let (longer, from, other) = match first.len().cmp(&second.len()) {
-            Ordering::Greater => (first, a, b),
-            Ordering::Less => (second, b, a),
-            Ordering::Equal => return None,
+        let (x, y) = (first.get(index), second.get(index));
+        let (near, until, from, other) = match first.len().cmp(&second.len()) {
+            Ordering::Greater => (x?, first.get(index + 1)?.at, a, b),
+            Ordering::Less => (y?, second.get(index + 1)?.at, b, a),
+            Ordering::Equal if x?.at <= y?.at => (x?, y?.at, a, b),
+            Ordering::Equal => (y?, x?.at, b, a),
         };
-        let (near, far) = (longer.get(index)?, longer.get(index + 1)?);
-        // The edge is between the two, on either side of their middle, and so may the face's other
-        // edge be.
-        let steep = |part: f64| {
-            let met = self.met([0, 1].map(|i| from[i] + part * (other[i] - from[i])));
-            let met = met.unwrap_or_default();
-            let next = met.get(index).filter(|next| next.surface == near.surface);
-            next.is_some_and(|next| (next.at - near.at).abs() > deep * part.abs())
-        };
-        let steep = PROBES.into_iter().any(steep);
-        steep.then_some(far.at.max(near.at))
+        // The face may be narrower than the interval: its own slope tells.
+        let (ray, beside) = (self.window.ray(from), self.window.ray(other));
+        let step = beside.origin - ray.origin + (beside.direction - ray.direction) * near.at;
+        let slope = self.surfaces.slope(&ray, near, &step);
+        (slope.is_nan() || slope.abs() > deep).then_some(until.max(near.at))
     }
 
     /// What a change lacks; none where a contour explains it.

@@ -42,6 +42,8 @@ struct Carrier {
 #[derive(Debug)]
 pub struct Surfaces<'a> {
     material: &'a Material,
+    /// The tree's list, in the part's frame.
+    all: Vec<Carrier>,
     /// Of each leaf: its surfaces in its own frame, with their place in the tree's list.
     of_leaves: Vec<Vec<(Carrier, usize)>>,
 }
@@ -73,6 +75,20 @@ impl Carrier {
             point,
             axis,
             ..*self
+        }
+    }
+
+    /// The normal at a point of it, up to length and sign.
+    fn normal(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        let away = p - self.point;
+        let along = away.dot(&self.axis);
+        let radial = away - self.axis * along;
+        match self.kind {
+            Kind::Plane => self.axis,
+            Kind::Cylinder => radial,
+            Kind::Cone => radial.normalize() - self.axis * (self.sizes[0] * along.signum()),
+            Kind::Sphere => away,
+            Kind::Torus => away - radial.normalize() * self.sizes[0],
         }
     }
 
@@ -136,10 +152,20 @@ impl<'a> Surfaces<'a> {
             });
             own.collect()
         });
+        let of_leaves = of_leaves.collect();
         Self {
-            of_leaves: of_leaves.collect(),
             material,
+            all,
+            of_leaves,
         }
+    }
+
+    /// How much farther along its direction a line meets a surface than at a crossing if it is moved
+    /// by `step`, to first order; infinite where the line touches the surface.
+    pub fn slope(&self, ray: &Ray, crossing: &Crossing, step: &Vector3<f64>) -> f64 {
+        let p = ray.origin + ray.direction * crossing.at;
+        let normal = self.all[crossing.surface].normal(&p.coords);
+        -step.dot(&normal) / ray.direction.dot(&normal)
     }
 
     /// Where a line enters and leaves material, in order; gaps, then slivers, no longer than `least`

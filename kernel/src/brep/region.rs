@@ -359,10 +359,11 @@ impl Sorter<'_> {
         let mut found: Vec<Crossing> = Vec::new();
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
+            // Arcs of both senses run over the starting edge where a face bounds itself.
+            let own = start.is_some_and(|start| arc.shares_edge(&self.arcs.all[start]));
             let mut note = |at: f64, t: f64, passage: Passage| {
-                // Arcs of both senses run over the starting edge where a face bounds itself.
-                let here = start.is_some() && at <= self.start();
-                if !here && !self.is_full_turn(walk, at, start) {
+                let here = own && (at <= self.start() || self.is_full_turn(walk, at));
+                if !here {
                     found.push(Crossing {
                         at,
                         arc: i,
@@ -398,8 +399,8 @@ impl Sorter<'_> {
     }
 
     /// Whether a closed walk is back at its start.
-    fn is_full_turn(&self, walk: &Walk, at: f64, start: Option<usize>) -> bool {
-        start.is_some() && (walk.point(at) - walk.point(0.0)).norm() <= self.start()
+    fn is_full_turn(&self, walk: &Walk, at: f64) -> bool {
+        (walk.point(at) - walk.point(0.0)).norm() <= self.start()
     }
 
     /// The Euler characteristic of a region.

@@ -20,6 +20,7 @@ mod wings;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
+use premio_kernel::brep::check::worst_gap;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
 use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, ROUNDING, Zeros};
@@ -64,6 +65,19 @@ pub enum EvaluationError {
     /// The pieces do not form a boundary.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
+    /// Surfaces lie so nearly along one another that doubles do not tell where they meet.
+    #[error(
+        "what meets near ({:.6}, {:.6}, {:.6}) is known to {distance:.1e} only, and the resolution is {resolution:.1e}: surfaces lie nearly along one another there",
+        place[0], place[1], place[2]
+    )]
+    Vague {
+        /// Near where.
+        place: [f64; 3],
+        /// How far apart is what should be one, in the part's unit.
+        distance: f64,
+        /// The resolution.
+        resolution: f64,
+    },
     /// The description's numbers are too large or too small for doubles.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
@@ -130,6 +144,13 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     concern.list();
     let raw = wings::boundary(&concern)?;
     let brep = assemble(raw, &judge)?;
+    if let Some((place, distance)) = worst_gap(&brep, resolution) {
+        return Err(EvaluationError::Vague {
+            place: place.into(),
+            distance,
+            resolution,
+        });
+    }
     let decisions = judge.decisions();
     Ok(Evaluation {
         brep,

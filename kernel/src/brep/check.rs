@@ -4,6 +4,7 @@ use super::Brep;
 use super::mass::{face_areas, shell_volume};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use super::welch;
+use nalgebra::Point3;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A rule that a boundary breaks.
@@ -86,6 +87,48 @@ pub enum Violation {
 /// An edge may lie this many times the resolution off its faces and its vertices: it was found
 /// from two of them, and what coincides within the resolution was made one.
 const PLAY: f64 = 8.0;
+
+/// The farthest that an edge lies from a vertex at its end or from a face, where that is more than
+/// the resolution `band` accounts for: the place on the edge, and the distance.
+pub fn worst_gap(brep: &Brep, band: f64) -> Option<(Point3<f64>, f64)> {
+    let t = &brep.topology;
+    let gaps = t.edge_ids().flat_map(|id| {
+        let ends = gaps_at_ends(brep, id).map(|(_, place, distance)| (place, distance));
+        let faces = t.faces_of(id).into_iter();
+        ends.chain(faces.map(move |face| gap_from_face(brep, id, face)))
+    });
+    let worst = gaps.max_by(|a, b| a.1.total_cmp(&b.1));
+    worst.filter(|gap| !is_accounted(gap.1, band))
+}
+
+/// Whether a distance is what making one of what coincides may leave.
+fn is_accounted(distance: f64, band: f64) -> bool {
+    distance <= PLAY * band
+}
+
+/// The ends of an edge: the vertex, the place on the edge, and how far they are apart.
+fn gaps_at_ends(brep: &Brep, id: EdgeId) -> impl Iterator<Item = (VertexId, Point3<f64>, f64)> {
+    let range = brep.range(id);
+    let ends = brep.topology.edge(id).ends.into_iter().flatten();
+    ends.zip(range).map(move |(vertex, t)| {
+        let place = brep.curve(id).point(t);
+        (vertex, place, (brep.point(vertex) - place).norm())
+    })
+}
+
+/// Where an edge lies farthest off a face's surface, and how far.
+fn gap_from_face(brep: &Brep, id: EdgeId, face: FaceId) -> (Point3<f64>, f64) {
+    let ([lo, hi], curve) = (brep.range(id), brep.curve(id));
+    let gaps = (0..=PLACES).map(|k| {
+        let p = curve.point(lo + (hi - lo) * f64::from(k) / f64::from(PLACES));
+        (p, brep.surface(face).distance(&p).abs())
+    });
+    let worst = gaps.max_by(|a, b| a.1.total_cmp(&b.1));
+    worst.unwrap_or((Point3::origin(), 0.0))
+}
+
+/// At how many places, less one, an edge is held against a face.
+const PLACES: u32 = 8;
 
 /// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
 pub fn check(brep: &Brep, band: f64) -> Vec<Violation> {
@@ -172,27 +215,18 @@ fn check_edges(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
         if !paired {
             found.push(Violation::EdgeUse { edge: id });
         }
-        let [lo, hi] = brep.range(id);
-        let curve = brep.curve(id);
-        if let Some(ends) = edge.ends {
-            for (vertex, t) in ends.into_iter().zip([lo, hi]) {
-                let distance = (brep.point(vertex) - curve.point(t)).norm();
-                if distance.is_nan() || distance > PLAY * band {
-                    found.push(Violation::EdgeEnd {
-                        edge: id,
-                        vertex,
-                        distance,
-                    });
-                }
+        for (vertex, _, distance) in gaps_at_ends(brep, id) {
+            if !is_accounted(distance, band) {
+                found.push(Violation::EdgeEnd {
+                    edge: id,
+                    vertex,
+                    distance,
+                });
             }
         }
         for face in t.faces_of(id) {
-            let off = |k: u32| {
-                let p = curve.point(lo + (hi - lo) * f64::from(k) / 8.0);
-                brep.surface(face).distance(&p).abs()
-            };
-            let distance = (0..=8).map(off).fold(0.0, f64::max);
-            if distance.is_nan() || distance > PLAY * band {
+            let (_, distance) = gap_from_face(brep, id, face);
+            if !is_accounted(distance, band) {
                 found.push(Violation::EdgeOffFace {
                     edge: id,
                     face,

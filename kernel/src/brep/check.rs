@@ -94,7 +94,7 @@ pub fn worst_gap(brep: &Brep, band: f64) -> Option<(Point3<f64>, f64)> {
     let t = &brep.topology;
     let gaps = t.edge_ids().flat_map(|id| {
         let ends = gaps_at_ends(brep, id).map(|(_, place, distance)| (place, distance));
-        let faces = t.faces_of(id).into_iter();
+        let faces = t.faces_of(id);
         ends.chain(faces.map(move |face| gap_from_face(brep, id, face)))
     });
     let worst = gaps.max_by(|a, b| a.1.total_cmp(&b.1));

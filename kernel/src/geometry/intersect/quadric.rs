@@ -144,8 +144,12 @@ fn common_apex(c: &Cone, other: &Surface, extent: &Extent, judge: &Judge) -> Mee
 fn over_rulings(base: Ruled, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, IntersectionError> {
     let rulings = Rulings::new(base, pair.b.surface, pair.extent);
     let flat = match &base {
-        // The other surface holds the direction of the rulings: a cone with a ruling along them.
-        Ruled::Cylinder(_) => judge.within(rulings.lead * pair.extent.radius),
+        // The other surface holds the direction of the rulings: a cone with a ruling along them. The
+        // axis of a cylinder is not parallel to them, however little.
+        Ruled::Cylinder(_) => {
+            let along = judge.within(rulings.lead * pair.extent.radius);
+            along && !matches!(pair.b.surface, Surface::Cylinder(_))
+        }
         Ruled::Cone(c) => {
             let away = pair.turned().how(Relation::PointOnQuadric);
             judge.contact("apex on quadric", away, place(&c.frame.origin)) == Side::On

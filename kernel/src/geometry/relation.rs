@@ -71,6 +71,16 @@ impl<'a> Carrier<'a> {
         doubles(self.surface, |x| near(x, x.abs()), |x| near(x, 1.0))
     }
 
+    /// The surface's own doubles.
+    pub fn doubles(&self) -> Coefficients<f64> {
+        doubles(self.surface, |x| x, |x| x)
+    }
+
+    /// The exact coefficients, to be reckoned with to so many bits.
+    pub fn reckoned(&self, bits: usize) -> Coefficients<Enclosure> {
+        self.exact().map(|c| Enclosure::exact(c.clone(), bits))
+    }
+
     fn exact(&self) -> Coefficients<Rational> {
         let number = |x: f64| from_f64(x).unwrap_or_default();
         match self.exact {
@@ -449,8 +459,7 @@ impl<'a> Pair<'a> {
 
     /// How the two lie to one another, in doubles: enough to see that something is out of question.
     pub fn estimate(&self, relation: Relation) -> f64 {
-        let number = |x: f64| x;
-        let [a, b] = [&self.a, &self.b].map(|c| doubles(c.surface, number, number));
+        let [a, b] = [&self.a, &self.b].map(|c| c.doubles());
         How {
             pair: *self,
             relation,
@@ -492,8 +501,7 @@ impl Distance for How<'_> {
     }
 
     fn refined(&self, bits: usize) -> Option<Enclosure> {
-        let reckoned = |c: &Rational| Enclosure::exact(c.clone(), bits);
-        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.exact().map(reckoned));
+        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.reckoned(bits));
         Some(self.over(a, b))
     }
 }

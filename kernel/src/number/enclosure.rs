@@ -3,7 +3,7 @@
 //! Sums, products and quotients of exact numbers stay exact while they are short; what grows beyond
 //! the chosen number of bits, and square roots, are rounded outwards.
 
-use super::rational::{Rational, bits as length, exact_sqrt, from_f64};
+use super::rational::{Rational, bits as length, exact_sqrt, from_f64, to_f64};
 use dashu::base::{BitTest, DivRemEuclid, SquareRoot};
 use dashu::integer::{IBig, UBig};
 use std::cmp::Ordering;
@@ -95,6 +95,12 @@ impl Enclosure {
     /// The two ends, where anything is known.
     pub fn ends(&self) -> Option<&[Rational; 2]> {
         self.ends.as_ref()
+    }
+
+    /// The double next to the middle; not a number where nothing is known.
+    pub fn middle(&self) -> f64 {
+        let middle = |[lo, hi]: &[Rational; 2]| to_f64(&((lo + hi) / Rational::from(2)));
+        self.ends.as_ref().map_or(f64::NAN, middle)
     }
 
     fn of(ends: Option<[Rational; 2]>, bits: usize) -> Self {

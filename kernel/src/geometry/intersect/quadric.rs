@@ -142,7 +142,7 @@ fn common_apex(c: &Cone, other: &Surface, extent: &Extent, judge: &Judge) -> Mee
 
 /// Over the rulings of the pair's first.
 fn over_rulings(base: Ruled, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, IntersectionError> {
-    let rulings = Rulings::new(base, pair.b.surface, pair.extent);
+    let rulings = Rulings::new(base, pair);
     let flat = match &base {
         // The other surface holds the direction of the rulings: a cone with a ruling along them. The
         // axis of a cylinder is not parallel to them, however little.

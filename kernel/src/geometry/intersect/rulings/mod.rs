@@ -1,12 +1,14 @@
 //! A quadric along the rulings of a cylinder or a cone.
 //!
 //! Notation as in [`quartic`](crate::geometry::quartic): along the rulings of the base, the other
-//! quadric is k w² + 2 B(u) w + C(u), and Δ = B² − k C. Where k = 0 a ruling has a single point of
+//! quadric less the base is k w² + 2 B(u) w + C(u), and Δ = B² − k C. Where k = 0 a ruling has a single point of
 //! it, else two, none or a double one.
 
+mod difference;
 mod double;
 mod single;
 
+use self::difference::Difference;
 use super::plane::{plane_cone, plane_cylinder};
 use super::{Branch, Extent, Meeting, Node, nappe_parts, place};
 use crate::geometry::curve::Curve;
@@ -16,43 +18,8 @@ use crate::geometry::relation::{Carrier, Pair};
 use crate::geometry::surface::{Plane, Surface};
 use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1, trig2};
 use crate::number::sign::{Judge, Side};
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
-
-/// pᵀ A p + 2 b·p + c in the frame of the base.
-struct Quadric {
-    a: Matrix3<f64>,
-    b: Vector3<f64>,
-    c: f64,
-}
-
-impl Quadric {
-    /// The quadric that a surface lies on, seen in `frame`; to first order twice the distance
-    /// times a length.
-    fn of(surface: &Surface, frame: &Frame) -> Self {
-        let g = surface.frame();
-        let mut q = Self {
-            a: Matrix3::zeros(),
-            b: Vector3::zeros(),
-            c: 0.0,
-        };
-        let (weights, constant) = match surface {
-            Surface::Cylinder(s) => ([1.0, 1.0, 0.0], -s.radius * s.radius),
-            Surface::Cone(s) => ([s.cos * s.cos, s.cos * s.cos, -s.sin * s.sin], 0.0),
-            Surface::Sphere(s) => ([1.0, 1.0, 1.0], -s.radius * s.radius),
-            Surface::Plane(_) | Surface::Torus(_) => ([0.0; 3], 0.0),
-        };
-        q.c = constant;
-        for (axis, weight) in [g.x, g.y, g.z].into_iter().zip(weights) {
-            let k = frame.components(&axis);
-            let offset = axis.dot(&(frame.origin - g.origin));
-            q.a += k * k.transpose() * weight;
-            q.b += k * (offset * weight);
-            q.c += offset * offset * weight;
-        }
-        q
-    }
-}
 
 /// The distance of a point from the whole quadric of a surface: a cone with both nappes.
 pub(super) fn apart(surface: &Surface, p: &Point3<f64>) -> f64 {
@@ -86,9 +53,9 @@ fn surface_of(base: &Ruled) -> Surface {
 }
 
 impl<'a> Rulings<'a> {
-    pub(super) fn new(base: Ruled, other: &'a Surface, extent: &'a Extent) -> Self {
-        let surface = surface_of(&base);
-        let q = Quadric::of(other, surface.frame());
+    /// Over the rulings of the pair's first.
+    pub(super) fn new(base: Ruled, pair: &Pair<'a>) -> Self {
+        let q = Difference::of(pair);
         let (a, b) = (&q.a, &q.b);
         // The ruling's point is m (cos, sin, 0) + ... with m the radius or the slope.
         let (lead, linear, constant) = match &base {
@@ -125,13 +92,13 @@ impl<'a> Rulings<'a> {
         let scale = sum(&square) + lead.abs() * sum(&constant);
         Self {
             base,
-            other,
+            other: pair.b.surface,
             lead,
             linear,
             constant,
             radicand,
             scale,
-            extent,
+            extent: pair.extent,
         }
     }
 

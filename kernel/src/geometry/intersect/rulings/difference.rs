@@ -1,0 +1,146 @@
+//! The other quadric less the base, in the base's frame.
+//!
+//! On the base it is the other's equation. Where the two lie nearly along one another it is small,
+//! and from the exact coefficients it has all its digits still.
+//!
+//! Notation: d is the base's direction, f the other's, o and s their points and sizes; a quadric is
+//! (p - o)ᵀ (I - e f fᵀ/f²) (p - o) = r², with e = 1, r = s of a cylinder, e = 1 + s², r = 0 of a
+//! cone, e = 0, r = s of a sphere.
+
+use crate::geometry::relation::{Coefficients, Pair};
+use crate::geometry::surface::Surface;
+use crate::number::enclosure::Enclosure;
+use crate::number::real::Real;
+use nalgebra::{Matrix3, Vector3};
+
+/// pᵀ A p + 2 b·p + c in the frame of the base.
+pub(super) struct Difference {
+    pub a: Matrix3<f64>,
+    pub b: Vector3<f64>,
+    pub c: f64,
+}
+
+/// Directions that lie apart by less than this are reckoned with more bits.
+const LEAN: f64 = 1.0 / (1 << 10) as f64;
+
+/// To so many bits.
+const BITS: usize = 256;
+
+impl Difference {
+    /// Of a pair, the first the base: to first order twice the distance times a length.
+    pub fn of(pair: &Pair<'_>) -> Self {
+        let surfaces = [pair.a.surface, pair.b.surface];
+        let [a, b] = [pair.a, pair.b].map(|c| c.doubles());
+        let parts = Parts::of(surfaces, &a, &b);
+        let lean = Vector3::from(parts.lean).norm();
+        if lean > LEAN {
+            return parts.difference(surfaces);
+        }
+        let [a, b] = [pair.a, pair.b].map(|c| c.reckoned(BITS));
+        Parts::of(surfaces, &a, &b)
+            .map(Enclosure::middle)
+            .difference(surfaces)
+    }
+}
+
+/// What the difference is made of, over any number.
+struct Parts<N> {
+    /// f/|f|: its part across d, and its component along d.
+    lean: [N; 3],
+    along: N,
+    /// e of the other, and A's component along d.
+    bulge: N,
+    rise: N,
+    /// b: its part across d, and its component along d.
+    across: [N; 3],
+    up: N,
+    /// c.
+    level: N,
+}
+
+fn dot<N: Real>(a: &[N; 3], b: &[N; 3]) -> N {
+    let [x, y, z] = [0, 1, 2].map(|i| a[i].clone() * b[i].clone());
+    x + y + z
+}
+
+/// a - k b.
+fn less<N: Real>(a: &[N; 3], k: &N, b: &[N; 3]) -> [N; 3] {
+    [0, 1, 2].map(|i| a[i].clone() - k.clone() * b[i].clone())
+}
+
+/// e and r².
+fn shape<N: Real>(surface: &Surface, size: &N) -> [N; 2] {
+    let (one, none) = (N::constant(1.0), N::constant(0.0));
+    let square = size.clone() * size.clone();
+    match surface {
+        Surface::Cylinder(_) => [one, square],
+        Surface::Cone(_) => [one + square, none],
+        _ => [none, square],
+    }
+}
+
+impl<N: Real> Parts<N> {
+    fn of(surfaces: [&Surface; 2], base: &Coefficients<N>, other: &Coefficients<N>) -> Self {
+        let (d, f) = (&base.direction, &other.direction);
+        let [own, own_square] = shape(surfaces[0], &base.size);
+        let [bulge, square] = shape(surfaces[1], &other.size);
+        let (dd, ff) = (dot(d, d), dot(f, f));
+        let turned = dot(d, f).over(dd.clone());
+        let aside = less(f, &turned, d);
+        let away = less(&base.point, &N::constant(1.0), &other.point);
+        let high = dot(&away, d).over(dd.clone());
+        let beside = less(&away, &high, d);
+        // (f·δ)/f²
+        let reach = dot(f, &away).over(ff.clone());
+        let pull = bulge.clone() * reach.clone();
+        let across = less(&beside, &pull, &aside);
+        let climb = high - pull.clone() * turned.clone();
+        let level = dot(&away, &away) - pull * reach * ff.clone() - square + own_square;
+        let (length, size) = (dd.sqrt(), ff.clone().sqrt());
+        let tilt = dot(&aside, &aside).over(ff);
+        Self {
+            lean: aside.map(|x| x.over(size.clone())),
+            along: (turned * length.clone()).over(size),
+            rise: own - bulge.clone() + bulge.clone() * tilt,
+            bulge,
+            across,
+            up: climb * length,
+            level,
+        }
+    }
+
+    fn map<M>(self, to: impl Fn(&N) -> M) -> Parts<M> {
+        Parts {
+            lean: self.lean.each_ref().map(&to),
+            along: to(&self.along),
+            bulge: to(&self.bulge),
+            rise: to(&self.rise),
+            across: self.across.each_ref().map(&to),
+            up: to(&self.up),
+            level: to(&self.level),
+        }
+    }
+}
+
+impl Parts<f64> {
+    /// In the base's frame; a cone's equation is a distance times a length with the cosine's square.
+    fn difference(&self, [base, other]: [&Surface; 2]) -> Difference {
+        let f = base.frame();
+        let scale = match other {
+            Surface::Cone(c) => c.cos * c.cos,
+            _ => 1.0,
+        };
+        let inside = |v: &[f64; 3], z: f64| {
+            let v = Vector3::from(*v);
+            Vector3::new(f.x.dot(&v), f.y.dot(&v), z)
+        };
+        let n = inside(&self.lean, self.along);
+        let mut a = n * n.transpose() * -self.bulge;
+        a[(2, 2)] = self.rise;
+        Difference {
+            a: a * scale,
+            b: inside(&self.across, self.up) * scale,
+            c: self.level * scale,
+        }
+    }
+}

@@ -103,11 +103,13 @@ impl Meeting {
         }
     }
 
-    /// Adds a node at a point of known branches, with its parameter on each.
-    fn cross_at(&mut self, point: Point3<f64>) {
-        let on = (0..self.branches.len())
-            .map(|i| (i, self.branches[i].curve.parameter(&point)))
-            .collect();
+    /// Adds a node at a point, with its parameter on each branch that passes it.
+    fn cross_at(&mut self, point: Point3<f64>, judge: &Judge) {
+        let on = self.branches.iter().enumerate();
+        let on = on.map(|(i, branch)| (i, branch.curve.parameter(&point)));
+        let passed =
+            |&(i, t): &(usize, f64)| judge.within((self.branches[i].curve.point(t) - point).norm());
+        let on = on.filter(passed).collect();
         self.nodes.push(Node { point, on });
     }
 }

@@ -321,7 +321,7 @@ fn central_plane(t: &Torus, p: &Plane, pair: &Pair<'_>, judge: &Judge) -> Option
     let reach = ((t.major - t.minor) * (t.major + t.minor)).sqrt();
     let up = n.cross(&axis);
     for side in [-1.0, 1.0] {
-        meeting.cross_at(t.frame.origin + up * (side * reach));
+        meeting.cross_at(t.frame.origin + up * (side * reach), judge);
     }
     Some(meeting)
 }

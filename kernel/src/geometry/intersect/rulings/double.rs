@@ -74,7 +74,7 @@ impl Rulings<'_> {
             let m = self.middle(u);
             let p = self.world(u, m);
             if self.is_on_base(m) && judge.within(self.other.distance(&p)) {
-                meeting.cross_at(p);
+                meeting.cross_at(p, judge);
             }
         }
     }

@@ -306,8 +306,10 @@ impl Sorter<'_> {
             return false;
         }
         let mut inside = Some(ring);
+        let mut before = inside;
         let mut pairs = Vec::new();
         for (k, leg) in legs.iter().enumerate() {
+            before = inside;
             let Some(crossings) = self.crossings(leg, (k == 0).then_some(arc)) else {
                 return false;
             };
@@ -332,6 +334,17 @@ impl Sorter<'_> {
                 return false;
             };
             pairs.push((from, self.owner[twin]));
+        }
+        if let [_, .., round] = legs
+            && goal.is_none()
+            && round.closes()
+        {
+            // Back where this leg began, which is not on an arc.
+            match (inside, before) {
+                (Some(from), Some(to)) => pairs.push((from, to)),
+                (None, None) => {}
+                _ => return false,
+            }
         }
         if let (Some(from), Some(goal)) = (inside, goal) {
             pairs.push((from, goal));

@@ -4,6 +4,7 @@
 use super::arrangement::{Arrangement, Meeting};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::cut::lies_on;
 use premio_kernel::number::sign::{Judge, ROUNDING};
 use std::collections::HashMap;
 
@@ -25,32 +26,37 @@ pub(super) struct Piece {
 pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
     let homes = homes(arrangement, judge);
     let mut all: Vec<Piece> = Vec::new();
-    // Two pieces that run over the same points share a home and their ends.
-    let mut known: HashMap<(usize, Option<[usize; 2]>), Vec<usize>> = HashMap::new();
+    // Two pieces that run over the same points share their ends, and a home or, where the curves
+    // are one within the resolution only, two carriers.
+    let mut known: HashMap<(Option<usize>, Option<[usize; 2]>), Vec<usize>> = HashMap::new();
     for (index, m) in arrangement.meetings.iter().enumerate() {
         for (range, ends) in spans(m) {
-            let name = ends.map(|[a, b]| [a.min(b), a.max(b)]);
-            let middle = m.curve.point(0.5 * (range[0] + range[1]));
-            if m.carriers.len() > 2 {
-                let list = known.entry((homes[index], name)).or_default();
+            let piece = Piece {
+                meeting: index,
+                range,
+                ends,
+                carriers: arrangement.holding(m, range, ends, judge),
+                tangent: m.tangent.into_iter().collect(),
+            };
+            if piece.carriers.len() > 2 {
+                let name = ends.map(|[a, b]| [a.min(b), a.max(b)]);
+                let home = homes[index];
+                let list = known.entry((name.is_none().then_some(home), name));
+                let list = list.or_default();
+                let middle = m.curve.point(0.5 * (range[0] + range[1]));
                 let same = list.iter().copied().find(|&i| {
-                    let curve = &arrangement.meetings[all[i].meeting].curve;
-                    passes(curve, all[i].range, &middle, judge)
+                    let other: &Piece = &all[i];
+                    let curve = &arrangement.meetings[other.meeting].curve;
+                    (homes[other.meeting] == home || other.shares_two(&piece))
+                        && passes(curve, other.range, &middle, judge)
                 });
                 if let Some(i) = same {
-                    all[i].add(m);
+                    all[i].add(&piece);
                     continue;
                 }
                 list.push(all.len());
             }
-            let (carriers, tangent) = (m.carriers.clone(), m.tangent.into_iter().collect());
-            all.push(Piece {
-                meeting: index,
-                range,
-                ends,
-                carriers,
-                tangent,
-            });
+            all.push(piece);
         }
     }
     for piece in &mut all {
@@ -112,10 +118,41 @@ fn same_curve(a: &Meeting, b: &Meeting, judge: &Judge) -> bool {
 /// Curves and pieces that may be one lie within this many times the resolution, or far apart.
 const SAME: f64 = 64.0;
 
+impl Arrangement {
+    /// The carriers that hold a span of a meeting: the meeting's, and what both corners lie on and
+    /// the span does not leave by more than the resolution, next to a contact.
+    fn holding(
+        &self,
+        m: &Meeting,
+        range: [f64; 2],
+        ends: Option<[usize; 2]>,
+        judge: &Judge,
+    ) -> Vec<usize> {
+        let mut carriers = m.carriers.clone();
+        let Some([a, b]) = ends.map(|ends| ends.map(|v| &self.corners[v])) else {
+            return carriers;
+        };
+        let both = a.carriers.iter().filter(|&&c| b.is_on(c));
+        let held = both.filter(|&c| {
+            let surface = &self.carriers[*c];
+            !m.carriers.contains(c) && lies_on(&m.curve, range, surface, judge.band())
+        });
+        carriers.extend(held);
+        carriers.sort_unstable();
+        carriers
+    }
+}
+
 impl Piece {
+    /// Whether two carriers at least hold another one, too.
+    fn shares_two(&self, other: &Self) -> bool {
+        let shared = self.carriers.iter().filter(|c| other.carriers.contains(c));
+        shared.count() > 1
+    }
+
     /// Takes what a copy of it is known by.
-    fn add(&mut self, copy: &Meeting) {
-        self.tangent.extend(copy.tangent);
+    fn add(&mut self, copy: &Piece) {
+        self.tangent.extend(&copy.tangent);
         self.carriers.extend(&copy.carriers);
         self.carriers.sort_unstable();
         self.carriers.dedup();

@@ -310,13 +310,21 @@ impl<F: Function> Search<'_, F> {
         self.profile.mark(a, fa);
         match (self.sign(fa), self.sign(fb)) {
             (0, 0) => self.cluster(a, b, 0.5 * (a + b), Kind::Level, Some(0.0)),
+            (0, _) if fa * fb > 0.0 => {
+                let hi = self.limit(a, b);
+                self.cluster(a, hi, a, Kind::Level, None);
+            }
+            (_, 0) if fa * fb > 0.0 => {
+                let lo = self.limit(b, a);
+                self.cluster(lo, b, b, Kind::Level, None);
+            }
             (0, _) => {
-                let (t, kind) = self.near_end(a, b, fa, fb, a);
-                self.cluster(a, t, t, kind, None);
+                let t = self.refine(a, b, fa);
+                self.cluster(a, t, t, Kind::Simple, None);
             }
             (_, 0) => {
-                let (t, kind) = self.near_end(a, b, fa, fb, b);
-                self.cluster(t, b, t, kind, None);
+                let t = self.refine(a, b, fa);
+                self.cluster(t, b, t, Kind::Simple, None);
             }
             (p, q) if p != q => {
                 let t = self.refine(a, b, fa);
@@ -325,15 +333,6 @@ impl<F: Function> Search<'_, F> {
             _ => {}
         }
         self.profile.mark(b, fb);
-    }
-
-    /// The zero of a monotone function one of whose ends is within the band, or that end.
-    fn near_end(&self, a: f64, b: f64, fa: f64, fb: f64, end: f64) -> (f64, Kind) {
-        if fa * fb <= 0.0 {
-            (self.refine(a, b, fa), Kind::Simple)
-        } else {
-            (end, Kind::Level)
-        }
     }
 
     fn convex(&mut self, a: f64, b: f64) {
@@ -351,7 +350,7 @@ impl<F: Function> Search<'_, F> {
         self.monotone(t, b);
     }
 
-    /// How far from an extremum within the band towards `end` the function stays within it.
+    /// How far from an extremum or an end within the band towards `end` the function stays within it.
     fn limit(&self, extremum: f64, end: f64) -> f64 {
         let sign = self.value(end).signum();
         let beyond = |t: f64| sign * self.value(t) - self.band;
@@ -453,12 +452,15 @@ impl<F: Function> Search<'_, F> {
         group.iter().all(|c| known(c) && slope(c) * first > 0.0)
     }
 
-    /// The zero between the ends of a cluster; its middle where rounding hides it.
+    /// The zero between the ends of a cluster; the end next to zero where there is none.
     fn crossing(&self, lo: f64, hi: f64) -> f64 {
         let (a, b) = (self.value(lo), self.value(hi));
-        match a * b <= 0.0 {
-            true => self.refine(lo, hi, a),
-            false => 0.5 * (lo + hi),
+        if a * b <= 0.0 {
+            self.refine(lo, hi, a)
+        } else if a.abs() < b.abs() {
+            lo
+        } else {
+            hi
         }
     }
 

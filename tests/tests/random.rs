@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Trees that were once wrong, each in a way of its own, with what is hard about them.
-const MENDED: [(u64, &str); 37] = [
+const MENDED: [(u64, &str); 39] = [
     (586, "a slit along a parallel of a torus"),
     (
         1878,
@@ -88,6 +88,14 @@ const MENDED: [(u64, &str); 37] = [
     (
         45204,
         "branches of one curve that touch, and a face between them",
+    ),
+    (
+        205_132,
+        "an edge along the top of a torus, cut where they are apart by less than the resolution",
+    ),
+    (
+        208_224,
+        "a slit from a loop that is cut by the torus's equator",
     ),
 ];
 

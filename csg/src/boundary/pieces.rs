@@ -23,12 +23,15 @@ pub(super) struct Piece {
     pub tangent: Vec<[usize; 2]>,
 }
 
+/// What two copies of a piece have in common: the home of a closed curve, the corners at both ends.
+type Name = (Option<usize>, Option<[usize; 2]>);
+
 pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
     let homes = homes(arrangement, judge);
     let mut all: Vec<Piece> = Vec::new();
     // Two pieces that run over the same points share their ends, and a home or, where the curves
     // are one within the resolution only, two carriers.
-    let mut known: HashMap<(Option<usize>, Option<[usize; 2]>), Vec<usize>> = HashMap::new();
+    let mut known: HashMap<Name, Vec<usize>> = HashMap::new();
     for (index, m) in arrangement.meetings.iter().enumerate() {
         for (range, ends) in spans(m) {
             let piece = Piece {

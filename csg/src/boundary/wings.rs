@@ -253,7 +253,7 @@ impl Classifier<'_> {
         let e2 = tangent.cross(&e1);
         let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
         // A carrier tangent to an earlier one takes its angle: only the bend tells them apart.
-        let mut axes: Vec<(usize, Vector3<f64>)> = Vec::new();
+        let mut axes: Vec<(usize, Vector3<f64>, f64)> = Vec::new();
         let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
         for (at, &c) in piece.carriers.iter().enumerate() {
             if !has_face(at) {
@@ -262,17 +262,24 @@ impl Classifier<'_> {
             let surface = self.surface(c);
             let normal = surface.normal(p);
             let mut direction = normal.cross(tangent).normalize();
-            let twin = axes.iter().find(|(other, d)| {
+            let rise = |direction: &Vector3<f64>| {
+                let up = normal.dot(&tangent.cross(direction));
+                -surface.normal_curvature(p, direction) * up.signum()
+            };
+            let twin = axes.iter().find(|(other, d, bent)| {
                 let told = piece
                     .tangent
                     .iter()
                     .any(|t| *t == [*other, c] || *t == [c, *other]);
                 let sine = d.cross(&direction).norm();
+                let bend = (rise(&(direction * d.dot(&direction).signum())) - bent).abs();
                 told || self.judge.within(sine * self.reach(piece))
+                    // As far apart as here they are where they touch.
+                    || self.judge.within(sine * sine / (2.0 * bend))
             });
             match twin {
-                Some((_, d)) => direction = d * d.dot(&direction).signum(),
-                None => axes.push((c, direction)),
+                Some((_, d, _)) => direction = d * d.dot(&direction).signum(),
+                None => axes.push((c, direction, rise(&direction))),
             }
             let bend = surface.normal_curvature(p, &direction);
             for d in [direction, -direction] {

@@ -253,7 +253,7 @@ impl Classifier<'_> {
         let e2 = tangent.cross(&e1);
         let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
         // A carrier tangent to an earlier one takes its angle: only the bend tells them apart.
-        let mut axes: Vec<(usize, Vector3<f64>, f64)> = Vec::new();
+        let mut axes: Vec<Axis> = Vec::new();
         let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
         for (at, &c) in piece.carriers.iter().enumerate() {
             if !has_face(at) {
@@ -266,20 +266,16 @@ impl Classifier<'_> {
                 let up = normal.dot(&tangent.cross(direction));
                 -surface.normal_curvature(p, direction) * up.signum()
             };
-            let twin = axes.iter().find(|(other, d, bent)| {
-                let told = piece
-                    .tangent
-                    .iter()
-                    .any(|t| *t == [*other, c] || *t == [c, *other]);
-                let sine = d.cross(&direction).norm();
-                let bend = (rise(&(direction * d.dot(&direction).signum())) - bent).abs();
-                told || self.judge.within(sine * self.reach(piece))
-                    // As far apart as here they are where they touch.
-                    || self.judge.within(sine * sine / (2.0 * bend))
-            });
-            match twin {
-                Some((_, d, _)) => direction = d * d.dot(&direction).signum(),
-                None => axes.push((c, direction, rise(&direction))),
+            match axes
+                .iter()
+                .find(|a| self.touches(piece, a, c, &direction, rise))
+            {
+                Some(a) => direction = a.aligned(&direction),
+                None => axes.push(Axis {
+                    carrier: c,
+                    direction,
+                    rise: rise(&direction),
+                }),
             }
             let bend = surface.normal_curvature(p, &direction);
             for d in [direction, -direction] {
@@ -306,6 +302,25 @@ impl Classifier<'_> {
             }
         }
         Ok(sheets)
+    }
+
+    /// Whether a carrier that leaves a piece in a direction touches an earlier one: all along it, by
+    /// their angle, or as near to it as they are apart.
+    fn touches(
+        &self,
+        piece: &Piece,
+        axis: &Axis,
+        carrier: usize,
+        direction: &Vector3<f64>,
+        rise: impl Fn(&Vector3<f64>) -> f64,
+    ) -> bool {
+        let both = [axis.carrier, carrier];
+        let mut told = piece.tangent.iter();
+        let told = told.any(|t| *t == both || *t == [carrier, axis.carrier]);
+        let sine = axis.direction.cross(direction).norm();
+        let bend = (rise(&axis.direction) - axis.rise).abs();
+        told || self.judge.within(sine * self.reach(piece))
+            || self.judge.within(sine * sine / (2.0 * bend))
     }
 
     /// The length over which directions are compared: the extent of the piece's curve.
@@ -375,6 +390,22 @@ impl Classifier<'_> {
             };
         }
         None
+    }
+}
+
+/// How a carrier leaves a piece.
+struct Axis {
+    carrier: usize,
+    /// Across the piece.
+    direction: Vector3<f64>,
+    /// How it bends up, counterclockwise, in that direction.
+    rise: f64,
+}
+
+impl Axis {
+    /// Its direction, as near to another one as it can be.
+    fn aligned(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.direction * self.direction.dot(direction).signum()
     }
 }
 

@@ -11,7 +11,6 @@ use premio_csg::rays::{Clearance, Crossing, Material, Surfaces};
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::Contours;
 use premio_visibility::projection::Projection;
-use std::cmp::Ordering;
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -205,12 +204,16 @@ impl Search<'_> {
     fn steep_until(&self, change: &Change, index: usize, deep: f64) -> Option<f64> {
         let [first, second] = &change.met;
         let [a, b] = change.at;
-        let (x, y) = (first.get(index), second.get(index));
-        let (near, until, from, other) = match first.len().cmp(&second.len()) {
-            Ordering::Greater => (x?, first.get(index + 1)?.at, a, b),
-            Ordering::Less => (y?, second.get(index + 1)?.at, b, a),
-            Ordering::Equal if x?.at <= y?.at => (x?, y?.at, a, b),
-            Ordering::Equal => (y?, x?.at, b, a),
+        let at = |met: &[Crossing]| met.get(index).map_or(f64::INFINITY, |c| c.at);
+        let ((own, from), (instead, other)) = match at(first) <= at(second) {
+            true => ((first, a), (second, b)),
+            false => ((second, b), (first, a)),
+        };
+        let near = own.get(index)?;
+        // What ends there has a far side of its own.
+        let until = match own.len() > instead.len() {
+            true => own.get(index + 1)?.at,
+            false => instead.get(index)?.at,
         };
         // The face may be narrower than the interval: its own slope tells.
         let (ray, beside) = (self.window.ray(from), self.window.ray(other));

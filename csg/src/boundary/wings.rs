@@ -36,6 +36,22 @@ struct Sheet {
     beyond: Sense,
 }
 
+/// How a carrier leaves a piece.
+struct Axis {
+    carrier: usize,
+    /// Across the piece.
+    direction: Vector3<f64>,
+    /// How it bends up, counterclockwise, in that direction.
+    rise: f64,
+}
+
+impl Axis {
+    /// Its direction, as near to another one as it can be.
+    fn aligned(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.direction * self.direction.dot(direction).signum()
+    }
+}
+
 /// A primitive near a piece: what is left to know whether it holds a sector.
 struct Near {
     leaf: NodeId,
@@ -277,14 +293,13 @@ impl Classifier<'_> {
                     rise: rise(&direction),
                 }),
             }
-            let bend = surface.normal_curvature(p, &direction);
             for d in [direction, -direction] {
                 let l = tangent.cross(&d);
                 let up = normal.dot(&l);
                 sheets.push(Sheet {
                     carrier: at,
                     angle: d.dot(&e2).atan2(d.dot(&e1)),
-                    bend: -bend * up.signum(),
+                    bend: rise(&d),
                     beyond: if up > 0.0 {
                         Sense::Against
                     } else {
@@ -390,22 +405,6 @@ impl Classifier<'_> {
             };
         }
         None
-    }
-}
-
-/// How a carrier leaves a piece.
-struct Axis {
-    carrier: usize,
-    /// Across the piece.
-    direction: Vector3<f64>,
-    /// How it bends up, counterclockwise, in that direction.
-    rise: f64,
-}
-
-impl Axis {
-    /// Its direction, as near to another one as it can be.
-    fn aligned(&self, direction: &Vector3<f64>) -> Vector3<f64> {
-        self.direction * self.direction.dot(direction).signum()
     }
 }
 

@@ -84,6 +84,20 @@ fn every_change_has_its_contour() {
 }
 
 #[test]
+fn a_wall_narrower_than_the_last_interval_has_its_contours() {
+    // It leans by 2e-7, and what is behind it begins and ends in its image.
+    let part = Part::of(
+        "A = CYL(R=1, H=3)\n\
+         B = BLO(X=4, Y=4, Z=8) AT (MOVY=-2, MOVZ=-4, ROTY=0.00001, MOVX=0.3)\n\
+         C = CYL(R=0.4, H=4) AT (ROTX=90, MOVY=2, MOVX=0.3, MOVZ=1.5)\n\
+         P = A DIF B DIF C",
+    );
+    let found = part.outlines(&part.contours(&part.view("along z")));
+    assert!(found.missing.is_empty(), "{found}");
+    assert!(found.explained > 30, "{found}");
+}
+
+#[test]
 fn a_missing_contour_is_missed() {
     let mut limbs = 0;
     for padl in PARTS {

@@ -208,15 +208,11 @@ fn conic_parameters(
                 });
             }
         }
-        Basis::Graph {
-            curvature,
-            shear,
-            flatness,
-        } => {
-            let rest = [1.0, 2.0 * shear, curvature * flatness];
-            let k = binary([0.0, 0.0, 2.0 * curvature], [0.0, 2.0, 0.0], rest, g);
-            let ends = [lo, hi].map(|t| basis.slope_of(t));
-            let t = |m: f64| basis.height_of(m).unwrap_or(f64::NAN);
+        Basis::Graph(c) => {
+            let rest = [1.0, 2.0 * c.shear, c.curvature * c.flatness];
+            let k = binary([0.0, 0.0, 2.0 * c.curvature], [0.0, 2.0, 0.0], rest, g);
+            let ends = [lo, hi].map(|t| c.chord(t));
+            let t = |m: f64| c.end_of_chord(m).unwrap_or(f64::NAN);
             crossings(&k, ends, &|m, v| touches(t(m), v), &mut |m| found(t(m)));
         }
         Basis::Hyperbolic => {

@@ -10,6 +10,7 @@ use crate::projection::Projection;
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::curve::{Conic, Curve};
 use premio_kernel::geometry::frame::Frame;
+use premio_kernel::number::jet::Jet;
 use premio_kernel::number::scalar::Scalar;
 use premio_kernel::number::sign::ROUNDING;
 use std::f64::consts::TAU;
@@ -19,68 +20,14 @@ use std::f64::consts::TAU;
 pub enum Basis {
     /// cos t, sin t, 1.
     Circular,
-    /// x, t, 1 with κ t² + 2 β x t + α x² = 2 x: a conic about a point of it. With m = t/(r + √(r² -
-    /// κ α t²)), r = 1 - β t, it is (2 κ m², 2 m, 1 + 2 β m + κ α m²), up to a factor.
-    Graph {
-        /// κ.
-        curvature: f64,
-        /// β.
-        shear: f64,
-        /// α.
-        flatness: f64,
-    },
+    /// x(t), t, 1 of a conic about a point of it: (2 κ m², 2 m, 1 + 2 β m + κ α m²), up to a factor,
+    /// over its chord m.
+    Graph(Conic),
     /// cosh t, sinh t, 1.
     Hyperbolic,
 }
 
 impl Basis {
-    /// The basis of a conic about a point.
-    fn of(conic: &Conic) -> Self {
-        Self::Graph {
-            curvature: conic.curvature,
-            shear: conic.shear,
-            flatness: conic.flatness,
-        }
-    }
-
-    /// Of a conic about a point: (r, √(r² - κ α t²)).
-    fn rest(self, t: f64) -> (f64, f64) {
-        match self {
-            Self::Graph {
-                curvature,
-                shear,
-                flatness,
-            } => {
-                let rest = 1.0 - shear * t;
-                let square = rest * rest - curvature * flatness * (t * t);
-                (rest, square.max(0.0).sqrt())
-            }
-            _ => (1.0, 1.0),
-        }
-    }
-
-    /// Of a conic about a point: m at t.
-    pub fn slope_of(self, t: f64) -> f64 {
-        let (rest, root) = self.rest(t);
-        t / (rest + root)
-    }
-
-    /// Of a conic about a point: t at m, where x is single there.
-    pub fn height_of(self, m: f64) -> Option<f64> {
-        match self {
-            Self::Graph {
-                curvature,
-                shear,
-                flatness,
-            } => {
-                let bend = curvature * flatness * (m * m);
-                let scale = 1.0 + 2.0 * shear * m + bend;
-                (bend < 1.0 && scale > 0.0).then(|| 2.0 * m / scale)
-            }
-            _ => Some(m),
-        }
-    }
-
     /// The values at t.
     pub fn at(self, t: f64) -> Vector3<f64> {
         match self {
@@ -88,10 +35,7 @@ impl Basis {
                 let (s, c) = t.sin_cos();
                 Vector3::new(c, s, 1.0)
             }
-            Self::Graph { curvature, .. } => {
-                let (rest, root) = self.rest(t);
-                Vector3::new(curvature * t * t / (rest + root), t, 1.0)
-            }
+            Self::Graph(c) => Vector3::new(c.height(t), t, 1.0),
             Self::Hyperbolic => Vector3::new(t.cosh(), t.sinh(), 1.0),
         }
     }
@@ -103,13 +47,7 @@ impl Basis {
                 let (s, c) = t.sin_cos();
                 Vector3::new(-s, c, 0.0)
             }
-            Self::Graph {
-                curvature, shear, ..
-            } => {
-                let (rest, root) = self.rest(t);
-                let x = curvature * t * t / (rest + root);
-                Vector3::new((curvature * t + shear * x) / root, 1.0, 0.0)
-            }
+            Self::Graph(c) => Vector3::new(c.height(Jet::variable(t)).d, 1.0, 0.0),
             Self::Hyperbolic => Vector3::new(t.sinh(), t.cosh(), 0.0),
         }
     }
@@ -117,11 +55,10 @@ impl Basis {
     fn conic(self) -> Matrix3<f64> {
         match self {
             Self::Circular => Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0)),
-            Self::Graph {
-                curvature: k,
-                shear: b,
-                flatness: a,
-            } => Matrix3::new(a, b, -1.0, b, k, 0.0, -1.0, 0.0, 0.0),
+            Self::Graph(c) => {
+                let (k, b, a) = (c.curvature, c.shear, c.flatness);
+                Matrix3::new(a, b, -1.0, b, k, 0.0, -1.0, 0.0, 0.0)
+            }
             Self::Hyperbolic => Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)),
         }
     }
@@ -131,11 +68,9 @@ impl Basis {
     fn parameter(self, b: &Vector3<f64>) -> Option<f64> {
         match self {
             Self::Circular => Some((b.y * b.z.signum()).atan2(b.x * b.z.signum())),
-            Self::Graph {
-                shear, flatness, ..
-            } => {
+            Self::Graph(c) => {
                 let (x, y) = (b.x / b.z, b.y / b.z);
-                (shear * y + flatness * x < 1.0).then_some(y)
+                (c.shear * y + c.flatness * x < 1.0).then_some(y)
             }
             Self::Hyperbolic => (b.x / b.z > 0.0).then(|| (b.y / b.z).asinh()),
         }
@@ -215,7 +150,7 @@ pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, band: f64)
         }
         Curve::Circle(c) => conic(&c.frame, c.radius, c.radius, Basis::Circular),
         Curve::Ellipse(c) => conic(&c.frame, c.a, c.b, Basis::Circular),
-        Curve::Conic(c) => conic(&c.frame, 1.0, 1.0, Basis::of(c)),
+        Curve::Conic(c) => conic(&c.frame, 1.0, 1.0, Basis::Graph(*c)),
         Curve::Hyperbola(c) => match conic(&c.frame, c.a, c.b, Basis::Hyperbolic) {
             Image::Conic { .. } if range[0].abs().max(range[1].abs()) > SHARP => Image::General,
             image => image,
@@ -317,14 +252,10 @@ impl Image {
                 [middle - half, middle + half]
             }
             // With s = 1 - β t - α x: f' g - f g' = x/s, f' = (κ t + β x)/s, g' = 1; a quadratic in m.
-            Basis::Graph {
-                curvature,
-                shear,
-                flatness,
-            } => {
-                let t = |m: f64| basis.height_of(m).unwrap_or(f64::NAN);
-                let square = 2.0 * (k0 + shear * k1) - flatness * k2;
-                roots(curvature * square, curvature * k1, k2).map(t)
+            Basis::Graph(c) => {
+                let t = |m: f64| c.end_of_chord(m).unwrap_or(f64::NAN);
+                let square = 2.0 * (k0 + c.shear * k1) - c.flatness * k2;
+                roots(c.curvature * square, c.curvature * k1, k2).map(t)
             }
             // f' g - f g' = -1, f' = sinh, g' = cosh: with e = exp t, a quadratic.
             Basis::Hyperbolic => roots(k1 + k2, -k0, k2 - k1).map(f64::ln),
@@ -386,14 +317,10 @@ pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mu
                 found(lo + (t - lo).rem_euclid(TAU));
             }
         }
-        Basis::Graph {
-            curvature,
-            shear,
-            flatness,
-        } => {
-            let mut keep = |m: f64| basis.height_of(m).into_iter().for_each(&mut *found);
-            let square = curvature * (2.0 * k.x + flatness * k.z);
-            quadratic([k.z, 2.0 * (k.y + shear * k.z), square], &mut keep);
+        Basis::Graph(c) => {
+            let mut keep = |m: f64| c.end_of_chord(m).into_iter().for_each(&mut *found);
+            let square = c.curvature * (2.0 * k.x + c.flatness * k.z);
+            quadratic([k.z, 2.0 * (k.y + c.shear * k.z), square], &mut keep);
         }
         Basis::Hyperbolic => {
             let mut keep = |e: f64| {

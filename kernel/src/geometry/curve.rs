@@ -92,12 +92,29 @@ impl Conic {
         }
     }
 
-    /// x over y: κ y²/(r + √(r² - κ α y²)) with r = 1 - β y.
-    fn height<S: Scalar>(&self, y: S) -> S {
-        let bend = y.square().scale(self.curvature);
+    /// r + √(r² - κ α y²) with r = 1 - β y.
+    fn depth<S: Scalar>(&self, y: S) -> S {
         let rest = S::constant(1.0) - y.scale(self.shear);
-        let root = (rest.square() - bend.scale(self.flatness)).sqrt();
-        bend.over(rest + root)
+        let bend = y.square().scale(self.curvature * self.flatness);
+        rest + (rest.square() - bend).sqrt()
+    }
+
+    /// x over y: κ y²/(r + √(r² - κ α y²)).
+    pub fn height<S: Scalar>(&self, y: S) -> S {
+        y.square().scale(self.curvature).over(self.depth(y))
+    }
+
+    /// m = x/(κ y): how steep the chord from the point is, over the curvature. With it (x, y) is
+    /// (2 κ m², 2 m)/(1 + 2 β m + κ α m²).
+    pub fn chord(&self, y: f64) -> f64 {
+        y / self.depth(y)
+    }
+
+    /// The parameter at the end of a chord, where x is single there.
+    pub fn end_of_chord(&self, m: f64) -> Option<f64> {
+        let bend = self.curvature * self.flatness * (m * m);
+        let scale = 1.0 + 2.0 * self.shear * m + bend;
+        (bend < 1.0 && scale > 0.0).then(|| 2.0 * m / scale)
     }
 
     /// Whether it is a parabola.

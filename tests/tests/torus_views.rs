@@ -6,7 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_visibility::contour::{Contours, JunctionKind};
+use premio_visibility::contour::{Contours, JunctionKind, Kind};
 use premio_visibility::invisibility::Method;
 use premio_visibility::projection::{Projection, Sight};
 use premio_visibility::view::contours_by;
@@ -24,8 +24,14 @@ struct Torus {
 const SAMPLES: usize = 5;
 
 fn torus(t: Torus) -> Evaluation {
-    let json = format!(r#"{{"prim":"torus","R":{},"r":{}}}"#, t.major, t.minor);
-    let tree = read("torus", json.as_bytes(), Format::Json, &Options::default()).unwrap();
+    part(&format!(
+        r#"{{"prim":"torus","R":{},"r":{}}}"#,
+        t.major, t.minor
+    ))
+}
+
+fn part(json: &str) -> Evaluation {
+    let tree = read("part", json.as_bytes(), Format::Json, &Options::default()).unwrap();
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 
@@ -321,4 +327,35 @@ fn a_thin_torus() {
         },
         2,
     );
+}
+
+/// A torus of radii 1 and 1/2, seen across its axis, less a cylinder that reaches to 1 + d along x:
+/// of the tube's circle about (1, 0, 0) there is the arc beyond, of pi - 2 asin(2 d). Its ends are
+/// next to where it crosses the torus's top and bottom circles, limbs too: the product of all that
+/// vanishes on limbs is within the resolution between them, for d below 1e-5.
+#[test]
+fn limbs_are_cut_next_to_their_nodes() {
+    let shifts = [1e-3, 1e-5, 1e-7, 1e-9];
+    for d in shifts.into_iter().flat_map(|d: f64| [d, -d]) {
+        let part = part(&format!(
+            r#"{{"op":"difference","children":[{{"prim":"torus","R":1,"r":0.5}},
+                {{"prim":"cylinder","r":0.4,"h":2,"transform":[{{"translate":[{},0,-1]}}]}}]}}"#,
+            0.6 + d
+        ));
+        let eye = Point3::new(0.0, -10.0, 0.0);
+        let camera = Camera::orthographic(eye, Point3::origin(), Vector3::z()).unwrap();
+        let seen = contours(&part.brep, &camera, part.resolution).unwrap();
+        let of_tube = |c: &&premio_visibility::contour::Contour| {
+            let [p, q] = [0.0, 1.0].map(|t| c.curve3.point(t));
+            c.kind == Kind::Limb && p.y.hypot(q.y) < 1e-12 && p.x > 0.0 && (p.x - q.x).abs() > 1e-6
+        };
+        let arcs = seen.contours.iter().filter(of_tube);
+        let pieces: Vec<[f64; 2]> = arcs.flat_map(|c| &c.pieces).map(|p| p.t).collect();
+        let length: f64 = pieces.iter().map(|t| t[1] - t[0]).sum();
+        let expected = TAU / 2.0 - 2.0 * (2.0 * d).asin();
+        assert!(
+            (length - expected).abs() < 1e-8,
+            "{d}: {length} for {expected}"
+        );
+    }
 }

@@ -8,6 +8,7 @@
 use crate::projection::{Projection, Sight};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::cut::cut;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::section::{line_meets, plane_roots};
 use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
@@ -71,9 +72,7 @@ impl Edgewise {
 
     /// Where another curve passes the carrier.
     pub fn passed_by(&self, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
-        let carrier = Surface::Cylinder(self.carrier);
-        let f = |t: Interval| carrier.level(curve.jet_over(t));
-        match isolate(&f, &curve.breaks(range[0], range[1]), band) {
+        match cut(curve, range, &Surface::Cylinder(self.carrier), band) {
             Zeros::Everywhere => Vec::new(),
             Zeros::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
         }

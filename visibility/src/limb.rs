@@ -197,7 +197,7 @@ fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
     let LocalSight::Direction(d) = sight else {
         return None;
     };
-    (d.z.abs() <= ROUNDING).then_some(())?;
+    is_across(d).then_some(())?;
     let alpha = d.y.atan2(d.x);
     let side = s.frame.x * -alpha.sin() + s.frame.y * alpha.cos();
     let quarter = TAU / 4.0;
@@ -260,9 +260,47 @@ fn slope(s: &Torus, sight: &LocalSight) -> f64 {
     }
 }
 
+/// The surfaces that cut the limbs out of a surface, and meet it across there. For a quadric that
+/// is the polar plane of the eye. Across a torus's axis it is the plane of the two circles of the
+/// tube and the cylinder through those at the top and at the bottom: each by itself tells where a
+/// curve crosses a limb however near to another, which their product does not. None where the
+/// whole surface is seen edge-on or from inside, and where no such surface is known.
+pub fn cutters(surface: &Surface, sight: &Sight) -> Vec<Surface> {
+    match surface {
+        Surface::Torus(s) => side_cutters(s, sight),
+        quadric => polar_plane(quadric, sight)
+            .map(Surface::Plane)
+            .into_iter()
+            .collect(),
+    }
+}
+
+fn side_cutters(s: &Torus, sight: &Sight) -> Vec<Surface> {
+    let LocalSight::Direction(d) = local(&s.frame, sight) else {
+        return Vec::new();
+    };
+    if !is_across(&d) {
+        return Vec::new();
+    }
+    let along = s.frame.x * d.x + s.frame.y * d.y;
+    let plane = Plane {
+        frame: Frame::about(s.frame.origin, along.normalize()),
+    };
+    let cylinder = Cylinder {
+        frame: s.frame,
+        radius: s.major,
+    };
+    vec![Surface::Plane(plane), Surface::Cylinder(cylinder)]
+}
+
+/// Whether a direction of sight, in a torus's frame, is across its axis.
+fn is_across(direction: &Vector3<f64>) -> bool {
+    direction.z.abs() <= ROUNDING
+}
+
 /// The polar plane of the eye with respect to a quadric: it cuts the limb out of the surface.
 /// None for planes and tori, and where the whole surface is seen edge-on or from inside.
-pub fn polar_plane(surface: &Surface, sight: &Sight) -> Option<Plane> {
+fn polar_plane(surface: &Surface, sight: &Sight) -> Option<Plane> {
     let f = surface.frame();
     let plane = |normal: Vector3<f64>, level: f64| {
         let size = normal.norm();

@@ -3,7 +3,7 @@
 use crate::contour::{Junction, JunctionKind};
 use crate::image::{Image, flat_of};
 use crate::image_box::ImageBox;
-use crate::limb::{Limb, cusps, limbs, polar_plane, torus_limb_on};
+use crate::limb::{Limb, cusps, cutters, limbs, torus_limb_on};
 use crate::projection::Projection;
 use crate::sight::Scene;
 use crate::stretch::Stretch;
@@ -11,8 +11,9 @@ use nalgebra::Point3;
 use premio_kernel::brep::locate::Place;
 use premio_kernel::brep::topology::{EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::cut::cut;
 use premio_kernel::geometry::section::plane_roots;
-use premio_kernel::geometry::surface::{Plane, Surface, Torus};
+use premio_kernel::geometry::surface::{Surface, Torus};
 use premio_kernel::geometry::trace::Unresolved;
 use premio_kernel::number::roots::{Root, Zeros};
 
@@ -330,29 +331,39 @@ impl Trim<'_, '_, '_, '_> {
 
     /// The parameters at which the limbs of a face meet an edge of it.
     fn meets(&self, face: FaceId, edge: EdgeId, limbs: &[Limb]) -> Vec<f64> {
-        let brep = self.scene.brep;
-        let (curve, range) = (brep.curve(edge), brep.range(edge));
-        let sight = &self.scene.projection.sight;
-        let band = self.scene.band;
+        let surface = self.scene.brep.surface(face);
+        let cutters = cutters(surface, &self.scene.projection.sight);
         let mut found = Vec::new();
-        match brep.surface(face) {
-            Surface::Torus(s) => self.torus_meets(s, edge, limbs, &mut found),
-            surface => {
-                if let Some(plane) = polar_plane(surface, sight) {
-                    if runs_in(curve, range, &plane, band) {
-                        found.extend(range);
-                    } else {
-                        plane_roots(curve, range, &plane, band, &mut |t, _| found.push(t));
-                        // A root at a vertex may be just beyond the ends of all its edges.
-                        let polar = Surface::Plane(plane);
-                        let met = |t: &f64| polar.distance(&curve.point(*t)).abs() <= band;
-                        let open = brep.topology.edge(edge).ends.is_some();
-                        found.extend(range.into_iter().filter(|t| open && met(t)));
-                    }
+        match surface {
+            Surface::Torus(s) if cutters.is_empty() => {
+                self.torus_meets(s, edge, limbs, &mut found);
+            }
+            _ => cutters
+                .iter()
+                .for_each(|cutter| self.cuts(cutter, edge, &mut found)),
+        }
+        found
+    }
+
+    /// The parameters at which a surface that cuts limbs out cuts an edge.
+    fn cuts(&self, cutter: &Surface, edge: EdgeId, found: &mut Vec<f64>) {
+        let (brep, band) = (self.scene.brep, self.scene.band);
+        let (curve, range) = (brep.curve(edge), brep.range(edge));
+        if runs_in(curve, range, cutter, band) {
+            return found.extend(range);
+        }
+        match cutter {
+            Surface::Plane(s) => plane_roots(curve, range, s, band, &mut |t, _| found.push(t)),
+            _ => {
+                if let Zeros::At { roots, .. } = cut(curve, range, cutter, band) {
+                    found.extend(roots.iter().map(|r| r.t));
                 }
             }
         }
-        found
+        // A root at a vertex may be just beyond the ends of all its edges.
+        let met = |t: &f64| cutter.distance(&curve.point(*t)).abs() <= band;
+        let open = brep.topology.edge(edge).ends.is_some();
+        found.extend(range.into_iter().filter(|t| open && met(t)));
     }
 
     /// The same on a torus: at the limbs' nodes, where an edge passes through one, which are known
@@ -479,12 +490,12 @@ impl Trim<'_, '_, '_, '_> {
     }
 }
 
-/// Whether an edge lies in a plane throughout: no line or conic does at three points only.
-fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], plane: &Plane, band: f64) -> bool {
-    let n = &plane.frame.z;
+/// Whether an edge lies in a surface throughout: no line or conic lies in a plane at three points
+/// only.
+fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
     [0.0, 0.23, 0.51, 0.77, 1.0].iter().all(|part| {
         let p = curve.point(lo + (hi - lo) * part);
-        (p - plane.frame.origin).dot(n).abs() <= band
+        surface.distance(&p).abs() <= band
     })
 }
 

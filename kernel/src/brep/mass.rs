@@ -6,6 +6,7 @@
 //! the whole surface. Notation: P relative to a reference point, N the surface's normal, h = P·N.
 
 use super::Brep;
+use super::locate::{FaceLocator, Place};
 use super::topology::{CoedgeId, FaceId};
 use crate::geometry::bounds::{self, Box3};
 use crate::geometry::curve::Curve;
@@ -79,6 +80,7 @@ pub fn face_areas(brep: &Brep) -> Vec<f64> {
 /// do not matter: rounding, in terms of the part's size.
 struct Amid {
     reference: Point3<f64>,
+    size: f64,
     floor: Moments,
 }
 
@@ -111,6 +113,7 @@ impl Amid {
         };
         Self {
             reference,
+            size: l,
             floor: [area, area * l, area * l * l, area * l * l, area * l * l],
         }
     }
@@ -172,7 +175,12 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
         base,
     };
     match surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
+        Surface::Plane(_) | Surface::Cylinder(_) => {
+            let d = density(surface, &TWO, amid_edges(brep, &surface, &coedges));
+            boundary_sum(brep, face, &coedges, &d, &|_| Vec::new())
+        }
+        // From the apex, which the face may hold.
+        Surface::Cone(_) => {
             let d = density(surface, &TWO, 0.0);
             boundary_sum(brep, face, &coedges, &d, &|_| Vec::new())
         }
@@ -184,11 +192,11 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
             let d = density(Surface::Sphere(s), &TWENTY, -PI / 2.0);
             let sum = boundary_sum(brep, face, &coedges, &d, &|_| Vec::new());
             let whole = around(&d, PI / 2.0, 0.0, TAU);
-            // Below zero, or nothing at all: the face holds the pole opposite to the base.
-            if sum[0] > 0.5 * FEW * whole[0] {
-                sum
-            } else {
+            let opposite = s.frame.point(0.0, 0.0, s.radius);
+            if holds_far(brep, face, amid, sum[0] / whole[0], &opposite) {
                 add(sum, whole)
+            } else {
+                sum
             }
         }
         Surface::Torus(t) => {
@@ -197,8 +205,32 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
     }
 }
 
-/// Areas below this part of the whole surface count as none.
-const FEW: f64 = 1.0 / (1u64 << 44) as f64;
+/// A v amid the edges of a face: the gaps between their ends count by the distance from it.
+fn amid_edges(brep: &Brep, surface: &Surface, coedges: &[CoedgeId]) -> f64 {
+    let middle = |&c: &CoedgeId| {
+        let e = brep.topology.coedge(c).edge;
+        let [lo, hi] = brep.range(e);
+        surface.parameters(&brep.curve(e).point(0.5 * (lo + hi)))[1]
+    };
+    coedges.iter().map(middle).sum::<f64>() / coedges.len().max(1) as f64
+}
+
+/// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
+/// the face's part of the whole surface all or nothing is missing, so its sign tells, unless next to
+/// nothing is left.
+fn holds_far(brep: &Brep, face: FaceId, amid: &Amid, part: f64, far: &Point3<f64>) -> bool {
+    if brep.topology.face(face).loops.is_empty() {
+        return true;
+    }
+    if part.abs() > FEW {
+        return part < 0.0;
+    }
+    let locator = FaceLocator::of(brep, face, amid.size * RELATIVE_RESOLUTION);
+    locator.place(far) != Place::Outside
+}
+
+/// Of areas below this part of the whole surface the sign may be rounding.
+const FEW: f64 = 1.0 / (1u64 << 40) as f64;
 /// The angle about the tube at which a torus is cut open.
 const BASE: f64 = 2.0;
 
@@ -345,7 +377,8 @@ fn torus_moments(
         }
     }
     let whole = around(d, top, 0.0, TAU);
-    if passes.is_empty() && sum[0] <= 0.5 * FEW * whole[0] {
+    let far = t.frame.point(t.major + t.minor * BASE.cos(), 0.0, height);
+    if passes.is_empty() && holds_far(brep, face, d.amid, sum[0] / whole[0], &far) {
         add(sum, whole)
     } else {
         sum
@@ -395,10 +428,10 @@ fn bulge(brep: &Brep, face: FaceId) -> Box3 {
     }
     // A band of nothing would miss boundaries by rounding.
     let size = points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)));
-    let arcs = super::locate::FaceLocator::of(brep, face, 0.0);
+    let arcs = FaceLocator::of(brep, face, 0.0);
     let size = arcs.boxes().iter().fold(size, |a, b| a.hull(b));
     let band = RELATIVE_RESOLUTION * size.diagonal();
-    let locator = super::locate::FaceLocator::of(brep, face, band);
-    points.retain(|p| locator.place(p) != super::locate::Place::Outside);
+    let locator = FaceLocator::of(brep, face, band);
+    points.retain(|p| locator.place(p) != Place::Outside);
     points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)))
 }

@@ -102,6 +102,33 @@ pub enum AssemblyError {
     },
 }
 
+/// A sphere around a vertex on which the edges there are told apart.
+struct Sphere {
+    /// It reaches no further than any edge at this part of its range.
+    along: f64,
+    /// Its radius as a part of that reach.
+    part: f64,
+    /// By how many times the resolution a gap must be seen.
+    clear: f64,
+}
+
+/// A gap must be seen well above the vertex's own uncertainty, next to it; halfway along, edges are
+/// apart by the resolution, or are one; or further on, where they end at different vertices.
+const SPHERES: [Sphere; 7] = {
+    const fn sphere(along: f64, part: f64, clear: f64) -> Sphere {
+        Sphere { along, part, clear }
+    }
+    [
+        sphere(0.5, 1.0 / 64.0, 16.0),
+        sphere(0.5, 1.0 / 16.0, 16.0),
+        sphere(0.5, 1.0 / 4.0, 16.0),
+        sphere(0.5, 1.0 / 256.0, 16.0),
+        sphere(0.5, 0.5, 16.0),
+        sphere(0.5, 1.0, 1.0),
+        sphere(0.9, 1.0, 1.0),
+    ]
+};
+
 /// A coedge before it has an owner.
 #[derive(Clone, Copy, Debug)]
 struct Half {
@@ -273,23 +300,18 @@ impl<'a> Assembler<'a> {
 
     /// Edge ends counterclockwise, in as many bundles as any sphere tells apart that all reach.
     fn told_apart(&self, v: &Point3<f64>, frame: &Frame, ends: &[End]) -> Vec<Vec<End>> {
-        let middle = |e: usize| {
-            let edge = &self.raw.edges[e];
-            self.raw.curves[edge.curve].point(0.5 * (edge.range[0] + edge.range[1]))
-        };
-        let reach = ends
-            .iter()
-            .map(|e| (middle(e.0) - v).norm())
-            .fold(f64::INFINITY, f64::min);
         let mut best = Vec::new();
-        for part in [1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0, 1.0 / 256.0, 0.5] {
-            let radius = reach * part;
-            let angle = |&(e, first): &End| {
-                let d = frame.components(&(self.point_at(e, first, v, radius) - v));
-                (d.y.atan2(d.x), (e, first))
+        for Sphere { along, part, clear } in SPHERES {
+            let reaches = ends
+                .iter()
+                .map(|e| (self.point_along(*e, along) - v).norm());
+            let radius = reaches.fold(f64::INFINITY, f64::min) * part;
+            let angle = |&end: &End| {
+                let p = self.point_at(end, along, v, radius);
+                let d = frame.components(&(p - v));
+                (d.y.atan2(d.x), end)
             };
-            // A gap must be seen well above the vertex's own uncertainty.
-            let least = self.judge.band() / radius * 16.0 + ROUNDING;
+            let least = self.judge.band() / radius * clear + ROUNDING;
             let bundles = bundled(ends.iter().map(angle).collect(), least);
             if bundles.len() > best.len() {
                 best = bundles;
@@ -311,17 +333,31 @@ impl<'a> Assembler<'a> {
         Frame::about(*v, normal * outward.sign())
     }
 
-    /// The point of an edge at a distance from the vertex at one of its ends.
-    fn point_at(&self, edge: usize, first: bool, v: &Point3<f64>, radius: f64) -> Point3<f64> {
-        let e = &self.raw.edges[edge];
-        let curve = &self.raw.curves[e.curve];
-        let start = if first { e.range[0] } else { e.range[1] };
-        let middle = 0.5 * (e.range[0] + e.range[1]);
+    /// The parameters where an edge leaves the vertex at one of its ends, and a part of its range
+    /// further on.
+    fn stretch(&self, (edge, first): End, along: f64) -> [f64; 2] {
+        let [lo, hi] = self.raw.edges[edge].range;
+        match first {
+            true => [lo, lo + (hi - lo) * along],
+            false => [hi, hi - (hi - lo) * along],
+        }
+    }
+
+    /// The point of an edge that part of its range from one of its ends.
+    fn point_along(&self, end: End, along: f64) -> Point3<f64> {
+        let [_, t] = self.stretch(end, along);
+        self.raw.curves[self.raw.edges[end.0].curve].point(t)
+    }
+
+    /// The point of an edge at a distance from the vertex at one of its ends, no further than a part
+    /// of its range.
+    fn point_at(&self, end: End, along: f64, v: &Point3<f64>, radius: f64) -> Point3<f64> {
+        let curve = &self.raw.curves[self.raw.edges[end.0].curve];
+        let [start, far] = self.stretch(end, along);
         let gap = |t: f64| (curve.point(t) - v).norm() - radius;
-        let t = if first {
-            bisect(start, middle, -radius, gap)
-        } else {
-            bisect(middle, start, radius, gap)
+        let t = match start < far {
+            true => bisect(start, far, -radius, gap),
+            false => bisect(far, start, radius, gap),
         };
         curve.point(t)
     }

@@ -41,8 +41,8 @@ pub(super) struct Meeting {
     pub closed: bool,
     /// All carriers that hold it, in order.
     pub carriers: Vec<usize>,
-    /// The pair of carriers it was found from, where they are tangent all along it.
-    pub tangent: Option<[usize; 2]>,
+    /// The pairs of carriers that are tangent all along it.
+    pub tangent: Vec<[usize; 2]>,
     /// Its box.
     pub bounds: Box3,
     /// Its smooth pieces with their boxes, in order.
@@ -101,6 +101,7 @@ pub(super) fn arrange(
     for (pair, supports) in found.pairs(solids, reach) {
         found.add_pair(pair, &supports, &sources, extent, judge, &mut corners)?;
     }
+    found.settle_contacts(judge);
     let mut later = Later::default();
     for i in 0..found.meetings.len() {
         found.cut_meeting(i, solids, judge, &mut corners, &mut later);
@@ -226,7 +227,7 @@ impl Arrangement {
                 range,
                 closed: branch.closed && range == branch.range,
                 carriers: vec![a, b],
-                tangent: branch.tangent.then_some([a, b]),
+                tangent: branch.tangent.then_some([a, b]).into_iter().collect(),
                 bounds: b3,
                 parts,
                 cuts: Vec::new(),

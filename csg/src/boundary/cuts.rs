@@ -108,8 +108,11 @@ impl Arrangement {
             if let Some(margin) = r.margin {
                 note("curve on surface", margin, &p);
             }
-            let reach = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
-            let reach = reach[0].max(reach[1]);
+            let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
+            let mut reach = ends[0].max(ends[1]);
+            if r.contact == Contact::Touching {
+                reach = reach.max(m.strip(r.t, &self.carriers[c], judge));
+            }
             if reach > judge.reach() {
                 later.wide.push(Wide {
                     meeting: index,
@@ -277,6 +280,19 @@ impl Meeting {
             parts = &parts[count..];
         }
         Some(all)
+    }
+
+    /// How far from a point where the curve touches a surface it leaves that by more than the
+    /// resolution, to a factor of two.
+    fn strip(&self, t: f64, surface: &Surface, judge: &Judge) -> f64 {
+        let length = self.range[1] - self.range[0];
+        let leaves = |step: &f64| {
+            let sides = [t - step, t + step].map(|t| surface.distance(&self.curve.point(t)));
+            *step >= length || !sides.iter().any(|&away| judge.within(away))
+        };
+        let mut steps = std::iter::successors(Some(length * ROUNDING), |step| Some(2.0 * step));
+        let first = steps.find(leaves).unwrap_or(length);
+        (self.curve.point(t + first) - self.curve.point(t)).norm()
     }
 
     /// Whether a parameter lies in a range, on a closed curve a turn more or less.

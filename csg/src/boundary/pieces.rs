@@ -39,7 +39,7 @@ pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
                 range,
                 ends,
                 carriers: arrangement.holding(m, range, ends, judge),
-                tangent: m.tangent.into_iter().collect(),
+                tangent: m.tangent.clone(),
             };
             if piece.carriers.len() > 2 {
                 let name = ends.map(|[a, b]| [a.min(b), a.max(b)]);

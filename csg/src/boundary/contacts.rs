@@ -1,0 +1,76 @@
+//! Where two carriers touch along a curve, and another curve runs next to it.
+//!
+//! Carriers that touch are within the resolution of one another over a strip. A curve of one of
+//! them and a third carrier that runs inside the strip lies on both, so the contact may as well be
+//! along that one, whose place is known: two curves that bound a strip in which nothing can be told
+//! apart would leave its faces without an order.
+
+use super::arrangement::{Arrangement, Meeting};
+use nalgebra::Point3;
+use premio_kernel::geometry::cut::lies_on;
+use premio_kernel::number::roots::probes;
+use premio_kernel::number::sign::Judge;
+
+impl Arrangement {
+    /// Puts contacts along curves where other curves run inside their strips.
+    pub(super) fn settle_contacts(&mut self, judge: &Judge) {
+        let mut settled = vec![false; self.meetings.len()];
+        for i in 0..self.meetings.len() {
+            let contact = &self.meetings[i];
+            let [both] = contact.tangent[..] else {
+                continue;
+            };
+            if !contact.cuts.is_empty() {
+                continue;
+            }
+            let nearest = (0..self.meetings.len())
+                .filter(|&j| !settled[j])
+                .filter_map(|j| Some((self.strip(both, i, j, judge)?, j)))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((_, j)) = nearest {
+                self.meetings[j].tangent.push(both);
+                settled[i] = true;
+            }
+        }
+        let mut settled = settled.into_iter();
+        self.meetings.retain(|_| settled.next() == Some(false));
+    }
+
+    /// How wide the strip is between the contact of two carriers and another curve of one of them,
+    /// where that runs along all of it and is not the same.
+    fn strip(&self, both: [usize; 2], contact: usize, other: usize, judge: &Judge) -> Option<f64> {
+        let (contact, other) = (&self.meetings[contact], &self.meetings[other]);
+        let third = both.map(|c| !other.carriers.contains(&c));
+        if third[0] == third[1] {
+            return None;
+        }
+        let carriers = both.map(|c| &self.carriers[c]);
+        let missing = carriers[usize::from(third[1])];
+        if !lies_on(&other.curve, other.range, missing, judge.band()) {
+            return None;
+        }
+        let mut width: f64 = 0.0;
+        let [lo, hi] = contact.range;
+        for part in probes().chain([0.0, 1.0]) {
+            let p = contact.curve.point(lo + (hi - lo) * part);
+            let q = other.beside(&p, judge.reach())?;
+            let middle = p + (q - p) * 0.5;
+            if !carriers.iter().all(|s| judge.within(s.distance(&middle))) {
+                return None;
+            }
+            width = width.max((q - p).norm());
+        }
+        (!judge.within(width)).then_some(width)
+    }
+}
+
+impl Meeting {
+    /// The point next to another one, where that is not beyond the ends.
+    fn beside(&self, p: &Point3<f64>, reach: f64) -> Option<Point3<f64>> {
+        let [lo, hi] = self.range;
+        let t = self.curve.in_cycle(self.curve.parameter(p), lo);
+        let q = self.curve.point(t.clamp(lo, hi));
+        let beyond = (q - self.curve.point(t)).norm();
+        (beyond <= reach).then_some(q)
+    }
+}

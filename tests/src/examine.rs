@@ -3,12 +3,14 @@
 //! missing.
 
 use crate::cast::Cast;
+use nalgebra::Point3;
 use premio::checks::{Checker, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::brep::locate::{FaceLocator, Place};
 use premio_visibility::contour::{Contour, Piece};
 use premio_visibility::invisibility::Method;
+use premio_visibility::projection::Projection;
 use premio_visibility::view::contours_by;
 use premio_visibility::{Camera, Contours, contours};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -27,6 +29,14 @@ pub const VIEWS: [&str; 5] = [
 
 /// The place in a piece that is asked first for what lies before it, as a part of its range.
 const COUNTED_AT: f64 = 0.47;
+
+/// How far beside a contour its sides are looked at, in multiples of the resolution.
+const ASIDE: f64 = 64.0;
+
+/// How many points of a piece are asked whether they pass near to a line of sight, and how often the
+/// way between them is halved, or nearly.
+const POINTS: u32 = 256;
+const HALVINGS: usize = 80;
 
 /// How far a point of a face may be off, in multiples of the resolution.
 const ON: f64 = 4.0;
@@ -142,7 +152,8 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Opti
     let both = carried.contours.iter().zip(&counted.contours);
     let differ = |contour: &Contour, a: &Piece, b: &Piece| {
         let apart = a.qi.abs_diff(b.qi) as usize;
-        a.t != b.t || apart > 0 && apart > lies_on(evaluation, contour, a)
+        let told = || apart > lies_on(evaluation, contour, a);
+        a.t != b.t || told() && apart > passing(evaluation, &carried, contour, a, camera)
     };
     both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(move |pair| (a, pair)))
         .find(|(contour, (a, b))| differ(contour, a, b))
@@ -153,6 +164,48 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Opti
                 a.qi, b.qi, b.t[0], b.t[1]
             )
         })
+}
+
+/// How many contours pass the line of sight of a piece's middle, where it is counted, nearer than
+/// what is looked at beside it: on which side of it they do is not seen.
+fn passing(
+    evaluation: &Evaluation,
+    seen: &Contours,
+    contour: &Contour,
+    piece: &Piece,
+    camera: &Camera,
+) -> usize {
+    let [lo, hi] = piece.t;
+    let p = contour.curve3.point(lo + (hi - lo) * COUNTED_AT);
+    let size = evaluation.bounds.diagonal();
+    let (v, _) = Projection::new(camera, size).towards_eye(&p);
+    let away = |q: Point3<f64>| (q - p).cross(&v).norm();
+    // A part of the contour itself is another one where it is well nearer to the eye.
+    let before = |other: &Contour, q: Point3<f64>| {
+        let own = other.id == contour.id;
+        (q - p).dot(&v) > if own { size / f64::from(POINTS) } else { 0.0 }
+    };
+    let passes = |other: &Contour, near: &Piece| {
+        let [lo, hi] = near.t;
+        let at = |k: f64| other.curve3.point(lo + (hi - lo) * (k / f64::from(POINTS)));
+        let asked = (0..=POINTS)
+            .map(f64::from)
+            .filter(|&k| before(other, at(k)));
+        let Some(k) = asked.min_by(|&k, &l| away(at(k)).total_cmp(&away(at(l)))) else {
+            return false;
+        };
+        let (mut from, mut to) = (k - 1.0, k + 1.0);
+        for _ in 0..HALVINGS {
+            let [m, n] = [from + (to - from) / 3.0, to - (to - from) / 3.0];
+            match away(at(m)) < away(at(n)) {
+                true => to = n,
+                false => from = m,
+            }
+        }
+        away(at(0.5 * (from + to))) <= ASIDE * evaluation.resolution
+    };
+    let of = |other: &&Contour| other.pieces.iter().any(|near| passes(other, near));
+    seen.contours.iter().filter(of).count()
 }
 
 /// On how many faces that are not its own a piece lies within the resolution, next to its middle,

@@ -163,17 +163,21 @@ impl Sorter<'_> {
     fn starts(&self, ring: usize) -> Vec<Start> {
         let mut starts = Vec::new();
         for &fraction in &STARTS {
-            for arc in self.firsts[ring]..self.firsts[ring + 1] {
-                let a = &self.arcs.all[arc];
-                let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
-                let point = a.curve.point(t);
-                let tangent = a.curve.tangent(t) * a.sense.sign();
-                let normal = self.surface.normal(&point) * self.outward.sign();
-                let left = normal.cross(&tangent);
-                starts.push(Start { arc, point, left });
-            }
+            let arcs = self.firsts[ring]..self.firsts[ring + 1];
+            starts.extend(arcs.map(|arc| self.start_on(arc, fraction)));
         }
         starts
+    }
+
+    /// The point of an arc at a fraction of its range.
+    fn start_on(&self, arc: usize, fraction: f64) -> Start {
+        let a = &self.arcs.all[arc];
+        let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
+        let point = a.curve.point(t);
+        let tangent = a.curve.tangent(t) * a.sense.sign();
+        let normal = self.surface.normal(&point) * self.outward.sign();
+        let left = normal.cross(&tangent);
+        Start { arc, point, left }
     }
 
     /// Walks down the rulings of a cylinder or a cone, all the same way: every loop but the lowest

@@ -90,15 +90,19 @@ impl Sorter<'_> {
         ];
         for &fraction in &STARTS {
             for goal in 0..self.firsts[1] {
-                let a = &self.arcs.all[goal];
-                let q = a
-                    .curve
-                    .point(a.range[0] + fraction * (a.range[1] - a.range[0]));
+                let q = self.start_on(goal, fraction);
                 // The way ends just before the first loop: within its face, or on the other side
-                // of it.
+                // of it, where the face of the same edge is another loop's.
                 for height in heights {
-                    let legs = self.legs(&t, p, &q, height);
-                    if legs.is_some_and(|l| self.follow(ring, arc, p, left, &l, Some(0))) {
+                    let Some(legs) = self.legs(&t, p, &q.point, height) else {
+                        continue;
+                    };
+                    let from_left = |leg: &Walk| leg.direction(&q.point).dot(&q.left) < 0.0;
+                    let reached = match self.twin(goal) {
+                        Some(twin) if !legs.last().is_some_and(from_left) => twin,
+                        _ => goal,
+                    };
+                    if self.follow(ring, arc, p, left, &legs, Some(self.owner[reached])) {
                         return true;
                     }
                 }

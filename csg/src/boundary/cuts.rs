@@ -159,7 +159,11 @@ impl Arrangement {
         let (t, vertex) = match best {
             Some(v) => {
                 let p = corners.all[v].point;
-                let t = in_range(&m.curve, m.range, m.curve.parameter(&p));
+                // A curve may pass its corner twice: only elsewhere its parameter is asked for.
+                let t = match judge.within((p - middle).norm()) {
+                    true => w.t,
+                    false => in_range(&m.curve, m.range, m.curve.parameter(&p)),
+                };
                 (t, corners.at(&p, &all, judge))
             }
             None => (w.t, corners.at(&middle, &all, judge)),

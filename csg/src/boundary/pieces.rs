@@ -2,6 +2,7 @@
 //! gave its curve.
 
 use super::arrangement::{Arrangement, Meeting};
+use super::cuts::CLOSE_PASS;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::cut::lies_on;
@@ -205,8 +206,11 @@ fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
             Some([last.vertex, first.vertex]),
         ));
     }
-    let short = (m.range[1] - m.range[0]) * ROUNDING;
-    spans.retain(|(r, _)| r[1] - r[0] > short);
+    // Past the end of a closed curve its last and first cut may be one.
+    let length = |r: &[f64; 2]| r[1] - r[0];
+    let short = length(&m.range) * ROUNDING;
+    let one = |ends: &Option<[usize; 2]>| ends.is_some_and(|[a, b]| a == b);
+    spans.retain(|(r, ends)| length(r) > if one(ends) { CLOSE_PASS } else { short });
     spans
 }
 

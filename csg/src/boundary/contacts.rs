@@ -52,13 +52,16 @@ impl Arrangement {
         let mut width: f64 = 0.0;
         let [lo, hi] = contact.range;
         for part in probes().chain([0.0, 1.0]) {
-            let p = contact.curve.point(lo + (hi - lo) * part);
-            let q = other.beside(&p, judge.reach())?;
-            let middle = p + (q - p) * 0.5;
-            if !carriers.iter().all(|s| judge.within(s.distance(&middle))) {
+            let t = lo + (hi - lo) * part;
+            let p = contact.curve.point(t);
+            let aside = other.beside(&p, judge.reach())? - p;
+            let along = aside.dot(&contact.curve.tangent(t)).abs();
+            let middle = p + aside * 0.5;
+            let inside = carriers.iter().all(|s| judge.within(s.distance(&middle)));
+            if !inside || 2.0 * along > aside.norm() + judge.reach() {
                 return None;
             }
-            width = width.max((q - p).norm());
+            width = width.max(aside.norm());
         }
         (!judge.within(width)).then_some(width)
     }

@@ -124,8 +124,11 @@ struct Density<'a> {
     surface: Surface,
     amid: &'a Amid,
     rule: &'static Rule,
-    /// Where the integral along v starts.
+    /// The v at which the surface is cut open, or has a pole.
     base: f64,
+    /// Where the integral along v starts: a v amid the edges, so that what is the same on all of
+    /// them does not have to cancel.
+    start: f64,
 }
 
 impl Density<'_> {
@@ -156,7 +159,18 @@ impl Density<'_> {
 
     /// G(u, v).
     fn along(&self, u: f64, v: f64) -> Moments {
-        integral(self.rule, self.base, v, |w| self.at(u, w))
+        integral(self.rule, self.start, v, |w| self.at(u, w))
+    }
+
+    /// The integral over all that lies between two v.
+    fn between(&self, from: f64, to: f64) -> Moments {
+        self.over([0.0, TAU], [from, to])
+    }
+
+    /// The integral over a range of u and of v.
+    fn over(&self, [a, b]: [f64; 2], [from, to]: [f64; 2]) -> Moments {
+        let of = |u: f64| integral(self.rule, from, to, |w| self.at(u, w));
+        adaptive(a, b, &self.amid.floor, &mut |u| of(u))
     }
 }
 
@@ -167,31 +181,37 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
         .iter()
         .flat_map(|&l| brep.topology.ring(l).coedges.iter().copied())
         .collect();
-    let surface = *brep.surface(face);
-    let density = |surface: Surface, rule: &'static Rule, base: f64| Density {
+    let surface = match *brep.surface(face) {
+        Surface::Sphere(s) => Surface::Sphere(Sphere {
+            frame: clear_axis(brep, &s, &coedges),
+            ..s
+        }),
+        other => other,
+    };
+    let (rule, base): (&'static Rule, f64) = match &surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => (&TWO, 0.0),
+        Surface::Sphere(_) => (&TWENTY, -PI / 2.0),
+        Surface::Torus(_) => (&TWENTY, BASE),
+    };
+    let start = match &surface {
+        // Edges may pass through the apex, where nothing is between.
+        Surface::Cone(_) => base,
+        _ => amid_edges(brep, &surface, base, &coedges),
+    };
+    let d = Density {
         surface,
         amid,
         rule,
         base,
+        start,
     };
-    match surface {
-        Surface::Plane(_) | Surface::Cylinder(_) => {
-            let d = density(surface, &TWO, amid_edges(brep, &surface, &coedges));
-            boundary_sum(brep, face, &coedges, &d, &|_| Vec::new())
-        }
-        // From the apex, which the face may hold.
-        Surface::Cone(_) => {
-            let d = density(surface, &TWO, 0.0);
+    match &surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
             boundary_sum(brep, face, &coedges, &d, &|_| Vec::new())
         }
         Surface::Sphere(s) => {
-            let s = Sphere {
-                frame: clear_axis(brep, &s, &coedges),
-                ..s
-            };
-            let d = density(Surface::Sphere(s), &TWENTY, -PI / 2.0);
             let sum = boundary_sum(brep, face, &coedges, &d, &|_| Vec::new());
-            let whole = around(&d, PI / 2.0, 0.0, TAU);
+            let whole = d.between(base, PI / 2.0);
             let opposite = s.frame.point(0.0, 0.0, s.radius);
             if holds_far(brep, face, amid, sum[0] / whole[0], &opposite) {
                 add(sum, whole)
@@ -199,20 +219,25 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
                 sum
             }
         }
-        Surface::Torus(t) => {
-            torus_moments(brep, face, &coedges, &t, &density(surface, &TWENTY, BASE))
-        }
+        Surface::Torus(t) => torus_moments(brep, face, &coedges, t, &d),
     }
 }
 
-/// A v amid the edges of a face: the gaps between their ends count by the distance from it.
-fn amid_edges(brep: &Brep, surface: &Surface, coedges: &[CoedgeId]) -> f64 {
+/// A v amid the edges of a face, where a torus or a sphere is cut open at `base`.
+fn amid_edges(brep: &Brep, surface: &Surface, base: f64, coedges: &[CoedgeId]) -> f64 {
     let middle = |&c: &CoedgeId| {
         let e = brep.topology.coedge(c).edge;
         let [lo, hi] = brep.range(e);
-        surface.parameters(&brep.curve(e).point(0.5 * (lo + hi)))[1]
+        let [_, v] = surface.parameters(&brep.curve(e).point(0.5 * (lo + hi)));
+        match surface {
+            Surface::Torus(_) => base + (v - base).rem_euclid(TAU),
+            _ => v,
+        }
     };
-    coedges.iter().map(middle).sum::<f64>() / coedges.len().max(1) as f64
+    match coedges.len() {
+        0 => base,
+        n => coedges.iter().map(middle).sum::<f64>() / n as f64,
+    }
 }
 
 /// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
@@ -238,12 +263,8 @@ fn add(a: Moments, b: Moments) -> Moments {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// ∫ G(u, v) du at one v.
-fn around(d: &Density<'_>, v: f64, from: f64, to: f64) -> Moments {
-    adaptive(from, to, &d.amid.floor, &mut |u| d.along(u, v))
-}
-
-/// −∮ G du over the boundary of a face, each edge broken where `marks` says.
+/// −∮ G du over the boundary of a face, each edge broken where `marks` says, and G counted from the
+/// base: what lies between that and where it starts counts as often as the edges go round.
 fn boundary_sum(
     brep: &Brep,
     face: FaceId,
@@ -252,7 +273,9 @@ fn boundary_sum(
     marks: &dyn Fn(CoedgeId) -> Vec<f64>,
 ) -> Moments {
     let side = brep.sense(face).sign();
-    let mut total = [0.0; 5];
+    let [a, v, x, y, z] = density.amid.floor;
+    let floor = [a, v, x, y, z, ROUNDING];
+    let mut total = [0.0; 6];
     for &c in coedges {
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
@@ -266,7 +289,7 @@ fn boundary_sum(
             let [_, near] = density
                 .surface
                 .parameters(&curve.point(0.5 * (pair[0] + pair[1])));
-            let part = adaptive(pair[0], pair[1], &density.amid.floor, &mut |t| {
+            let part = adaptive(pair[0], pair[1], &floor, &mut |t| {
                 edge_density(curve, t, density, near)
             });
             for (s, v) in total.iter_mut().zip(part) {
@@ -274,11 +297,22 @@ fn boundary_sum(
             }
         }
     }
-    total
+    let [a, v, x, y, z, way] = total;
+    let sum = [a, v, x, y, z];
+    let turns = (way / TAU).round();
+    if turns == 0.0 || matches!(density.surface, Surface::Plane(_)) {
+        return sum;
+    }
+    add(
+        sum,
+        density
+            .between(density.base, density.start)
+            .map(|k| k * turns),
+    )
 }
 
-/// G du/dt on an edge.
-fn edge_density(curve: &Curve, t: f64, density: &Density<'_>, near: f64) -> Moments {
+/// G du/dt and du/dt on an edge.
+fn edge_density(curve: &Curve, t: f64, density: &Density<'_>, near: f64) -> [f64; 6] {
     let j = curve.jet(t);
     let p = Point3::new(j[0].v, j[1].v, j[2].v);
     let f = density.surface.frame();
@@ -294,9 +328,10 @@ fn edge_density(curve: &Curve, t: f64, density: &Density<'_>, near: f64) -> Mome
         v = near + (v - near + PI).rem_euclid(TAU) - PI;
     }
     if rate == 0.0 || !rate.is_finite() {
-        return [0.0; 5];
+        return [0.0; 6];
     }
-    density.along(u, v).map(|g| g * rate)
+    let [a, h, x, y, z] = density.along(u, v).map(|g| g * rate);
+    [a, h, x, y, z, rate]
 }
 
 /// A frame of a sphere whose poles keep clear of the edges.
@@ -373,10 +408,10 @@ fn torus_moments(
             if end <= u {
                 end += TAU;
             }
-            sum = add(sum, around(d, top, u, end));
+            sum = add(sum, d.over([u, end], [BASE, top]));
         }
     }
-    let whole = around(d, top, 0.0, TAU);
+    let whole = d.between(BASE, top);
     let far = t.frame.point(t.major + t.minor * BASE.cos(), 0.0, height);
     if passes.is_empty() && holds_far(brep, face, d.amid, sum[0] / whole[0], &far) {
         add(sum, whole)

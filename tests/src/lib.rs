@@ -3,5 +3,7 @@
 pub mod cast;
 pub mod examine;
 pub mod formula;
+pub mod identities;
 pub mod parts;
 pub mod random;
+pub mod signature;

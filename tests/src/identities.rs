@@ -1,0 +1,189 @@
+//! The laws of sets, as laws of boundaries: both sides have the same combinatorics, volume and area.
+
+use crate::random::tree;
+use crate::signature::Signature;
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_kernel::brep::check::check;
+use premio_kernel::brep::mass::{Mass, mass};
+use serde_json::{Value, json};
+
+/// How far volumes and areas may be apart, as a part of those of the greatest part.
+const APART: f64 = 1e-9;
+
+/// What the two sides of a law are compared by.
+#[derive(Clone, Debug)]
+pub struct Side {
+    /// The combinatorics.
+    pub signature: Signature,
+    /// Volume and area.
+    pub mass: Mass,
+    /// Whether a decision was close.
+    pub close: bool,
+}
+
+/// A law: its name, both sides, and how much greater the second is in length.
+pub struct Law {
+    /// What it says.
+    pub name: &'static str,
+    /// Both sides.
+    pub sides: [Value; 2],
+    /// The second side's unit in the first's.
+    pub scale: f64,
+}
+
+/// Any number of trees joined.
+pub fn join(op: &str, children: &[&Value]) -> Value {
+    json!({"op": op, "children": children})
+}
+
+/// The laws of three trees.
+pub fn laws(a: &Value, b: &Value, c: &Value) -> Vec<Law> {
+    let (or, and, less) = (
+        |x: &Value, y: &Value| join("union", &[x, y]),
+        |x: &Value, y: &Value| join("intersection", &[x, y]),
+        |x: &Value, y: &Value| join("difference", &[x, y]),
+    );
+    let all = &json!({"prim": "block", "size": [64, 64, 64],
+        "transform": [{"translate": [-32.25, -32.25, -32.25]}]});
+    let not = |x: &Value| less(all, x);
+    let law = |name, sides| Law {
+        name,
+        sides,
+        scale: 1.0,
+    };
+    vec![
+        law("A or A = A", [or(a, a), a.clone()]),
+        law("A and A = A", [and(a, a), a.clone()]),
+        law("A or B = B or A", [or(a, b), or(b, a)]),
+        law("A and B = B and A", [and(a, b), and(b, a)]),
+        law(
+            "(A or B) or C = A or (B or C)",
+            [or(&or(a, b), c), or(a, &or(b, c))],
+        ),
+        law(
+            "(A and B) and C = A and (B and C)",
+            [and(&and(a, b), c), and(a, &and(b, c))],
+        ),
+        law(
+            "A less (B or C) = (A less B) less C",
+            [less(a, &or(b, c)), less(&less(a, b), c)],
+        ),
+        law(
+            "(A less B) or (A and B) = A",
+            [or(&less(a, b), &and(a, b)), a.clone()],
+        ),
+        law(
+            "not (A or B) = not A and not B",
+            [not(&or(a, b)), and(&not(a), &not(b))],
+        ),
+        law(
+            "not (A and B) = not A or not B",
+            [not(&and(a, b)), or(&not(a), &not(b))],
+        ),
+        law(
+            "A and (B or C) = (A and B) or (A and C)",
+            [and(a, &or(b, c)), or(&and(a, b), &and(a, c))],
+        ),
+    ]
+}
+
+/// What moving, turning and scaling a tree leaves alone.
+pub fn motions(a: &Value) -> Vec<Law> {
+    let moved = |steps: Value| json!({"op": "union", "children": [a], "transform": steps});
+    vec![
+        Law {
+            name: "moved",
+            sides: [a.clone(), moved(json!([{"translate": [0.3, -7.25, 11.0]}]))],
+            scale: 1.0,
+        },
+        Law {
+            name: "turned",
+            sides: [
+                a.clone(),
+                moved(json!([{"rotate": [[1, 2, 3], 17]}, {"translate": [3.0, 0.7, -0.1]}])),
+            ],
+            scale: 1.0,
+        },
+        Law {
+            name: "scaled",
+            sides: [a.clone(), scaled(a, 1024.0)],
+            scale: 1024.0,
+        },
+    ]
+}
+
+/// A tree with all its lengths so many times as long.
+fn scaled(tree: &Value, by: f64) -> Value {
+    let lengths = ["size", "r", "R", "r1", "r2", "h", "translate"];
+    let times = |value: &Value| match value {
+        Value::Array(all) => all
+            .iter()
+            .map(|v| json!(v.as_f64().unwrap_or(0.0) * by))
+            .collect(),
+        other => json!(other.as_f64().unwrap_or(0.0) * by),
+    };
+    match tree {
+        Value::Object(members) => {
+            let one = |(name, value): (&String, &Value)| {
+                let value = match lengths.contains(&name.as_str()) {
+                    true => times(value),
+                    false => scaled(value, by),
+                };
+                (name.clone(), value)
+            };
+            Value::Object(members.iter().map(one).collect())
+        }
+        // An axis and an angle keep theirs.
+        Value::Array(all) => all.iter().map(|v| scaled(v, by)).collect(),
+        other => other.clone(),
+    }
+}
+
+/// The boundary of a tree, as the laws see it.
+pub fn side(tree: &Value) -> Result<Side, String> {
+    let text = tree.to_string();
+    let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+    let tree = read.map_err(|error| error.to_string())?.tree;
+    let part: Evaluation =
+        evaluate(&tree, &EvaluationOptions::default()).map_err(|e| e.to_string())?;
+    if let Some(defect) = check(&part.brep, part.resolution).first() {
+        return Err(format!("{defect:?}"));
+    }
+    Ok(Side {
+        signature: Signature::of(&part.brep),
+        mass: mass(&part.brep),
+        close: !part.decisions.close_calls.is_empty(),
+    })
+}
+
+/// How a law is broken; nothing where it holds, or a decision on one side was close.
+pub fn broken(law: &Law) -> Option<String> {
+    let [a, b] = match law.sides.each_ref().map(side) {
+        [Ok(a), Ok(b)] => [a, b],
+        [Err(error), _] | [_, Err(error)] => return Some(format!("{}: {error}", law.name)),
+    };
+    if a.close || b.close {
+        return None;
+    }
+    let near = |x: f64, y: f64, scale: f64| (x - y / scale).abs() <= APART * (1.0 + x.abs());
+    let same = a.signature == b.signature
+        && near(a.mass.volume, b.mass.volume, law.scale.powi(3))
+        && near(a.mass.area, b.mass.area, law.scale.powi(2));
+    (!same).then(|| {
+        let say = |s: &Side| {
+            format!(
+                "{:?} volume {} area {}",
+                s.signature.counts, s.mass.volume, s.mass.area
+            )
+        };
+        format!("{}: {} for {}", law.name, say(&a), say(&b))
+    })
+}
+
+/// The laws that three random trees break.
+pub fn broken_by(seed: u64) -> Vec<String> {
+    let [a, b, c] = [0, 1, 2].map(|k| tree(3 * seed + k));
+    let all = laws(&a, &b, &c).into_iter().chain(motions(&a));
+    all.filter_map(|law| broken(&law)).collect()
+}

@@ -20,7 +20,8 @@ impl Arrangement {
             let [both] = contact.tangent[..] else {
                 continue;
             };
-            if !contact.cuts.is_empty() {
+            // What stands for a contact stays; what crosses others is known at the crossings.
+            if contact.carriers[..] != both || !contact.cuts.is_empty() {
                 continue;
             }
             let nearest = (0..self.meetings.len())

@@ -1,0 +1,48 @@
+//! Misses coincidences of pairs of solids by powers of two, and prints what is wrong then.
+//!
+//! `cargo run --release -p premio-tests --example pairs -- --from 10 --to 60`
+
+use clap::Parser;
+use premio_tests::pairs::{PAIRS, Pose, faults};
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// Misses coincidences by powers of two.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// The least power.
+    #[arg(long, default_value_t = 10)]
+    from: i32,
+    /// The greatest power.
+    #[arg(long, default_value_t = 60)]
+    to: i32,
+    /// Turn the pairs about an odd axis.
+    #[arg(long)]
+    turned: bool,
+}
+
+fn main() -> io::Result<ExitCode> {
+    let arguments = Arguments::parse();
+    let pose = match arguments.turned {
+        true => Pose::Turned,
+        false => Pose::Straight,
+    };
+    let (mut wrong, mut all) = (0, 0);
+    let mut out = io::stdout().lock();
+    for pair in PAIRS {
+        for power in arguments.from..=arguments.to {
+            for sign in ["", "-"] {
+                // Exact in as many decimals as it has bits.
+                let gap = format!("{sign}{:.60}", 2f64.powi(-power));
+                let found = faults(pair, gap.trim_end_matches('0'), pose);
+                for fault in &found {
+                    writeln!(out, "{} by {sign}2^-{power}: {fault}", pair.name)?;
+                }
+                all += 1;
+                wrong += usize::from(!found.is_empty());
+            }
+        }
+    }
+    writeln!(out, "{wrong} of {all} pairs")?;
+    Ok(ExitCode::from(u8::from(wrong > 0)))
+}

@@ -300,9 +300,14 @@ struct Trim<'s, 'a, 'j, 'p> {
 
 impl Trim<'_, '_, '_, '_> {
     fn face(&mut self, face: FaceId, limbs: &[Limb]) {
+        if limbs.is_empty() {
+            return;
+        }
+        let surface = self.scene.brep.surface(face);
+        let cutters = cutters(surface, &self.scene.projection.sight);
         let mut ends: Vec<Vec<(f64, u32)>> = vec![Vec::new(); limbs.len()];
         for edge in face_edges(self.scene, face) {
-            for t in self.meets(face, edge, limbs) {
+            for t in self.meets(surface, (limbs, &cutters), edge) {
                 let p = self.scene.brep.curve(edge).point(t);
                 let met = limbs_through(limbs, &p, LOOSE * self.scene.band);
                 if met.is_empty() {
@@ -329,10 +334,13 @@ impl Trim<'_, '_, '_, '_> {
         }
     }
 
-    /// The parameters at which the limbs of a face meet an edge of it.
-    fn meets(&self, face: FaceId, edge: EdgeId, limbs: &[Limb]) -> Vec<f64> {
-        let surface = self.scene.brep.surface(face);
-        let cutters = cutters(surface, &self.scene.projection.sight);
+    /// The parameters at which the limbs of a surface, and what cuts these out, meet an edge on it.
+    fn meets(
+        &self,
+        surface: &Surface,
+        (limbs, cutters): (&[Limb], &[Surface]),
+        edge: EdgeId,
+    ) -> Vec<f64> {
         let mut found = Vec::new();
         match surface {
             Surface::Torus(s) if cutters.is_empty() => {

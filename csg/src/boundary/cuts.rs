@@ -111,7 +111,7 @@ impl Arrangement {
             let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
             let mut reach = ends[0].max(ends[1]);
             if r.contact == Contact::Touching {
-                reach = reach.max(m.strip(r.t, &self.carriers[c], judge));
+                reach = reach.max(m.touching_length(r.t, &self.carriers[c], judge));
             }
             if reach > judge.reach() {
                 later.wide.push(Wide {
@@ -288,7 +288,7 @@ impl Meeting {
 
     /// How far from a point where the curve touches a surface it leaves that by more than the
     /// resolution, to a factor of two.
-    fn strip(&self, t: f64, surface: &Surface, judge: &Judge) -> f64 {
+    fn touching_length(&self, t: f64, surface: &Surface, judge: &Judge) -> f64 {
         let length = self.range[1] - self.range[0];
         let leaves = |step: &f64| {
             let sides = [t - step, t + step].map(|t| surface.distance(&self.curve.point(t)));

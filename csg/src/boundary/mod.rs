@@ -1,10 +1,11 @@
 //! The boundary of a tree: generate and classify (Requicha and Voelcker 1985).
 //!
 //! `halfspaces` gives every primitive as half spaces, `carriers` the distinct surfaces of these,
-//! `arrangement` the curves in which they meet, of which `contacts` puts those of surfaces that touch
-//! where other curves run next to them, `cuts` the common points of these, which `corners` makes one, and `pieces` what lies between. `membership` asks the tree whether a choice of sides
-//! is material; `wings` decides which pieces are edges, and where their faces lie; `concern` tells
-//! the close calls on which the boundary depends. The kernel assembles the rest.
+//! `arrangement` the curves in which they meet; `contacts` puts the curves along which surfaces touch
+//! where other curves run next to them. `cuts` gives the common points of curves and surfaces, which
+//! `corners` makes one, and `pieces` what lies between. `membership` asks the tree whether a choice
+//! of sides is material; `wings` decides which pieces are edges, and where their faces lie; `concern`
+//! tells the close calls on which the boundary depends. The kernel assembles the rest.
 
 mod arrangement;
 mod carriers;

@@ -102,8 +102,8 @@ pub enum AssemblyError {
     },
 }
 
-/// A sphere around a vertex on which the edges there are told apart.
-struct Sphere {
+/// A small sphere around a vertex on which the edges there are told apart.
+struct Around {
     /// It reaches no further than any edge at this part of its range.
     along: f64,
     /// Its radius as a part of that reach.
@@ -114,9 +114,9 @@ struct Sphere {
 
 /// A gap must be seen well above the vertex's own uncertainty, next to it; halfway along, edges are
 /// apart by the resolution, or are one; or further on, where they end at different vertices.
-const SPHERES: [Sphere; 7] = {
-    const fn sphere(along: f64, part: f64, clear: f64) -> Sphere {
-        Sphere { along, part, clear }
+const SPHERES: [Around; 7] = {
+    const fn sphere(along: f64, part: f64, clear: f64) -> Around {
+        Around { along, part, clear }
     }
     [
         sphere(0.5, 1.0 / 64.0, 16.0),
@@ -301,7 +301,7 @@ impl<'a> Assembler<'a> {
     /// Edge ends counterclockwise, in as many bundles as any sphere tells apart that all reach.
     fn told_apart(&self, v: &Point3<f64>, frame: &Frame, ends: &[End]) -> Vec<Vec<End>> {
         let mut best = Vec::new();
-        for Sphere { along, part, clear } in SPHERES {
+        for Around { along, part, clear } in SPHERES {
             let reaches = ends
                 .iter()
                 .map(|e| (self.point_along(*e, along) - v).norm());

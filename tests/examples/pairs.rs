@@ -3,7 +3,7 @@
 //! `cargo run --release -p premio-tests --example pairs -- --from 10 --to 60`
 
 use clap::Parser;
-use premio_tests::pairs::{PAIRS, Pose, faults};
+use premio_tests::pairs::{PAIRS, Pose, faults, gap};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -32,9 +32,7 @@ fn main() -> io::Result<ExitCode> {
     for pair in PAIRS {
         for power in arguments.from..=arguments.to {
             for sign in ["", "-"] {
-                // Exact in as many decimals as it has bits.
-                let gap = format!("{sign}{:.60}", 2f64.powi(-power));
-                let found = faults(pair, gap.trim_end_matches('0'), pose);
+                let found = faults(pair, &gap(sign, power), pose);
                 for fault in &found {
                     writeln!(out, "{} by {sign}2^-{power}: {fault}", pair.name)?;
                 }

@@ -90,6 +90,12 @@ pub enum Pose {
     Turned,
 }
 
+/// A power of two as PADL writes it, in as many decimals as it has bits.
+pub fn gap(sign: &str, power: i32) -> String {
+    let text = format!("{sign}{:.60}", 2f64.powi(-power));
+    text.trim_end_matches('0').to_owned()
+}
+
 /// How far volumes may be off.
 const OFF: f64 = 1e-9;
 

@@ -61,6 +61,7 @@ pub const PAIRS: &[Pair] = &[
     pair("face along a cone's ruling", "CON(R=1,H=1)", "BLO(X=2,Y=2,Z=2) AT (MOVX=D,MOVY=-1,ROTY=-45,MOVX=1)"),
     pair("edge beside a ball on a face", "SPH(R=1)", "BLO(X=2,Y=2,Z=1) AT (MOVX=D,MOVY=-1,MOVZ=-2)"),
     pair("corner beside a ball on a face", "SPH(R=1)", "BLO(X=2,Y=2,Z=1) AT (MOVX=D,MOVY=D/2,MOVZ=-2)"),
+    pair("plate of 2e-6 along a cylinder's ruling", "CYL(R=1,H=2)", "BLO(X=0.000002,Y=1,Z=1) AT (MOVX=D-0.000001,MOVY=1,MOVZ=0.5)"),
     pair("ball in a ball, cut", "SPH(R=1)", "(SPH(R=0.5) AT (MOVX=0.5)) DIF (BLO(X=2,Y=2,Z=2) AT (MOVX=-1,MOVY=D,MOVZ=-1))"),
     pair("ball on a ball, cut", "SPH(R=1)", "(SPH(R=0.5) AT (MOVX=1.5)) DIF (BLO(X=2,Y=2,Z=2) AT (MOVX=0,MOVY=D,MOVZ=D))"),
     pair("coaxial cylinders of equal radius", "CYL(R=1,H=2)", "CYL(R=1,H=2) AT (MOVX=D,MOVZ=1)"),

@@ -7,21 +7,34 @@ use premio_tests::pairs::{PAIRS, Pose, faults, gap};
 const POWERS: [i32; 6] = [10, 18, 22, 26, 36, 50];
 
 /// What is not mended yet: the volume of a sliver is below rounding, so that its shell is called turned
-/// over; equal cylinders 2e-7 apart and turned are refused. What starts to pass must be taken off.
-const KNOWN: &[(&str, Pose, &str, i32)] = &[
-    ("torus standing on block", Pose::Straight, "-", 26),
-    ("edge on ball", Pose::Turned, "-", 26),
-    ("coaxial cylinders of equal radius", Pose::Turned, "", 22),
-    ("coaxial cylinders of equal radius", Pose::Turned, "-", 22),
+/// over; equal cylinders 2e-7 apart and turned, and two edges in the strip along which a face and a
+/// cylinder are one within the resolution, are refused. What starts to pass must be taken off.
+const KNOWN: &[(&str, Pose, &[&str], &[i32])] = &[
+    ("torus standing on block", Pose::Straight, &["-"], &[26]),
+    ("edge on ball", Pose::Turned, &["-"], &[26]),
+    (
+        "coaxial cylinders of equal radius",
+        Pose::Turned,
+        &["", "-"],
+        &[22],
+    ),
+    (PLATE, Pose::Straight, &["", "-"], &[18, 22, 26, 36, 50]),
+    (PLATE, Pose::Turned, &["", "-"], &[18, 22, 26, 36, 50]),
 ];
+const PLATE: &str = "plate of 2e-6 along a cylinder's ruling";
+
+fn is_known(name: &str, pose: Pose, sign: &str, power: i32) -> bool {
+    KNOWN.iter().any(|known| {
+        (known.0, known.1) == (name, pose) && known.2.contains(&sign) && known.3.contains(&power)
+    })
+}
 
 fn holds(pose: Pose) {
     let mut wrong = Vec::new();
     for pair in PAIRS {
         for (sign, power) in POWERS.iter().flat_map(|&power| [("", power), ("-", power)]) {
             let found = faults(pair, &gap(sign, power), pose);
-            let known = KNOWN.contains(&(pair.name, pose, sign, power));
-            if found.is_empty() == known {
+            if found.is_empty() == is_known(pair.name, pose, sign, power) {
                 wrong.push(format!("{} by {sign}2^-{power}: {found:?}", pair.name));
             }
         }

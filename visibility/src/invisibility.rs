@@ -82,8 +82,7 @@ impl Chain {
         strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
         let strand = &*strand;
         let [lo, hi] = strand.range;
-        let one =
-            |s: f64, t: f64| s == t || (t - s).abs() * strand.curve.derivative(t).norm() <= near;
+        let one = |s: f64, t: f64| s == t || (t - s).abs() * strand.curve.speed(t) <= near;
         let mut splits: Vec<Split> = Vec::with_capacity(strand.splits.len());
         for &split in &strand.splits {
             let end = [0, 1].map(|k| one(strand.range[k], split.t) && !strand.closed);
@@ -136,7 +135,7 @@ impl Chain {
         for (around, change) in spans.windows(2).zip(&mut between) {
             let [before, at] = around[0].range;
             let after = around[1].range[1];
-            let way = (at - before).min(after - at) * strand.curve.derivative(at).norm();
+            let way = (at - before).min(after - at) * strand.curve.speed(at);
             if matches!(change, Change::Pass(passing) if way * passing.aside <= near) {
                 *change = Change::Correct;
             }

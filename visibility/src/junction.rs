@@ -45,7 +45,7 @@ fn settle(strand: &Strand<'_>, t: f64, near: f64) -> Option<Settled> {
     if strand.closed {
         return Some(Settled { t, at_end: false });
     }
-    let slack = near / strand.curve.derivative(t).norm();
+    let slack = near / strand.curve.speed(t);
     if t < lo - slack || t > hi + slack || t.is_nan() {
         return None;
     }
@@ -62,6 +62,12 @@ fn nearest_turn(strand: &Strand<'_>, from: f64, t: f64) -> f64 {
         Some(period) if strand.closed => from + ((t - from) / period).round() * period,
         _ => from,
     }
+}
+
+/// Whether a strand passes a junction in the image at that junction and nowhere else: one of its own,
+/// and it is straight.
+fn passes_once(strand: &Strand<'_>, id: u32) -> bool {
+    matches!(strand.image, Image::Line { .. }) && strand.junctions().any(|(own, _)| own == id)
 }
 
 /// What a contour does to one that passes behind it.
@@ -271,6 +277,11 @@ impl Search<'_, '_, '_, '_> {
 
     fn crossing(&mut self, (i, a, t): At<'_, '_>, (j, b, s): At<'_, '_>) {
         let near = LOOSE * self.scene.band;
+        if a.junctions()
+            .any(|(id, _)| passes_once(a, id) && passes_once(b, id))
+        {
+            return;
+        }
         let Some(t) = self.settle(a, t) else { return };
         let Some(s) = self.settle(b, s) else { return };
         if self.at_shared(a, t.t, b, s.t) {
@@ -349,10 +360,7 @@ impl Search<'_, '_, '_, '_> {
     fn crowd_passed(&mut self, far: &Strand<'_>, near: &Strand<'_>) {
         let margin = 2.0 * LOOSE * self.scene.band;
         for (id, t) in far.junctions() {
-            // A straight image passes its own junctions once.
-            let own = matches!(near.image, Image::Line { .. })
-                && near.junctions().any(|(other, _)| other == id);
-            let known = own || self.junctions.is_crowded(id);
+            let known = passes_once(near, id) || self.junctions.is_crowded(id);
             if known || !near.hull.holds(self.junctions.image(id)) {
                 continue;
             }
@@ -373,7 +381,7 @@ impl Search<'_, '_, '_, '_> {
     /// touch it there end there, or begin to be hidden, so that it may enter what lies between them.
     fn pass_behind(&mut self, near: &Strand<'_>, (strand, far): (u32, &Strand<'_>)) {
         for (id, s) in near.junctions() {
-            if !far.hull.holds(self.junctions.image(id)) {
+            if !far.hull.holds(self.junctions.image(id)) || passes_once(far, id) {
                 continue;
             }
             let q = near.curve.point(s);

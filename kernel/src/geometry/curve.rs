@@ -260,6 +260,14 @@ impl Curve {
         Vector3::new(j[0].d, j[1].d, j[2].d)
     }
 
+    /// How fast the point moves along the curve: the length of its derivative.
+    pub fn speed(&self, t: f64) -> f64 {
+        match self {
+            Self::Circle(c) => c.radius,
+            _ => self.derivative(t).norm(),
+        }
+    }
+
     /// Whether the curve turns back at t: whether a cusp is there.
     pub fn turns_back(&self, t: f64) -> bool {
         matches!(self, Self::Toric(c) if c.turns_back(t))

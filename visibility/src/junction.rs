@@ -13,6 +13,7 @@ use crate::crossing::{Overlap, cross, parameters_at};
 use crate::image::{Image, flat_of};
 use crate::sight::Scene;
 use crate::strand::{Change, Junctions, Passing, Site, Split, Strand};
+use crate::touches::{Settled, nearest_turn, settle, split_at_touches};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::Surface;
@@ -20,49 +21,6 @@ use premio_kernel::number::sign::ROUNDING;
 
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 8.0;
-
-/// A parameter on a strand: within it, or at one of its ends.
-#[derive(Clone, Copy, Debug)]
-struct Settled {
-    t: f64,
-    at_end: bool,
-}
-
-fn settle(strand: &Strand<'_>, t: f64, near: f64) -> Option<Settled> {
-    let [lo, hi] = strand.range;
-    let t = match strand.curve.period() {
-        Some(period) => {
-            let t = lo + (t - lo).rem_euclid(period);
-            // Just before the start is nearer to the start than to the end.
-            if !strand.closed && t - hi > lo + period - t {
-                t - period
-            } else {
-                t
-            }
-        }
-        None => t,
-    };
-    if strand.closed {
-        return Some(Settled { t, at_end: false });
-    }
-    let slack = near / strand.curve.speed(t);
-    if t < lo - slack || t > hi + slack || t.is_nan() {
-        return None;
-    }
-    let at_end = t <= lo + slack || t >= hi - slack;
-    Some(Settled {
-        t: t.clamp(lo, hi),
-        at_end,
-    })
-}
-
-/// Of the parameters of one point of a closed curve, the one nearest to `t`.
-fn nearest_turn(strand: &Strand<'_>, from: f64, t: f64) -> f64 {
-    match strand.curve.period() {
-        Some(period) if strand.closed => from + ((t - from) / period).round() * period,
-        _ => from,
-    }
-}
 
 /// Whether a strand passes a junction in the image at that junction and nowhere else: one of its own,
 /// and it is straight.
@@ -102,52 +60,9 @@ struct Behind {
     contours: [u32; 2],
 }
 
-/// Splits the strands that meet where the boundary touches itself: which is in front may change
-/// there, also for those that fall on one another in the image.
-fn touches(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
-    let near = LOOSE * scene.band;
-    let (topology, geometry) = (&scene.brep.topology, &scene.brep.geometry);
-    for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
-        let within = |strand: &Strand<'_>| match strand.edge {
-            Some(edge) => touch.edges.contains(&edge),
-            None => strand.faces.iter().any(|f| touch.faces.contains(&f.0)),
-        };
-        let meeting = |strand: &Strand<'_>| {
-            let at = settle(strand, strand.curve.parameter(place), near)?;
-            let met = (strand.curve.point(at.t) - place).norm() <= near;
-            met.then_some(at)
-        };
-        let all = strands.iter_mut().filter(|strand| within(strand));
-        let met: Vec<_> = all.filter_map(|s| Some((meeting(s)?, s))).collect();
-        // Limbs that end there, at an apex, may hide one that passes.
-        if met.len() < if touch.fans > 0 { 1 } else { 2 } {
-            continue;
-        }
-        let passing = met.into_iter().filter(|(at, _)| !at.at_end);
-        let passing: Vec<_> = passing.collect();
-        if passing.is_empty() {
-            continue;
-        }
-        let junction = match touch.vertex {
-            Some(vertex) => junctions.vertex(vertex, place),
-            None => junctions.add(JunctionKind::T, Site::Alone, place),
-        };
-        junctions.crowd(junction);
-        for (at, strand) in passing {
-            let contours = &mut junctions.list[junction as usize].contours;
-            contours.push(strand.contour);
-            strand.splits.push(Split {
-                t: at.t,
-                junction,
-                change: Change::Correct,
-            });
-        }
-    }
-}
-
 /// Finds all T-junctions and notes them as splits of the farther strands.
 pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
-    touches(strands, scene, junctions);
+    split_at_touches(strands, scene, junctions);
     let pairs = candidates(strands, scene.projection, LOOSE * scene.band);
     let mut search = Search {
         scene,

@@ -21,6 +21,7 @@ mod shared;
 pub mod sight;
 pub mod strand;
 pub mod stretch;
+mod touches;
 pub mod view;
 
 pub use camera::Camera;

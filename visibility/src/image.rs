@@ -355,7 +355,7 @@ pub fn quadratic(k: [f64; 3], found: &mut impl FnMut(f64)) {
 }
 
 /// The image of a point of a curve as a function over any scalar: (x, y) at depth one.
-pub fn flat_point<S: Scalar>(projection: &Projection, p: [S; 3]) -> [S; 2] {
+pub fn flat_point<S: Scalar<Number = f64>>(projection: &Projection, p: [S; 3]) -> [S; 2] {
     let [x, y, z] = projection.homogeneous_over(p);
     [x.over(z), y.over(z)]
 }

@@ -333,7 +333,7 @@ pub fn torus_limb_on(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], b
     let scale = 1.0 / slope(s, &local);
     let f = |t: Interval| {
         let q = s.frame.local(curve.jet_over(t));
-        let rho = (q[0].square() + q[1].square()).sqrt();
+        let rho = (q[0].square() + q[1].square()).root();
         // r N = (k x, k y, z) with k = 1 - R/ρ.
         let k = Jet::constant(1.0) - Jet::constant(s.major).over(rho);
         let n = [q[0] * k, q[1] * k, q[2]];
@@ -354,7 +354,7 @@ pub fn cusps(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], band: f64
     let f = |t: Interval| {
         let q = s.frame.local(curve.jet_over(t));
         let rho2 = q[0].square() + q[1].square();
-        let rho3 = rho2 * rho2.sqrt();
+        let rho3 = rho2 * rho2.root();
         let (r2, e) = match local {
             LocalSight::Eye(e) => {
                 let r: [Jet<Interval>; 3] = std::array::from_fn(|i| q[i] - Jet::constant(e[i]));

@@ -122,7 +122,7 @@ impl Projection {
     }
 
     /// The homogeneous image of a point over any scalar.
-    pub fn homogeneous_over<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
+    pub fn homogeneous_over<S: Scalar<Number = f64>>(&self, p: [S; 3]) -> [S; 3] {
         let d: [S; 3] = std::array::from_fn(|i| p[i] - S::constant(self.origin[i]));
         [
             dot(&self.axes[0], d),

@@ -59,7 +59,7 @@ pub struct Stretch {
 }
 
 /// The scalar product in the image.
-pub fn dot2<S: Scalar>(k: [f64; 2], v: [S; 2]) -> S {
+pub fn dot2<S: Scalar<Number = f64>>(k: [f64; 2], v: [S; 2]) -> S {
     v[0].scale(k[0]) + v[1].scale(k[1])
 }
 

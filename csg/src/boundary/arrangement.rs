@@ -188,7 +188,7 @@ impl Arrangement {
             for &(branch, t) in &node.on {
                 for &m in &kept[branch] {
                     let [lo, hi] = self.meetings[m].range;
-                    if t >= lo - judge.band() && t <= hi + judge.band() {
+                    if t >= lo - judge.band::<f64>() && t <= hi + judge.band::<f64>() {
                         let t = t.clamp(lo, hi);
                         self.meetings[m].cuts.push(Cut { t, vertex });
                     }

@@ -60,7 +60,7 @@ pub(super) fn merge<'t>(
         }
     }
     list.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let window = 4.0 * judge.reach() + ROUNDING * extent.radius;
+    let window = 4.0 * judge.reach::<f64>() + ROUNDING * extent.radius;
     let mut sides: Vec<Vec<(usize, Sense)>> = solids
         .all
         .iter()

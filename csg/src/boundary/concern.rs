@@ -99,7 +99,7 @@ impl Concern<'_> {
     fn carriers(&self, place: [f64; 3]) -> Vec<usize> {
         let p = Point3::from(place);
         // Both of what a close call lies between are within its distance of the place.
-        let margin = 2.0 * self.judge.reach();
+        let margin = 2.0 * self.judge.reach::<f64>();
         let [lo, hi] = [-margin, margin].map(|by| <[f64; 3]>::from(p + Vector3::repeat(by)));
         let around = AABB::from_corners(lo, hi);
         let (mut held, mut open) = (Vec::new(), Vec::new());

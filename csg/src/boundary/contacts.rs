@@ -59,7 +59,7 @@ impl Arrangement {
             let along = aside.dot(&contact.curve.tangent(t)).abs();
             let middle = p + aside * 0.5;
             let inside = carriers.iter().all(|s| judge.within(s.distance(&middle)));
-            if !inside || 2.0 * along > aside.norm() + judge.reach() {
+            if !inside || 2.0 * along > aside.norm() + judge.reach::<f64>() {
                 return None;
             }
             width = width.max(aside.norm());

@@ -115,7 +115,7 @@ fn same_curve(a: &Meeting, b: &Meeting, judge: &Judge) -> bool {
     let [lo, hi] = long.range;
     [1.0, 2.0].iter().all(|part| {
         let p = long.curve.point(lo + (hi - lo) * part / 3.0);
-        (short.curve.point(short.curve.parameter(&p)) - p).norm() <= SAME * judge.band()
+        (short.curve.point(short.curve.parameter(&p)) - p).norm() <= SAME * judge.band::<f64>()
     })
 }
 
@@ -218,5 +218,5 @@ fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
 fn passes(curve: &Curve, range: [f64; 2], p: &Point3<f64>, judge: &Judge) -> bool {
     let t = curve.in_cycle(curve.parameter(p), range[0]);
     // Two pieces between the same corners in the same carriers are one or far apart.
-    t >= range[0] && t <= range[1] && (curve.point(t) - p).norm() <= SAME * judge.band()
+    t >= range[0] && t <= range[1] && (curve.point(t) - p).norm() <= SAME * judge.band::<f64>()
 }

@@ -311,7 +311,7 @@ impl<'a> Assembler<'a> {
                 let d = frame.components(&(p - v));
                 (d.y.atan2(d.x), end)
             };
-            let least = self.judge.band() / radius * clear + ROUNDING;
+            let least = self.judge.band::<f64>() / radius * clear + ROUNDING;
             let bundles = bundled(ends.iter().map(angle).collect(), least);
             if bundles.len() > best.len() {
                 best = bundles;

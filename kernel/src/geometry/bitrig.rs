@@ -1,12 +1,13 @@
 //! Trigonometric polynomials of degree two in each of two angles: what any of the five surfaces,
 //! and the limb of a torus, is on the parameter torus of a torus.
 
+use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
 
 /// Coefficients by (function of the first angle, function of the second), each of
 /// 1, cos, sin, cos 2, sin 2.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BiTrig(pub [[f64; 5]; 5]);
+pub struct BiTrig<N: Number = f64>(pub [[N; 5]; 5]);
 
 /// A value with its partial derivatives to the second order: f, f_x, f_y, f_xx, f_xy, f_yy.
 #[derive(Clone, Copy, Debug)]
@@ -26,49 +27,56 @@ pub struct Partials<S> {
 }
 
 /// The five functions of an angle with two derivatives.
-fn basis<S: Scalar>(angle: S) -> [[S; 5]; 3] {
+fn basis<N: Number, S: Scalar<Number = N>>(angle: S) -> [[S; 5]; 3] {
     let (s, c) = angle.sin_cos();
-    let (s2, c2) = angle.scale(2.0).sin_cos();
-    let (one, zero) = (S::constant(1.0), S::constant(0.0));
+    let (s2, c2) = angle.times(2.0).sin_cos();
+    let (one, zero) = (S::plain(1.0), S::plain(0.0));
     [
         [one, c, s, c2, s2],
-        [zero, -s, c, -s2.scale(2.0), c2.scale(2.0)],
-        [zero, -c, -s, -c2.scale(4.0), -s2.scale(4.0)],
+        [zero, -s, c, -s2.times(2.0), c2.times(2.0)],
+        [zero, -c, -s, -c2.times(4.0), -s2.times(4.0)],
     ]
 }
 
 /// What is left of a polynomial in two angles where one of them is fixed: the coefficients of the
 /// functions of the other.
 #[derive(Clone, Copy, Debug)]
-pub struct Section([f64; 5]);
+pub struct Section<N: Number = f64>([N; 5]);
 
-impl Section {
+impl<N: Number> Section<N> {
     /// The sum of the absolute coefficients: what rounding is in proportion to.
-    pub fn size(&self) -> f64 {
+    pub fn size(&self) -> N {
         self.0.iter().map(|c| c.abs()).sum()
     }
 
     /// The value at an angle, and the derivative.
-    pub fn at(&self, angle: f64) -> [f64; 2] {
+    pub fn at(&self, angle: N) -> [N; 2] {
         let (s, c) = angle.sin_cos();
-        let (s2, c2) = (2.0 * s * c, (c - s) * (c + s));
-        let [value, slope] = [[1.0, c, s, c2, s2], [0.0, -s, c, -2.0 * s2, 2.0 * c2]];
-        let sum = |by: [f64; 5]| (0..5).map(|j| self.0[j] * by[j]).sum();
+        let (s2, c2) = (N::TWO * s * c, (c - s) * (c + s));
+        let [value, slope] = [
+            [N::ONE, c, s, c2, s2],
+            [N::ZERO, -s, c, -N::TWO * s2, N::TWO * c2],
+        ];
+        let sum = |by: [N; 5]| (0..5).map(|j| self.0[j] * by[j]).sum();
         [sum(value), sum(slope)]
     }
 }
 
 /// The sum of the coefficients times the functions of both angles, with its derivatives: each row
 /// is summed over the second angle's functions once.
-fn partials<S: Scalar>(k: &[[f64; 5]; 5], bx: &[[S; 5]; 3], by: &[[S; 5]; 3]) -> Partials<S> {
-    let zero = S::constant(0.0);
+fn partials<N: Number, S: Scalar<Number = N>>(
+    k: &[[N; 5]; 5],
+    bx: &[[S; 5]; 3],
+    by: &[[S; 5]; 3],
+) -> Partials<S> {
+    let zero = S::plain(0.0);
     let [mut f, mut x, mut y, mut xx, mut xy, mut yy] = [zero; 6];
     for (m, row) in k.iter().enumerate() {
-        if row.iter().all(|&c| c == 0.0) {
+        if row.iter().all(|&c| c == N::ZERO) {
             continue;
         }
         let mut inner = [zero; 3];
-        for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
+        for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != N::ZERO) {
             inner[0] = inner[0] + by[0][n].scale(c);
             // The derivatives of the constant vanish.
             if n > 0 {
@@ -95,9 +103,9 @@ fn partials<S: Scalar>(k: &[[f64; 5]; 5], bx: &[[S; 5]; 3], by: &[[S; 5]; 3]) ->
     }
 }
 
-impl BiTrig {
+impl<N: Number> BiTrig<N> {
     /// What is left where the first angle, or the second, is fixed to `angle`.
-    pub fn section(&self, first: bool, angle: f64) -> Section {
+    pub fn section(&self, first: bool, angle: N) -> Section<N> {
         let fixed = &basis(angle)[0];
         let entry = |i: usize, j: usize| if first { self.0[i][j] } else { self.0[j][i] };
         let sum = |j: usize| (0..5).map(|i| entry(i, j) * fixed[i]).sum();
@@ -106,16 +114,16 @@ impl BiTrig {
 
     /// The zero polynomial.
     pub fn zero() -> Self {
-        Self([[0.0; 5]; 5])
+        Self([[N::ZERO; 5]; 5])
     }
 
     /// The polynomial that takes the values of `f`, which is known to be one: found from 25
     /// samples by the discrete orthogonality of the five functions.
-    pub fn interpolate(f: impl Fn(f64, f64) -> f64) -> Self {
-        let node = |i: usize| std::f64::consts::TAU * (i as f64) / 5.0;
-        let rows: [[f64; 5]; 5] = std::array::from_fn(|i| basis(node(i))[0]);
-        let weight = |m: usize| if m == 0 { 0.2 } else { 0.4 };
-        let mut k = [[0.0; 5]; 5];
+    pub fn interpolate(f: impl Fn(N, N) -> N) -> Self {
+        let node = |i: usize| N::TAU * (N::of(i as f64)) / N::of(5.0);
+        let rows: [[N; 5]; 5] = std::array::from_fn(|i| basis(node(i))[0]);
+        let weight = |m: usize| if m == 0 { N::of(0.2) } else { N::of(0.4) };
+        let mut k = [[N::ZERO; 5]; 5];
         for i in 0..5 {
             for j in 0..5 {
                 let value = f(node(i), node(j));
@@ -130,25 +138,25 @@ impl BiTrig {
     }
 
     /// The sum of the absolute coefficients: a bound of the value.
-    pub fn bound(&self) -> f64 {
+    pub fn bound(&self) -> N {
         self.0.iter().flatten().map(|c| c.abs()).sum()
     }
 
     /// The value.
-    pub fn value<S: Scalar>(&self, x: S, y: S) -> S {
+    pub fn value<S: Scalar<Number = N>>(&self, x: S, y: S) -> S {
         let (bx, by) = (basis(x), basis(y));
         self.sum(&bx[0], &by[0])
     }
 
-    fn sum<S: Scalar>(&self, bx: &[S; 5], by: &[S; 5]) -> S {
-        let mut total = S::constant(0.0);
+    fn sum<S: Scalar<Number = N>>(&self, bx: &[S; 5], by: &[S; 5]) -> S {
+        let mut total = S::plain(0.0);
         for (row, a) in self.0.iter().zip(bx) {
-            if row.iter().all(|&c| c == 0.0) {
+            if row.iter().all(|&c| c == N::ZERO) {
                 continue;
             }
-            let mut inner = S::constant(0.0);
+            let mut inner = S::plain(0.0);
             for (&c, &b) in row.iter().zip(by) {
-                if c != 0.0 {
+                if c != N::ZERO {
                     inner = inner + b.scale(c);
                 }
             }
@@ -158,14 +166,14 @@ impl BiTrig {
     }
 
     /// The value with its partial derivatives.
-    pub fn partials<S: Scalar>(&self, x: S, y: S) -> Partials<S> {
+    pub fn partials<S: Scalar<Number = N>>(&self, x: S, y: S) -> Partials<S> {
         partials(&self.0, &basis(x), &basis(y))
     }
 
     /// The derivative by the first angle (0) or the second (1).
     pub fn derivative(&self, angle: usize) -> Self {
         // 1, cos, sin, cos 2, sin 2.
-        let by = |k: [f64; 5]| [0.0, k[2], -k[1], 2.0 * k[4], -2.0 * k[3]];
+        let by = |k: [N; 5]| [N::ZERO, k[2], -k[1], N::TWO * k[4], -N::TWO * k[3]];
         let mut d = Self::zero();
         if angle == 0 {
             for j in 0..5 {
@@ -183,13 +191,13 @@ impl BiTrig {
     }
 
     /// A bound of the n-th derivatives in any direction of length one in each angle, over n!.
-    pub fn variation(&self, n: usize) -> f64 {
-        let degree = [0.0, 1.0, 1.0, 2.0, 2.0];
-        let mut total = 0.0;
+    pub fn variation(&self, n: usize) -> N {
+        let degree = [N::ZERO, N::ONE, N::ONE, N::TWO, N::TWO];
+        let mut total = N::ZERO;
         for (i, row) in self.0.iter().enumerate() {
             for (j, c) in row.iter().enumerate() {
-                let d: f64 = degree[i] + degree[j];
-                let over = (1..=n).fold(1.0, |t, k| t * d / k as f64);
+                let d: N = degree[i] + degree[j];
+                let over = (1..=n).fold(N::ONE, |t, k| t * d / N::of(k as f64));
                 total += c.abs() * over;
             }
         }

@@ -15,13 +15,14 @@ use super::bitrig::{BiTrig, Partials};
 use super::toric::Axis;
 use crate::number::interval::Interval;
 use crate::number::jet::{Base, Jet};
+use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
 
 /// The degree of Taylor's polynomials.
 pub const DEGREE: usize = 12;
 
 /// The coefficients of Taylor's polynomial of F, by the powers of s and of y.
-pub type Taylor = [[f64; DEGREE + 1]; DEGREE + 1];
+pub type Taylor<N> = [[N; DEGREE + 1]; DEGREE + 1];
 
 /// The exponents (a, b, w).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,39 +37,39 @@ pub struct Weights {
 
 /// F in the coordinates (σ, κ) about one of its singular points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chart {
+pub struct Chart<N: Number = f64> {
     /// The running angle.
     pub axis: Axis,
     /// (θ, φ) of the singular point.
-    pub origin: [f64; 2],
+    pub origin: [N; 2],
     /// ε, 1 or -1: the side on which the running angle lies.
-    pub side: f64,
+    pub side: N,
     /// Y by the powers of s, of which the first is zero: what the branches have in common.
-    trend: Vec<f64>,
+    trend: Vec<N>,
     /// (a, b, w).
     pub weights: Weights,
     /// The coefficients of G by the power of κ, each by the power of σ.
-    rows: Vec<Vec<f64>>,
+    rows: Vec<Vec<N>>,
     /// A bound of the next derivatives of F in any direction of length one in each angle, over the
     /// factorial.
-    rest: f64,
+    rest: N,
 }
 
 /// The derivatives of the five functions of an angle, divided by factorials.
-fn terms(angle: f64) -> [[f64; 5]; DEGREE + 1] {
+fn terms<N: Number>(angle: N) -> [[N; 5]; DEGREE + 1] {
     let (s, c) = angle.sin_cos();
-    let (s2, c2) = (2.0 * angle).sin_cos();
-    let mut all = [[0.0; 5]; DEGREE + 1];
+    let (s2, c2) = (N::TWO * angle).sin_cos();
+    let mut all = [[N::ZERO; 5]; DEGREE + 1];
     // By turns cos, -sin, -cos, sin.
-    let turn = |c: f64, s: f64, n: usize| [c, -s, -c, s][n % 4];
-    let (mut one, mut two) = (1.0, 1.0);
+    let turn = |c: N, s: N, n: usize| [c, -s, -c, s][n % 4];
+    let (mut one, mut two) = (N::ONE, N::ONE);
     for (n, row) in all.iter_mut().enumerate() {
         if n > 0 {
-            one /= n as f64;
-            two *= 2.0 / n as f64;
+            one /= N::of(n as f64);
+            two *= N::TWO / N::of(n as f64);
         }
         *row = [
-            if n == 0 { 1.0 } else { 0.0 },
+            if n == 0 { N::ONE } else { N::ZERO },
             one * turn(c, s, n),
             one * turn(s, -c, n),
             two * turn(c2, s2, n),
@@ -80,13 +81,13 @@ fn terms(angle: f64) -> [[f64; 5]; DEGREE + 1] {
 
 /// Taylor's polynomial of a form about a point, by the powers of the offsets along `axis` and
 /// across.
-pub fn taylor(form: &BiTrig, origin: [f64; 2], axis: Axis) -> Taylor {
+pub fn taylor<N: Number>(form: &BiTrig<N>, origin: [N; 2], axis: Axis) -> Taylor<N> {
     let [a, b] = origin.map(terms);
-    let mut all = [[0.0; DEGREE + 1]; DEGREE + 1];
+    let mut all = [[N::ZERO; DEGREE + 1]; DEGREE + 1];
     for p in 0..=DEGREE {
         for q in 0..=DEGREE - p {
-            let sum = |(row, x): (&[f64; 5], &f64)| -> f64 {
-                x * row.iter().zip(&b[q]).map(|(k, y)| k * y).sum::<f64>()
+            let sum = |(row, x): (&[N; 5], &N)| -> N {
+                *x * row.iter().zip(&b[q]).map(|(k, y)| *k * *y).sum::<N>()
             };
             let c = form.0.iter().zip(&a[p]).map(sum).sum();
             match axis {
@@ -99,8 +100,8 @@ pub fn taylor(form: &BiTrig, origin: [f64; 2], axis: Axis) -> Taylor {
 }
 
 /// The same by the powers of s and of e = y - c sⁿ, to the same degree.
-pub fn sheared(taylor: &Taylor, n: usize, c: f64) -> Taylor {
-    let mut all = [[0.0; DEGREE + 1]; DEGREE + 1];
+pub fn sheared<N: Number>(taylor: &Taylor<N>, n: usize, c: N) -> Taylor<N> {
+    let mut all = [[N::ZERO; DEGREE + 1]; DEGREE + 1];
     for (p, row) in taylor.iter().enumerate() {
         for (q, k) in row.iter().enumerate().take(DEGREE + 1 - p) {
             // (c sⁿ + e)^q by the powers of e.
@@ -111,7 +112,7 @@ pub fn sheared(taylor: &Taylor, n: usize, c: f64) -> Taylor {
                     break;
                 }
                 all[s][r] += term;
-                term *= c * r as f64 / (q + 1 - r) as f64;
+                term *= c * N::of(r as f64) / N::of((q + 1 - r) as f64);
             }
         }
     }
@@ -119,37 +120,39 @@ pub fn sheared(taylor: &Taylor, n: usize, c: f64) -> Taylor {
 }
 
 /// The product of two polynomials.
-fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    let mut all = vec![0.0; a.len() + b.len() - 1];
+fn product<N: Number>(a: &[N], b: &[N]) -> Vec<N> {
+    let mut all = vec![N::ZERO; a.len() + b.len() - 1];
     for (i, x) in a.iter().enumerate() {
         for (j, y) in b.iter().enumerate() {
-            all[i + j] += x * y;
+            all[i + j] += *x * *y;
         }
     }
     all
 }
 
-impl Chart {
+impl<N: Number> Chart<N> {
     /// The chart about a singular point of branches that have Y in common, given by the powers of s
     /// from the first on.
     pub fn new(
-        form: &BiTrig,
-        origin: [f64; 2],
+        form: &BiTrig<N>,
+        origin: [N; 2],
         axis: Axis,
-        trend: &[f64],
-        side: f64,
+        trend: &[N],
+        side: N,
         weights: Weights,
     ) -> Self {
         let mut chart = Self {
             axis,
             origin,
             side,
-            trend: std::iter::once(0.0).chain(trend.iter().copied()).collect(),
+            trend: std::iter::once(N::ZERO)
+                .chain(trend.iter().copied())
+                .collect(),
             weights,
             rows: vec![Vec::new(); DEGREE + 1],
             rest: form.variation(DEGREE + 1),
         };
-        let mut powers = vec![vec![1.0]];
+        let mut powers = vec![vec![N::ONE]];
         for n in 0..DEGREE {
             powers.push(product(&powers[n], &chart.trend));
         }
@@ -159,7 +162,7 @@ impl Chart {
                 let mut term = *c;
                 for r in (0..=q).rev() {
                     chart.add(term, p, &powers[q - r], r);
-                    term *= r as f64 / (q + 1 - r) as f64;
+                    term *= N::of(r as f64) / N::of((q + 1 - r) as f64);
                 }
             }
         }
@@ -170,79 +173,81 @@ impl Chart {
     }
 
     /// Adds c sᵖ P(s) eʳ to F, as far as it weighs enough.
-    fn add(&mut self, c: f64, p: usize, polynomial: &[f64], r: usize) {
+    fn add(&mut self, c: N, p: usize, polynomial: &[N], r: usize) {
         let Weights { run, rise, form } = self.weights;
         for (n, k) in polynomial.iter().enumerate() {
-            let (i, value) = (p + n, c * k);
+            let (i, value) = (p + n, c * *k);
             let weight = run * i + rise * r;
-            if weight < form || value == 0.0 {
+            if weight < form || value == N::ZERO {
                 continue;
             }
             let line = &mut self.rows[r];
-            line.resize(line.len().max(weight - form + 1), 0.0);
+            line.resize(line.len().max(weight - form + 1), N::ZERO);
             line[weight - form] += if i % 2 == 1 { self.side * value } else { value };
         }
     }
 
     /// (s, y) of a point of the chart.
-    pub fn offsets<S: Base>(&self, sigma: Jet<S>, kappa: Jet<S>) -> [Jet<S>; 2] {
+    pub fn offsets<S: Base<Number = N>>(&self, sigma: Jet<S>, kappa: Jet<S>) -> [Jet<S>; 2] {
         let power = |n: usize| (1..n).fold(sigma, |p, _| p * sigma);
         let s = power(self.weights.run).scale(self.side);
         let trend = self.trend.iter().skip(1).rev();
-        let trend = trend.fold(Jet::constant(0.0), |sum, &c| (sum + Jet::constant(c)) * s);
+        let trend = trend.fold(Jet::constant(N::ZERO), |sum, &c| {
+            (sum + Jet::constant(c)) * s
+        });
         [s, trend + power(self.weights.rise) * kappa]
     }
 
     /// y - Y(s).
-    fn above(&self, s: f64, y: f64) -> f64 {
-        y - self.trend.iter().rev().fold(0.0, |sum, c| sum * s + c)
+    fn above(&self, s: N, y: N) -> N {
+        y - self.trend.iter().rev().fold(N::ZERO, |sum, c| sum * s + *c)
     }
 
     /// σ of the point with the offsets (s, y); zero beyond the chart's side.
-    pub fn sigma(&self, s: f64, y: f64) -> f64 {
+    pub fn sigma(&self, s: N, y: N) -> N {
         let run = s * self.side;
         match self.weights.run {
             1 => run,
             // Where s is a square, σ has the sign of what is odd in it.
-            _ => run.max(0.0).sqrt().copysign(self.above(s, y)),
+            _ => run.max(N::ZERO).sqrt().copysign(self.above(s, y)),
         }
     }
 
     /// κ of the point with the offsets (s, y) on the chart's side.
-    pub fn kappa(&self, s: f64, y: f64) -> f64 {
+    pub fn kappa(&self, s: N, y: N) -> N {
         self.above(s, y) / self.sigma(s, y).powi(self.weights.rise as i32)
     }
 
     /// G over κ at a fixed σ, by the powers of κ.
-    pub fn section(&self, sigma: f64) -> [f64; DEGREE + 1] {
-        let mut section = [0.0; DEGREE + 1];
+    pub fn section(&self, sigma: N) -> [N; DEGREE + 1] {
+        let mut section = [N::ZERO; DEGREE + 1];
         for (value, row) in section.iter_mut().zip(&self.rows) {
-            *value = row.iter().rev().fold(0.0, |sum, c| sum * sigma + c);
+            *value = row.iter().rev().fold(N::ZERO, |sum, c| sum * sigma + *c);
         }
         section
     }
 
     /// G with its partial derivatives by σ and κ; what Taylor leaves is not in it.
-    pub fn partials<S: Scalar>(&self, sigma: S, kappa: S) -> Partials<S> {
-        let zero = S::constant(0.0);
+    pub fn partials<S: Scalar<Number = N>>(&self, sigma: S, kappa: S) -> Partials<S> {
+        let zero = S::plain(0.0);
         let most = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let mut powers = vec![S::constant(1.0)];
+        let mut powers = vec![S::plain(1.0)];
         for n in 1..most {
             powers.push(powers[n - 1] * sigma);
         }
         let [mut f, mut x, mut y, mut xx, mut xy, mut yy] = [zero; 6];
         // κʲ and its derivatives.
-        let mut k = [S::constant(1.0), zero, zero];
+        let mut k = [S::plain(1.0), zero, zero];
         for (j, row) in self.rows.iter().enumerate() {
             let mut p = [zero; 3];
-            for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
-                let m = n as f64;
+            for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != N::ZERO) {
+                let m = N::of(n as f64);
                 p[0] = p[0] + powers[n].scale(c);
                 if n > 0 {
                     p[1] = p[1] + powers[n - 1].scale(c * m);
                 }
                 if n > 1 {
-                    p[2] = p[2] + powers[n - 2].scale(c * m * (m - 1.0));
+                    p[2] = p[2] + powers[n - 2].scale(c * m * (m - N::ONE));
                 }
             }
             f = f + p[0] * k[0];
@@ -253,7 +258,7 @@ impl Chart {
                 xy = xy + p[1] * k[1];
                 yy = yy + p[0] * k[2];
             }
-            let m = (j + 1) as f64;
+            let m = N::of((j + 1) as f64);
             k = [k[0] * kappa, k[0].scale(m), k[1].scale(m)];
         }
         Partials {
@@ -268,22 +273,22 @@ impl Chart {
 
     /// Bounds of what Taylor leaves of G and of its first and second derivatives where |σ| and |κ|
     /// are at most these.
-    pub fn remainder(&self, sigma: f64, kappa: f64) -> [f64; 3] {
+    pub fn remainder(&self, sigma: N, kappa: N) -> [N; 3] {
         let Weights { run, rise, form } = self.weights;
         let n = DEGREE + 1;
         // Both offsets are at most this times σᵃ.
         let trend = self.trend.iter().skip(1).rev();
-        let trend = trend.fold(0.0, |sum, c| sum * sigma.powi(run as i32) + c.abs());
-        let size = (trend + sigma.powi((rise - run) as i32) * kappa).max(1.0);
+        let trend = trend.fold(N::ZERO, |sum, c| sum * sigma.powi(run as i32) + c.abs());
+        let size = (trend + sigma.powi((rise - run) as i32) * kappa).max(N::ONE);
         let power = (run * n - form) as i32;
         let value = self.rest * size.powi(n as i32);
         // A derivative takes a factor of σ away, and no more than this comes with it.
-        let factor = (form + 2 * n * rise) as f64;
+        let factor = N::of((form + 2 * n * rise) as f64);
         [0, 1, 2].map(|d| value * factor.powi(d) * sigma.powi(power - d))
     }
 
     /// The ranges of G and its partial derivatives.
-    pub fn partials_over(&self, sigma: Interval, kappa: Interval) -> Partials<Interval> {
+    pub fn partials_over(&self, sigma: Interval<N>, kappa: Interval<N>) -> Partials<Interval<N>> {
         let p = self.partials(sigma, kappa);
         let [f, d, dd] = self
             .remainder(sigma.magnitude(), kappa.magnitude())
@@ -304,7 +309,7 @@ mod tests {
     use super::*;
 
     fn form() -> BiTrig {
-        BiTrig::interpolate(|x, y| {
+        BiTrig::interpolate(|x: f64, y: f64| {
             x.cos() * (2.0 * y).sin() + 0.3 * (2.0 * x).sin() - 0.7 * y.cos() * x.sin() + 0.2
         })
     }

@@ -4,39 +4,40 @@ use super::frame::Frame;
 use super::quartic::{Quartic, Ruled, Sweep};
 use super::surface::{Surface, turn};
 use super::toric::Toric;
+use crate::geometry::vector::{Length, direction};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::TAU;
 
 /// A straight line; the parameter is the length from the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct Line<N: Number = f64> {
     /// A point on it.
-    pub origin: Point3<f64>,
+    pub origin: Point3<N>,
     /// The unit direction.
-    pub direction: Vector3<f64>,
+    pub direction: Vector3<N>,
 }
 
 /// A circle in its frame's xy plane; the parameter is the angle from x.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
+pub struct Circle<N: Number = f64> {
     /// Origin at the centre.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// The radius.
-    pub radius: f64,
+    pub radius: N,
 }
 
-impl Circle {
+impl<N: Number> Circle<N> {
     /// The circle through three points; none where they are on a line.
-    pub fn through(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>) -> Option<Self> {
+    pub fn through(a: &Point3<N>, b: &Point3<N>, c: &Point3<N>) -> Option<Self> {
         let (u, v) = (b - a, c - a);
         let across = u.cross(&v);
-        let z = across.try_normalize(0.0)?;
-        let towards = (v * u.norm_squared() - u * v.norm_squared()).cross(&across);
-        let from_a = towards / (2.0 * across.norm_squared());
-        let (centre, radius) = (a + from_a, from_a.norm());
+        let z = direction(&across)?;
+        let towards = (v * u.length_squared() - u * v.length_squared()).cross(&across);
+        let from_a = towards / (N::TWO * across.length_squared());
+        let (centre, radius) = (a + from_a, from_a.length());
         radius.is_finite().then(|| Self {
             frame: Frame::toward(centre, z, -from_a),
             radius,
@@ -46,111 +47,111 @@ impl Circle {
 
 /// An ellipse, (a cos t, b sin t) in its frame, a >= b.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ellipse {
+pub struct Ellipse<N: Number = f64> {
     /// Origin at the centre, x along the major axis.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// The semi-major axis.
-    pub a: f64,
+    pub a: N,
     /// The semi-minor axis.
-    pub b: f64,
+    pub b: N,
 }
 
 /// One branch of a hyperbola, (a cosh t, b sinh t) in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hyperbola {
+pub struct Hyperbola<N: Number = f64> {
     /// Origin at the centre, x towards the branch.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// The semi-axis along x.
-    pub a: f64,
+    pub a: N,
     /// The semi-axis along y.
-    pub b: f64,
+    pub b: N,
 }
 
 /// A conic about one of its points, as a graph over the tangent there: κ y² + 2 β x y + α x² = 2 x,
 /// and the parameter is y. For a parabola, and what is so long that the way to its centre would take
 /// its digits; meant is the part on which x is single.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conic {
+pub struct Conic<N: Number = f64> {
     /// Origin at the point, x along the inner normal.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// κ: the curvature at the point.
-    pub curvature: f64,
+    pub curvature: N,
     /// β: zero at a vertex.
-    pub shear: f64,
+    pub shear: N,
     /// α: with β zero it is positive for an ellipse, zero for a parabola, negative for a hyperbola.
-    pub flatness: f64,
+    pub flatness: N,
 }
 
-impl Conic {
+impl<N: Number> Conic<N> {
     /// A conic about its vertex, by its semi-latus rectum p and k: y² = 2 p x - k x².
-    pub fn about_vertex(frame: Frame, rectum: f64, k: f64) -> Self {
+    pub fn about_vertex(frame: Frame<N>, rectum: N, k: N) -> Self {
         Self {
             frame,
-            curvature: 1.0 / rectum,
-            shear: 0.0,
+            curvature: N::ONE / rectum,
+            shear: N::ZERO,
             flatness: k / rectum,
         }
     }
 
     /// r + √(r² - κ α y²) with r = 1 - β y.
-    fn depth<S: Scalar>(&self, y: S) -> S {
-        let rest = S::constant(1.0) - y.scale(self.shear);
+    fn depth<S: Scalar<Number = N>>(&self, y: S) -> S {
+        let rest = S::plain(1.0) - y.scale(self.shear);
         let bend = y.square().scale(self.curvature * self.flatness);
-        rest + (rest.square() - bend).sqrt()
+        rest + (rest.square() - bend).root()
     }
 
     /// x over y: κ y²/(r + √(r² - κ α y²)).
-    pub fn height<S: Scalar>(&self, y: S) -> S {
+    pub fn height<S: Scalar<Number = N>>(&self, y: S) -> S {
         y.square().scale(self.curvature).over(self.depth(y))
     }
 
     /// m = x/(κ y): how steep the chord from the point is, over the curvature. With it (x, y) is
     /// (2 κ m², 2 m)/(1 + 2 β m + κ α m²).
-    pub fn chord(&self, y: f64) -> f64 {
+    pub fn chord(&self, y: N) -> N {
         y / self.depth(y)
     }
 
     /// The parameter at the end of a chord, where x is single there.
-    pub fn end_of_chord(&self, m: f64) -> Option<f64> {
+    pub fn end_of_chord(&self, m: N) -> Option<N> {
         let bend = self.curvature * self.flatness * (m * m);
-        let scale = 1.0 + 2.0 * self.shear * m + bend;
-        (bend < 1.0 && scale > 0.0).then(|| 2.0 * m / scale)
+        let scale = N::ONE + N::TWO * self.shear * m + bend;
+        (bend < N::ONE && scale > N::ZERO).then(|| N::TWO * m / scale)
     }
 
     /// Whether it is a parabola.
     pub fn is_parabola(&self) -> bool {
-        self.shear == 0.0 && self.flatness == 0.0
+        self.shear == N::ZERO && self.flatness == N::ZERO
     }
 }
 
 /// A curve in space.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Curve {
+pub enum Curve<N: Number = f64> {
     /// A straight line.
-    Line(Line),
+    Line(Line<N>),
     /// A circle.
-    Circle(Circle),
+    Circle(Circle<N>),
     /// An ellipse.
-    Ellipse(Ellipse),
+    Ellipse(Ellipse<N>),
     /// A branch of a hyperbola.
-    Hyperbola(Hyperbola),
+    Hyperbola(Hyperbola<N>),
     /// A conic about one of its points.
-    Conic(Conic),
+    Conic(Conic<N>),
     /// A branch of the intersection of two quadrics.
-    Quartic(Box<Quartic>),
+    Quartic(Box<Quartic<N>>),
     /// A curve on a torus.
-    Toric(Box<Toric>),
+    Toric(Box<Toric<N>>),
 }
 
-impl Line {
+impl<N: Number> Line<N> {
     /// The point at t.
-    pub fn at<S: Scalar>(&self, t: S) -> [S; 3] {
+    pub fn at<S: Scalar<Number = N>>(&self, t: S) -> [S; 3] {
         let d = &self.direction;
         [0, 1, 2].map(|i| S::constant(self.origin[i]) + t.scale(d[i]))
     }
 }
 
-impl Curve {
+impl<N: Number> Curve<N> {
     /// The name used in outputs.
     pub fn name(&self) -> &'static str {
         match self {
@@ -166,9 +167,9 @@ impl Curve {
     }
 
     /// The parameter's period, where the curve is closed.
-    pub fn period(&self) -> Option<f64> {
+    pub fn period(&self) -> Option<N> {
         match self {
-            Self::Circle(_) | Self::Ellipse(_) => Some(TAU),
+            Self::Circle(_) | Self::Ellipse(_) => Some(N::TAU),
             Self::Line(_) | Self::Hyperbola(_) | Self::Conic(_) => None,
             Self::Quartic(q) => q.period(),
             Self::Toric(c) => c.closed.then(|| c.length()),
@@ -177,46 +178,46 @@ impl Curve {
 
     /// The least shift of the parameter that leads back to the same point: the period of a closed
     /// curve, and a turn of the angle where poles keep a quartic from closing.
-    pub fn cycle(&self) -> Option<f64> {
+    pub fn cycle(&self) -> Option<N> {
         match (self, self.period()) {
-            (Self::Quartic(_), None) => Some(TAU),
+            (Self::Quartic(_), None) => Some(N::TAU),
             (_, period) => period,
         }
     }
 
     /// The parameter of the same point in the cycle that starts at `lo`.
-    pub fn in_cycle(&self, t: f64, lo: f64) -> f64 {
+    pub fn in_cycle(&self, t: N, lo: N) -> N {
         self.cycle()
             .map_or(t, |cycle| lo + (t - lo).rem_euclid(cycle))
     }
 
     /// The point at t, over any scalar; a toric curve has its own ways.
-    fn closed_form<S: Scalar>(&self, t: S) -> Option<[S; 3]> {
+    fn closed_form<S: Scalar<Number = N>>(&self, t: S) -> Option<[S; 3]> {
         Some(match self {
             Self::Line(c) => c.at(t),
             Self::Circle(c) => {
                 let (s, k) = t.sin_cos();
                 c.frame
-                    .world_of([k.scale(c.radius), s.scale(c.radius), S::constant(0.0)])
+                    .world_of([k.scale(c.radius), s.scale(c.radius), S::plain(0.0)])
             }
             Self::Ellipse(c) => {
                 let (s, k) = t.sin_cos();
                 c.frame
-                    .world_of([k.scale(c.a), s.scale(c.b), S::constant(0.0)])
+                    .world_of([k.scale(c.a), s.scale(c.b), S::plain(0.0)])
             }
             Self::Hyperbola(c) => {
                 let (s, k) = t.sinh_cosh();
                 c.frame
-                    .world_of([k.scale(c.a), s.scale(c.b), S::constant(0.0)])
+                    .world_of([k.scale(c.a), s.scale(c.b), S::plain(0.0)])
             }
-            Self::Conic(c) => c.frame.world_of([c.height(t), t, S::constant(0.0)]),
+            Self::Conic(c) => c.frame.world_of([c.height(t), t, S::plain(0.0)]),
             Self::Quartic(q) => q.at(t),
             Self::Toric(_) => return None,
         })
     }
 
     /// The point at t.
-    pub fn point(&self, t: f64) -> Point3<f64> {
+    pub fn point(&self, t: N) -> Point3<N> {
         match (self, self.closed_form(t)) {
             (_, Some(p)) => Point3::from(p),
             (Self::Toric(c), None) => c.point(t),
@@ -225,7 +226,7 @@ impl Curve {
     }
 
     /// The point with two derivatives by t.
-    pub fn jet(&self, t: f64) -> [Jet<f64>; 3] {
+    pub fn jet(&self, t: N) -> [Jet<N>; 3] {
         match self {
             Self::Toric(c) => c.lift(c.angles(t)),
             _ => self
@@ -236,7 +237,7 @@ impl Curve {
 
     /// The certified ranges of the point and two derivatives over an interval of t that lies
     /// within one smooth piece.
-    pub fn jet_over(&self, t: Interval) -> [Jet<Interval>; 3] {
+    pub fn jet_over(&self, t: Interval<N>) -> [Jet<Interval<N>>; 3] {
         match self {
             Self::Toric(c) => c.lift(c.angles_over(t)),
             _ => self
@@ -247,12 +248,12 @@ impl Curve {
 
     /// The certified range of the point over an interval of t, without derivatives; none for a
     /// toric curve, which has them anyway.
-    pub fn box_over(&self, t: Interval) -> Option<[Interval; 3]> {
+    pub fn box_over(&self, t: Interval<N>) -> Option<[Interval<N>; 3]> {
         self.closed_form(t)
     }
 
     /// The derivative of the point by t.
-    pub fn derivative(&self, t: f64) -> Vector3<f64> {
+    pub fn derivative(&self, t: N) -> Vector3<N> {
         if let Self::Line(c) = self {
             return c.direction;
         }
@@ -261,55 +262,55 @@ impl Curve {
     }
 
     /// How fast the point moves along the curve: the length of its derivative.
-    pub fn speed(&self, t: f64) -> f64 {
+    pub fn speed(&self, t: N) -> N {
         match self {
             Self::Circle(c) => c.radius,
-            _ => self.derivative(t).norm(),
+            _ => self.derivative(t).length(),
         }
     }
 
     /// Whether the curve turns back at t: whether a cusp is there.
-    pub fn turns_back(&self, t: f64) -> bool {
+    pub fn turns_back(&self, t: N) -> bool {
         matches!(self, Self::Toric(c) if c.turns_back(t))
     }
 
     /// The unit tangent at t; at a cusp, of what comes after.
-    pub fn tangent(&self, t: f64) -> Vector3<f64> {
+    pub fn tangent(&self, t: N) -> Vector3<N> {
         let d = self.derivative(t);
         if d != Vector3::zeros() {
-            return d.normalize();
+            return d.unit();
         }
         let j = self.jet(t);
-        Vector3::new(j[0].dd, j[1].dd, j[2].dd).normalize()
+        Vector3::new(j[0].dd, j[1].dd, j[2].dd).unit()
     }
 
     /// The curvature vector at t: the second derivative by arc length.
-    pub fn curvature(&self, t: f64) -> Vector3<f64> {
+    pub fn curvature(&self, t: N) -> Vector3<N> {
         let j = self.jet(t);
         let d = Vector3::new(j[0].d, j[1].d, j[2].d);
         let dd = Vector3::new(j[0].dd, j[1].dd, j[2].dd);
-        let speed2 = d.norm_squared();
+        let speed2 = d.length_squared();
         (dd - d * (d.dot(&dd) / speed2)) / speed2
     }
 
     /// Where the smooth pieces of the range [lo, hi] meet, with both ends.
-    pub fn breaks(&self, lo: f64, hi: f64) -> Vec<f64> {
+    pub fn breaks(&self, lo: N, hi: N) -> Vec<N> {
         let mut breaks = vec![lo];
         match self {
             Self::Toric(_) => {
-                let mut k = lo.floor() + 1.0;
+                let mut k = lo.floor() + N::ONE;
                 while k < hi {
                     breaks.push(k);
-                    k += 1.0;
+                    k += N::ONE;
                 }
             }
             // Quarter turns keep the first enclosures narrow.
             _ if self.period().is_some() => {
-                let n = ((hi - lo) / std::f64::consts::FRAC_PI_2).ceil();
-                let mut k = 1.0;
+                let n = ((hi - lo) / (N::PI / N::TWO)).ceil();
+                let mut k = N::ONE;
                 while k < n {
                     breaks.push(lo + (hi - lo) * (k / n));
-                    k += 1.0;
+                    k += N::ONE;
                 }
             }
             _ => {}
@@ -319,7 +320,7 @@ impl Curve {
     }
 
     /// The parameter of the curve's point next to `p`, which lies on the curve or close by.
-    pub fn parameter(&self, p: &Point3<f64>) -> f64 {
+    pub fn parameter(&self, p: &Point3<N>) -> N {
         match self {
             Self::Line(c) => (p - c.origin).dot(&c.direction),
             Self::Circle(c) => {
@@ -340,22 +341,24 @@ impl Curve {
         }
     }
 
-    fn quartic_parameter(&self, q: &Quartic, p: &Point3<f64>) -> f64 {
+    fn quartic_parameter(&self, q: &Quartic<N>, p: &Point3<N>) -> N {
         let frame = match &q.base {
             Ruled::Cylinder(s) => s.frame,
             Ruled::Cone(s) => s.frame,
         };
         let local = frame.coordinates(p);
         let u = turn(local.y.atan2(local.x));
-        let candidates: Vec<f64> = match q.sweep {
-            Sweep::Round { turns } => (0..turns.max(1)).map(|k| u + TAU * f64::from(k)).collect(),
+        let candidates: Vec<N> = match q.sweep {
+            Sweep::Round { turns } => (0..turns.max(1))
+                .map(|k| u + N::TAU * N::whole(k))
+                .collect(),
             Sweep::Oval { mid, half } => {
-                let away = (u - mid + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
-                let t = (-away / half).clamp(-1.0, 1.0).acos();
-                vec![t, TAU - t]
+                let away = (u - mid + N::TAU / N::TWO).rem_euclid(N::TAU) - N::TAU / N::TWO;
+                let t = (-away / half).clamp(-N::ONE, N::ONE).acos();
+                vec![t, N::TAU - t]
             }
         };
-        let distance = |t: &f64| (self.point(*t) - p).norm();
+        let distance = |t: &N| (self.point(*t) - p).length();
         candidates
             .into_iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
@@ -363,12 +366,12 @@ impl Curve {
     }
 
     /// Newton's steps on the distance to `p`.
-    fn polish(&self, p: &Point3<f64>, mut t: f64) -> f64 {
+    fn polish(&self, p: &Point3<N>, mut t: N) -> N {
         for _ in 0..3 {
             let j = self.jet(t);
             let d = Vector3::new(j[0].d, j[1].d, j[2].d);
             let away = p - Point3::new(j[0].v, j[1].v, j[2].v);
-            let step = away.dot(&d) / d.norm_squared();
+            let step = away.dot(&d) / d.length_squared();
             if !step.is_finite() {
                 break;
             }
@@ -382,29 +385,29 @@ impl Curve {
 
     /// The parameters for which the curve can lie within `radius` of `centre`: an open curve's
     /// range there, or one whole period.
-    pub fn range_within(&self, centre: &Point3<f64>, radius: f64) -> Option<[f64; 2]> {
+    pub fn range_within(&self, centre: &Point3<N>, radius: N) -> Option<[N; 2]> {
         match self {
             Self::Line(c) => {
                 let t = (centre - c.origin).dot(&c.direction);
-                let away = (c.origin + c.direction * t - centre).norm();
-                let half = (radius * radius - away * away).max(0.0).sqrt();
+                let away = (c.origin + c.direction * t - centre).length();
+                let half = (radius * radius - away * away).max(N::ZERO).sqrt();
                 (away <= radius).then_some([t - half, t + half])
             }
             Self::Hyperbola(c) => {
-                let reach = (c.frame.origin - centre).norm() + radius;
-                let t = (reach / c.a).max(1.0).acosh().min((reach / c.b).asinh());
+                let reach = (c.frame.origin - centre).length() + radius;
+                let t = (reach / c.a).max(N::ONE).acosh().min((reach / c.b).asinh());
                 (reach >= c.a).then_some([-t, t])
             }
             Self::Conic(c) => {
                 // κ y² = 2 x - 2 β x y - α x², and x as y are no more than the distance.
-                let reach = (c.frame.origin - centre).norm() + radius;
-                let most = 2.0 + reach * (2.0 * c.shear.abs() + (-c.flatness).max(0.0));
+                let reach = (c.frame.origin - centre).length() + radius;
+                let most = N::TWO + reach * (N::TWO * c.shear.abs() + (-c.flatness).max(N::ZERO));
                 let t = reach.min((reach * most / c.curvature).sqrt());
                 Some([-t, t])
             }
-            Self::Toric(c) => Some([0.0, c.length()]),
+            Self::Toric(c) => Some([N::ZERO, c.length()]),
             Self::Quartic(_) | Self::Circle(_) | Self::Ellipse(_) => {
-                Some([0.0, self.period().unwrap_or(TAU)])
+                Some([N::ZERO, self.period().unwrap_or(N::TAU)])
             }
         }
     }

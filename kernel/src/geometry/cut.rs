@@ -5,38 +5,39 @@ use super::curve::Curve;
 use super::surface::Surface;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::roots::{Contact, Function, Root, Zeros, isolate, isolate_closely, probes};
 
 /// How far above a surface a curve runs.
-struct Height<'a> {
-    curve: &'a Curve,
-    surface: &'a Surface,
+struct Height<'a, N: Number = f64> {
+    curve: &'a Curve<N>,
+    surface: &'a Surface<N>,
 }
 
-impl Function for Height<'_> {
-    fn over(&self, t: Interval) -> Jet<Interval> {
+impl<N: Number> Function<N> for Height<'_, N> {
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
         self.surface.level(self.curve.jet_over(t))
     }
 
-    fn reach(&self, t: Interval) -> Interval {
+    fn reach(&self, t: Interval<N>) -> Interval<N> {
         match self.curve.box_over(t) {
             Some(p) => self.surface.level(p),
             None => Interval::ENTIRE,
         }
     }
 
-    fn at(&self, t: f64) -> Jet<f64> {
+    fn at(&self, t: N) -> Jet<N> {
         self.surface.level(self.curve.jet(t))
     }
 
-    fn value(&self, t: f64) -> f64 {
+    fn value(&self, t: N) -> N {
         self.surface.level(self.curve.point(t).into())
     }
 }
 
 /// Where the curve, over `range` of its parameter, meets the surface: isolated parameters with
 /// their contact, or everywhere where it lies on the surface. `band` is the resolution.
-pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zeros {
+pub fn cut<N: Number>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, band: N) -> Zeros<N> {
     if lies_on(curve, range, surface, band) {
         return Zeros::Everywhere;
     }
@@ -49,12 +50,12 @@ pub fn cut(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Zero
 
 /// The same over a part of a curve that does not lie on the surface, however short: the roots, and
 /// all misses that are close calls.
-pub fn roots(
-    curve: &Curve,
-    range: [f64; 2],
-    surface: &Surface,
-    band: f64,
-) -> (Vec<Root>, Vec<(f64, f64)>) {
+pub fn roots<N: Number>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surface: &Surface<N>,
+    band: N,
+) -> (Vec<Root<N>>, Vec<(N, N)>) {
     let breaks = curve.breaks(range[0], range[1]);
     let zeros = match isolate_closely(&Height { curve, surface }, &breaks, band) {
         Zeros::Everywhere => touching(range),
@@ -67,30 +68,36 @@ pub fn roots(
 }
 
 /// One touching root over the whole range.
-fn touching([lo, hi]: [f64; 2]) -> Zeros {
+fn touching<N: Number>([lo, hi]: [N; 2]) -> Zeros<N> {
     Zeros::At {
         roots: vec![Root {
-            t: 0.5 * (lo + hi),
+            t: N::HALF * (lo + hi),
             lo,
             hi,
             contact: Contact::Touching,
-            margin: Some(0.0),
+            margin: Some(N::ZERO),
         }],
         misses: Vec::new(),
     }
 }
 
 /// Whether a point of a box can be within `margin` of a surface, by its distance and by its level.
-pub fn comes_near(surface: &Surface, b: &Box3, margin: f64) -> bool {
+pub fn comes_near<N: Number>(surface: &Surface<N>, b: &Box3, margin: N) -> bool {
     // The distance of a surface changes by no more than the way.
-    if surface.distance(&b.centre()).abs() > 0.5 * b.diagonal() + margin {
+    let centre = b.centre().map(N::of);
+    if surface.distance(&centre).abs() > N::of(0.5 * b.diagonal()) + margin {
         return false;
     }
-    let level = surface.level([0, 1, 2].map(|i| Interval::new(b.min[i], b.max[i])));
+    let level = surface.level([0, 1, 2].map(|i| Interval::new(N::of(b.min[i]), N::of(b.max[i]))));
     level.lo <= margin && level.hi >= -margin
 }
 
 /// Whether the curve lies on the surface, within the band.
-pub fn lies_on(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
+pub fn lies_on<N: Number>(
+    curve: &Curve<N>,
+    [lo, hi]: [N; 2],
+    surface: &Surface<N>,
+    band: N,
+) -> bool {
     probes().all(|part| surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band)
 }

@@ -1,22 +1,24 @@
 //! Right-handed orthonormal frames.
 
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::scalar::{Scalar, dot};
 use nalgebra::{Point3, Vector3};
 
 /// A right-handed orthonormal frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct Frame<N: Number = f64> {
     /// Where the frame stands.
-    pub origin: Point3<f64>,
+    pub origin: Point3<N>,
     /// Its first axis.
-    pub x: Vector3<f64>,
+    pub x: Vector3<N>,
     /// Its second axis.
-    pub y: Vector3<f64>,
+    pub y: Vector3<N>,
     /// Its third axis.
-    pub z: Vector3<f64>,
+    pub z: Vector3<N>,
 }
 
-impl Frame {
+impl<N: Number> Frame<N> {
     /// The frame of the world.
     pub fn world() -> Self {
         Self {
@@ -28,16 +30,16 @@ impl Frame {
     }
 
     /// A frame with the unit vector `z` as its third axis, the others chosen.
-    pub fn about(origin: Point3<f64>, z: Vector3<f64>) -> Self {
+    pub fn about(origin: Point3<N>, z: Vector3<N>) -> Self {
         Self::toward(origin, z, perpendicular(&z))
     }
 
     /// A frame with the unit vector `z` as third axis and `x` as near to `toward` as it can be.
-    pub fn toward(origin: Point3<f64>, z: Vector3<f64>, toward: Vector3<f64>) -> Self {
+    pub fn toward(origin: Point3<N>, z: Vector3<N>, toward: Vector3<N>) -> Self {
         let across = toward - z * z.dot(&toward);
-        let x = across.normalize();
+        let x = across.unit();
         // Once more: the first step loses digits where `toward` is nearly along z.
-        let x = (x - z * z.dot(&x)).normalize();
+        let x = (x - z * z.dot(&x)).unit();
         Self {
             origin,
             x,
@@ -47,7 +49,7 @@ impl Frame {
     }
 
     /// The coordinates of a point in this frame.
-    pub fn local<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
+    pub fn local<S: Scalar<Number = N>>(&self, p: [S; 3]) -> [S; 3] {
         let d = [
             p[0] - S::constant(self.origin.x),
             p[1] - S::constant(self.origin.y),
@@ -57,7 +59,7 @@ impl Frame {
     }
 
     /// The point with the given coordinates in this frame.
-    pub fn world_of<S: Scalar>(&self, q: [S; 3]) -> [S; 3] {
+    pub fn world_of<S: Scalar<Number = N>>(&self, q: [S; 3]) -> [S; 3] {
         let along = |i: usize| {
             S::constant(self.origin[i])
                 + (q[0].scale(self.x[i]) + q[1].scale(self.y[i]) + q[2].scale(self.z[i]))
@@ -66,35 +68,35 @@ impl Frame {
     }
 
     /// The point with the given coordinates in this frame.
-    pub fn point(&self, x: f64, y: f64, z: f64) -> Point3<f64> {
+    pub fn point(&self, x: N, y: N, z: N) -> Point3<N> {
         self.origin + self.x * x + self.y * y + self.z * z
     }
 
     /// The coordinates of a point in this frame.
-    pub fn coordinates(&self, p: &Point3<f64>) -> Vector3<f64> {
+    pub fn coordinates(&self, p: &Point3<N>) -> Vector3<N> {
         let d = p - self.origin;
         Vector3::new(self.x.dot(&d), self.y.dot(&d), self.z.dot(&d))
     }
 
     /// The components of a vector in this frame.
-    pub fn components(&self, v: &Vector3<f64>) -> Vector3<f64> {
+    pub fn components(&self, v: &Vector3<N>) -> Vector3<N> {
         Vector3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }
 
     /// The vector with the given components in this frame.
-    pub fn vector(&self, c: &Vector3<f64>) -> Vector3<f64> {
+    pub fn vector(&self, c: &Vector3<N>) -> Vector3<N> {
         self.x * c.x + self.y * c.y + self.z * c.z
     }
 
     /// The same frame standing at `origin`.
-    pub fn at(&self, origin: Point3<f64>) -> Self {
+    pub fn at(&self, origin: Point3<N>) -> Self {
         Self { origin, ..*self }
     }
 }
 
 /// A unit vector perpendicular to `v`, which is not zero.
-pub fn perpendicular(v: &Vector3<f64>) -> Vector3<f64> {
-    let a = v.abs();
+pub fn perpendicular<N: Number>(v: &Vector3<N>) -> Vector3<N> {
+    let a = v.map(N::abs);
     let axis = if a.x <= a.y && a.x <= a.z {
         Vector3::x()
     } else if a.y <= a.z {
@@ -102,5 +104,5 @@ pub fn perpendicular(v: &Vector3<f64>) -> Vector3<f64> {
     } else {
         Vector3::z()
     };
-    v.cross(&axis).normalize()
+    v.cross(&axis).unit()
 }

@@ -16,3 +16,4 @@ pub mod surface;
 pub mod toric;
 pub mod trace;
 pub mod trigonometric;
+pub mod vector;

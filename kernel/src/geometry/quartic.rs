@@ -10,20 +10,21 @@
 
 use super::surface::{Cone, Cylinder};
 use super::trigonometric::{Trig1, Trig2, trig1, trig2};
+use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
 
 /// The surface whose rulings carry the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ruled {
+pub enum Ruled<N: Number = f64> {
     /// A cylinder; w is the height.
-    Cylinder(Cylinder),
+    Cylinder(Cylinder<N>),
     /// A cone's nappe; 1/w is the height above the apex.
-    Cone(Cone),
+    Cone(Cone<N>),
 }
 
 /// How the angle u runs with the parameter t.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sweep {
+pub enum Sweep<N: Number = f64> {
     /// u = t, closed after so many turns.
     Round {
         /// 1, or 2 where the curve closes after going round twice.
@@ -32,30 +33,30 @@ pub enum Sweep {
     /// u = mid - half cos t: there on one branch, back on the other.
     Oval {
         /// The middle of the arc of angles.
-        mid: f64,
+        mid: N,
         /// Half the arc.
-        half: f64,
+        half: N,
     },
 }
 
 /// The other quadric along the rulings: k w^2 + 2 B(u) w + C(u).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Along {
+pub struct Along<N: Number = f64> {
     /// k.
-    pub lead: f64,
+    pub lead: N,
     /// B.
-    pub linear: Trig1,
+    pub linear: Trig1<N>,
     /// C, where k is so small beside B that -B and ±√Δ may cancel.
-    pub constant: Option<Trig2>,
+    pub constant: Option<Trig2<N>>,
 }
 
 /// The part of B^2 that k C is no more than where digits would be lost.
 const CANCELLING: f64 = 1.0 / 256.0;
 
-impl Along {
-    pub(super) fn new(lead: f64, linear: Trig1, constant: Trig2) -> Self {
-        let size = |k: &[f64]| k.iter().map(|c| c.abs()).sum::<f64>();
-        let cancels = lead.abs() * size(&constant) <= CANCELLING * size(&linear).powi(2);
+impl<N: Number> Along<N> {
+    pub(super) fn new(lead: N, linear: Trig1<N>, constant: Trig2<N>) -> Self {
+        let size = |k: &[N]| k.iter().map(|c| c.abs()).sum::<N>();
+        let cancels = lead.abs() * size(&constant) <= N::of(CANCELLING) * size(&linear).powi(2);
         Self {
             lead,
             linear,
@@ -64,7 +65,7 @@ impl Along {
     }
 
     /// Δ, where its coefficients are known to be the given ones.
-    fn radicand<S: Scalar>(&self, whole: &Trig2, at: (S, S)) -> S {
+    fn radicand<S: Scalar<Number = N>>(&self, whole: &Trig2<N>, at: (S, S)) -> S {
         match &self.constant {
             Some(constant) => {
                 trig1(&self.linear, at).square() - trig2(constant, at).scale(self.lead)
@@ -74,7 +75,7 @@ impl Along {
     }
 
     /// (-B + r)/k for a square root r of Δ, as (numerator, denominator): C/(-B - r) is the same.
-    fn quotient<S: Scalar>(&self, root: S, at: (S, S)) -> (S, S) {
+    fn quotient<S: Scalar<Number = N>>(&self, root: S, at: (S, S)) -> (S, S) {
         let linear = trig1(&self.linear, at);
         match &self.constant {
             Some(constant) if root.is_like(linear) => (trig2(constant, at), -(linear + root)),
@@ -85,70 +86,70 @@ impl Along {
 
 /// The height w over the angle u.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Height {
+pub enum Height<N: Number = f64> {
     /// (-B ± √Δ)/k with Δ positive everywhere.
     Whole {
         /// k, B and C.
-        along: Along,
+        along: Along<N>,
         /// Δ.
-        radicand: Trig2,
+        radicand: Trig2<N>,
         /// +1 or -1.
-        sign: f64,
+        sign: N,
     },
     /// (-B + s √q)/k where s vanishes at the ends of the sweep and at `node`.
     Deflated {
         /// k, B and C.
-        along: Along,
+        along: Along<N>,
         /// q, positive, of degree one.
-        rest: Trig1,
+        rest: Trig1<N>,
         /// Where the curve crosses itself.
-        node: Option<f64>,
+        node: Option<N>,
         /// +1 or -1.
-        sign: f64,
+        sign: N,
     },
     /// -C/(2 B): k = 0.
     Rational {
         /// B.
-        linear: Trig1,
+        linear: Trig1<N>,
         /// C.
-        constant: Trig2,
+        constant: Trig2<N>,
     },
     /// The same with a common ruling divided out: both in half angles.
     Cubic {
         /// B / sin((u-u0)/2): cos(u/2), sin(u/2).
-        linear: [f64; 2],
+        linear: [N; 2],
         /// C / sin((u-u0)/2): cos(u/2), sin(u/2), cos(3u/2), sin(3u/2).
-        constant: [f64; 4],
+        constant: [N; 4],
     },
 }
 
 /// A branch of the intersection of two quadrics.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quartic {
+pub struct Quartic<N: Number = f64> {
     /// The surface whose rulings carry it.
-    pub base: Ruled,
+    pub base: Ruled<N>,
     /// The run of the angle.
-    pub sweep: Sweep,
+    pub sweep: Sweep<N>,
     /// The height over the angle.
-    pub height: Height,
+    pub height: Height<N>,
 }
 
-impl Quartic {
+impl<N: Number> Quartic<N> {
     /// The parameter's period, where the branch is closed: all but rational ones with a pole.
-    pub fn period(&self) -> Option<f64> {
+    pub fn period(&self) -> Option<N> {
         match (self.height, self.sweep) {
             (Height::Rational { linear, .. }, _) => {
                 let [mean, cos, sin] = linear;
-                (mean.abs() > cos.hypot(sin)).then_some(std::f64::consts::TAU)
+                (mean.abs() > cos.hypot(sin)).then_some(N::TAU)
             }
             (Height::Cubic { .. }, _) => None,
-            (_, Sweep::Round { turns }) => Some(std::f64::consts::TAU * f64::from(turns)),
-            (_, Sweep::Oval { .. }) => Some(std::f64::consts::TAU),
+            (_, Sweep::Round { turns }) => Some(N::TAU * N::whole(turns)),
+            (_, Sweep::Oval { .. }) => Some(N::TAU),
         }
     }
 
     /// The angle u at t.
-    pub fn angle<S: Scalar>(&self, t: S) -> S {
+    pub fn angle<S: Scalar<Number = N>>(&self, t: S) -> S {
         match self.sweep {
             Sweep::Round { .. } => t,
             Sweep::Oval { mid, half } => S::constant(mid) - t.sin_cos().1.scale(half),
@@ -156,22 +157,22 @@ impl Quartic {
     }
 
     /// The height as a quotient: (numerator, denominator) of w.
-    fn quotient<S: Scalar>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
+    fn quotient<S: Scalar<Number = N>>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
         match &self.height {
             Height::Whole {
                 along,
                 radicand,
                 sign,
-            } => along.quotient(along.radicand(radicand, at).sqrt().scale(*sign), at),
+            } => along.quotient(along.radicand(radicand, at).root().scale(*sign), at),
             Height::Deflated {
                 along,
                 rest,
                 node,
                 sign,
             } => {
-                let mut root = trig1(rest, at).sqrt().scale(*sign);
+                let mut root = trig1(rest, at).root().scale(*sign);
                 if let Some(node) = node {
-                    root = root * (u - S::constant(*node)).scale(0.5).sin_cos().0;
+                    root = root * (u - S::constant(*node)).times(0.5).sin_cos().0;
                 }
                 if let Sweep::Oval { half, .. } = self.sweep {
                     root = root * oval_factor(t, half);
@@ -179,32 +180,32 @@ impl Quartic {
                 along.quotient(root, at)
             }
             Height::Rational { linear, constant } => {
-                (-trig2(constant, at), trig1(linear, at).scale(2.0))
+                (-trig2(constant, at), trig1(linear, at).times(2.0))
             }
             Height::Cubic { linear, constant } => {
-                let (s1, c1) = u.scale(0.5).sin_cos();
-                let (s3, c3) = u.scale(1.5).sin_cos();
+                let (s1, c1) = u.times(0.5).sin_cos();
+                let (s3, c3) = u.times(1.5).sin_cos();
                 let numerator = c1.scale(constant[0])
                     + s1.scale(constant[1])
                     + c3.scale(constant[2])
                     + s3.scale(constant[3]);
                 (
                     -numerator,
-                    (c1.scale(linear[0]) + s1.scale(linear[1])).scale(2.0),
+                    (c1.scale(linear[0]) + s1.scale(linear[1])).times(2.0),
                 )
             }
         }
     }
 
     /// The height w at t (for a cone, one over the height above the apex).
-    pub fn height_at<S: Scalar>(&self, t: S) -> S {
+    pub fn height_at<S: Scalar<Number = N>>(&self, t: S) -> S {
         let u = self.angle(t);
         let (n, d) = self.quotient(t, u, u.sin_cos());
         n.over(d)
     }
 
     /// The point at t.
-    pub fn at<S: Scalar>(&self, t: S) -> [S; 3] {
+    pub fn at<S: Scalar<Number = N>>(&self, t: S) -> [S; 3] {
         let u = self.angle(t);
         let (sin, cos) = u.sin_cos();
         let (n, d) = self.quotient(t, u, (sin, cos));
@@ -223,9 +224,9 @@ impl Quartic {
 }
 
 /// √(sin((u-u0)/2) sin((u1-u)/2)) for u = mid - half cos t, analytic, with the sign of sin t.
-fn oval_factor<S: Scalar>(t: S, half: f64) -> S {
-    let (s, c) = t.scale(0.5).sin_cos();
+fn oval_factor<N: Number, S: Scalar<Number = N>>(t: S, half: N) -> S {
+    let (s, c) = t.times(0.5).sin_cos();
     let a = s.square().scale(half).sinc();
     let b = c.square().scale(half).sinc();
-    (s * c).scale(half) * (a * b).sqrt()
+    (s * c).scale(half) * (a * b).root()
 }

@@ -8,7 +8,8 @@ use super::intersect::Extent;
 use super::surface::Surface;
 use crate::number::enclosure::Enclosure;
 use crate::number::interval::Interval;
-use crate::number::rational::{Rational, from_f64};
+use crate::number::precision::Number;
+use crate::number::rational::Rational;
 use crate::number::real::Real;
 use crate::number::sign::Distance;
 
@@ -41,15 +42,15 @@ impl<N> Coefficients<N> {
 
 /// A surface in doubles, with the way to its exact coefficients.
 #[derive(Clone, Copy)]
-pub struct Carrier<'a> {
+pub struct Carrier<'a, N: Number = f64> {
     /// The surface: its numbers are the exact ones, rounded.
-    pub surface: &'a Surface,
+    pub surface: &'a Surface<N>,
     exact: Option<&'a dyn Fn() -> Coefficients<Rational>>,
 }
 
-impl<'a> Carrier<'a> {
+impl<'a, N: Number> Carrier<'a, N> {
     /// A surface whose doubles are exact.
-    pub fn given(surface: &'a Surface) -> Self {
+    pub fn given(surface: &'a Surface<N>) -> Self {
         Self {
             surface,
             exact: None,
@@ -57,7 +58,7 @@ impl<'a> Carrier<'a> {
     }
 
     /// A surface that was rounded from exact coefficients.
-    pub fn rounded(surface: &'a Surface, exact: &'a dyn Fn() -> Coefficients<Rational>) -> Self {
+    pub fn rounded(surface: &'a Surface<N>, exact: &'a dyn Fn() -> Coefficients<Rational>) -> Self {
         Self {
             surface,
             exact: Some(exact),
@@ -66,14 +67,18 @@ impl<'a> Carrier<'a> {
 
     /// Ranges that hold the exact coefficients: every number of a surface is within a few units in
     /// the last place of its length.
-    fn ranges(&self) -> Coefficients<Interval> {
-        let near = |x: f64, size: f64| Interval::around(x, SLACK * size);
-        doubles(self.surface, |x| near(x, x.abs()), |x| near(x, 1.0))
+    fn ranges(&self) -> Coefficients<Interval<N>> {
+        let near = |x: N, size: N| Interval::around(x, N::of(SLACK) * N::EPSILON * size);
+        numbers(
+            self.surface,
+            |x| near(x, Number::abs(x)),
+            |x| near(x, N::ONE),
+        )
     }
 
-    /// The surface's own doubles.
-    pub fn doubles(&self) -> Coefficients<f64> {
-        doubles(self.surface, |x| x, |x| x)
+    /// The surface's own numbers.
+    pub fn numbers(&self) -> Coefficients<N> {
+        numbers(self.surface, |x| x, |x| x)
     }
 
     /// The exact coefficients, to be reckoned with to so many bits.
@@ -82,34 +87,35 @@ impl<'a> Carrier<'a> {
     }
 
     fn exact(&self) -> Coefficients<Rational> {
-        let number = |x: f64| from_f64(x).unwrap_or_default();
+        let number = |x: N| x.exact().unwrap_or_default();
         match self.exact {
             Some(exact) => exact(),
-            None => doubles(self.surface, number, number),
+            None => numbers(self.surface, number, number),
         }
     }
 }
 
-/// How far a surface's numbers may lie from the exact ones, as a part of what they measure.
-const SLACK: f64 = 8.0 * f64::EPSILON;
+/// How far a surface's numbers may lie from the exact ones, in units of the last place of what they
+/// measure.
+const SLACK: f64 = 8.0;
 
-/// The coefficients in doubles: `of` takes lengths, `along` the components of directions.
-fn doubles<N>(
-    surface: &Surface,
-    of: impl Fn(f64) -> N,
-    along: impl Fn(f64) -> N,
-) -> Coefficients<N> {
+/// The coefficients of a surface: `of` takes lengths, `along` the components of directions.
+fn numbers<N: Number, M>(
+    surface: &Surface<N>,
+    of: impl Fn(N) -> M,
+    along: impl Fn(N) -> M,
+) -> Coefficients<M> {
     let frame = surface.frame();
     let (size, tube) = match surface {
-        Surface::Plane(_) => (0.0, 0.0),
-        Surface::Cylinder(c) => (c.radius, 0.0),
-        Surface::Cone(c) => (c.sin / c.cos, 0.0),
-        Surface::Sphere(s) => (s.radius, 0.0),
+        Surface::Plane(_) => (N::ZERO, N::ZERO),
+        Surface::Cylinder(c) => (c.radius, N::ZERO),
+        Surface::Cone(c) => (c.sin / c.cos, N::ZERO),
+        Surface::Sphere(s) => (s.radius, N::ZERO),
         Surface::Torus(t) => (t.major, t.minor),
     };
     Coefficients {
-        point: <[f64; 3]>::from(frame.origin).map(&of),
-        direction: <[f64; 3]>::from(frame.z).map(&along),
+        point: <[N; 3]>::from(frame.origin).map(&of),
+        direction: <[N; 3]>::from(frame.z).map(&along),
         size: of(size),
         tube: of(tube),
     }
@@ -185,113 +191,113 @@ pub enum Relation {
     InTube,
 }
 
-fn minus<N: Real>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+fn minus<R: Real>(a: &[R; 3], b: &[R; 3]) -> [R; 3] {
     [0, 1, 2].map(|i| a[i].clone() - b[i].clone())
 }
 
-fn dot<N: Real>(a: &[N; 3], b: &[N; 3]) -> N {
+fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
     let [x, y, z] = [0, 1, 2].map(|i| a[i].clone() * b[i].clone());
     x + y + z
 }
 
-fn cross<N: Real>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+fn cross<R: Real>(a: &[R; 3], b: &[R; 3]) -> [R; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i].clone() * b[j].clone() - a[j].clone() * b[i].clone())
 }
 
-fn norm<N: Real>(a: &[N; 3]) -> N {
+fn norm<R: Real>(a: &[R; 3]) -> R {
     dot(a, a).sqrt()
 }
 
 /// Two coefficients and the extent.
-struct Over<N> {
-    a: Coefficients<N>,
-    b: Coefficients<N>,
-    centre: [N; 3],
-    radius: N,
+struct Over<R> {
+    a: Coefficients<R>,
+    b: Coefficients<R>,
+    centre: [R; 3],
+    radius: R,
 }
 
-impl<N: Real> Over<N> {
+impl<R: Real> Over<R> {
     /// The sine of the angle between the directions.
-    fn sine(&self) -> N {
+    fn sine(&self) -> R {
         let (a, b) = (&self.a.direction, &self.b.direction);
         norm(&cross(a, b)).over(norm(a) * norm(b))
     }
 
     /// The cosine of the angle between the directions.
-    fn cosine(&self) -> N {
+    fn cosine(&self) -> R {
         let (a, b) = (&self.a.direction, &self.b.direction);
         dot(a, b).over(norm(a) * norm(b))
     }
 
     /// From the first's point to the second's.
-    fn away(&self) -> [N; 3] {
+    fn away(&self) -> [R; 3] {
         minus(&self.b.point, &self.a.point)
     }
 
     /// The component of a vector along the first's direction.
-    fn along(&self, v: &[N; 3]) -> N {
+    fn along(&self, v: &[R; 3]) -> R {
         dot(v, &self.a.direction).over(norm(&self.a.direction))
     }
 
     /// The length of a vector across the first's direction.
-    fn across(&self, v: &[N; 3]) -> N {
+    fn across(&self, v: &[R; 3]) -> R {
         norm(&cross(v, &self.a.direction)).over(norm(&self.a.direction))
     }
 
     /// The point of the second's axis at the height of the extent's centre over it.
-    fn foot(&self) -> [N; 3] {
+    fn foot(&self) -> [R; 3] {
         let d = &self.b.direction;
         let up = dot(&minus(&self.centre, &self.b.point), d).over(dot(d, d));
         [0, 1, 2].map(|i| self.b.point[i].clone() + d[i].clone() * up.clone())
     }
 
     /// The distance of parallel axes, measured at the extent's centre.
-    fn between_axes(&self) -> N {
+    fn between_axes(&self) -> R {
         self.across(&minus(&self.foot(), &self.a.point))
     }
 
     /// The distance of the second's point from the first's spine.
-    fn off_spine(&self) -> N {
+    fn off_spine(&self) -> R {
         let away = self.away();
         let (out, up) = (self.across(&away) - self.a.size.clone(), self.along(&away));
         (out.clone() * out + up.clone() * up).sqrt()
     }
 
     /// The sine of the angle between the second's axis and the first's spine at the second's point.
-    fn across_spine(&self) -> N {
+    fn across_spine(&self) -> R {
         let along = cross(&self.a.direction, &self.away());
         let d = &self.b.direction;
         norm(&cross(&along, d)).over(norm(&along) * norm(d))
     }
 
     /// The sine and the cosine of a cone's half angle.
-    fn half_angle(tangent: &N) -> (N, N) {
+    fn half_angle(tangent: &R) -> (R, R) {
         let square = tangent.clone() * tangent.clone();
-        let cos = N::constant(1.0).over((N::constant(1.0) + square).sqrt());
+        let cos = R::constant(1.0).over((R::constant(1.0) + square).sqrt());
         (tangent.clone() * cos.clone(), cos)
     }
 
     /// The gap between two circles, the distance of their centres given.
-    fn beside(between: N, [r, s]: [N; 2]) -> N {
+    fn beside(between: R, [r, s]: [R; 2]) -> R {
         between - (r + s)
     }
 
     /// The gap by which one of two circles holds the other.
-    fn within(between: N, [r, s]: [N; 2]) -> N {
+    fn within(between: R, [r, s]: [R; 2]) -> R {
         (r - s).abs() - between
     }
 
-    fn sizes(&self) -> [N; 2] {
+    fn sizes(&self) -> [R; 2] {
         [self.a.size.clone(), self.b.size.clone()]
     }
 
     /// The radius of the torus, the first, with its tube.
-    fn rim(&self) -> N {
+    fn rim(&self) -> R {
         self.a.size.clone() + self.a.tube.clone()
     }
 
     /// The radius of the tube and that of the other circle in the profile.
-    fn profile(&self, other: &Surface) -> [N; 2] {
+    fn profile<N: Number>(&self, other: &Surface<N>) -> [R; 2] {
         let radius = match other {
             Surface::Torus(_) => &self.b.tube,
             _ => &self.b.size,
@@ -300,7 +306,7 @@ impl<N: Real> Over<N> {
     }
 
     /// Between the centres of the tube and of the other circle in the profile.
-    fn between_tubes(&self, other: &Surface) -> N {
+    fn between_tubes<N: Number>(&self, other: &Surface<N>) -> R {
         let out = match other {
             Surface::Torus(_) => self.a.size.clone() - self.b.size.clone(),
             _ => self.a.size.clone(),
@@ -310,7 +316,7 @@ impl<N: Real> Over<N> {
     }
 
     /// The distance of the tube's centre from the line of the other's profile.
-    fn line_on_tube(&self, other: &Surface) -> N {
+    fn line_on_tube<N: Number>(&self, other: &Surface<N>) -> R {
         let up = self.along(&self.away());
         let off = match other {
             Surface::Cylinder(_) => self.b.size.clone() - self.a.size.clone(),
@@ -324,7 +330,7 @@ impl<N: Real> Over<N> {
     }
 
     /// Two surfaces of the same kind.
-    fn apart(&self, kind: &Surface) -> N {
+    fn apart<N: Number>(&self, kind: &Surface<N>) -> R {
         let between = norm(&self.away());
         let drift = self.sine() * self.radius.clone();
         let sizes = (self.a.size.clone() - self.b.size.clone()).abs();
@@ -340,13 +346,13 @@ impl<N: Real> Over<N> {
         }
     }
 
-    fn half_angles(&self) -> N {
+    fn half_angles(&self) -> R {
         let (sin, cos) = Self::half_angle(&self.a.size);
         let (sine, cosine) = Self::half_angle(&self.b.size);
         (sin * cosine - cos * sine) * self.radius.clone()
     }
 
-    fn between_planes(&self) -> N {
+    fn between_planes(&self) -> R {
         let n = &self.a.direction;
         let up = dot(&minus(&self.centre, &self.a.point), n).over(dot(n, n));
         let foot = [0, 1, 2].map(|i| self.centre[i].clone() - n[i].clone() * up.clone());
@@ -355,26 +361,26 @@ impl<N: Real> Over<N> {
 
     /// The distance of two axes at the extent's centre, less what the way from there lets them
     /// drift.
-    fn off_line(&self) -> N {
+    fn off_line(&self) -> R {
         let away = self.away();
         let to_centre = minus(&self.centre, &self.a.point);
         let along = (self.along(&to_centre) - self.along(&away)).abs();
         self.across(&away) - self.sine() * along
     }
 
-    fn plane_on_ruling(&self) -> N {
+    fn plane_on_ruling(&self) -> R {
         let (sin, cos) = Self::half_angle(&self.b.size);
         (self.cosine().abs() * cos - self.sine() * sin) * self.radius.clone()
     }
 
-    fn plane_along_ruling(&self, far: bool) -> N {
+    fn plane_along_ruling(&self, far: bool) -> R {
         let (sin, cos) = Self::half_angle(&self.b.size);
         let (up, out) = (self.cosine() * cos, self.sine() * sin);
         let rate = if far { up - out } else { up + out };
         rate * self.radius.clone()
     }
 
-    fn point_on_quadric(&self, quadric: &Surface) -> N {
+    fn point_on_quadric<N: Number>(&self, quadric: &Surface<N>) -> R {
         let away = self.away();
         match quadric {
             Surface::Sphere(_) => norm(&away) - self.a.size.clone(),
@@ -386,7 +392,7 @@ impl<N: Real> Over<N> {
         }
     }
 
-    fn distance(&self, relation: Relation, [first, second]: [&Surface; 2]) -> N {
+    fn distance<N: Number>(&self, relation: Relation, [first, second]: [&Surface<N>; 2]) -> R {
         let (a, b) = (&self.a, &self.b);
         match relation {
             Relation::Apart => self.apart(first),
@@ -433,18 +439,18 @@ impl<N: Real> Over<N> {
 
 /// Two carriers over the part's extent.
 #[derive(Clone, Copy)]
-pub struct Pair<'a> {
+pub struct Pair<'a, N: Number = f64> {
     /// The first.
-    pub a: Carrier<'a>,
+    pub a: Carrier<'a, N>,
     /// The second.
-    pub b: Carrier<'a>,
+    pub b: Carrier<'a, N>,
     /// The extent.
-    pub extent: &'a Extent,
+    pub extent: &'a Extent<N>,
 }
 
-impl<'a> Pair<'a> {
+impl<'a, N: Number> Pair<'a, N> {
     /// Two carriers in the order in which relations name them.
-    pub fn new(a: Carrier<'a>, b: Carrier<'a>, extent: &'a Extent) -> Self {
+    pub fn new(a: Carrier<'a, N>, b: Carrier<'a, N>, extent: &'a Extent<N>) -> Self {
         Self { a, b, extent }
     }
 
@@ -458,17 +464,17 @@ impl<'a> Pair<'a> {
     }
 
     /// How the two lie to one another, in doubles: enough to see that something is out of question.
-    pub fn estimate(&self, relation: Relation) -> f64 {
-        let [a, b] = [&self.a, &self.b].map(|c| c.doubles());
+    pub fn estimate(&self, relation: Relation) -> N {
+        let [a, b] = [&self.a, &self.b].map(|c| c.numbers());
         How {
             pair: *self,
             relation,
         }
-        .over(a, b)
+        .over(a, b, |x| x)
     }
 
     /// How the two lie to one another.
-    pub fn how(&self, relation: Relation) -> impl Distance + use<'a> {
+    pub fn how(&self, relation: Relation) -> impl Distance + use<'a, N> {
         How {
             pair: *self,
             relation,
@@ -477,31 +483,33 @@ impl<'a> Pair<'a> {
 }
 
 /// A relation of a pair, to be measured.
-struct How<'a> {
-    pair: Pair<'a>,
+struct How<'a, N: Number> {
+    pair: Pair<'a, N>,
     relation: Relation,
 }
 
-impl How<'_> {
-    fn over<N: Real>(&self, a: Coefficients<N>, b: Coefficients<N>) -> N {
-        let Extent { centre, radius } = *self.pair.extent;
+impl<N: Number> How<'_, N> {
+    fn over<R: Real>(&self, a: Coefficients<R>, b: Coefficients<R>, of: impl Fn(N) -> R) -> R {
+        let &Extent { centre, radius } = self.pair.extent;
         let over = Over {
             a,
             b,
-            centre: <[f64; 3]>::from(centre).map(N::constant),
-            radius: N::constant(radius),
+            centre: <[N; 3]>::from(centre).map(&of),
+            radius: of(radius),
         };
         over.distance(self.relation, [self.pair.a.surface, self.pair.b.surface])
     }
 }
 
-impl Distance for How<'_> {
+impl<N: Number> Distance for How<'_, N> {
     fn range(&self) -> Interval {
-        self.over(self.pair.a.ranges(), self.pair.b.ranges())
+        let [a, b] = [&self.pair.a, &self.pair.b].map(Carrier::ranges);
+        self.over(a, b, Interval::point).in_doubles()
     }
 
     fn refined(&self, bits: usize) -> Option<Enclosure> {
         let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.reckoned(bits));
-        Some(self.over(a, b))
+        let exact = |x: N| Enclosure::exact(x.exact().unwrap_or_default(), bits);
+        Some(self.over(a, b, exact))
     }
 }

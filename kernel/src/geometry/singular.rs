@@ -9,35 +9,36 @@ use super::bitrig::Partials;
 use super::chart::Chart;
 use super::trace::grid::{Cell, plain_grid};
 use super::trace::{Bounds, DEPTH, Tracer, Unresolved, near};
+use crate::number::precision::Number;
 use crate::number::sign::CLOSE;
 
 /// A branch through a singular point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pass {
+pub(super) struct Pass<N: Number = f64> {
     /// The coordinates in which it is smooth.
-    pub chart: Chart,
+    pub chart: Chart<N>,
     /// κ at the point.
-    pub kappa: f64,
+    pub kappa: N,
 }
 
 /// A singular point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct SingularPoint {
+pub(super) struct SingularPoint<N: Number = f64> {
     /// (θ, φ).
-    pub angles: [f64; 2],
+    pub angles: [N; 2],
     /// The branches through it; none where it stands alone.
-    pub passes: Vec<Pass>,
+    pub passes: Vec<Pass<N>>,
     /// How far from it the curve is known to be no more than these branches.
-    pub zone: f64,
+    pub zone: N,
 }
 
 /// The critical points of F at which F is small.
 #[derive(Debug, Default)]
-pub(super) struct Critical {
+pub(super) struct Critical<N: Number = f64> {
     /// Those at which F is within the band, in the order of their angles.
-    pub singular: Vec<SingularPoint>,
+    pub singular: Vec<SingularPoint<N>>,
     /// The angles of these and of those at which it is nearly so.
-    pub close: Vec<[f64; 2]>,
+    pub close: Vec<[N; 2]>,
 }
 
 /// The greatest zone.
@@ -46,28 +47,31 @@ const ZONE: f64 = 0.05;
 const DEEP: u32 = 10;
 
 /// The critical points of F at which F is within the band, or so near to it that it is to be told.
-pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Critical, Unresolved> {
-    let reach = CLOSE * tracer.band;
-    let mut misses: Vec<[f64; 2]> = Vec::new();
-    let mut found: Vec<SingularPoint> = Vec::new();
+pub(super) fn singular_points<N: Number>(
+    tracer: &Tracer<'_, N>,
+) -> Result<Critical<N>, Unresolved> {
+    let reach = N::of(CLOSE) * tracer.band;
+    let mut misses: Vec<[N; 2]> = Vec::new();
+    let mut found: Vec<SingularPoint<N>> = Vec::new();
     // Degenerate points, with how far from them F is within the band.
-    let mut degenerate: Vec<(SingularPoint, f64)> = Vec::new();
-    let mut stack: Vec<(Cell, u32)> = plain_grid().into_iter().map(|c| (c, 0)).collect();
+    let mut degenerate: Vec<(SingularPoint<N>, N)> = Vec::new();
+    let mut stack: Vec<(Cell<N>, u32)> = plain_grid().into_iter().map(|c| (c, 0)).collect();
     while let Some((cell, depth)) = stack.pop() {
         let b = tracer.bounds(&cell);
-        if b.least > reach || b.x[0] > 0.0 || b.y[0] > 0.0 {
+        if b.least > reach || b.x[0] > N::ZERO || b.y[0] > N::ZERO {
             continue;
         }
         let [hx, hy] = cell.half();
-        let inside = |(p, reach): &(SingularPoint, f64)| {
-            hx.max(hy) <= *reach && near(&cell.centre(), &p.angles, 2.0 * reach)
+        let inside = |(p, reach): &(SingularPoint<N>, N)| {
+            hx.max(hy) <= *reach && near(&cell.centre(), &p.angles, N::TWO * *reach)
         };
         if degenerate.iter().any(inside) {
             continue;
         }
         if let Some(point) = only_critical(tracer, &cell, &b.at) {
             let Some(point) = point else { continue };
-            let same = |q: &SingularPoint| near(&q.angles, &point, 1e3 * tracer.slop.sqrt());
+            let same =
+                |q: &SingularPoint<N>| near(&q.angles, &point, N::of(1e3) * tracer.slop.sqrt());
             let value = tracer.form.value(point[0], point[1]).abs();
             if value > tracer.band {
                 if value < reach {
@@ -75,11 +79,11 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Critical, Unresolve
                 }
             } else if !found.iter().any(same) {
                 let plain = leading::plain(tracer.form, point);
-                found.push(plain.ok_or(Unresolved { angles: point })?);
+                found.push(plain.ok_or(Unresolved::at(point))?);
             }
             continue;
         }
-        if depth >= DEEP && b.least > 0.0 {
+        if depth >= DEEP && b.least > N::ZERO {
             if b.at.f.abs() < reach {
                 misses.push(cell.centre());
             }
@@ -88,30 +92,28 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Critical, Unresolve
         if depth >= DEEP
             && let Some((point, reach)) = leading::degenerate(tracer, cell.centre())
         {
-            let known = |q: &(SingularPoint, f64)| near(&q.0.angles, &point.angles, reach);
+            let known = |q: &(SingularPoint<N>, N)| near(&q.0.angles, &point.angles, reach);
             if !degenerate.iter().any(known) {
                 degenerate.push((point, reach));
             }
         }
         if depth >= DEPTH {
-            return Err(Unresolved {
-                angles: cell.centre(),
-            });
+            return Err(Unresolved::at(cell.centre()));
         }
         let Bounds { wide, .. } = b;
         stack.extend(cell.halves(wide).map(|c| (c, depth + 1)));
     }
     for (point, reach) in degenerate {
-        found.retain(|p| !near(&p.angles, &point.angles, 2.0 * reach));
+        found.retain(|p| !near(&p.angles, &point.angles, N::TWO * reach));
         found.push(point);
     }
     found.sort_by(|a, b| {
         let [a, b] = [a.angles, b.angles];
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
     });
-    let mut close: Vec<[f64; 2]> = Vec::new();
+    let mut close: Vec<[N; 2]> = Vec::new();
     for p in found.iter().map(|p| p.angles).chain(misses) {
-        if !close.iter().any(|q| near(q, &p, ZONE)) {
+        if !close.iter().any(|q| near(q, &p, N::of(ZONE))) {
             close.push(p);
         }
     }
@@ -123,13 +125,17 @@ pub(super) fn singular_points(tracer: &Tracer<'_>) -> Result<Critical, Unresolve
 
 /// Where the Hessian cannot vanish over the cell's surroundings: the one critical point there, if
 /// it lies in the cell. None where that is not known.
-fn only_critical(tracer: &Tracer<'_>, cell: &Cell, at: &Partials<f64>) -> Option<Option<[f64; 2]>> {
+fn only_critical<N: Number>(
+    tracer: &Tracer<'_, N>,
+    cell: &Cell<N>,
+    at: &Partials<N>,
+) -> Option<Option<[N; 2]>> {
     let det = at.xx * at.yy - at.xy * at.xy;
     let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
     let [hx, hy] = cell.half();
-    let reach = 2.0 * hx.max(hy);
+    let reach = N::TWO * hx.max(hy);
     // ‖H⁻¹‖ times the change of H over the surroundings stays below one.
-    if norm * tracer.third * reach >= 0.25 * det.abs() {
+    if norm * tracer.third * reach >= N::of(0.25) * det.abs() {
         return None;
     }
     let mut p = cell.centre();
@@ -141,12 +147,12 @@ fn only_critical(tracer: &Tracer<'_>, cell: &Cell, at: &Partials<f64>) -> Option
             (g.y * g.xx - g.x * g.xy) / det,
         ];
         p = [p[0] - step[0], p[1] - step[1]];
-        if step[0].abs().max(step[1].abs()) <= 4.0 * f64::EPSILON {
+        if step[0].abs().max(step[1].abs()) <= N::of(4.0) * N::EPSILON {
             break;
         }
     }
     let c = cell.centre();
-    let inside = (p[0] - c[0]).abs() <= 1.01 * hx && (p[1] - c[1]).abs() <= 1.01 * hy;
+    let inside = (p[0] - c[0]).abs() <= N::of(1.01) * hx && (p[1] - c[1]).abs() <= N::of(1.01) * hy;
     Some(inside.then_some(p))
 }
 

@@ -4,70 +4,71 @@
 //! nappe. Angles are in radians, lengths in the part's unit.
 
 use super::frame::Frame;
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::scalar::{Scalar, dot};
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::TAU;
 
 /// A plane: its frame's z axis is the normal, pointing to the outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
+pub struct Plane<N: Number = f64> {
     /// Origin in the plane, z the unit normal.
-    pub frame: Frame,
+    pub frame: Frame<N>,
 }
 
 /// A circular cylinder about its frame's z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cylinder {
+pub struct Cylinder<N: Number = f64> {
     /// z along the axis.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// The radius.
-    pub radius: f64,
+    pub radius: N,
 }
 
 /// One nappe of a circular cone: apex at the frame's origin, opening along +z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone {
+pub struct Cone<N: Number = f64> {
     /// Origin at the apex, z along the axis into the nappe.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// The sine of the half angle.
-    pub sin: f64,
+    pub sin: N,
     /// The cosine of the half angle.
-    pub cos: f64,
+    pub cos: N,
 }
 
 /// A sphere about its frame's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sphere {
+pub struct Sphere<N: Number = f64> {
     /// Origin at the centre; the axes only serve the parameters.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// The radius.
-    pub radius: f64,
+    pub radius: N,
 }
 
 /// A ring torus about its frame's z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Torus {
+pub struct Torus<N: Number = f64> {
     /// Origin at the centre, z along the axis.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// The radius of the spine circle.
-    pub major: f64,
+    pub major: N,
     /// The radius of the tube, less than `major`.
-    pub minor: f64,
+    pub minor: N,
 }
 
 /// A surface that can bound a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Surface {
+pub enum Surface<N: Number = f64> {
     /// A plane.
-    Plane(Plane),
+    Plane(Plane<N>),
     /// A circular cylinder.
-    Cylinder(Cylinder),
+    Cylinder(Cylinder<N>),
     /// One nappe of a circular cone.
-    Cone(Cone),
+    Cone(Cone<N>),
     /// A sphere.
-    Sphere(Sphere),
+    Sphere(Sphere<N>),
     /// A ring torus.
-    Torus(Torus),
+    Torus(Torus<N>),
 }
 
 /// The kinds of surfaces, by name.
@@ -98,7 +99,7 @@ impl SurfaceKind {
     }
 }
 
-impl Surface {
+impl<N: Number> Surface<N> {
     /// The kind of surface.
     pub fn kind(&self) -> SurfaceKind {
         match self {
@@ -111,7 +112,7 @@ impl Surface {
     }
 
     /// The surface's frame.
-    pub fn frame(&self) -> &Frame {
+    pub fn frame(&self) -> &Frame<N> {
         match self {
             Self::Plane(s) => &s.frame,
             Self::Cylinder(s) => &s.frame,
@@ -123,7 +124,7 @@ impl Surface {
 
     /// A smooth function that is zero on the surface, negative inside, with a gradient of length
     /// one on the surface: the signed distance to first order.
-    pub fn level<S: Scalar>(&self, p: [S; 3]) -> S {
+    pub fn level<S: Scalar<Number = N>>(&self, p: [S; 3]) -> S {
         match self {
             Self::Plane(s) => {
                 let o = &s.frame.origin;
@@ -136,48 +137,50 @@ impl Surface {
             }
             Self::Cylinder(s) => {
                 let [x, y, _] = s.frame.local(p);
-                (x.square() + y.square() - S::constant(s.radius * s.radius)).scale(0.5 / s.radius)
+                (x.square() + y.square() - S::constant(s.radius * s.radius))
+                    .scale(N::HALF / s.radius)
             }
             Self::Cone(s) => {
                 let [x, y, z] = s.frame.local(p);
-                (x.square() + y.square()).sqrt().scale(s.cos) - z.scale(s.sin)
+                (x.square() + y.square()).root().scale(s.cos) - z.scale(s.sin)
             }
             Self::Sphere(s) => {
                 let [x, y, z] = s.frame.local(p);
                 (x.square() + y.square() + z.square() - S::constant(s.radius * s.radius))
-                    .scale(0.5 / s.radius)
+                    .scale(N::HALF / s.radius)
             }
             Self::Torus(s) => {
                 let [x, y, z] = s.frame.local(p);
-                let across = (x.square() + y.square()).sqrt() - S::constant(s.major);
-                (across.square() + z.square() - S::constant(s.minor * s.minor)).scale(0.5 / s.minor)
+                let across = (x.square() + y.square()).root() - S::constant(s.major);
+                (across.square() + z.square() - S::constant(s.minor * s.minor))
+                    .scale(N::HALF / s.minor)
             }
         }
     }
 
     /// The signed distance of a point, negative inside; exact for all five but behind the apex of
     /// a cone, where it is a lower bound of the distance with the right sign.
-    pub fn distance(&self, p: &Point3<f64>) -> f64 {
+    pub fn distance(&self, p: &Point3<N>) -> N {
         let q = self.frame().coordinates(p);
         match self {
             Self::Plane(_) => q.z,
             Self::Cylinder(s) => beyond_circle(q.x, q.y, s.radius),
             Self::Cone(s) => q.x.hypot(q.y) * s.cos - q.z * s.sin,
-            Self::Sphere(s) => q.norm() - s.radius,
+            Self::Sphere(s) => q.length() - s.radius,
             Self::Torus(s) => (q.x.hypot(q.y) - s.major).hypot(q.z) - s.minor,
         }
     }
 
     /// The outward unit normal at a point of the surface; along the axis at a cone's apex.
-    pub fn normal(&self, p: &Point3<f64>) -> Vector3<f64> {
+    pub fn normal(&self, p: &Point3<N>) -> Vector3<N> {
         let f = self.frame();
         let q = f.coordinates(p);
         let local = match self {
             Self::Plane(_) => return f.z,
-            Self::Cylinder(_) => Vector3::new(q.x, q.y, 0.0),
+            Self::Cylinder(_) => Vector3::new(q.x, q.y, N::ZERO),
             Self::Cone(s) => {
                 let rho = q.x.hypot(q.y);
-                if rho == 0.0 {
+                if rho == N::ZERO {
                     return -f.z;
                 }
                 Vector3::new(q.x / rho * s.cos, q.y / rho * s.cos, -s.sin)
@@ -189,17 +192,17 @@ impl Surface {
                 Vector3::new(q.x * k, q.y * k, q.z)
             }
         };
-        f.vector(&local.normalize())
+        f.vector(&local.unit())
     }
 
     /// The normal curvature of the surface at `p` in the unit tangent direction `t`, positive
     /// where the surface bends towards its inside.
-    pub fn normal_curvature(&self, p: &Point3<f64>, t: &Vector3<f64>) -> f64 {
+    pub fn normal_curvature(&self, p: &Point3<N>, t: &Vector3<N>) -> N {
         let f = self.frame();
         let q = f.coordinates(p);
         let t = f.components(t);
         match self {
-            Self::Plane(_) => 0.0,
+            Self::Plane(_) => N::ZERO,
             Self::Cylinder(s) => {
                 let along = (q.x * t.y - q.y * t.x) / s.radius;
                 along * along / s.radius
@@ -209,12 +212,12 @@ impl Surface {
                 let along = (q.x * t.y - q.y * t.x) / rho;
                 along * along * s.cos / rho
             }
-            Self::Sphere(s) => 1.0 / s.radius,
+            Self::Sphere(s) => N::ONE / s.radius,
             Self::Torus(s) => {
                 let rho = q.x.hypot(q.y);
                 let along = (q.x * t.y - q.y * t.x) / rho;
                 let cos = (rho - s.major) / s.minor;
-                along * along * cos / rho + (1.0 - along * along) / s.minor
+                along * along * cos / rho + (N::ONE - along * along) / s.minor
             }
         }
     }
@@ -223,7 +226,7 @@ impl Surface {
     /// cylinder and of a cone (from the apex); longitude and latitude of a sphere; the angle about
     /// the axis and about the tube of a torus. Angles lie in [0, 2 pi), the latitude in
     /// [-pi/2, pi/2].
-    pub fn parameters(&self, p: &Point3<f64>) -> [f64; 2] {
+    pub fn parameters(&self, p: &Point3<N>) -> [N; 2] {
         let q = self.frame().coordinates(p);
         match self {
             Self::Plane(_) => [q.x, q.y],
@@ -237,11 +240,11 @@ impl Surface {
     }
 
     /// The point with the given parameters.
-    pub fn point(&self, u: f64, v: f64) -> Point3<f64> {
+    pub fn point(&self, u: N, v: N) -> Point3<N> {
         let f = self.frame();
         let (sin, cos) = u.sin_cos();
         match self {
-            Self::Plane(_) => f.point(u, v, 0.0),
+            Self::Plane(_) => f.point(u, v, N::ZERO),
             Self::Cylinder(s) => f.point(s.radius * cos, s.radius * sin, v),
             Self::Cone(s) => {
                 let rho = v * s.sin / s.cos;
@@ -259,16 +262,16 @@ impl Surface {
     }
 
     /// The periods of the two parameters, where they have one.
-    pub fn periods(&self) -> [Option<f64>; 2] {
+    pub fn periods(&self) -> [Option<N>; 2] {
         match self {
             Self::Plane(_) => [None, None],
-            Self::Cylinder(_) | Self::Cone(_) | Self::Sphere(_) => [Some(TAU), None],
-            Self::Torus(_) => [Some(TAU), Some(TAU)],
+            Self::Cylinder(_) | Self::Cone(_) | Self::Sphere(_) => [Some(N::TAU), None],
+            Self::Torus(_) => [Some(N::TAU), Some(N::TAU)],
         }
     }
 
     /// The nearest point of the surface to `p`, where it is unique.
-    pub fn nearest(&self, p: &Point3<f64>) -> Point3<f64> {
+    pub fn nearest(&self, p: &Point3<N>) -> Point3<N> {
         let mut q = *p;
         for _ in 0..2 {
             q -= self.normal(&q) * self.distance(&q);
@@ -279,14 +282,14 @@ impl Surface {
 
 /// How far (x, y) lies outside the circle of radius r about the origin: (x² + y² - r²)/(ρ + r), with
 /// the differences taken so that next to an axis, where planes are tangent, no digits cancel.
-fn beyond_circle(x: f64, y: f64, r: f64) -> f64 {
+fn beyond_circle<N: Number>(x: N, y: N, r: N) -> N {
     let (x, y) = (x.abs(), y.abs());
     let (least, most) = if x < y { (x, y) } else { (y, x) };
     (least * least + (most - r) * (most + r)) / ((x * x + y * y).sqrt() + r)
 }
 
 /// The angle brought into [0, 2 pi).
-pub fn turn(angle: f64) -> f64 {
-    let a = angle.rem_euclid(TAU);
-    if a >= TAU { 0.0 } else { a }
+pub fn turn<N: Number>(angle: N) -> N {
+    let a = angle.rem_euclid(N::TAU);
+    if a >= N::TAU { N::ZERO } else { a }
 }

@@ -11,10 +11,9 @@ use super::surface::Torus;
 use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
 use crate::number::jet::{Base, Jet};
+use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
-use crate::number::sign::ROUNDING;
 use nalgebra::Point3;
-use std::f64::consts::{PI, TAU};
 
 /// The angle that a segment runs along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,56 +26,56 @@ pub enum Axis {
 
 /// A graph of one angle over the other, or of κ over σ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
+pub struct Segment<N: Number = f64> {
     /// The angle that runs, or whose offset is a power of σ.
     pub axis: Axis,
     /// Where it starts.
-    pub from: f64,
+    pub from: N,
     /// Where it ends, on either side of `from`.
-    pub to: f64,
+    pub to: N,
     /// The other angle at both ends.
-    pub ends: [f64; 2],
+    pub ends: [N; 2],
     /// The other angle's derivative at both ends.
-    pub slopes: [f64; 2],
+    pub slopes: [N; 2],
     /// A bound of that derivative's absolute value.
-    pub steep: f64,
+    pub steep: N,
     /// The range of the other angle in which the graph is the only one.
-    pub bracket: [f64; 2],
+    pub bracket: [N; 2],
     /// The chart of the segment's coordinates, an index into the curve's; else they are angles.
     pub chart: Option<usize>,
 }
 
 /// A branch of F(θ, φ) = 0 on a torus; the parameter runs over one unit for each segment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Toric {
+pub struct Toric<N: Number = f64> {
     /// The torus.
-    pub torus: Torus,
+    pub torus: Torus<N>,
     /// F.
-    pub form: BiTrig,
+    pub form: BiTrig<N>,
     /// F about its singular points, for each branch.
-    pub charts: Vec<Chart>,
+    pub charts: Vec<Chart<N>>,
     /// The chain.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<Segment<N>>,
     /// Whether the last segment ends where the first begins.
     pub closed: bool,
 }
 
 /// What a segment is solved by: F in its coordinates.
 #[derive(Clone, Copy)]
-enum Form<'a> {
-    Angles(&'a BiTrig, Axis),
-    Chart(&'a Chart),
+enum Form<'a, N: Number = f64> {
+    Angles(&'a BiTrig<N>, Axis),
+    Chart(&'a Chart<N>),
 }
 
 /// F with the running coordinate fixed.
-enum Fixed {
-    Angle(Section),
-    Chart([f64; DEGREE + 1]),
+enum Fixed<N: Number = f64> {
+    Angle(Section<N>),
+    Chart([N; DEGREE + 1]),
 }
 
-impl Fixed {
+impl<N: Number> Fixed<N> {
     /// The sum of the absolute coefficients: what rounding is in proportion to.
-    fn size(&self) -> f64 {
+    fn size(&self) -> N {
         match self {
             Self::Angle(section) => section.size(),
             Self::Chart(section) => section.iter().map(|c| c.abs()).sum(),
@@ -84,33 +83,33 @@ impl Fixed {
     }
 
     /// The value and the derivative.
-    fn at(&self, y: f64) -> [f64; 2] {
+    fn at(&self, y: N) -> [N; 2] {
         match self {
             Self::Angle(section) => section.at(y),
             Self::Chart(section) => {
-                let step = |[v, d]: [f64; 2], c: &f64| [v * y + c, d * y + v];
-                section.iter().rev().fold([0.0; 2], step)
+                let step = |[v, d]: [N; 2], c: &N| [v * y + *c, d * y + v];
+                section.iter().rev().fold([N::ZERO; 2], step)
             }
         }
     }
 }
 
-impl Form<'_> {
-    fn fixed(&self, x: f64) -> Fixed {
+impl<N: Number> Form<'_, N> {
+    fn fixed(&self, x: N) -> Fixed<N> {
         match self {
             Self::Angles(form, axis) => Fixed::Angle(form.section(*axis == Axis::Around, x)),
             Self::Chart(chart) => Fixed::Chart(chart.section(x)),
         }
     }
 
-    fn partials(&self, x: f64, y: f64) -> Partials<f64> {
+    fn partials(&self, x: N, y: N) -> Partials<N> {
         match self {
             Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
             Self::Chart(chart) => chart.partials(x, y),
         }
     }
 
-    fn partials_over(&self, x: Interval, y: Interval) -> Partials<Interval> {
+    fn partials_over(&self, x: Interval<N>, y: Interval<N>) -> Partials<Interval<N>> {
         match self {
             Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
             Self::Chart(chart) => chart.partials_over(x, y),
@@ -135,21 +134,21 @@ fn run_along<S>(axis: Axis, x: S, y: S, at: impl Fn(S, S) -> Partials<S>) -> Par
     }
 }
 
-impl Segment {
+impl<N: Number> Segment<N> {
     /// The cubic through both ends with their slopes.
-    fn hermite(&self, x: f64) -> f64 {
+    fn hermite(&self, x: N) -> N {
         let length = self.to - self.from;
         let s = (x - self.from) / length;
         let [y0, y1] = self.ends;
         let (m0, m1) = (self.slopes[0] * length, self.slopes[1] * length);
-        let (a, b) = (1.0 - s, s);
-        y0 * a * a * (1.0 + 2.0 * b) + y1 * b * b * (3.0 - 2.0 * b) + m0 * b * a * a
+        let (a, b) = (N::ONE - s, s);
+        y0 * a * a * (N::ONE + N::TWO * b) + y1 * b * b * (N::of(3.0) - N::TWO * b) + m0 * b * a * a
             - m1 * a * b * b
     }
 
     /// The same graph, run the other way.
     pub fn reversed(&self) -> Self {
-        let flip = |[a, b]: [f64; 2]| [b, a];
+        let flip = |[a, b]: [N; 2]| [b, a];
         Self {
             from: self.to,
             to: self.from,
@@ -160,15 +159,15 @@ impl Segment {
     }
 
     /// The other angle over x.
-    fn solve(&self, form: Form<'_>, x: f64) -> f64 {
+    fn solve(&self, form: Form<'_, N>, x: N) -> N {
         let start = self.hermite(x);
         let [lo, hi] = self.bracket;
-        let reach = self.steep.max(1.0) * (self.to - self.from).abs();
+        let reach = self.steep.max(N::ONE) * (self.to - self.from).abs();
         let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
         let section = form.fixed(x);
-        let rounding = ROUNDING * section.size();
+        let rounding = N::ROUNDING * section.size();
         let mut y = start;
-        let mut last = f64::INFINITY;
+        let mut last = N::INFINITY;
         for _ in 0..12 {
             let [value, slope] = section.at(y);
             let step = value / slope;
@@ -178,32 +177,32 @@ impl Segment {
             y -= step;
             // Next to a singular point only rounding is left of the value, and steps no longer
             // get shorter.
-            let noise = value.abs() <= rounding && step.abs() >= 0.5 * last;
-            if noise || step.abs() <= 2.0 * f64::EPSILON * (1.0 + y.abs()) {
+            let noise = value.abs() <= rounding && step.abs() >= N::HALF * last;
+            if noise || step.abs() <= N::TWO * N::EPSILON * (N::ONE + y.abs()) {
                 return y;
             }
             last = step.abs();
         }
         // Newton left the cell: F is monotone across it, so halving finds the root.
-        let value = |y: f64| section.at(y)[0];
+        let value = |y: N| section.at(y)[0];
         let (flo, fhi) = (value(self.bracket[0]), value(self.bracket[1]));
-        if self.bracket[0].is_finite() && flo * fhi < 0.0 {
+        if self.bracket[0].is_finite() && flo * fhi < N::ZERO {
             return bisect(self.bracket[0], self.bracket[1], flo, value);
         }
         y
     }
 
-    fn jet(&self, form: Form<'_>, x: f64) -> [f64; 3] {
+    fn jet(&self, form: Form<'_, N>, x: N) -> [N; 3] {
         let y = self.solve(form, x);
         let p = form.partials(x, y);
         let d = -p.x / p.y;
-        [y, d, -(p.xx + 2.0 * p.xy * d + p.yy * d * d) / p.y]
+        [y, d, -(p.xx + N::TWO * p.xy * d + p.yy * d * d) / p.y]
     }
 
-    fn interval_jet(&self, form: Form<'_>, x: Interval) -> [Interval; 3] {
+    fn interval_jet(&self, form: Form<'_, N>, x: Interval<N>) -> [Interval<N>; 3] {
         let m = x.mid();
         let ym = self.solve(form, m);
-        let slop = Interval::around(ym, 4.0 * f64::EPSILON * (1.0 + ym.abs()));
+        let slop = Interval::around(ym, N::of(4.0) * N::EPSILON * (N::ONE + ym.abs()));
         let run = x - Interval::point(m);
         let prior = Interval::new(-self.steep, self.steep);
         let mut y = slop + prior * run;
@@ -213,17 +212,17 @@ impl Segment {
         }
         let d = (-p.x.over(p.y)).meet(prior);
         y = y.meet(slop + d * run);
-        let dd = -(p.xx + (p.xy * d).scale(2.0) + p.yy * d.square()).over(p.y);
+        let dd = -(p.xx + (p.xy * d).times(2.0) + p.yy * d.square()).over(p.y);
         [y, d, dd]
     }
 }
 
-impl Toric {
-    fn chart(&self, s: &Segment) -> Option<&Chart> {
+impl<N: Number> Toric<N> {
+    fn chart(&self, s: &Segment<N>) -> Option<&Chart<N>> {
         s.chart.and_then(|c| self.charts.get(c))
     }
 
-    fn form(&self, s: &Segment) -> Form<'_> {
+    fn form(&self, s: &Segment<N>) -> Form<'_, N> {
         match self.chart(s) {
             Some(chart) => Form::Chart(chart),
             None => Form::Angles(&self.form, s.axis),
@@ -231,7 +230,12 @@ impl Toric {
     }
 
     /// (θ, φ) of the coordinates of a segment.
-    fn unfolded<S: Base>(&self, s: &Segment, run: Jet<S>, other: Jet<S>) -> [Jet<S>; 2] {
+    fn unfolded<S: Base<Number = N>>(
+        &self,
+        s: &Segment<N>,
+        run: Jet<S>,
+        other: Jet<S>,
+    ) -> [Jet<S>; 2] {
         match self.chart(s) {
             None => arrange(s.axis, run, other),
             Some(chart) => {
@@ -244,9 +248,9 @@ impl Toric {
     }
 
     /// (θ, φ) at both ends of a segment, in its sense.
-    pub fn ends(&self, index: usize) -> [[f64; 2]; 2] {
+    pub fn ends(&self, index: usize) -> [[N; 2]; 2] {
         let s = &self.segments[index];
-        let at = |x: f64, y: f64| {
+        let at = |x: N, y: N| {
             self.unfolded(s, Jet::constant(x), Jet::constant(y))
                 .map(|j| j.v)
         };
@@ -254,23 +258,23 @@ impl Toric {
     }
 
     /// The number of segments: the parameter's length.
-    pub fn length(&self) -> f64 {
-        self.segments.len() as f64
+    pub fn length(&self) -> N {
+        N::of(self.segments.len() as f64)
     }
 
-    fn locate(&self, t: f64) -> (&Segment, f64) {
+    fn locate(&self, t: N) -> (&Segment<N>, N) {
         let n = self.segments.len();
         let t = if self.closed {
-            t.rem_euclid(n as f64)
+            t.rem_euclid(N::of(n as f64))
         } else {
-            t.clamp(0.0, n as f64)
+            t.clamp(N::ZERO, N::of(n as f64))
         };
-        let i = (t.floor() as usize).min(n - 1);
-        (&self.segments[i], t - i as f64)
+        let i = t.floor().index().min(n - 1);
+        (&self.segments[i], t - N::of(i as f64))
     }
 
     /// (θ, φ) at t with two derivatives by t.
-    pub fn angles(&self, t: f64) -> [Jet<f64>; 2] {
+    pub fn angles(&self, t: N) -> [Jet<N>; 2] {
         let (s, tau) = self.locate(t);
         let length = s.to - s.from;
         let x = s.from + tau * length;
@@ -278,7 +282,7 @@ impl Toric {
         let run = Jet {
             v: x,
             d: length,
-            dd: 0.0,
+            dd: N::ZERO,
         };
         let other = Jet {
             v: y,
@@ -289,7 +293,7 @@ impl Toric {
     }
 
     /// (θ, φ) over an interval of t inside one segment, with two derivatives.
-    pub fn angles_over(&self, t: Interval) -> [Jet<Interval>; 2] {
+    pub fn angles_over(&self, t: Interval<N>) -> [Jet<Interval<N>>; 2] {
         let (s, tau) = self.locate(t.mid());
         let length = s.to - s.from;
         let base = t.mid() - tau;
@@ -299,7 +303,7 @@ impl Toric {
         let run = Jet {
             v: x,
             d: Interval::point(length),
-            dd: Interval::point(0.0),
+            dd: Interval::point(N::ZERO),
         };
         let other = Jet {
             v: y,
@@ -310,7 +314,7 @@ impl Toric {
     }
 
     /// The point with the given angles.
-    pub fn lift<S: Scalar>(&self, [theta, phi]: [S; 2]) -> [S; 3] {
+    pub fn lift<S: Scalar<Number = N>>(&self, [theta, phi]: [S; 2]) -> [S; 3] {
         let t = &self.torus;
         let (st, ct) = theta.sin_cos();
         let (sp, cp) = phi.sin_cos();
@@ -319,39 +323,40 @@ impl Toric {
     }
 
     /// Whether the curve turns back at t: whether a cusp is there.
-    pub fn turns_back(&self, t: f64) -> bool {
+    pub fn turns_back(&self, t: N) -> bool {
         let n = self.segments.len();
-        let near = t.rem_euclid(n as f64).round();
-        let s = &self.segments[near as usize % n];
-        let at_cusp = |c: &Chart| c.weights.run == 2 && s.from == 0.0;
-        let away = (t - near).rem_euclid(n as f64);
-        away.min(n as f64 - away) <= ROUNDING * n as f64 && self.chart(s).is_some_and(at_cusp)
+        let near = t.rem_euclid(N::of(n as f64)).round();
+        let s = &self.segments[near.index() % n];
+        let at_cusp = |c: &Chart<N>| c.weights.run == 2 && s.from == N::ZERO;
+        let away = (t - near).rem_euclid(N::of(n as f64));
+        away.min(N::of(n as f64) - away) <= N::ROUNDING * N::of(n as f64)
+            && self.chart(s).is_some_and(at_cusp)
     }
 
     /// The parameter of the curve's point next to the angles (θ, φ).
-    pub fn parameter(&self, theta: f64, phi: f64) -> f64 {
-        let mut best = (f64::INFINITY, 0.0);
+    pub fn parameter(&self, theta: N, phi: N) -> N {
+        let mut best = (N::INFINITY, N::ZERO);
         for (i, s) in self.segments.iter().enumerate() {
             let x = self.folded(s, theta, phi);
             let length = s.to - s.from;
-            let tau = ((x - s.from) / length).clamp(0.0, 1.0);
+            let tau = ((x - s.from) / length).clamp(N::ZERO, N::ONE);
             let on = s.from + tau * length;
             let other = s.solve(self.form(s), on);
-            let [a, b] = self.unfolded::<f64>(s, Jet::constant(on), Jet::constant(other));
+            let [a, b] = self.unfolded::<N>(s, Jet::constant(on), Jet::constant(other));
             let away = wrap(theta - a.v).hypot(wrap(phi - b.v));
             if away < best.0 {
-                best = (away, i as f64 + tau);
+                best = (away, N::of(i as f64) + tau);
             }
         }
         best.1
     }
 
     /// The running coordinate of a segment at the angles (θ, φ).
-    fn folded(&self, s: &Segment, theta: f64, phi: f64) -> f64 {
+    fn folded(&self, s: &Segment<N>, theta: N, phi: N) -> N {
         match self.chart(s) {
             None => {
                 let [x, _] = arrange(s.axis, theta, phi);
-                let middle = 0.5 * (s.from + s.to);
+                let middle = N::HALF * (s.from + s.to);
                 middle + wrap(x - middle)
             }
             Some(chart) => {
@@ -363,7 +368,7 @@ impl Toric {
     }
 
     /// A point of the torus by its angles.
-    pub fn point(&self, t: f64) -> Point3<f64> {
+    pub fn point(&self, t: N) -> Point3<N> {
         let [theta, phi] = self.angles(t);
         Point3::from(self.lift([theta.v, phi.v]))
     }
@@ -377,6 +382,6 @@ fn arrange<T>(axis: Axis, run: T, other: T) -> [T; 2] {
 }
 
 /// The angle brought into [-pi, pi).
-pub fn wrap(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
+pub fn wrap<N: Number>(angle: N) -> N {
+    (angle + N::PI).rem_euclid(N::TAU) - N::PI
 }

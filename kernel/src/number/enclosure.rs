@@ -3,7 +3,8 @@
 //! Sums, products and quotients of exact numbers stay exact while they are short; what grows beyond
 //! the chosen number of bits, and square roots, are rounded outwards.
 
-use super::rational::{Rational, bits as length, exact_sqrt, from_f64, to_f64};
+use super::precision::Number;
+use super::rational::{Rational, bits as length, exact_sqrt, from_f64};
 use dashu::base::{BitTest, DivRemEuclid, SquareRoot};
 use dashu::integer::{IBig, UBig};
 use std::cmp::Ordering;
@@ -97,10 +98,10 @@ impl Enclosure {
         self.ends.as_ref()
     }
 
-    /// The double next to the middle; not a number where nothing is known.
-    pub fn middle(&self) -> f64 {
-        let middle = |[lo, hi]: &[Rational; 2]| to_f64(&((lo + hi) / Rational::from(2)));
-        self.ends.as_ref().map_or(f64::NAN, middle)
+    /// The number next to the middle; not a number where nothing is known.
+    pub fn middle<N: Number>(&self) -> N {
+        let middle = |[lo, hi]: &[Rational; 2]| N::nearest(&((lo + hi) / Rational::from(2)));
+        self.ends.as_ref().map_or(N::NAN, middle)
     }
 
     fn of(ends: Option<[Rational; 2]>, bits: usize) -> Self {

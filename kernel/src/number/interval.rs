@@ -1,52 +1,52 @@
 //! Closed intervals of doubles, rounded outwards: the first filter of every sign.
 
+use super::precision::Number;
 use super::scalar::{Scalar, sinc_jet};
-use std::f64::consts::{PI, TAU};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A closed interval that holds the exact value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub struct Interval<N = f64> {
     /// The lower end.
-    pub lo: f64,
+    pub lo: N,
     /// The upper end.
-    pub hi: f64,
+    pub hi: N,
 }
 
 /// A double below what was rounded to `x`: by one or two units in the last place, which costs less
 /// than the next one. A sum that is rounded to zero is zero; products see to it themselves.
-fn down(x: f64) -> f64 {
-    if x == 0.0 {
-        return 0.0;
+fn down<N: Number>(x: N) -> N {
+    if x == N::ZERO {
+        return N::ZERO;
     }
-    let x = if x > f64::MAX { f64::MAX } else { x };
-    x - (x.abs() * f64::EPSILON + f64::MIN_POSITIVE)
+    let x = if x > N::MAX { N::MAX } else { x };
+    x - (x.abs() * N::EPSILON + N::MIN_POSITIVE)
 }
 
 /// A double above what was rounded to `x`.
-fn up(x: f64) -> f64 {
+fn up<N: Number>(x: N) -> N {
     -down(-x)
 }
 
 /// The lesser of two numbers.
-fn least(a: f64, b: f64) -> f64 {
+fn least<N: Number>(a: N, b: N) -> N {
     if a < b { a } else { b }
 }
 
 /// The greater of two numbers.
-fn greatest(a: f64, b: f64) -> f64 {
+fn greatest<N: Number>(a: N, b: N) -> N {
     if a > b { a } else { b }
 }
 
-impl Interval {
+impl<N: Number> Interval<N> {
     /// The whole line.
-    pub const ENTIRE: Interval = Interval {
-        lo: f64::NEG_INFINITY,
-        hi: f64::INFINITY,
+    pub const ENTIRE: Self = Self {
+        lo: N::NEG_INFINITY,
+        hi: N::INFINITY,
     };
 
     /// The interval from `lo` to `hi`, given in either order.
-    pub fn new(lo: f64, hi: f64) -> Self {
+    pub fn new(lo: N, hi: N) -> Self {
         if lo <= hi {
             Self { lo, hi }
         } else {
@@ -55,12 +55,12 @@ impl Interval {
     }
 
     /// The single double `x`.
-    pub fn point(x: f64) -> Self {
+    pub fn point(x: N) -> Self {
         Self { lo: x, hi: x }
     }
 
     /// The interval `centre ± radius`, rounded outwards.
-    pub fn around(centre: f64, radius: f64) -> Self {
+    pub fn around(centre: N, radius: N) -> Self {
         Self {
             lo: down(centre - radius),
             hi: up(centre + radius),
@@ -68,23 +68,23 @@ impl Interval {
     }
 
     /// A double inside.
-    pub fn mid(self) -> f64 {
-        let m = 0.5 * (self.lo + self.hi);
-        if m.is_finite() { m } else { 0.0 }
+    pub fn mid(self) -> N {
+        let m = N::HALF * (self.lo + self.hi);
+        if m.is_finite() { m } else { N::ZERO }
     }
 
     /// The length.
-    pub fn width(self) -> f64 {
+    pub fn width(self) -> N {
         self.hi - self.lo
     }
 
     /// Whether zero may be the value.
     pub fn has_zero(self) -> bool {
-        !(self.lo > 0.0 || self.hi < 0.0)
+        !(self.lo > N::ZERO || self.hi < N::ZERO)
     }
 
     /// The greatest absolute value.
-    pub fn magnitude(self) -> f64 {
+    pub fn magnitude(self) -> N {
         self.lo.abs().max(self.hi.abs())
     }
 
@@ -111,41 +111,56 @@ impl Interval {
     /// Where an end is zero, though no factor is: made wide enough for what was lost.
     fn after_product(self, x: Self, y: Self) -> Self {
         let ends = |i: Self| [i.lo, i.hi];
-        let lost = |a: f64| {
+        let lost = |a: N| {
             ends(y)
                 .iter()
-                .any(|&b| a != 0.0 && b != 0.0 && a * b == 0.0)
+                .any(|&b| a != N::ZERO && b != N::ZERO && a * b == N::ZERO)
         };
-        if (self.lo == 0.0 || self.hi == 0.0) && ends(x).into_iter().any(lost) {
+        if (self.lo == N::ZERO || self.hi == N::ZERO) && ends(x).into_iter().any(lost) {
             return Self {
-                lo: self.lo - f64::MIN_POSITIVE,
-                hi: self.hi + f64::MIN_POSITIVE,
+                lo: self.lo - N::MIN_POSITIVE,
+                hi: self.hi + N::MIN_POSITIVE,
             };
         }
         self
     }
 
+    /// The same between doubles.
+    pub fn in_doubles(self) -> Interval {
+        Interval {
+            lo: self.lo.below(),
+            hi: self.hi.above(),
+        }
+    }
+
     fn clamp_unit(self) -> Self {
         Self {
-            lo: self.lo.max(-1.0),
-            hi: self.hi.min(1.0),
+            lo: self.lo.max(-N::ONE),
+            hi: self.hi.min(N::ONE),
         }
     }
 
     fn cos(self) -> Self {
-        if self.width() >= TAU || self.width().is_nan() {
-            return Self { lo: -1.0, hi: 1.0 };
+        if self.width() >= N::TAU || self.width().is_nan() {
+            return Self {
+                lo: -N::ONE,
+                hi: N::ONE,
+            };
         }
         // Turns are counted with a slack that only ever widens the answer.
-        let slack = f64::EPSILON * (self.magnitude() + TAU);
-        let holds = |offset: f64| {
-            let k = ((self.lo - slack - offset) / TAU).ceil();
-            k * TAU + offset <= self.hi + slack
+        let slack = N::EPSILON * (self.magnitude() + N::TAU);
+        let holds = |offset: N| {
+            let k = ((self.lo - slack - offset) / N::TAU).ceil();
+            k * N::TAU + offset <= self.hi + slack
         };
         let (a, b) = (self.lo.cos(), self.hi.cos());
-        let hi = if holds(0.0) { 1.0 } else { up(up(a.max(b))) };
-        let lo = if holds(PI) {
-            -1.0
+        let hi = if holds(N::ZERO) {
+            N::ONE
+        } else {
+            up(up(a.max(b)))
+        };
+        let lo = if holds(N::PI) {
+            -N::ONE
         } else {
             down(down(a.min(b)))
         };
@@ -154,18 +169,18 @@ impl Interval {
 
     fn sin(self) -> Self {
         let shifted = Self {
-            lo: self.lo - PI / 2.0,
-            hi: self.hi - PI / 2.0,
+            lo: self.lo - N::PI / N::TWO,
+            hi: self.hi - N::PI / N::TWO,
         };
         let wide = shifted.cos();
         let (a, b) = (self.lo.sin(), self.hi.sin());
-        let hi = if wide.hi == 1.0 {
-            1.0
+        let hi = if wide.hi == N::ONE {
+            N::ONE
         } else {
             up(up(a.max(b)))
         };
-        let lo = if wide.lo == -1.0 {
-            -1.0
+        let lo = if wide.lo == -N::ONE {
+            -N::ONE
         } else {
             down(down(a.min(b)))
         };
@@ -176,17 +191,17 @@ impl Interval {
     pub(super) fn sinc_jet(self) -> [Self; 3] {
         // Bounds of the next derivative on the whole line: 0.4362, 1/3, 1/4.
         let centre = sinc_jet(self.mid());
-        let radius = 0.5 * self.width();
-        let slop = 8.0 * f64::EPSILON;
+        let radius = N::HALF * self.width();
+        let slop = N::of(8.0) * N::EPSILON;
         [
-            Self::around(centre[0], 0.4363 * radius + slop),
-            Self::around(centre[1], 0.3334 * radius + slop),
-            Self::around(centre[2], 0.25 * radius + slop),
+            Self::around(centre[0], N::of(0.4363) * radius + slop),
+            Self::around(centre[1], N::of(0.3334) * radius + slop),
+            Self::around(centre[2], N::of(0.25) * radius + slop),
         ]
     }
 }
 
-impl Add for Interval {
+impl<N: Number> Add for Interval<N> {
     type Output = Self;
     fn add(self, o: Self) -> Self {
         Self {
@@ -196,7 +211,7 @@ impl Add for Interval {
     }
 }
 
-impl Sub for Interval {
+impl<N: Number> Sub for Interval<N> {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
         Self {
@@ -206,7 +221,7 @@ impl Sub for Interval {
     }
 }
 
-impl Neg for Interval {
+impl<N: Number> Neg for Interval<N> {
     type Output = Self;
     fn neg(self) -> Self {
         Self {
@@ -217,11 +232,15 @@ impl Neg for Interval {
 }
 
 /// A product of ends; zero times infinity counts as zero.
-fn times(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+fn times<N: Number>(a: N, b: N) -> N {
+    if a == N::ZERO || b == N::ZERO {
+        N::ZERO
+    } else {
+        a * b
+    }
 }
 
-impl Mul for Interval {
+impl<N: Number> Mul for Interval<N> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
         let (mut a, mut b) = (self.lo * o.lo, self.lo * o.hi);
@@ -238,27 +257,28 @@ impl Mul for Interval {
     }
 }
 
-impl Scalar for Interval {
-    fn constant(x: f64) -> Self {
+impl<N: Number> Scalar for Interval<N> {
+    type Number = N;
+    fn constant(x: N) -> Self {
         Self::point(x)
     }
-    fn scale(self, k: f64) -> Self {
+    fn scale(self, k: N) -> Self {
         // The axes of most frames are those of the world.
-        if k == 0.0 {
-            return Self::point(0.0);
+        if k == N::ZERO {
+            return Self::point(N::ZERO);
         }
-        if k.abs() == 1.0 {
-            return if k > 0.0 { self } else { -self };
+        if k.abs() == N::ONE {
+            return if k > N::ZERO { self } else { -self };
         }
-        let (a, b) = if k >= 0.0 {
+        let (a, b) = if k >= N::ZERO {
             (self.lo * k, self.hi * k)
         } else {
             (self.hi * k, self.lo * k)
         };
-        if a == 0.0 && b == 0.0 && self.lo == 0.0 && self.hi == 0.0 {
+        if a == N::ZERO && b == N::ZERO && self.lo == N::ZERO && self.hi == N::ZERO {
             return self;
         }
-        if a == 0.0 || b == 0.0 || (a + b).is_nan() {
+        if a == N::ZERO || b == N::ZERO || (a + b).is_nan() {
             return self * Self::point(k);
         }
         Self {
@@ -268,7 +288,11 @@ impl Scalar for Interval {
     }
     fn square(self) -> Self {
         let (a, b) = (self.lo * self.lo, self.hi * self.hi);
-        let lo = if self.has_zero() { 0.0 } else { down(a.min(b)) };
+        let lo = if self.has_zero() {
+            N::ZERO
+        } else {
+            down(a.min(b))
+        };
         Self {
             lo,
             hi: up(a.max(b)),
@@ -280,21 +304,21 @@ impl Scalar for Interval {
             return Self::ENTIRE;
         }
         self * Self {
-            lo: down(1.0 / o.hi),
-            hi: up(1.0 / o.lo),
+            lo: down(N::ONE / o.hi),
+            hi: up(N::ONE / o.lo),
         }
     }
-    fn sqrt(self) -> Self {
+    fn root(self) -> Self {
         Self {
-            lo: down(self.lo.max(0.0).sqrt()).max(0.0),
-            hi: up(self.hi.max(0.0).sqrt()),
+            lo: down(self.lo.max(N::ZERO).sqrt()).max(N::ZERO),
+            hi: up(self.hi.max(N::ZERO).sqrt()),
         }
     }
     fn sin_cos(self) -> (Self, Self) {
         (self.sin(), self.cos())
     }
     fn sinh_cosh(self) -> (Self, Self) {
-        let slop = |x: f64| 4.0 * f64::EPSILON * x.abs();
+        let slop = |x: N| N::of(4.0) * N::EPSILON * x.abs();
         let (sl, sh) = (self.lo.sinh(), self.hi.sinh());
         let sinh = Self {
             lo: down(sl - slop(sl)),
@@ -303,9 +327,9 @@ impl Scalar for Interval {
         let (cl, ch) = (self.lo.cosh(), self.hi.cosh());
         let top = cl.max(ch);
         let low = if self.has_zero() {
-            1.0
+            N::ONE
         } else {
-            down(cl.min(ch) - slop(cl)).max(1.0)
+            down(cl.min(ch) - slop(cl)).max(N::ONE)
         };
         (
             sinh,
@@ -319,6 +343,6 @@ impl Scalar for Interval {
         self.sinc_jet()[0]
     }
     fn is_like(self, o: Self) -> bool {
-        (self * o).lo > 0.0
+        (self * o).lo > N::ZERO
     }
 }

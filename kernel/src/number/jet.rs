@@ -1,6 +1,7 @@
 //! A value with its first two derivatives along a curve's parameter.
 
 use super::interval::Interval;
+use super::precision::Number;
 use super::scalar::{Scalar, sinc_jet};
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -20,8 +21,8 @@ impl<S: Scalar> Jet<S> {
     pub fn variable(t: S) -> Self {
         Self {
             v: t,
-            d: S::constant(1.0),
-            dd: S::constant(0.0),
+            d: S::plain(1.0),
+            dd: S::plain(0.0),
         }
     }
 
@@ -74,7 +75,7 @@ impl<S: Scalar> Mul for Jet<S> {
         Self {
             v: self.v * o.v,
             d: self.d * o.v + self.v * o.d,
-            dd: self.dd * o.v + (self.d * o.d).scale(2.0) + self.v * o.dd,
+            dd: self.dd * o.v + (self.d * o.d).times(2.0) + self.v * o.dd,
         }
     }
 }
@@ -85,27 +86,28 @@ pub trait Base: Scalar {
     fn sinc_with_derivatives(self) -> [Self; 3];
 }
 
-impl Base for f64 {
+impl<N: Number> Base for N {
     fn sinc_with_derivatives(self) -> [Self; 3] {
         sinc_jet(self)
     }
 }
 
-impl Base for Interval {
+impl<N: Number> Base for Interval<N> {
     fn sinc_with_derivatives(self) -> [Self; 3] {
         self.sinc_jet()
     }
 }
 
 impl<S: Base> Scalar for Jet<S> {
-    fn constant(x: f64) -> Self {
+    type Number = S::Number;
+    fn constant(x: S::Number) -> Self {
         Self {
             v: S::constant(x),
-            d: S::constant(0.0),
-            dd: S::constant(0.0),
+            d: S::plain(0.0),
+            dd: S::plain(0.0),
         }
     }
-    fn scale(self, k: f64) -> Self {
+    fn scale(self, k: S::Number) -> Self {
         Self {
             v: self.v.scale(k),
             d: self.d.scale(k),
@@ -115,20 +117,20 @@ impl<S: Base> Scalar for Jet<S> {
     fn square(self) -> Self {
         Self {
             v: self.v.square(),
-            d: (self.v * self.d).scale(2.0),
-            dd: (self.d.square() + self.v * self.dd).scale(2.0),
+            d: (self.v * self.d).times(2.0),
+            dd: (self.d.square() + self.v * self.dd).times(2.0),
         }
     }
     fn over(self, o: Self) -> Self {
         let v = self.v.over(o.v);
         let d = (self.d - v * o.d).over(o.v);
-        let dd = (self.dd - (d * o.d).scale(2.0) - v * o.dd).over(o.v);
+        let dd = (self.dd - (d * o.d).times(2.0) - v * o.dd).over(o.v);
         Self { v, d, dd }
     }
-    fn sqrt(self) -> Self {
-        let root = self.v.sqrt();
-        let dh = S::constant(0.5).over(root);
-        let ddh = -dh.over(self.v).scale(0.5);
+    fn root(self) -> Self {
+        let root = self.v.root();
+        let dh = S::plain(0.5).over(root);
+        let ddh = -dh.over(self.v).times(0.5);
         self.chain(root, dh, ddh)
     }
     fn sin_cos(self) -> (Self, Self) {

@@ -5,6 +5,7 @@ pub mod bisection;
 pub mod enclosure;
 pub mod interval;
 pub mod jet;
+pub mod precision;
 mod profile;
 pub mod quadrature;
 pub mod rational;

@@ -1,13 +1,15 @@
 //! Where the absolute value of a function turns back, by its values at places between which it
 //! only rises or falls.
 
+use super::precision::Number;
+
 /// A function that changes by less than this part of its value is level.
 const LEVEL: f64 = 1.0 / 64.0;
 
 /// The values of a function at places in order.
 #[derive(Debug, Default)]
-pub(super) struct Profile {
-    marks: Vec<(f64, f64)>,
+pub(super) struct Profile<N: Number = f64> {
+    marks: Vec<(N, N)>,
 }
 
 /// Which way the absolute value goes.
@@ -19,30 +21,29 @@ enum Way {
     Down,
 }
 
-impl Profile {
+impl<N: Number> Profile<N> {
     /// Adds a value: infinite where it is only known to be large.
-    pub fn mark(&mut self, t: f64, value: f64) {
+    pub fn mark(&mut self, t: N, value: N) {
         self.marks.push((t, value));
     }
 
     /// The places at which the absolute value turns back, with the value there: each least one and
     /// each greatest one between lesser ones. At an end `beyond`, the function outside the range,
     /// tells: where it falls on, or rises to it, the end is no turn.
-    pub fn turns(&self, beyond: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    pub fn turns(&self, beyond: impl Fn(N) -> N) -> Vec<(N, N)> {
         let (Some(&first), Some(&last)) = (self.marks.first(), self.marks.last()) else {
             return Vec::new();
         };
-        let size = |mark: (f64, f64)| mark.1.abs();
+        let size = |mark: (N, N)| mark.1.abs();
         // Seen from where it has risen, an end is least where it is no less as far outside.
-        let is_least = |end: (f64, f64), inside: f64| {
-            beyond(2.0 * end.0 - inside) * end.1.signum() >= size(end)
-        };
+        let is_least =
+            |end: (N, N), inside: N| beyond(N::TWO * end.0 - inside) * end.1.signum() >= size(end);
         let mut turns = Vec::new();
         let mut way = Way::Level;
         let (mut least, mut most) = (first, first);
         for &mark in &self.marks {
-            let rises = size(mark) > size(least) * (1.0 + LEVEL);
-            let falls = size(mark) < size(most) * (1.0 - LEVEL);
+            let rises = size(mark) > size(least) * (N::ONE + N::of(LEVEL));
+            let falls = size(mark) < size(most) * (N::ONE - N::of(LEVEL));
             match way {
                 Way::Level | Way::Down if rises => {
                     if least.0 > first.0 || is_least(least, mark.0) {
@@ -77,8 +78,8 @@ impl Profile {
     }
 
     /// The last place before the least value at which there was more.
-    fn risen_before(&self, least: (f64, f64)) -> f64 {
-        let more = |m: &&(f64, f64)| m.1.abs() > least.1.abs() * (1.0 + LEVEL);
+    fn risen_before(&self, least: (N, N)) -> N {
+        let more = |m: &&(N, N)| m.1.abs() > least.1.abs() * (N::ONE + N::of(LEVEL));
         self.marks.iter().rev().find(more).map_or(least.0, |m| m.0)
     }
 }

@@ -3,6 +3,7 @@
 
 use super::enclosure::Enclosure;
 use super::interval::Interval;
+use super::precision::Number;
 use super::scalar::Scalar;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -20,37 +21,37 @@ pub trait Real:
     fn abs(self) -> Self;
 }
 
-impl Real for f64 {
+impl<N: Number> Real for N {
     fn constant(x: f64) -> Self {
-        x
+        N::of(x)
     }
     fn over(self, divisor: Self) -> Self {
         self / divisor
     }
     fn sqrt(self) -> Self {
-        Scalar::sqrt(self)
+        Scalar::root(self)
     }
     fn abs(self) -> Self {
-        f64::abs(self)
+        Number::abs(self)
     }
 }
 
-impl Real for Interval {
+impl<N: Number> Real for Interval<N> {
     fn constant(x: f64) -> Self {
-        Self::point(x)
+        Self::point(N::of(x))
     }
     fn over(self, divisor: Self) -> Self {
         Scalar::over(self, divisor)
     }
     fn sqrt(self) -> Self {
-        Scalar::sqrt(self)
+        Scalar::root(self)
     }
     fn abs(self) -> Self {
-        match (self.lo >= 0.0, self.hi <= 0.0) {
+        match (self.lo >= N::ZERO, self.hi <= N::ZERO) {
             (true, _) => self,
             (_, true) => -self,
             _ => Self {
-                lo: 0.0,
+                lo: N::ZERO,
                 hi: self.magnitude(),
             },
         }

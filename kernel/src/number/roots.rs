@@ -9,6 +9,7 @@
 use super::bisection::{bisect, bisect_newton};
 use super::interval::Interval;
 use super::jet::Jet;
+use super::precision::Number;
 use super::profile::Profile;
 use super::scalar::Scalar;
 use super::sign::CLOSE;
@@ -26,41 +27,41 @@ pub enum Contact {
 
 /// An isolated root, or a cluster of roots within the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Root {
+pub struct Root<N: Number = f64> {
     /// The best parameter.
-    pub t: f64,
+    pub t: N,
     /// Where the cluster begins.
-    pub lo: f64,
+    pub lo: N,
     /// Where the cluster ends.
-    pub hi: f64,
+    pub hi: N,
     /// How zero is met.
     pub contact: Contact,
     /// The least absolute value met next to the root where the answer was not plain.
-    pub margin: Option<f64>,
+    pub margin: Option<N>,
 }
 
 /// The zeros of a function on an interval.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Zeros {
+pub enum Zeros<N: Number = f64> {
     /// The function is within the band throughout.
     Everywhere,
     /// The roots, and what was found to be apart from zero by little.
     At {
         /// In increasing order.
-        roots: Vec<Root>,
+        roots: Vec<Root<N>>,
         /// Where the function turns back next to zero: (parameter, value). What leads on to a root
         /// is none of them, however slowly it does.
-        misses: Vec<(f64, f64)>,
+        misses: Vec<(N, N)>,
     },
 }
 
 #[derive(Clone, Copy)]
-struct Cluster {
-    lo: f64,
-    hi: f64,
-    t: f64,
+struct Cluster<N: Number = f64> {
+    lo: N,
+    hi: N,
+    t: N,
     kind: Kind,
-    margin: Option<f64>,
+    margin: Option<N>,
 }
 
 /// What is known of a cluster's best parameter.
@@ -84,17 +85,17 @@ const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 const FRINGE: f64 = 1.0 + 1.0 / 64.0;
 
 /// A function whose roots are sought.
-pub trait Function {
+pub trait Function<N: Number = f64> {
     /// The certified ranges of the value and of two derivatives over an interval.
-    fn over(&self, t: Interval) -> Jet<Interval>;
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>>;
 
     /// A certified range of the value alone, where it is had for less.
-    fn reach(&self, _t: Interval) -> Interval {
+    fn reach(&self, _t: Interval<N>) -> Interval<N> {
         Interval::ENTIRE
     }
 
     /// The value and two derivatives at a point, in doubles.
-    fn at(&self, t: f64) -> Jet<f64> {
+    fn at(&self, t: N) -> Jet<N> {
         let j = self.over(Interval::point(t));
         Jet {
             v: j.v.mid(),
@@ -104,13 +105,13 @@ pub trait Function {
     }
 
     /// The value at a point, in doubles.
-    fn value(&self, t: f64) -> f64 {
+    fn value(&self, t: N) -> N {
         self.at(t).v
     }
 }
 
-impl<F: Fn(Interval) -> Jet<Interval>> Function for F {
-    fn over(&self, t: Interval) -> Jet<Interval> {
+impl<N: Number, F: Fn(Interval<N>) -> Jet<Interval<N>>> Function<N> for F {
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
         self(t)
     }
 }
@@ -124,40 +125,40 @@ const SMALL: f64 = 1.0 / 16.0;
 const PROBES: u32 = 67;
 
 /// Fractions of a range: the first few already lie far apart, by steps of the golden section.
-pub fn probes() -> impl Iterator<Item = f64> {
-    (1..=PROBES).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
+pub fn probes<N: Number>() -> impl Iterator<Item = N> {
+    (1..=PROBES).map(|k| (N::whole(k) * N::of(0.618_033_988_749_895)).fract())
 }
 
-struct Search<'a, F> {
+struct Search<'a, F, N: Number> {
     f: &'a F,
-    band: f64,
+    band: N,
     /// What is no further from zero than this is told.
-    reach: f64,
-    floor: f64,
-    clusters: Vec<Cluster>,
-    profile: Profile,
+    reach: N,
+    floor: N,
+    clusters: Vec<Cluster<N>>,
+    profile: Profile<N>,
 }
 
 /// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
 /// resolution. A closed curve passes its whole period and is wrapped by the caller. No misses are
 /// sought.
-pub fn isolate<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
+pub fn isolate<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Zeros<N> {
     search(f, breaks, band, band)
 }
 
 /// The same, and all misses that are close calls.
-pub fn isolate_closely<F: Function>(f: &F, breaks: &[f64], band: f64) -> Zeros {
-    search(f, breaks, band, CLOSE * band)
+pub fn isolate_closely<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Zeros<N> {
+    search(f, breaks, band, N::of(CLOSE) * band)
 }
 
-fn search<F: Function>(f: &F, breaks: &[f64], band: f64, reach: f64) -> Zeros {
+fn search<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> Zeros<N> {
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
         return Zeros::At {
             roots: Vec::new(),
             misses: Vec::new(),
         };
     };
-    let floor = (last - first).abs().max(first.abs()).max(last.abs()) * f64::EPSILON * 64.0;
+    let floor = (last - first).abs().max(first.abs()).max(last.abs()) * N::EPSILON * N::of(64.0);
     let mut search = Search {
         f,
         band,
@@ -172,13 +173,13 @@ fn search<F: Function>(f: &F, breaks: &[f64], band: f64, reach: f64) -> Zeros {
     search.finish(first, last)
 }
 
-impl<F: Function> Search<'_, F> {
-    fn value(&self, t: f64) -> f64 {
+impl<N: Number, F: Function<N>> Search<'_, F, N> {
+    fn value(&self, t: N) -> N {
         self.f.value(t)
     }
 
     /// A certified range of the value at a point.
-    fn value_over(&self, t: f64) -> Interval {
+    fn value_over(&self, t: N) -> Interval<N> {
         let reach = self.f.reach(Interval::point(t));
         if reach.width().is_finite() {
             reach
@@ -191,11 +192,11 @@ impl<F: Function> Search<'_, F> {
     /// far as they do not tell enough: by the second only where the interval is `small`.
     fn narrowed(
         &self,
-        wide: Jet<Interval>,
-        run: Interval,
-        middle: f64,
+        wide: Jet<Interval<N>>,
+        run: Interval<N>,
+        middle: N,
         small: bool,
-    ) -> Jet<Interval> {
+    ) -> Jet<Interval<N>> {
         let Jet { v, d, dd } = wide;
         if !(v.has_zero() && d.has_zero() && d.width().is_finite()) {
             return wide;
@@ -205,7 +206,7 @@ impl<F: Function> Search<'_, F> {
             return Jet { v, d, dd };
         }
         let at = self.f.over(Interval::point(middle));
-        let bent = (dd * run.square()).scale(0.5);
+        let bent = (dd * run.square()).times(0.5);
         Jet {
             v: v.meet(at.v + at.d * run + bent),
             d: d.meet(at.d + dd * run),
@@ -213,12 +214,12 @@ impl<F: Function> Search<'_, F> {
         }
     }
 
-    fn slope(&self, t: f64) -> f64 {
+    fn slope(&self, t: N) -> N {
         self.f.at(t).d
     }
 
-    fn cluster(&mut self, lo: f64, hi: f64, t: f64, kind: Kind, margin: Option<f64>) {
-        self.profile.mark(t, 0.0);
+    fn cluster(&mut self, lo: N, hi: N, t: N, kind: Kind, margin: Option<N>) {
+        self.profile.mark(t, N::ZERO);
         self.clusters.push(Cluster {
             lo,
             hi,
@@ -229,21 +230,21 @@ impl<F: Function> Search<'_, F> {
     }
 
     /// Works through [a, b] in order, by halving with a stack of its own.
-    fn piece(&mut self, a: f64, b: f64) {
+    fn piece(&mut self, a: N, b: N) {
         let whole = (a, b);
         let mut stack = vec![whole];
         while let Some((a, b)) = stack.pop() {
-            let m = 0.5 * (a + b);
+            let m = N::HALF * (a + b);
             let x = Interval { lo: a, hi: b };
             if self.is_clear(self.f.reach(x)) {
-                self.profile.mark(m, f64::INFINITY);
+                self.profile.mark(m, N::INFINITY);
                 continue;
             }
-            let small = b - a <= SMALL * (whole.1 - whole.0);
+            let small = b - a <= N::of(SMALL) * (whole.1 - whole.0);
             let jet = self.narrowed(self.f.over(x), x - Interval::point(m), m, small);
             let v = jet.v;
             if self.is_clear(v) {
-                self.profile.mark(m, f64::INFINITY);
+                self.profile.mark(m, N::INFINITY);
                 continue;
             }
             let misses = v.lo > self.band || v.hi < -self.band;
@@ -254,7 +255,7 @@ impl<F: Function> Search<'_, F> {
             if v.magnitude() <= self.band {
                 let level = !jet.d.has_zero();
                 let kind = if level { Kind::Level } else { Kind::Loose };
-                self.cluster(a, b, m, kind, Some(0.0));
+                self.cluster(a, b, m, kind, Some(N::ZERO));
             } else if !jet.d.has_zero() {
                 self.monotone(a, b);
             } else if !jet.dd.has_zero() {
@@ -262,7 +263,7 @@ impl<F: Function> Search<'_, F> {
             } else if b - a <= self.floor {
                 self.cluster(a, b, m, Kind::Loose, Some(v.magnitude()));
             } else if (a, b) == whole && self.vanishes(a, b) {
-                self.cluster(a, b, m, Kind::Loose, Some(0.0));
+                self.cluster(a, b, m, Kind::Loose, Some(N::ZERO));
             } else {
                 stack.push((m, b));
                 stack.push((a, m));
@@ -272,20 +273,20 @@ impl<F: Function> Search<'_, F> {
 
     /// Whether the function is within the band throughout, by its values at enough places. Halving
     /// finds it, too, but one that is zero is halved down to the root of the band.
-    fn vanishes(&self, a: f64, b: f64) -> bool {
+    fn vanishes(&self, a: N, b: N) -> bool {
         probes().all(|part| self.value(a + (b - a) * part).abs() <= self.band)
     }
 
     /// Whether no value of a range is a root, or so near to one that it is to be told.
-    fn is_clear(&self, v: Interval) -> bool {
+    fn is_clear(&self, v: Interval<N>) -> bool {
         v.lo > self.reach || v.hi < -self.reach
     }
 
     /// -1, 0 (within the band) or 1.
-    fn sign(&self, value: f64) -> i8 {
+    fn sign(&self, value: N) -> i8 {
         if value.abs() <= self.band {
             0
-        } else if value < 0.0 {
+        } else if value < N::ZERO {
             -1
         } else {
             1
@@ -293,28 +294,28 @@ impl<F: Function> Search<'_, F> {
     }
 
     /// Marks a stretch that lies next to zero, and has no root.
-    fn beside(&mut self, a: f64, b: f64) {
+    fn beside(&mut self, a: N, b: N) {
         let (da, db) = (self.slope(a), self.slope(b));
-        let inside = if da * db < 0.0 {
+        let inside = if da * db < N::ZERO {
             bisect(a, b, da, |t| self.slope(t))
         } else {
-            0.5 * (a + b)
+            N::HALF * (a + b)
         };
         for t in [a, inside, b] {
             self.profile.mark(t, self.value(t));
         }
     }
 
-    fn monotone(&mut self, a: f64, b: f64) {
+    fn monotone(&mut self, a: N, b: N) {
         let (fa, fb) = (self.value(a), self.value(b));
         self.profile.mark(a, fa);
         match (self.sign(fa), self.sign(fb)) {
-            (0, 0) => self.cluster(a, b, 0.5 * (a + b), Kind::Level, Some(0.0)),
-            (0, _) if fa * fb > 0.0 => {
+            (0, 0) => self.cluster(a, b, N::HALF * (a + b), Kind::Level, Some(N::ZERO)),
+            (0, _) if fa * fb > N::ZERO => {
                 let hi = self.limit(a, b);
                 self.cluster(a, hi, a, Kind::Level, None);
             }
-            (_, 0) if fa * fb > 0.0 => {
+            (_, 0) if fa * fb > N::ZERO => {
                 let lo = self.limit(b, a);
                 self.cluster(lo, b, b, Kind::Level, None);
             }
@@ -335,9 +336,9 @@ impl<F: Function> Search<'_, F> {
         self.profile.mark(b, fb);
     }
 
-    fn convex(&mut self, a: f64, b: f64) {
+    fn convex(&mut self, a: N, b: N) {
         let (da, db) = (self.slope(a), self.slope(b));
-        if da * db >= 0.0 {
+        if da * db >= N::ZERO {
             return self.monotone(a, b);
         }
         let t = bisect(a, b, da, |t| self.slope(t));
@@ -351,10 +352,10 @@ impl<F: Function> Search<'_, F> {
     }
 
     /// How far from an extremum or an end within the band towards `end` the function stays within it.
-    fn limit(&self, extremum: f64, end: f64) -> f64 {
+    fn limit(&self, extremum: N, end: N) -> N {
         let sign = self.value(end).signum();
-        let beyond = |t: f64| sign * self.value(t) - self.band;
-        if beyond(end) <= 0.0 {
+        let beyond = |t: N| sign * self.value(t) - self.band;
+        if beyond(end) <= N::ZERO {
             return end;
         }
         let (a, b) = (extremum.min(end), extremum.max(end));
@@ -362,7 +363,7 @@ impl<F: Function> Search<'_, F> {
     }
 
     /// The root in [a, b], where the function is monotone with opposite signs at the ends.
-    fn refine(&self, a: f64, b: f64, fa: f64) -> f64 {
+    fn refine(&self, a: N, b: N, fa: N) -> N {
         bisect_newton(a, b, fa, |t| {
             let j = self.f.at(t);
             (j.v, j.d)
@@ -371,13 +372,13 @@ impl<F: Function> Search<'_, F> {
 
     /// Whether two clusters are one: they touch, or rounding alone takes the function out of the
     /// band between them.
-    fn is_one(&self, before: &Cluster, after: &Cluster) -> bool {
+    fn is_one(&self, before: &Cluster<N>, after: &Cluster<N>) -> bool {
         before.hi >= after.lo
-            || self.value(0.5 * (before.hi + after.lo)).abs() <= FRINGE * self.band
+            || self.value(N::HALF * (before.hi + after.lo)).abs() <= N::of(FRINGE) * self.band
     }
 
-    fn finish(self, first: f64, last: f64) -> Zeros {
-        let mut merged: Vec<Vec<Cluster>> = Vec::new();
+    fn finish(self, first: N, last: N) -> Zeros<N> {
+        let mut merged: Vec<Vec<Cluster<N>>> = Vec::new();
         for c in &self.clusters {
             match merged.last_mut() {
                 Some(group) if group.last().is_some_and(|p| self.is_one(p, c)) => group.push(*c),
@@ -391,22 +392,22 @@ impl<F: Function> Search<'_, F> {
         {
             return Zeros::Everywhere;
         }
-        let ends: Vec<(f64, f64)> = merged
+        let ends: Vec<(N, N)> = merged
             .iter()
             .map(|g| (g[0].lo, g[g.len() - 1].hi))
             .collect();
         // Between clusters the sign is plain; beyond the ends of the range the function goes on.
-        let step = (last - first) * OUTSIDE;
+        let step = (last - first) * N::of(OUTSIDE);
         let sign_between = |i: usize| {
             let left = if i == 0 { None } else { Some(ends[i - 1].1) };
             let right = ends.get(i).map(|e| e.0);
             let t = match (left, right) {
-                (Some(l), Some(r)) => 0.5 * (l + r),
+                (Some(l), Some(r)) => N::HALF * (l + r),
                 (None, Some(r)) if r <= first => r - step,
-                (None, Some(r)) => 0.5 * (first + r),
+                (None, Some(r)) => N::HALF * (first + r),
                 (Some(l), None) if l >= last => l + step,
-                (Some(l), None) => 0.5 * (l + last),
-                (None, None) => 0.5 * (first + last),
+                (Some(l), None) => N::HALF * (l + last),
+                (None, None) => N::HALF * (first + last),
             };
             self.value(t).signum()
         };
@@ -421,9 +422,9 @@ impl<F: Function> Search<'_, F> {
     }
 
     /// One root from the clusters that touch one another.
-    fn root(&self, group: &[Cluster], crosses: bool) -> Root {
+    fn root(&self, group: &[Cluster<N>], crosses: bool) -> Root<N> {
         let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
-        let margin = group.iter().filter_map(|c| c.margin).reduce(f64::min);
+        let margin = group.iter().filter_map(|c| c.margin).reduce(N::min);
         let found = |t, contact| Root {
             t,
             lo,
@@ -445,17 +446,17 @@ impl<F: Function> Search<'_, F> {
     }
 
     /// Whether the function is monotone over clusters that touch one another.
-    fn is_monotone(&self, group: &[Cluster]) -> bool {
-        let slope = |c: &Cluster| self.slope(0.5 * (c.lo + c.hi));
+    fn is_monotone(&self, group: &[Cluster<N>]) -> bool {
+        let slope = |c: &Cluster<N>| self.slope(N::HALF * (c.lo + c.hi));
         let first = slope(&group[0]);
-        let known = |c: &Cluster| matches!(c.kind, Kind::Simple | Kind::Level);
-        group.iter().all(|c| known(c) && slope(c) * first > 0.0)
+        let known = |c: &Cluster<N>| matches!(c.kind, Kind::Simple | Kind::Level);
+        group.iter().all(|c| known(c) && slope(c) * first > N::ZERO)
     }
 
     /// The zero between the ends of a cluster; the end next to zero where there is none.
-    fn crossing(&self, lo: f64, hi: f64) -> f64 {
+    fn crossing(&self, lo: N, hi: N) -> N {
         let (a, b) = (self.value(lo), self.value(hi));
-        if a * b <= 0.0 {
+        if a * b <= N::ZERO {
             self.refine(lo, hi, a)
         } else if a.abs() < b.abs() {
             lo
@@ -466,7 +467,7 @@ impl<F: Function> Search<'_, F> {
 
     /// The best parameter where a function that is not monotone crosses zero in a cluster: where
     /// its second derivative vanishes, if that is in the cluster.
-    fn inflection(&self, lo: f64, hi: f64) -> f64 {
+    fn inflection(&self, lo: N, hi: N) -> N {
         let t = self.balance(lo, hi, |j| j.dd);
         if (lo..=hi).contains(&t) {
             return t;
@@ -475,15 +476,15 @@ impl<F: Function> Search<'_, F> {
     }
 
     /// The zero of a derivative in or next to a cluster, or where it is least.
-    fn balance(&self, lo: f64, hi: f64, part: impl Fn(Jet<f64>) -> f64) -> f64 {
-        let g = |t: f64| part(self.f.at(t));
-        let middle = (0.5 * (lo + hi), g(0.5 * (lo + hi)));
+    fn balance(&self, lo: N, hi: N, part: impl Fn(Jet<N>) -> N) -> N {
+        let g = |t: N| part(self.f.at(t));
+        let middle = (N::HALF * (lo + hi), g(N::HALF * (lo + hi)));
         let mut least = middle;
         let (mut left, mut right) = ((lo, g(lo)), (hi, g(hi)));
         for _ in 0..WIDER {
             for pair in [[left, middle], [middle, right]] {
                 let [(a, ga), (b, gb)] = pair;
-                if ga * gb < 0.0 {
+                if ga * gb < N::ZERO {
                     return bisect(a, b, ga, g);
                 }
                 least = pair

@@ -1,24 +1,36 @@
 //! What the generic formulas of surfaces and curves are written over.
 //!
-//! One formula serves three readings: `f64` gives a value, [`Interval`](super::interval::Interval)
-//! a certified range, and [`Jet`](super::jet::Jet) of either adds two derivatives.
+//! One formula serves three readings: a [`Number`] gives a value,
+//! [`Interval`](super::interval::Interval) a certified range, and [`Jet`](super::jet::Jet) of either
+//! adds two derivatives.
 
+use super::precision::Number;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number that the geometric formulas can be evaluated over.
 pub trait Scalar:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
+    /// The numbers of the precision that it is reckoned in.
+    type Number: Number;
     /// The constant `x`.
-    fn constant(x: f64) -> Self;
+    fn constant(x: Self::Number) -> Self;
     /// The product with the constant `k`.
-    fn scale(self, k: f64) -> Self;
+    fn scale(self, k: Self::Number) -> Self;
+    /// The product with a double.
+    fn times(self, k: f64) -> Self {
+        self.scale(Self::Number::of(k))
+    }
+    /// A double.
+    fn plain(x: f64) -> Self {
+        Self::constant(Self::Number::of(x))
+    }
     /// The square, tighter than a product on intervals.
     fn square(self) -> Self;
     /// The quotient; everything where an interval divisor holds zero.
     fn over(self, divisor: Self) -> Self;
-    /// The square root; of an interval, of its non-negative part.
-    fn sqrt(self) -> Self;
+    /// The square root of the non-negative part.
+    fn root(self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
     /// Hyperbolic sine and cosine.
@@ -30,53 +42,44 @@ pub trait Scalar:
 }
 
 /// The scalar product of a constant vector and a vector of scalars.
-pub fn dot<S: Scalar>(k: &nalgebra::Vector3<f64>, v: [S; 3]) -> S {
+pub fn dot<S: Scalar>(k: &nalgebra::Vector3<S::Number>, v: [S; 3]) -> S {
     v[0].scale(k.x) + v[1].scale(k.y) + v[2].scale(k.z)
 }
 
-/// sin x / x and its first two derivatives at a double.
-pub(super) fn sinc_jet(x: f64) -> [f64; 3] {
+/// sin x / x and its first two derivatives at a number.
+pub(super) fn sinc_jet<N: Number>(x: N) -> [N; 3] {
     let x2 = x * x;
-    if x2 < 0.25 {
-        // Taylor: the ninth term is below one ulp for |x| < 1/2.
-        let mut value = 0.0;
-        let mut first = 0.0;
-        let mut second = 0.0;
-        for n in (0..9).rev() {
-            let n = f64::from(n);
-            let sign = if n % 2.0 == 0.0 { 1.0 } else { -1.0 };
-            let c = sign / factorial(2.0 * n + 1.0);
-            value = value * x2 + c;
-            first = if n >= 1.0 {
-                first * x2 + c * 2.0 * n
-            } else {
-                first
-            };
-            second = if n >= 1.0 {
-                second * x2 + c * 2.0 * n * (2.0 * n - 1.0)
-            } else {
-                second
-            };
-        }
-        return [value, first * x, second];
+    if x2 < N::of(0.25) {
+        return sinc_series(x, x2);
     }
     let (s, c) = x.sin_cos();
     let value = s / x;
     let first = (c - value) / x;
-    [value, first, -value - 2.0 * first / x]
+    [value, first, -value - N::TWO * first / x]
 }
 
-fn factorial(n: f64) -> f64 {
-    let mut product = 1.0;
-    let mut k = 2.0;
-    while k <= n {
-        product *= k;
-        k += 1.0;
+/// Taylor's series: the terms that are left out are below one ulp for |x| < 1/2.
+fn sinc_series<N: Number>(x: N, x2: N) -> [N; 3] {
+    let [mut value, mut first, mut second] = [N::ZERO; 3];
+    for n in (0..N::SINC_TERMS).rev() {
+        let n2 = N::whole(2 * n);
+        let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+        let c = N::of(sign) / factorial(2 * n + 1);
+        value = value * x2 + c;
+        if n >= 1 {
+            first = first * x2 + c * n2;
+            second = second * x2 + c * n2 * (n2 - N::ONE);
+        }
     }
-    product
+    [value, first * x, second]
+}
+
+fn factorial<N: Number>(n: u32) -> N {
+    (2..=n).fold(N::ONE, |product, k| product * N::whole(k))
 }
 
 impl Scalar for f64 {
+    type Number = f64;
     fn constant(x: f64) -> Self {
         x
     }
@@ -89,7 +92,7 @@ impl Scalar for f64 {
     fn over(self, divisor: Self) -> Self {
         self / divisor
     }
-    fn sqrt(self) -> Self {
+    fn root(self) -> Self {
         f64::sqrt(self.max(0.0))
     }
     fn sin_cos(self) -> (Self, Self) {

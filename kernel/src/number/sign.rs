@@ -11,6 +11,7 @@
 
 use super::enclosure::Enclosure;
 use super::interval::Interval;
+use super::precision::Number;
 use super::rational::from_f64;
 use std::cell::RefCell;
 
@@ -93,9 +94,9 @@ pub trait Distance {
 }
 
 /// A distance that is a construction's: taken at its word.
-impl Distance for f64 {
+impl<N: Number> Distance for N {
     fn range(&self) -> Interval {
-        Interval::point(*self)
+        Interval::point(self.rounded())
     }
 
     fn refined(&self, _bits: usize) -> Option<Enclosure> {
@@ -144,14 +145,14 @@ impl Judge {
     }
 
     /// The resolution, a distance in the part's unit.
-    pub fn band(&self) -> f64 {
-        self.band
+    pub fn band<N: Number>(&self) -> N {
+        N::of(self.band)
     }
 
     /// What is no further apart than this coincides, or is a close call: only what is further apart
     /// need not be asked about.
-    pub fn reach(&self) -> f64 {
-        self.band * CLOSE
+    pub fn reach<N: Number>(&self) -> N {
+        N::of(self.band * CLOSE)
     }
 
     /// The side on which the signed `distance` lies; `place` is where it was measured.
@@ -255,13 +256,13 @@ impl Judge {
 
     /// Whether `distance` is within the band, without counting it: for searches that ask many
     /// times before one decision is made.
-    pub fn within(&self, distance: f64) -> bool {
-        distance.abs() <= self.band
+    pub fn within<N: Number>(&self, distance: N) -> bool {
+        distance.abs() <= self.band()
     }
 
     /// Whether a decision made on `distance` would be a close call, or coincide: for a search that
     /// may look elsewhere.
-    pub fn is_close(&self, distance: f64) -> bool {
+    pub fn is_close<N: Number>(&self, distance: N) -> bool {
         distance.abs() < self.reach()
     }
 

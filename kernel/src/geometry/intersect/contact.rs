@@ -11,36 +11,37 @@ use crate::geometry::frame::Frame;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Surface, Torus};
 use crate::geometry::trigonometric::divide;
+use crate::geometry::vector::{Length, direction};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::roots::{Zeros, isolate};
-use crate::number::sign::{Judge, ROUNDING};
+use crate::number::sign::Judge;
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::{PI, TAU};
 
 /// A circle of a torus along which another surface touches it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Contact {
+pub(super) enum Contact<N: Number> {
     /// Round the tube, at this θ.
-    Meridian(f64),
+    Meridian(N),
     /// The outer or the inner rim, at this φ.
-    Rim(f64),
+    Rim(N),
 }
 
-impl Contact {
+impl<N: Number> Contact<N> {
     /// The circle.
-    pub fn circle(&self, t: &Torus) -> Circle {
+    pub fn circle(&self, t: &Torus<N>) -> Circle<N> {
         match *self {
             Self::Meridian(theta) => meridian(t, theta),
-            Self::Rim(phi) => parallel(t, 0.0, t.major + t.minor * phi.cos()),
+            Self::Rim(phi) => parallel(t, N::ZERO, t.major + t.minor * phi.cos()),
         }
     }
 
     /// The form with its double zero along the circle divided out.
-    pub fn divided_out(&self, form: &BiTrig) -> BiTrig {
+    pub fn divided_out(&self, form: &BiTrig<N>) -> BiTrig<N> {
         let (Self::Meridian(angle) | Self::Rim(angle)) = *self;
         let (sin, cos) = angle.sin_cos();
-        let factor = [1.0, -cos, -sin];
+        let factor = [N::ONE, -cos, -sin];
         let mut rest = BiTrig::zero();
         for j in 0..5 {
             let entry = |i: usize| match self {
@@ -57,8 +58,8 @@ impl Contact {
     }
 
     /// The angles (θ, φ) of the circle's points at which a form vanishes.
-    pub fn zeros(&self, form: &BiTrig) -> Vec<[f64; 2]> {
-        let along = |x: Interval| match *self {
+    pub fn zeros(&self, form: &BiTrig<N>) -> Vec<[N; 2]> {
+        let along = |x: Interval<N>| match *self {
             Self::Meridian(theta) => {
                 let p = form.partials(Interval::point(theta), x);
                 Jet {
@@ -76,12 +77,16 @@ impl Contact {
                 }
             }
         };
-        let breaks: Vec<f64> = (0..=8).map(|i| 0.1 + TAU * f64::from(i) / 8.0).collect();
-        let Zeros::At { roots, .. } = isolate(&along, &breaks, form.bound() * ROUNDING) else {
+        let breaks: Vec<N> = (0..=8)
+            .map(|i| N::of(0.1) + N::TAU * N::whole(i) / N::of(8.0))
+            .collect();
+        let Zeros::At { roots, .. } = isolate(&along, &breaks, form.bound() * N::ROUNDING) else {
             return Vec::new();
         };
-        let once = roots.iter().filter(|r| r.t < 0.1 + TAU * (1.0 - ROUNDING));
-        let angles = |t: f64| match *self {
+        let once = roots
+            .iter()
+            .filter(|r| r.t < N::of(0.1) + N::TAU * (N::ONE - N::ROUNDING));
+        let angles = |t: N| match *self {
             Self::Meridian(theta) => [theta, t],
             Self::Rim(phi) => [t, phi],
         };
@@ -89,7 +94,7 @@ impl Contact {
     }
 
     /// The angles of the point in which a meridian crosses a rim.
-    pub fn crossing(&self, other: &Self) -> Option<[f64; 2]> {
+    pub fn crossing(&self, other: &Self) -> Option<[N; 2]> {
         match (*self, *other) {
             (Self::Meridian(theta), Self::Rim(phi)) => Some([theta, phi]),
             _ => None,
@@ -98,13 +103,13 @@ impl Contact {
 }
 
 /// The circle around the axis, `up` along it, with the given radius.
-pub(super) fn parallel(t: &Torus, up: f64, radius: f64) -> Circle {
+pub(super) fn parallel<N: Number>(t: &Torus<N>, up: N, radius: N) -> Circle<N> {
     let frame = t.frame.at(t.frame.origin + t.frame.z * up);
     Circle { frame, radius }
 }
 
 /// The circle of the tube at the angle θ.
-pub(super) fn meridian(t: &Torus, theta: f64) -> Circle {
+pub(super) fn meridian<N: Number>(t: &Torus<N>, theta: N) -> Circle<N> {
     let out = t.frame.x * theta.cos() + t.frame.y * theta.sin();
     let centre = t.frame.origin + out * t.major;
     let frame = Frame {
@@ -120,7 +125,11 @@ pub(super) fn meridian(t: &Torus, theta: f64) -> Circle {
 }
 
 /// All circles of a torus, the pair's first, along which the other surface touches it.
-pub(super) fn contacts(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Vec<Contact> {
+pub(super) fn contacts<N: Number>(
+    t: &Torus<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Vec<Contact<N>> {
     let mut all = Vec::new();
     all.extend(equal_tubes(t, pair, judge).map(Contact::Meridian));
     if let Surface::Torus(o) = pair.b.surface {
@@ -129,7 +138,7 @@ pub(super) fn contacts(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Vec<Contact
             all.push(Contact::Meridian(q.y.atan2(q.x)));
         }
         if let Some(outer) = ring_on_tube(&pair.turned(), judge) {
-            all.push(Contact::Rim(if outer { 0.0 } else { PI }));
+            all.push(Contact::Rim(if outer { N::ZERO } else { N::PI }));
         }
     }
     all
@@ -137,7 +146,7 @@ pub(super) fn contacts(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Vec<Contact
 
 /// Whether a torus, the second, touches the tube of the first with its outer (`true`) or its inner
 /// rim all round.
-fn ring_on_tube(pair: &Pair<'_>, judge: &Judge) -> Option<bool> {
+fn ring_on_tube<N: Number>(pair: &Pair<'_, N>, judge: &Judge) -> Option<bool> {
     let at = place(&pair.b.surface.frame().origin);
     let coincide = |question, relation| judge.coincide(question, pair.how(relation), at);
     let outer = [true, false].into_iter();
@@ -150,7 +159,7 @@ fn ring_on_tube(pair: &Pair<'_>, judge: &Judge) -> Option<bool> {
 
 /// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
 /// the tube, a straight pipe or another bend that continues it.
-fn equal_tubes(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<f64> {
+fn equal_tubes<N: Number>(t: &Torus<N>, pair: &Pair<'_, N>, judge: &Judge) -> Option<N> {
     let (other, extent) = (pair.b.surface, pair.extent);
     let f = other.frame();
     let radii = match other {
@@ -171,7 +180,10 @@ fn equal_tubes(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<f64> {
     };
     let q = t.frame.coordinates(&centre);
     let theta = q.y.atan2(q.x);
-    let spine = Surface::Torus(Torus { minor: 0.0, ..*t });
+    let spine = Surface::Torus(Torus {
+        minor: N::ZERO,
+        ..*t
+    });
     if !judge.within(spine.distance(&centre)) {
         return None;
     }
@@ -180,42 +192,43 @@ fn equal_tubes(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<f64> {
         Surface::Sphere(_) => tangent,
         Surface::Cylinder(_) => f.z,
         _ => {
-            let out = (centre - f.origin).normalize();
+            let out = (centre - f.origin).unit();
             f.z.cross(&out)
         }
     };
     judge
-        .within(tangent.cross(&along).norm() * extent.radius)
+        .within(tangent.cross(&along).length() * extent.radius)
         .then_some(theta)
 }
 
 /// A point of both spines, where two tori's spine circles touch.
-fn common_spine_point(
-    t: &Torus,
-    u: &Torus,
-    away: &Vector3<f64>,
+fn common_spine_point<N: Number>(
+    t: &Torus<N>,
+    u: &Torus<N>,
+    away: &Vector3<N>,
     judge: &Judge,
-) -> Option<Point3<f64>> {
+) -> Option<Point3<N>> {
     // Touching circles: the common tangent is perpendicular to both radii, so the point lies on
     // the line through both centres' feet; try the points of t's spine in u's plane and back.
     let normal = t.frame.z.cross(&u.frame.z);
-    let candidates: Vec<Point3<f64>> = if judge.within(normal.norm() * t.major) {
+    let candidates: Vec<Point3<N>> = if judge.within(normal.length() * t.major) {
         let d = away - t.frame.z * t.frame.z.dot(away);
-        let dir = d.try_normalize(0.0)?;
-        [1.0, -1.0]
-            .iter()
+        let dir = direction(&d)?;
+        [N::ONE, -N::ONE]
             .map(|s| t.frame.origin + dir * (s * t.major))
-            .collect()
+            .into()
     } else {
         // The tangent lies in both planes: along their common line; the radii are across it.
-        let line = normal.normalize();
+        let line = normal.unit();
         let out = t.frame.z.cross(&line);
-        [1.0, -1.0]
-            .iter()
+        [N::ONE, -N::ONE]
             .map(|s| t.frame.origin + out * (s * t.major))
-            .collect()
+            .into()
     };
-    let spine = Surface::Torus(Torus { minor: 0.0, ..*u });
+    let spine = Surface::Torus(Torus {
+        minor: N::ZERO,
+        ..*u
+    });
     candidates
         .into_iter()
         .find(|p| judge.within(spine.distance(p)))

@@ -14,29 +14,32 @@ use super::curve::Curve;
 use super::relation::{Carrier, Pair, Relation};
 use super::surface::{Cone, Surface, SurfaceKind};
 use super::trace::Unresolved;
+use super::vector::rounded as place;
 use crate::brep::topology::Sense;
+use crate::geometry::vector::Length;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::roots::{Function, Zeros, isolate};
-use crate::number::sign::{Judge, ROUNDING};
+use crate::number::sign::Judge;
 use nalgebra::Point3;
 
 /// A ball that holds the part: what lies outside is not asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct Extent<N: Number = f64> {
     /// The centre.
-    pub centre: Point3<f64>,
+    pub centre: Point3<N>,
     /// The radius.
-    pub radius: f64,
+    pub radius: N,
 }
 
 /// One component of an intersection.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Branch {
+pub struct Branch<N: Number = f64> {
     /// The curve.
-    pub curve: Curve,
+    pub curve: Curve<N>,
     /// The range of its parameter.
-    pub range: [f64; 2],
+    pub range: [N; 2],
     /// Whether the range is one whole period of a closed curve.
     pub closed: bool,
     /// Whether the surfaces are tangent all along it.
@@ -45,20 +48,20 @@ pub struct Branch {
 
 /// A singular point of an intersection: where it crosses or ends on itself.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node {
+pub struct Node<N: Number = f64> {
     /// The place.
-    pub point: Point3<f64>,
+    pub point: Point3<N>,
     /// Where the branches pass: (index of the branch, parameter); empty for an isolated point.
-    pub on: Vec<(usize, f64)>,
+    pub on: Vec<(usize, N)>,
 }
 
 /// Where two surfaces meet.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Meeting {
+pub struct Meeting<N: Number = f64> {
     /// The curves.
-    pub branches: Vec<Branch>,
+    pub branches: Vec<Branch<N>>,
     /// The singular points.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<Node<N>>,
 }
 
 /// Why an intersection is refused.
@@ -75,12 +78,12 @@ pub enum IntersectionError {
     },
 }
 
-impl Meeting {
+impl<N: Number> Meeting<N> {
     fn nothing() -> Self {
         Self::default()
     }
 
-    fn touch(point: Point3<f64>) -> Self {
+    fn touch(point: Point3<N>) -> Self {
         Self {
             branches: Vec::new(),
             nodes: vec![Node {
@@ -91,7 +94,7 @@ impl Meeting {
     }
 
     /// Adds the whole of a curve, as far as it lies within the extent.
-    fn add(&mut self, curve: Curve, tangent: bool, extent: &Extent) {
+    fn add(&mut self, curve: Curve<N>, tangent: bool, extent: &Extent<N>) {
         if let Some(range) = curve.range_within(&extent.centre, extent.radius) {
             let closed = curve.period().is_some();
             self.branches.push(Branch {
@@ -104,23 +107,23 @@ impl Meeting {
     }
 
     /// Adds a node at a point, with its parameter on each branch that passes it.
-    fn cross_at(&mut self, point: Point3<f64>, judge: &Judge) {
+    fn cross_at(&mut self, point: Point3<N>, judge: &Judge) {
         let on = self.branches.iter().enumerate();
         let on = on.map(|(i, branch)| (i, branch.curve.parameter(&point)));
         let passed =
-            |&(i, t): &(usize, f64)| judge.within((self.branches[i].curve.point(t) - point).norm());
+            |&(i, t): &(usize, N)| judge.within((self.branches[i].curve.point(t) - point).length());
         let on = on.filter(passed).collect();
         self.nodes.push(Node { point, on });
     }
 }
 
 /// The curves in which two distinct surfaces meet within the extent.
-pub fn meet(
-    a: Carrier<'_>,
-    b: Carrier<'_>,
-    extent: &Extent,
+pub fn meet<N: Number>(
+    a: Carrier<'_, N>,
+    b: Carrier<'_, N>,
+    extent: &Extent<N>,
     judge: &Judge,
-) -> Result<Meeting, IntersectionError> {
+) -> Result<Meeting<N>, IntersectionError> {
     use Surface as S;
     let pair = Pair::new(a, b, extent);
     let turned = pair.turned();
@@ -141,27 +144,27 @@ pub fn meet(
 }
 
 /// Whether the axes of two carriers are one line within the band.
-fn same_line(pair: &Pair<'_>, place: [f64; 3], judge: &Judge) -> bool {
+fn same_line<N: Number>(pair: &Pair<'_, N>, place: [f64; 3], judge: &Judge) -> bool {
     judge.coincide("axes side by side", pair.how(Relation::Drift), place)
         && judge.coincide("axis on axis", pair.how(Relation::OffLine), place)
 }
 
 /// Whether two surfaces coincide over the extent: `Along` with the same side inside, `Against`
 /// with opposite sides, which only planes can be.
-pub fn coincidence(
-    a: Carrier<'_>,
-    b: Carrier<'_>,
-    extent: &Extent,
+pub fn coincidence<N: Number>(
+    a: Carrier<'_, N>,
+    b: Carrier<'_, N>,
+    extent: &Extent<N>,
     judge: &Judge,
 ) -> Option<Sense> {
     let kinds = [a, b].map(|c| c.surface.kind());
-    let against = a.surface.frame().z.dot(&b.surface.frame().z) < 0.0;
+    let against = a.surface.frame().z.dot(&b.surface.frame().z) < N::ZERO;
     if kinds[0] != kinds[1] || (against && kinds[0] == SurfaceKind::Cone) {
         return None;
     }
     let pair = Pair::new(a, b, extent);
     // Most pairs are far apart: only what could matter is put to the judge.
-    if pair.estimate(Relation::Apart) > 2.0 * judge.reach() {
+    if pair.estimate(Relation::Apart) > N::TWO * judge.reach() {
         return None;
     }
     let place = place(&a.surface.frame().origin);
@@ -176,21 +179,26 @@ pub fn coincidence(
 }
 
 /// The parts of a range on which a function along the curve is positive.
-fn positive_parts(curve: &Curve, range: [f64; 2], f: &impl Function, band: f64) -> Vec<[f64; 2]> {
+fn positive_parts<N: Number>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    f: &impl Function<N>,
+    band: N,
+) -> Vec<[N; 2]> {
     let roots = match isolate(f, &curve.breaks(range[0], range[1]), band) {
         Zeros::Everywhere => return Vec::new(),
         Zeros::At { roots, .. } => roots,
     };
-    let value = |t: f64| f.at(t).v;
+    let value = |t: N| f.at(t).v;
     if roots.is_empty() {
-        let middle = range[0] + (range[1] - range[0]) * 0.618;
-        return if value(middle) > 0.0 {
+        let middle = range[0] + (range[1] - range[0]) * N::of(0.618);
+        return if value(middle) > N::ZERO {
             vec![range]
         } else {
             Vec::new()
         };
     }
-    let mut marks: Vec<f64> = roots.iter().map(|r| r.t).collect();
+    let mut marks: Vec<N> = roots.iter().map(|r| r.t).collect();
     if curve.period() == Some(range[1] - range[0]) {
         // A closed curve is opened at a root.
         let (first, period) = (marks[0], range[1] - range[0]);
@@ -199,16 +207,21 @@ fn positive_parts(curve: &Curve, range: [f64; 2], f: &impl Function, band: f64) 
         marks.insert(0, range[0]);
         marks.push(range[1]);
     }
-    let short = (range[1] - range[0]) * ROUNDING;
+    let short = (range[1] - range[0]) * N::ROUNDING;
     marks
         .windows(2)
-        .filter(|m| m[1] - m[0] > short && value(0.5 * (m[0] + m[1])) > 0.0)
+        .filter(|m| m[1] - m[0] > short && value(N::HALF * (m[0] + m[1])) > N::ZERO)
         .map(|m| [m[0], m[1]])
         .collect()
 }
 
 /// The parts of a curve that lie on a surface's own nappe, where it is a cone.
-fn nappe_parts(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> Vec<[f64; 2]> {
+fn nappe_parts<N: Number>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surface: &Surface<N>,
+    band: N,
+) -> Vec<[N; 2]> {
     let Surface::Cone(c) = surface else {
         return vec![range];
     };
@@ -216,32 +229,28 @@ fn nappe_parts(curve: &Curve, range: [f64; 2], surface: &Surface, band: f64) -> 
 }
 
 /// How far along a cone's axis from its apex a curve runs.
-struct AboveApex<'a> {
-    curve: &'a Curve,
-    cone: &'a Cone,
+struct AboveApex<'a, N: Number = f64> {
+    curve: &'a Curve<N>,
+    cone: &'a Cone<N>,
 }
 
-impl Function for AboveApex<'_> {
-    fn over(&self, t: Interval) -> Jet<Interval> {
+impl<N: Number> Function<N> for AboveApex<'_, N> {
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
         self.cone.frame.local(self.curve.jet_over(t))[2]
     }
 
-    fn reach(&self, t: Interval) -> Interval {
+    fn reach(&self, t: Interval<N>) -> Interval<N> {
         match self.curve.box_over(t) {
             Some(p) => self.cone.frame.local(p)[2],
             None => Interval::ENTIRE,
         }
     }
 
-    fn at(&self, t: f64) -> Jet<f64> {
+    fn at(&self, t: N) -> Jet<N> {
         self.cone.frame.local(self.curve.jet(t))[2]
     }
 
-    fn value(&self, t: f64) -> f64 {
+    fn value(&self, t: N) -> N {
         self.cone.frame.local(self.curve.point(t).into())[2]
     }
-}
-
-fn place(p: &Point3<f64>) -> [f64; 3] {
-    [p.x, p.y, p.z]
 }

@@ -5,27 +5,34 @@ use crate::geometry::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
 use crate::geometry::frame::Frame;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere};
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::sign::{Judge, Side};
 use nalgebra::{Point3, Vector3};
 
 /// The signed height of a point over a plane.
-fn height(p: &Plane, x: &Point3<f64>) -> f64 {
+fn height<N: Number>(p: &Plane<N>, x: &Point3<N>) -> N {
     (x - p.frame.origin).dot(&p.frame.z)
 }
 
-pub(super) fn plane_plane(p: &Plane, q: &Plane, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+pub(super) fn plane_plane<N: Number>(
+    p: &Plane<N>,
+    q: &Plane<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let mut meeting = Meeting::nothing();
     let across = p.frame.z.cross(&q.frame.z);
     let at = place(&p.frame.origin);
     if judge.coincide("plane along plane", pair.how(Relation::Drift), at) {
         return meeting;
     }
-    let direction = across.normalize();
+    let direction = across.unit();
     // The point of both planes next to the extent's centre.
     let c = pair.extent.centre;
     let (hp, hq) = (height(p, &c), height(q, &c));
     let cos = p.frame.z.dot(&q.frame.z);
-    let sin2 = across.norm_squared();
+    let sin2 = across.length_squared();
     let origin = c + p.frame.z * ((hq * cos - hp) / sin2) + q.frame.z * ((hp * cos - hq) / sin2);
     // Once more from there: the first step loses digits where the planes are nearly parallel.
     let (hp, hq) = (height(p, &origin), height(q, &origin));
@@ -35,7 +42,12 @@ pub(super) fn plane_plane(p: &Plane, q: &Plane, pair: &Pair<'_>, judge: &Judge) 
     meeting
 }
 
-pub(super) fn plane_sphere(p: &Plane, s: &Sphere, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+pub(super) fn plane_sphere<N: Number>(
+    p: &Plane<N>,
+    s: &Sphere<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let h = height(p, &s.frame.origin);
     let foot = s.frame.origin - p.frame.z * h;
     match judge.contact(
@@ -62,7 +74,12 @@ const FAR: f64 = 256.0;
 /// How many times as far as what is asked about lies a vertex that a long ellipse is told from.
 const NEAR: f64 = 16.0;
 
-pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+pub(super) fn plane_cylinder<N: Number>(
+    p: &Plane<N>,
+    c: &Cylinder<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
     let mut meeting = Meeting::nothing();
@@ -72,7 +89,7 @@ pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &J
         let along = (pair.extent.centre - c.frame.origin).dot(&z);
         let middle = c.frame.origin + z * along;
         let h = height(p, &middle);
-        let normal = (n - z * cos).normalize();
+        let normal = (n - z * cos).unit();
         let foot = middle - normal * h;
         let line = |origin| {
             Curve::Line(Line {
@@ -110,7 +127,7 @@ pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &J
         );
     } else {
         let (a, b) = (c.radius / cos.abs(), c.radius);
-        if a > FAR * pair.extent.radius {
+        if a > N::of(FAR) * pair.extent.radius {
             add_long_section(p, c, pair.extent, &mut meeting);
             return meeting;
         }
@@ -125,21 +142,26 @@ pub(super) fn plane_cylinder(p: &Plane, c: &Cylinder, pair: &Pair<'_>, judge: &J
 /// With X along the plane's steepest line from the point next to the extent's centre, and Y across,
 /// the points at X have the distance h + c X from the axis in the direction of the plane's normal:
 /// (h + c X)² + Y² = r².
-fn add_long_section(p: &Plane, s: &Cylinder, extent: &Extent, meeting: &mut Meeting) {
+fn add_long_section<N: Number>(
+    p: &Plane<N>,
+    s: &Cylinder<N>,
+    extent: &Extent<N>,
+    meeting: &mut Meeting<N>,
+) {
     let (n, z, r) = (p.frame.z, s.frame.z, s.radius);
     let middle = s.frame.origin + z * (extent.centre - s.frame.origin).dot(&z);
     let c = -n.dot(&z);
-    let outward = (n + z * c).normalize();
+    let outward = (n + z * c).unit();
     let h = -height(p, &middle) / n.dot(&outward);
     let foot = middle + outward * h;
     let steep = Frame::toward(foot, n, z);
-    let vertex = |side: f64| (side * r - h) / c;
-    let side = if vertex(1.0).abs() < vertex(-1.0).abs() {
-        1.0
+    let vertex = |side: N| (side * r - h) / c;
+    let side = if vertex(N::ONE).abs() < vertex(-N::ONE).abs() {
+        N::ONE
     } else {
-        -1.0
+        -N::ONE
     };
-    if vertex(side).abs() <= NEAR * extent.radius {
+    if vertex(side).abs() <= N::of(NEAR) * extent.radius {
         let inward = steep.x * -(side * c).signum();
         let frame = Frame::toward(foot + steep.x * vertex(side), n, inward);
         let conic = Conic::about_vertex(frame, r * c.abs(), c * c);
@@ -149,11 +171,11 @@ fn add_long_section(p: &Plane, s: &Cylinder, extent: &Extent, meeting: &mut Meet
         for y in [-half, half] {
             let slope = y.hypot(h * c);
             let normal = steep.x * (-h * c / slope) - steep.y * (y / slope);
-            let unit = 1.0 / (slope * slope * slope);
+            let unit = N::ONE / (slope * slope * slope);
             let conic = Conic {
                 frame: Frame::toward(foot + steep.y * y, n, normal),
                 curvature: (c * r).powi(2) * unit,
-                shear: h * c * y * (1.0 - c * c) * unit,
+                shear: h * c * y * (N::ONE - c * c) * unit,
                 flatness: ((c * c * h).powi(2) + y * y) * unit,
             };
             meeting.add(Curve::Conic(conic), false, extent);
@@ -161,7 +183,12 @@ fn add_long_section(p: &Plane, s: &Cylinder, extent: &Extent, meeting: &mut Meet
     }
 }
 
-pub(super) fn plane_cone(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+pub(super) fn plane_cone<N: Number>(
+    p: &Plane<N>,
+    c: &Cone<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let apex = c.frame.origin;
     let h = height(p, &apex);
     match judge.contact("apex on plane", pair.how(Relation::Height), place(&apex)) {
@@ -170,13 +197,18 @@ pub(super) fn plane_cone(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) ->
     }
 }
 
-fn plane_through_apex(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+fn plane_through_apex<N: Number>(
+    p: &Plane<N>,
+    c: &Cone<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let apex = c.frame.origin;
     let n = c.frame.components(&p.frame.z);
     let across = n.x.hypot(n.y);
     // The rulings (sin cos u, sin sin u, cos) in the plane: across cos(u - u0) = -n_z cot.
     let u0 = n.y.atan2(n.x);
-    let ruling = |u: f64| {
+    let ruling = |u: N| {
         let local = Vector3::new(c.sin * u.cos(), c.sin * u.sin(), c.cos);
         Line {
             origin: apex,
@@ -184,15 +216,15 @@ fn plane_through_apex(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Me
         }
     };
     let mut meeting = Meeting::nothing();
-    let mut add = |u: f64, tangent: bool| {
+    let mut add = |u: N, tangent: bool| {
         let curve = Curve::Line(ruling(u));
         if let Some([_, end]) = curve.range_within(&pair.extent.centre, pair.extent.radius)
-            && end > 0.0
+            && end > N::ZERO
         {
-            let on = (meeting.branches.len(), 0.0);
+            let on = (meeting.branches.len(), N::ZERO);
             meeting.branches.push(Branch {
                 curve,
-                range: [0.0, end],
+                range: [N::ZERO, end],
                 closed: false,
                 tangent,
             });
@@ -211,16 +243,11 @@ fn plane_through_apex(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Me
         place(&apex),
     ) {
         Side::Outside => return Meeting::touch(apex),
-        Side::On => add(
-            if n.z > 0.0 {
-                u0 + std::f64::consts::PI
-            } else {
-                u0
-            },
-            true,
-        ),
+        Side::On => add(if n.z > N::ZERO { u0 + N::PI } else { u0 }, true),
         Side::Inside => {
-            let half = (-n.z * c.cos / (across * c.sin)).clamp(-1.0, 1.0).acos();
+            let half = (-n.z * c.cos / (across * c.sin))
+                .clamp(-N::ONE, N::ONE)
+                .acos();
             add(u0 - half, false);
             add(u0 + half, false);
         }
@@ -228,7 +255,13 @@ fn plane_through_apex(p: &Plane, c: &Cone, pair: &Pair<'_>, judge: &Judge) -> Me
     meeting
 }
 
-fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+fn plane_beside_apex<N: Number>(
+    p: &Plane<N>,
+    c: &Cone<N>,
+    h: N,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
     let mut meeting = Meeting::nothing();
@@ -238,7 +271,7 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge
     let at = place(&c.frame.origin);
     if judge.coincide("plane across axis", pair.how(Relation::Drift), at) {
         let up = -h / cos;
-        if up > 0.0 {
+        if up > N::ZERO {
             let frame = c.frame.at(c.frame.origin + z * up);
             meeting.add(
                 Curve::Circle(Circle {
@@ -252,7 +285,7 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge
         return meeting;
     }
     // The two rulings in the plane of symmetry, and how fast they approach the plane.
-    let w = (n - z * cos).normalize();
+    let w = (n - z * cos).unit();
     let rulings = [z * c.cos + w * c.sin, z * c.cos - w * c.sin];
     let rates = rulings.map(|r| n.dot(&r));
     let vertex = |i: usize| c.frame.origin - rulings[i] * (h / rates[i]);
@@ -261,17 +294,17 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge
         judge.coincide("ruling along plane", along, at)
     });
     if let Some(i) = parallel.iter().position(|&p| p) {
-        if -h / rates[1 - i] > 0.0 {
+        if -h / rates[1 - i] > N::ZERO {
             let frame = Frame::toward(vertex(1 - i), n, rulings[i]);
             meeting.add(
-                Curve::Conic(Conic::about_vertex(frame, rectum, 0.0)),
+                Curve::Conic(Conic::about_vertex(frame, rectum, N::ZERO)),
                 false,
                 pair.extent,
             );
         }
         return meeting;
     }
-    let ahead = rates.map(|r| -h / r > 0.0);
+    let ahead = rates.map(|r| -h / r > N::ZERO);
     let near = match ahead {
         // The vertex that is nearer to the apex.
         [true, true] => usize::from(rates[1].abs() > rates[0].abs()),
@@ -287,8 +320,8 @@ fn plane_beside_apex(p: &Plane, c: &Cone, h: f64, pair: &Pair<'_>, judge: &Judge
     let x = if near == 0 { -along } else { along };
     let vertex = vertex(near);
     let closed = ahead == [true, true];
-    let curve = if a > FAR * ((vertex - pair.extent.centre).norm() + pair.extent.radius) {
-        let outward = if closed { 1.0 } else { -1.0 };
+    let curve = if a > N::of(FAR) * ((vertex - pair.extent.centre).length() + pair.extent.radius) {
+        let outward = if closed { N::ONE } else { -N::ONE };
         let frame = Frame::toward(vertex, n, -x * outward);
         Curve::Conic(Conic::about_vertex(frame, rectum, outward * rectum / a))
     } else {

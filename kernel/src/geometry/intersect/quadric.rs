@@ -7,18 +7,19 @@ use crate::geometry::frame::Frame;
 use crate::geometry::quartic::Ruled;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Cone, Cylinder, Surface};
+use crate::geometry::vector::Length;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros, isolate};
 use crate::number::scalar::Scalar;
-use crate::number::sign::{Judge, ROUNDING, Side};
+use crate::number::sign::{Judge, Side};
 use nalgebra::Vector3;
-use std::f64::consts::TAU;
 
-pub(super) fn quadric_quadric(
-    pair: &Pair<'_>,
+pub(super) fn quadric_quadric<N: Number>(
+    pair: &Pair<'_, N>,
     judge: &Judge,
-) -> Result<Meeting, IntersectionError> {
+) -> Result<Meeting<N>, IntersectionError> {
     use Surface as S;
     let turned = pair.turned();
     match (pair.a.surface, pair.b.surface) {
@@ -38,20 +39,25 @@ pub(super) fn quadric_quadric(
     }
 }
 
-fn parallel_cylinders(c: &Cylinder, d: &Cylinder, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+fn parallel_cylinders<N: Number>(
+    c: &Cylinder<N>,
+    d: &Cylinder<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let extent = pair.extent;
     let z = c.frame.z;
-    let at = |f: &Frame| f.origin + f.z * ((extent.centre - f.origin).dot(&z) / f.z.dot(&z));
+    let at = |f: &Frame<N>| f.origin + f.z * ((extent.centre - f.origin).dot(&z) / f.z.dot(&z));
     let (p, q) = (at(&c.frame), at(&d.frame));
     let away = q - p;
-    let dist = away.norm();
+    let dist = away.length();
     let mut meeting = Meeting::nothing();
     if judge.coincide("axis on axis", pair.how(Relation::BetweenAxes), place(&p)) {
         return meeting;
     }
     let axis = away / dist;
     let (r, s) = (c.radius, d.radius);
-    let x = 0.5 * (dist + (r - s) * (r + s) / dist);
+    let x = N::HALF * (dist + (r - s) * (r + s) / dist);
     let line = |origin| {
         Curve::Line(Line {
             origin,
@@ -66,7 +72,7 @@ fn parallel_cylinders(c: &Cylinder, d: &Cylinder, pair: &Pair<'_>, judge: &Judge
         (_, Side::On) => meeting.add(line(p + axis * r.copysign(r - s)), true, extent),
         (Side::Inside, Side::Inside) => {
             let area = (r + s - dist) * (dist + (r - s)) * (dist - (r - s)) * (dist + r + s);
-            let half = z.cross(&axis) * (area.max(0.0).sqrt() / (2.0 * dist));
+            let half = z.cross(&axis) * (area.max(N::ZERO).sqrt() / (N::TWO * dist));
             meeting.add(line(foot - half), false, extent);
             meeting.add(line(foot + half), false, extent);
         }
@@ -75,13 +81,18 @@ fn parallel_cylinders(c: &Cylinder, d: &Cylinder, pair: &Pair<'_>, judge: &Judge
     meeting
 }
 
-fn cones(c: &Cone, d: &Cone, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, IntersectionError> {
+fn cones<N: Number>(
+    c: &Cone<N>,
+    d: &Cone<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Result<Meeting<N>, IntersectionError> {
     let at = place(&c.frame.origin);
     if judge.contact("apex on apex", pair.how(Relation::Between), at) == Side::On {
         return Ok(common_apex(c, pair.b.surface, pair.extent, judge));
     }
     let turned = pair.turned();
-    let on_quadric = |pair: &Pair<'_>, apex: &Cone| {
+    let on_quadric = |pair: &Pair<'_, N>, apex: &Cone<N>| {
         let at = place(&apex.frame.origin);
         judge.contact("apex on quadric", pair.how(Relation::PointOnQuadric), at) == Side::On
     };
@@ -92,11 +103,16 @@ fn cones(c: &Cone, d: &Cone, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, 
 }
 
 /// Two cones with one apex meet in common rulings.
-fn common_apex(c: &Cone, other: &Surface, extent: &Extent, judge: &Judge) -> Meeting {
+fn common_apex<N: Number>(
+    c: &Cone<N>,
+    other: &Surface<N>,
+    extent: &Extent<N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let mut meeting = Meeting::touch(c.frame.origin);
     let m = c.sin / c.cos;
     // The distance from the other cone, a part's radius away from the apex, along each ruling.
-    let along = |u: Jet<Interval>| {
+    let along = |u: Jet<Interval<N>>| {
         let (s, k) = u.sin_cos();
         let r = extent.radius;
         let p = c
@@ -104,18 +120,20 @@ fn common_apex(c: &Cone, other: &Surface, extent: &Extent, judge: &Judge) -> Mee
             .world_of([k.scale(m * r), s.scale(m * r), Jet::constant(r)]);
         other.level(p)
     };
-    let breaks: Vec<f64> = (0..=8).map(|i| 0.1 + TAU * f64::from(i) / 8.0).collect();
+    let breaks: Vec<N> = (0..=8)
+        .map(|i| N::of(0.1) + N::TAU * N::whole(i) / N::of(8.0))
+        .collect();
     let Zeros::At { roots, .. } = isolate(&|t| along(Jet::variable(t)), &breaks, judge.band())
     else {
         return meeting;
     };
-    let mut angles: Vec<(f64, bool)> = roots
+    let mut angles: Vec<(N, bool)> = roots
         .iter()
         .map(|r| (r.t, r.contact != Contact::Simple))
         .collect();
     if let (Some(&(a, _)), Some(&(b, _))) = (angles.first(), angles.last())
         && angles.len() > 1
-        && (a + TAU - b).abs() < ROUNDING * TAU
+        && (a + N::TAU - b).abs() < N::ROUNDING * N::TAU
     {
         angles.pop();
     }
@@ -126,12 +144,12 @@ fn common_apex(c: &Cone, other: &Surface, extent: &Extent, judge: &Judge) -> Mee
             direction: c.frame.vector(&local),
         });
         if let Some([_, end]) = curve.range_within(&extent.centre, extent.radius)
-            && end > 0.0
+            && end > N::ZERO
         {
-            meeting.nodes[0].on.push((meeting.branches.len(), 0.0));
+            meeting.nodes[0].on.push((meeting.branches.len(), N::ZERO));
             meeting.branches.push(Branch {
                 curve,
-                range: [0.0, end],
+                range: [N::ZERO, end],
                 closed: false,
                 tangent,
             });
@@ -141,7 +159,11 @@ fn common_apex(c: &Cone, other: &Surface, extent: &Extent, judge: &Judge) -> Mee
 }
 
 /// Over the rulings of the pair's first.
-fn over_rulings(base: Ruled, pair: &Pair<'_>, judge: &Judge) -> Result<Meeting, IntersectionError> {
+fn over_rulings<N: Number>(
+    base: Ruled<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Result<Meeting<N>, IntersectionError> {
     let rulings = Rulings::new(base, pair);
     let flat = match &base {
         // The other surface holds the direction of the rulings: a cone with a ruling along them. The

@@ -5,18 +5,25 @@ use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::frame::Frame;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::Sphere;
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::sign::{Judge, Side};
 
-pub(super) fn sphere_sphere(s: &Sphere, t: &Sphere, pair: &Pair<'_>, judge: &Judge) -> Meeting {
+pub(super) fn sphere_sphere<N: Number>(
+    s: &Sphere<N>,
+    t: &Sphere<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Meeting<N> {
     let away = t.frame.origin - s.frame.origin;
-    let d = away.norm();
+    let d = away.length();
     let (r, q) = (s.radius, t.radius);
     let at = place(&s.frame.origin);
     if judge.coincide("centre on centre", pair.how(Relation::Between), at) {
         return Meeting::nothing();
     }
     let axis = away / d;
-    let x = 0.5 * (d + (r - q) * (r + q) / d);
+    let x = N::HALF * (d + (r - q) * (r + q) / d);
     let foot = s.frame.origin + axis * x;
     // Apart outside, or one within the other: both gaps are negative where they meet.
     let beside = s.frame.origin + axis * r;
@@ -29,7 +36,7 @@ pub(super) fn sphere_sphere(s: &Sphere, t: &Sphere, pair: &Pair<'_>, judge: &Jud
         (Side::Inside, Side::Inside) => {
             // Heron: the product of the four gaps, none of which cancels.
             let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
-            let radius = area.max(0.0).sqrt() / (2.0 * d);
+            let radius = area.max(N::ZERO).sqrt() / (N::TWO * d);
             let mut meeting = Meeting::nothing();
             let frame = Frame::about(foot, axis);
             meeting.add(Curve::Circle(Circle { frame, radius }), false, pair.extent);

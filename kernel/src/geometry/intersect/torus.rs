@@ -9,18 +9,19 @@ use crate::geometry::cut::lies_on;
 use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Plane, Surface, Torus};
 use crate::geometry::trace::trace;
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::sign::{Judge, Side};
 use nalgebra::{Point3, Vector2};
-use std::f64::consts::TAU;
 
 /// Through the angles of the smaller one: on the other, far from the curve, the form is large, and
 /// its rounding with it.
-pub(super) fn torus_torus(
-    t: &Torus,
-    o: &Torus,
-    pair: &Pair<'_>,
+pub(super) fn torus_torus<N: Number>(
+    t: &Torus<N>,
+    o: &Torus<N>,
+    pair: &Pair<'_, N>,
     judge: &Judge,
-) -> Result<Meeting, IntersectionError> {
+) -> Result<Meeting<N>, IntersectionError> {
     if o.major + o.minor < t.major + t.minor {
         torus_with(o, &pair.turned(), judge)
     } else {
@@ -29,11 +30,11 @@ pub(super) fn torus_torus(
 }
 
 /// The torus is the pair's first.
-pub(super) fn torus_with(
-    t: &Torus,
-    pair: &Pair<'_>,
+pub(super) fn torus_with<N: Number>(
+    t: &Torus<N>,
+    pair: &Pair<'_, N>,
     judge: &Judge,
-) -> Result<Meeting, IntersectionError> {
+) -> Result<Meeting<N>, IntersectionError> {
     let (other, extent) = (pair.b.surface, pair.extent);
     if let Some(meeting) = coaxial(t, pair, judge) {
         return Ok(meeting);
@@ -61,7 +62,7 @@ pub(super) fn torus_with(
 }
 
 /// The other surface as a function of the torus's angles: a distance to first order.
-pub(super) fn form(t: &Torus, other: &Surface) -> BiTrig {
+pub(super) fn form<N: Number>(t: &Torus<N>, other: &Surface<N>) -> BiTrig<N> {
     let surface = Surface::Torus(*t);
     BiTrig::interpolate(|theta, phi| {
         let p = surface.point(theta, phi);
@@ -70,43 +71,44 @@ pub(super) fn form(t: &Torus, other: &Surface) -> BiTrig {
 }
 
 /// The polynomial that vanishes on a surface, scaled to be the distance near to it.
-fn polynomial_level(s: &Surface, p: &Point3<f64>, t: &Torus) -> f64 {
+fn polynomial_level<N: Number>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N {
     let q = s.frame().coordinates(p);
     let rho2 = q.x * q.x + q.y * q.y;
     match s {
         Surface::Plane(_) => q.z,
-        Surface::Cylinder(c) => (rho2 - c.radius * c.radius) / (2.0 * c.radius),
-        Surface::Sphere(c) => (rho2 + q.z * q.z - c.radius * c.radius) / (2.0 * c.radius),
+        Surface::Cylinder(c) => (rho2 - c.radius * c.radius) / (N::TWO * c.radius),
+        Surface::Sphere(c) => (rho2 + q.z * q.z - c.radius * c.radius) / (N::TWO * c.radius),
         Surface::Cone(c) => {
-            let away = (t.frame.origin - c.frame.origin).norm().max(t.minor);
-            (rho2 * c.cos * c.cos - q.z * q.z * c.sin * c.sin) / (2.0 * c.sin * away)
+            let away = (t.frame.origin - c.frame.origin).length().max(t.minor);
+            (rho2 * c.cos * c.cos - q.z * q.z * c.sin * c.sin) / (N::TWO * c.sin * away)
         }
         Surface::Torus(c) => {
             let sum = rho2 + q.z * q.z + c.major * c.major - c.minor * c.minor;
-            (sum * sum - 4.0 * c.major * c.major * rho2) / (8.0 * c.major * c.major * c.minor)
+            (sum * sum - N::of(4.0) * c.major * c.major * rho2)
+                / (N::of(8.0) * c.major * c.major * c.minor)
         }
     }
 }
 
-fn traced(
-    t: &Torus,
-    other: &Surface,
-    form: &BiTrig,
+fn traced<N: Number>(
+    t: &Torus<N>,
+    other: &Surface<N>,
+    form: &BiTrig<N>,
     judge: &Judge,
-) -> Result<Meeting, IntersectionError> {
+) -> Result<Meeting<N>, IntersectionError> {
     let traced = trace(t, form, judge.band())?;
     let mut meeting = Meeting::nothing();
     for [theta, phi] in &traced.close {
         let p = Surface::Torus(*t).point(*theta, *phi);
-        judge.contact("torus touches surface", other.distance(&p), p.coords.into());
+        judge.contact("torus touches surface", other.distance(&p), place(&p));
     }
     // The form knows both nappes of a cone: each branch is cut to the one that is meant.
-    let mut parts: Vec<Vec<(usize, [f64; 2])>> = Vec::new();
+    let mut parts: Vec<Vec<(usize, [N; 2])>> = Vec::new();
     let mut singular = traced.singular;
     for (b, branch) in traced.branches.into_iter().enumerate() {
         let toric = Curve::Toric(Box::new(branch));
         let passes = singular.iter_mut().flat_map(|s| &mut s.on);
-        let mut passes: Vec<&mut f64> = passes.filter(|on| on.0 == b).map(|on| &mut on.1).collect();
+        let mut passes: Vec<&mut N> = passes.filter(|on| on.0 == b).map(|on| &mut on.1).collect();
         let curve = match circle_of(&toric, t, other, judge) {
             Some(circle) => {
                 for at in &mut passes {
@@ -116,8 +118,8 @@ fn traced(
             }
             None => toric,
         };
-        let passes: Vec<f64> = passes.into_iter().map(|at| *at).collect();
-        let whole = [0.0, curve.period().unwrap_or(0.0)];
+        let passes: Vec<N> = passes.into_iter().map(|at| *at).collect();
+        let whole = [N::ZERO, curve.period().unwrap_or(N::ZERO)];
         let mut kept = Vec::new();
         for range in nappe_parts(&curve, whole, other, judge.band()) {
             let range = range.map(|end| at_pass(&curve, end, &passes, judge));
@@ -141,7 +143,7 @@ fn traced(
         for (b, at) in s.on {
             for &(i, [lo, hi]) in &parts[b] {
                 // Parts run on beyond the turn in which they start.
-                let cycle = meeting.branches[i].curve.period().unwrap_or(0.0);
+                let cycle = meeting.branches[i].curve.period().unwrap_or(N::ZERO);
                 let whole = meeting.branches[i].closed;
                 let passes = [at, at + cycle].into_iter().take(2 - usize::from(whole));
                 on.extend(passes.filter(|&t| t >= lo && t <= hi).map(|t| (i, t)));
@@ -162,31 +164,37 @@ fn traced(
 
 /// The circle that a branch is, where it is one: a sphere across a torus's spine meets it in circles
 /// of the tube, a cone about a tangent of the spine in one.
-fn circle_of(branch: &Curve, t: &Torus, other: &Surface, judge: &Judge) -> Option<Curve> {
+fn circle_of<N: Number>(
+    branch: &Curve<N>,
+    t: &Torus<N>,
+    other: &Surface<N>,
+    judge: &Judge,
+) -> Option<Curve<N>> {
     let period = branch.period()?;
-    let [a, b, c] = [0.0, 1.0, 2.0].map(|third| branch.point(third * period / 3.0));
+    let [a, b, c] =
+        [N::ZERO, N::ONE, N::TWO].map(|third| branch.point(third * period / N::of(3.0)));
     let circle = Curve::Circle(Circle::through(&a, &b, &c)?);
-    let on = |s: &Surface| lies_on(&circle, [0.0, TAU], s, judge.band());
+    let on = |s: &Surface<N>| lies_on(&circle, [N::ZERO, N::TAU], s, judge.band());
     (on(&Surface::Torus(*t)) && on(other)).then_some(circle)
 }
 
 /// The end of a part of a closed curve, or the singular point there: next to one, rounding is all
 /// that tells where the curve leaves a nappe.
-fn at_pass(curve: &Curve, end: f64, passes: &[f64], judge: &Judge) -> f64 {
+fn at_pass<N: Number>(curve: &Curve<N>, end: N, passes: &[N], judge: &Judge) -> N {
     let there = curve.point(end);
     let near = passes.iter().map(|&at| {
         let turns = curve
             .period()
-            .map_or(0.0, |period| period * ((end - at) / period).round());
+            .map_or(N::ZERO, |period| period * ((end - at) / period).round());
         at + turns
     });
-    near.filter(|&at| judge.within((curve.point(at) - there).norm()))
-        .min_by(|a, b| (a - end).abs().total_cmp(&(b - end).abs()))
+    near.filter(|&at| judge.within((curve.point(at) - there).length()))
+        .min_by(|a, b| (*a - end).abs().total_cmp(&(*b - end).abs()))
         .unwrap_or(end)
 }
 
 /// What is coaxial meets in parallel circles: points of the two profiles in a half plane.
-fn coaxial(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
+fn coaxial<N: Number>(t: &Torus<N>, pair: &Pair<'_, N>, judge: &Judge) -> Option<Meeting<N>> {
     let other = pair.b.surface;
     let f = other.frame();
     let at = place(&t.frame.origin);
@@ -201,27 +209,27 @@ fn coaxial(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
     let up = (f.origin - t.frame.origin).dot(&t.frame.z);
     let sign = t.frame.z.dot(&f.z).signum();
     let profile = Profile {
-        tube: Vector2::new(t.major, 0.0),
+        tube: Vector2::new(t.major, N::ZERO),
         radius: t.minor,
         pair,
         judge,
     };
     let points = match other {
-        Surface::Plane(_) => profile.line(&Vector2::new(0.0, up), &Vector2::x()),
-        Surface::Cylinder(c) => profile.line(&Vector2::new(c.radius, 0.0), &Vector2::y()),
+        Surface::Plane(_) => profile.line(&Vector2::new(N::ZERO, up), &Vector2::x()),
+        Surface::Cylinder(c) => profile.line(&Vector2::new(c.radius, N::ZERO), &Vector2::y()),
         Surface::Cone(c) => {
-            let apex = Vector2::new(0.0, up);
+            let apex = Vector2::new(N::ZERO, up);
             let d = Vector2::new(c.sin, sign * c.cos);
             let mut points = profile.line(&apex, &d);
-            points.retain(|(p, _)| (p - apex).dot(&d) > 0.0);
+            points.retain(|(p, _)| (p - apex).dot(&d) > N::ZERO);
             points
         }
-        Surface::Sphere(s) => profile.circle(&Vector2::new(0.0, up), s.radius),
+        Surface::Sphere(s) => profile.circle(&Vector2::new(N::ZERO, up), s.radius),
         Surface::Torus(s) => profile.circle(&Vector2::new(s.major, up), s.minor),
     };
     let mut meeting = Meeting::nothing();
     for (p, tangent) in points {
-        if p.x > 0.0 {
+        if p.x > N::ZERO {
             meeting.add(Curve::Circle(parallel(t, p.y, p.x)), tangent, pair.extent);
         }
     }
@@ -229,26 +237,26 @@ fn coaxial(t: &Torus, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
 }
 
 /// The circle of the tube in a half plane from the axis, and what is coaxial to the torus.
-struct Profile<'a> {
+struct Profile<'a, N: Number = f64> {
     /// The centre of the tube: its distance from the axis, and its height.
-    tube: Vector2<f64>,
-    radius: f64,
-    pair: &'a Pair<'a>,
+    tube: Vector2<N>,
+    radius: N,
+    pair: &'a Pair<'a, N>,
     judge: &'a Judge,
 }
 
-impl Profile<'_> {
-    fn side(&self, question: &'static str, relation: Relation, at: &Vector2<f64>) -> Side {
+impl<N: Number> Profile<'_, N> {
+    fn side(&self, question: &'static str, relation: Relation, at: &Vector2<N>) -> Side {
         let f = self.pair.a.surface.frame();
-        let at = f.point(at.x, 0.0, at.y);
+        let at = f.point(at.x, N::ZERO, at.y);
         self.judge
             .side(question, self.pair.how(relation), place(&at))
     }
 
     /// Where the line of a plane, a cylinder or a cone meets the circle, and whether it touches.
-    fn line(&self, o: &Vector2<f64>, d: &Vector2<f64>) -> Vec<(Vector2<f64>, bool)> {
+    fn line(&self, o: &Vector2<N>, d: &Vector2<N>) -> Vec<(Vector2<N>, bool)> {
         let foot = o + d * (self.tube - o).dot(d);
-        let (h, r) = ((self.tube - foot).norm(), self.radius);
+        let (h, r) = ((self.tube - foot).length(), self.radius);
         match self.side("line on circle of a profile", Relation::LineOnTube, &foot) {
             Side::Outside => Vec::new(),
             Side::On => vec![(foot, true)],
@@ -260,22 +268,23 @@ impl Profile<'_> {
     }
 
     /// Where the circle of a sphere or of another tube meets it, and whether it touches.
-    fn circle(&self, a: &Vector2<f64>, r: f64) -> Vec<(Vector2<f64>, bool)> {
+    fn circle(&self, a: &Vector2<N>, r: N) -> Vec<(Vector2<N>, bool)> {
         let away = self.tube - a;
-        let (d, q) = (away.norm(), self.radius);
+        let (d, q) = (away.length(), self.radius);
         let concentric = self.side("centre on centre", Relation::BetweenTubes, &self.tube);
         if concentric == Side::On {
             return Vec::new();
         }
         let axis = away / d;
-        let foot = a + axis * (0.5 * (d + (r - q) * (r + q) / d));
+        let foot = a + axis * (N::HALF * (d + (r - q) * (r + q) / d));
         let side = |gap| self.side("circle on circle of a profile", gap, &foot);
         match (side(Relation::BesideTube), side(Relation::InTube)) {
             (Side::On, _) => vec![(a + axis * r, true)],
             (_, Side::On) => vec![(a + axis * r.copysign(r - q), true)],
             (Side::Inside, Side::Inside) => {
                 let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
-                let half = Vector2::new(-axis.y, axis.x) * (area.max(0.0).sqrt() / (2.0 * d));
+                let half =
+                    Vector2::new(-axis.y, axis.x) * (area.max(N::ZERO).sqrt() / (N::TWO * d));
                 vec![(foot - half, false), (foot + half, false)]
             }
             _ => Vec::new(),
@@ -284,7 +293,12 @@ impl Profile<'_> {
 }
 
 /// A plane through the centre that holds the axis, or touches the tube twice (Villarceau).
-fn central_plane(t: &Torus, p: &Plane, pair: &Pair<'_>, judge: &Judge) -> Option<Meeting> {
+fn central_plane<N: Number>(
+    t: &Torus<N>,
+    p: &Plane<N>,
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Option<Meeting<N>> {
     let (n, extent) = (p.frame.z, pair.extent);
     let at = place(&t.frame.origin);
     let height = pair.turned().how(Relation::Height);
@@ -294,20 +308,20 @@ fn central_plane(t: &Torus, p: &Plane, pair: &Pair<'_>, judge: &Judge) -> Option
     let mut meeting = Meeting::nothing();
     if judge.coincide("axis in plane", pair.how(Relation::Upright), at) {
         let q = t.frame.components(&n);
-        let theta = q.y.atan2(q.x) + TAU / 4.0;
-        for theta in [theta, theta + TAU / 2.0] {
+        let theta = q.y.atan2(q.x) + N::TAU / N::of(4.0);
+        for theta in [theta, theta + N::TAU / N::TWO] {
             meeting.add(Curve::Circle(meridian(t, theta)), false, extent);
         }
         return Some(meeting);
     }
     let across = n.cross(&t.frame.z);
-    let slope = across.norm();
+    let slope = across.length();
     let gap = pair.how(Relation::PlaneOnBothSides);
     if !judge.coincide("plane touching a torus twice", gap, at) {
         return None;
     }
     let axis = across / slope;
-    for side in [-1.0, 1.0] {
+    for side in [-N::ONE, N::ONE] {
         let frame = p.frame.at(t.frame.origin + axis * (side * t.minor));
         meeting.add(
             Curve::Circle(Circle {
@@ -320,7 +334,7 @@ fn central_plane(t: &Torus, p: &Plane, pair: &Pair<'_>, judge: &Judge) -> Option
     }
     let reach = ((t.major - t.minor) * (t.major + t.minor)).sqrt();
     let up = n.cross(&axis);
-    for side in [-1.0, 1.0] {
+    for side in [-N::ONE, N::ONE] {
         meeting.cross_at(t.frame.origin + up * (side * reach), judge);
     }
     Some(meeting)

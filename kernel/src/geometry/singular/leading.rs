@@ -21,10 +21,9 @@ use crate::geometry::toric::Axis;
 use crate::geometry::trace::{DEPTH, Tracer, near};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros, isolate};
 use crate::number::scalar::Scalar;
-use crate::number::sign::ROUNDING;
-use std::f64::consts::PI;
 
 /// The orders of forms whose roots are told.
 const FORMS: [usize; 2] = [3, 4];
@@ -36,7 +35,7 @@ const LEAD: f64 = 4.0;
 const STEPS: usize = 12;
 
 /// A critical point with a Hessian of rank two; none where no zone is plain.
-pub(super) fn plain(form: &BiTrig, angles: [f64; 2]) -> Option<SingularPoint> {
+pub(super) fn plain<N: Number>(form: &BiTrig<N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
     let at = form.partials(angles[0], angles[1]);
     let crosses = at.xx * at.yy < at.xy * at.xy;
     let directions = if crosses {
@@ -48,43 +47,50 @@ pub(super) fn plain(form: &BiTrig, angles: [f64; 2]) -> Option<SingularPoint> {
 }
 
 /// The degenerate point next to `start`, and how far from it F is within the band.
-pub(super) fn degenerate(tracer: &Tracer<'_>, start: [f64; 2]) -> Option<(SingularPoint, f64)> {
+pub(super) fn degenerate<N: Number>(
+    tracer: &Tracer<'_, N>,
+    start: [N; 2],
+) -> Option<(SingularPoint<N>, N)> {
     let flat = || ORDERS.into_iter().find_map(|k| rank_one(tracer, start, k));
     let crossing = || FORMS.into_iter().find_map(|n| multiple(tracer, start, n));
     flat().or_else(crossing)
 }
 
 /// The directions in which an indefinite quadratic form vanishes.
-fn tangents(at: &Partials<f64>) -> [[f64; 2]; 2] {
-    let root = (at.xy * at.xy - at.xx * at.yy).max(0.0).sqrt();
+fn tangents<N: Number>(at: &Partials<N>) -> [[N; 2]; 2] {
+    let root = (at.xy * at.xy - at.xx * at.yy).max(N::ZERO).sqrt();
     // a x² + 2 b x y + c y² = 0, in the form that does not cancel.
-    let q = if at.xy >= 0.0 {
+    let q = if at.xy >= N::ZERO {
         -at.xy - root
     } else {
         -at.xy + root
     };
-    if q == 0.0 {
-        return [[1.0, 0.0], [0.0, 1.0]];
+    if q == N::ZERO {
+        return [[N::ONE, N::ZERO], [N::ZERO, N::ONE]];
     }
     [[q, at.xx], [at.yy, q]]
 }
 
 /// The point at which all terms of a degree below n vanish, next to `start`.
-fn multiple(tracer: &Tracer<'_>, start: [f64; 2], n: usize) -> Option<(SingularPoint, f64)> {
+fn multiple<N: Number>(
+    tracer: &Tracer<'_, N>,
+    start: [N; 2],
+    n: usize,
+) -> Option<(SingularPoint<N>, N)> {
     let mut p = start;
     for _ in 0..STEPS {
         let k = taylor(tracer.form, p, Axis::Around);
         let step = toward_multiple(&k, n)?;
         p = [p[0] + step[0], p[1] + step[1]];
-        if !near(&p, &start, ZONE) {
+        if !near(&p, &start, N::of(ZONE)) {
             return None;
         }
     }
     let k = taylor(tracer.form, p, Axis::Around);
-    let size = |d: usize| (0..=d).map(|j| k[d - j][j].abs()).sum::<f64>();
-    let reach = (tracer.band / size(n)).powf(1.0 / n as f64);
+    let size = |d: usize| (0..=d).map(|j| k[d - j][j].abs()).sum::<N>();
+    let reach = (tracer.band / size(n)).powf(N::ONE / N::of(n as f64));
     let vanishes = (0..n).all(|d| size(d) * reach.powi(d as i32) <= tracer.band);
-    let leads = reach < ZONE && LEAD * size(n + 1) * reach <= size(n);
+    let leads = reach < N::of(ZONE) && N::of(LEAD) * size(n + 1) * reach <= size(n);
     if !(vanishes && leads) {
         return None;
     }
@@ -94,12 +100,15 @@ fn multiple(tracer: &Tracer<'_>, start: [f64; 2], n: usize) -> Option<(SingularP
 }
 
 /// Gauss and Newton's step towards the point at which the terms of degree n - 1 vanish.
-fn toward_multiple(k: &Taylor, n: usize) -> Option<[f64; 2]> {
-    let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-    let mut right = [0.0; 2];
+fn toward_multiple<N: Number>(k: &Taylor<N>, n: usize) -> Option<[N; 2]> {
+    let (mut a, mut b, mut c) = (N::ZERO, N::ZERO, N::ZERO);
+    let mut right = [N::ZERO; 2];
     for j in 0..n {
         let i = n - 1 - j;
-        let by = [(i + 1) as f64 * k[i + 1][j], (j + 1) as f64 * k[i][j + 1]];
+        let by = [
+            N::of((i + 1) as f64) * k[i + 1][j],
+            N::of((j + 1) as f64) * k[i][j + 1],
+        ];
         a += by[0] * by[0];
         b += by[0] * by[1];
         c += by[1] * by[1];
@@ -115,31 +124,31 @@ fn toward_multiple(k: &Taylor, n: usize) -> Option<[f64; 2]> {
 }
 
 /// The directions in which the terms of degree n vanish; none where two are one.
-fn roots_of_form(k: &Taylor, n: usize) -> Option<Vec<[f64; 2]>> {
-    let form = |angle: Interval| {
+fn roots_of_form<N: Number>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
+    let form = |angle: Interval<N>| {
         let turn = Jet {
             v: angle,
-            d: Interval::point(1.0),
-            dd: Interval::point(0.0),
+            d: Interval::point(N::ONE),
+            dd: Interval::point(N::ZERO),
         };
         let (sin, cos) = turn.sin_cos();
         // Horner's scheme, homogeneous.
-        let mut power = Jet::constant(1.0);
-        let mut sum = Jet::constant(0.0);
+        let mut power = Jet::constant(N::ONE);
+        let mut sum = Jet::constant(N::ZERO);
         for i in 0..=n {
             sum = sum * sin + power.scale(k[i][n - i]);
             power = power * cos;
         }
         sum
     };
-    let size: f64 = (0..=n).map(|j| k[n - j][j].abs()).sum();
+    let size: N = (0..=n).map(|j| k[n - j][j].abs()).sum();
     // Half a turn, from where no simple slope is.
-    let [from, to] = [ZONE, ZONE + PI];
-    let Zeros::At { roots, .. } = isolate(&form, &[from, to], size * ROUNDING) else {
+    let [from, to] = [N::of(ZONE), N::of(ZONE) + N::PI];
+    let Zeros::At { roots, .. } = isolate(&form, &[from, to], size * N::ROUNDING) else {
         return None;
     };
     let simple = roots.iter().all(|r| r.contact == Contact::Simple);
-    let direction = |t: f64| {
+    let direction = |t: N| {
         let (sin, cos) = t.sin_cos();
         [cos, sin]
     };
@@ -147,21 +156,21 @@ fn roots_of_form(k: &Taylor, n: usize) -> Option<Vec<[f64; 2]>> {
 }
 
 /// A point at which branches of different directions cross; none where no zone is plain.
-fn fold(
-    form: &BiTrig,
-    angles: [f64; 2],
+fn fold<N: Number>(
+    form: &BiTrig<N>,
+    angles: [N; 2],
     n: usize,
-    directions: Vec<[f64; 2]>,
-) -> Option<SingularPoint> {
+    directions: Vec<[N; 2]>,
+) -> Option<SingularPoint<N>> {
     let weights = Weights {
         run: 1,
         rise: 1,
         form: n,
     };
-    let chart = |axis| Chart::new(form, angles, axis, &[], 1.0, weights);
+    let chart = |axis| Chart::new(form, angles, axis, &[], N::ONE, weights);
     let charts = [Axis::Around, Axis::Tube].map(chart);
-    let zone = zone(|zone| charts.iter().all(|c| is_plain(c, zone, 1.0)))?;
-    let pass = |[x, y]: [f64; 2]| {
+    let zone = zone(|zone| charts.iter().all(|c| is_plain(c, zone, N::ONE)))?;
+    let pass = |[x, y]: [N; 2]| {
         let steep = y.abs() > x.abs();
         Pass {
             chart: charts[usize::from(steep)].clone(),
@@ -176,8 +185,8 @@ fn fold(
 }
 
 /// The greatest zone of which something holds.
-fn zone(holds: impl Fn(f64) -> bool) -> Option<f64> {
-    let zones = (0..DEPTH as i32).map(|n| ZONE * 0.5_f64.powi(n));
+fn zone<N: Number>(holds: impl Fn(N) -> bool) -> Option<N> {
+    let zones = (0..DEPTH as i32).map(|n| N::of(ZONE) * N::HALF.powi(n));
     zones.into_iter().find(|&z| holds(z))
 }
 
@@ -185,7 +194,7 @@ fn zone(holds: impl Fn(f64) -> bool) -> Option<f64> {
 const HALVINGS: u32 = 24;
 
 /// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
-fn is_plain(chart: &Chart, sigma: f64, kappa: f64) -> bool {
+fn is_plain<N: Number>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
     let run = Interval::new(-sigma, sigma);
     let mut stack = vec![(Interval::new(-kappa, kappa), 0)];
     while let Some((k, depth)) = stack.pop() {
@@ -204,19 +213,19 @@ fn is_plain(chart: &Chart, sigma: f64, kappa: f64) -> bool {
 }
 
 /// F next to a point at which it bends along the other angle more than along the running one.
-struct Sheet {
+struct Sheet<N: Number = f64> {
     axis: Axis,
     /// Y by the powers of s.
-    trend: Vec<f64>,
+    trend: Vec<N>,
     /// k₀₂ of F by the powers of s and y - Y(s).
-    bend: f64,
+    bend: N,
     /// h by the powers of s.
-    along: Vec<f64>,
+    along: Vec<N>,
 }
 
-impl Sheet {
+impl<N: Number> Sheet<N> {
     /// The sheet at a point next to which F_y vanishes; none where it nowhere does.
-    fn at(form: &BiTrig, p: [f64; 2]) -> Self {
+    fn at(form: &BiTrig<N>, p: [N; 2]) -> Self {
         let at = form.partials(p[0], p[1]);
         let axis = match at.yy.abs() >= at.xx.abs() {
             true => Axis::Around,
@@ -224,10 +233,10 @@ impl Sheet {
         };
         let mut k = taylor(form, p, axis);
         let bend = k[0][2];
-        let mut trend = vec![0.0; DEGREE];
+        let mut trend = vec![N::ZERO; DEGREE];
         // Each power of s is left in F_y by one term, which the shear by its own takes away.
         for (i, y) in trend.iter_mut().enumerate().skip(1) {
-            let c = -0.5 * k[i][1] / bend;
+            let c = -N::HALF * k[i][1] / bend;
             k = sheared(&k, i, c);
             *y = c;
         }
@@ -242,7 +251,11 @@ impl Sheet {
 }
 
 /// The point of rank one next to `start` at which F vanishes to the order k along Y.
-fn rank_one(tracer: &Tracer<'_>, start: [f64; 2], k: usize) -> Option<(SingularPoint, f64)> {
+fn rank_one<N: Number>(
+    tracer: &Tracer<'_, N>,
+    start: [N; 2],
+    k: usize,
+) -> Option<(SingularPoint<N>, N)> {
     let (form, band) = (tracer.form, tracer.band);
     let mut p = start;
     for _ in 0..STEPS {
@@ -252,25 +265,25 @@ fn rank_one(tracer: &Tracer<'_>, start: [f64; 2], k: usize) -> Option<(SingularP
             Axis::Around => at.y,
             Axis::Tube => at.x,
         };
-        let s = -sheet.along[k - 1] / (k as f64 * sheet.along[k]);
-        let y = -0.5 * across / sheet.bend + sheet.trend[1] * s;
+        let s = -sheet.along[k - 1] / (N::of(k as f64) * sheet.along[k]);
+        let y = -N::HALF * across / sheet.bend + sheet.trend[1] * s;
         let step = match sheet.axis {
             Axis::Around => [s, y],
             Axis::Tube => [y, s],
         };
         p = [p[0] + step[0], p[1] + step[1]];
-        if !near(&p, &start, ZONE) {
+        if !near(&p, &start, N::of(ZONE)) {
             return None;
         }
     }
     let sheet = Sheet::at(form, p);
     let last = sheet.along[k].abs();
     // Where the leading term leaves the band.
-    let reach = (band / last).powf(1.0 / k as f64);
+    let reach = (band / last).powf(N::ONE / N::of(k as f64));
     let vanishes = (0..k).all(|j| sheet.along[j].abs() * reach.powi(j as i32) <= band);
-    let leads = sheet.bend.abs() * reach * reach >= 2.0 * LEAD * band
-        && reach < ZONE
-        && LEAD * sheet.along[k + 1].abs() * reach <= last;
+    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::of(LEAD) * band
+        && reach < N::of(ZONE)
+        && N::of(LEAD) * sheet.along[k + 1].abs() * reach <= last;
     if !(vanishes && leads) {
         return None;
     }
@@ -278,12 +291,12 @@ fn rank_one(tracer: &Tracer<'_>, start: [f64; 2], k: usize) -> Option<(SingularP
 }
 
 /// The branches through a point of rank one; none where no zone is plain.
-fn rank_one_branches(
-    form: &BiTrig,
-    angles: [f64; 2],
-    sheet: &Sheet,
+fn rank_one_branches<N: Number>(
+    form: &BiTrig<N>,
+    angles: [N; 2],
+    sheet: &Sheet<N>,
     k: usize,
-) -> Option<SingularPoint> {
+) -> Option<SingularPoint<N>> {
     let odd = k % 2 == 1;
     let weights = match odd {
         true => Weights {
@@ -301,9 +314,9 @@ fn rank_one_branches(
     let kappa = ratio.abs().sqrt();
     // Y as far as its terms weigh no more than κ.
     let trend = &sheet.trend[1..=k / 2];
-    let chart = |side: f64| Chart::new(form, angles, sheet.axis, trend, side, weights);
+    let chart = |side: N| Chart::new(form, angles, sheet.axis, trend, side, weights);
     // A cusp lies where the second term has the other sign, and two branches do on both sides.
-    let side = if odd { -ratio.signum() } else { 1.0 };
+    let side = if odd { -ratio.signum() } else { N::ONE };
     let own = chart(side);
     let other = odd.then(|| chart(-side));
     let across = usize::from(sheet.axis == Axis::Around);
@@ -311,10 +324,10 @@ fn rank_one_branches(
     let zone = zone(|zone| {
         let [x, y] = angles.map(|c| Interval::around(c, zone));
         let sigma = if odd { zone.sqrt() } else { zone };
-        let holds = |c: &Chart| holds_both(c, sigma, 2.0 * kappa);
+        let holds = |c: &Chart<N>| holds_both(c, sigma, N::TWO * kappa);
         !bend.value(x, y).has_zero() && holds(&own) && other.iter().all(holds)
     })?;
-    let kappas = match (odd, ratio < 0.0) {
+    let kappas = match (odd, ratio < N::ZERO) {
         (true, _) => vec![kappa],
         (false, true) => vec![-kappa, kappa],
         (false, false) => Vec::new(),
@@ -332,14 +345,14 @@ fn rank_one_branches(
 
 /// Whether all that a function of one bend has of zeros over |σ| lies at less than |κ|, each on a
 /// branch through the point.
-fn holds_both(chart: &Chart, sigma: f64, kappa: f64) -> bool {
+fn holds_both<N: Number>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
     let run = Interval::new(-sigma, sigma);
     let [low, high] = [-kappa, kappa].map(|k| chart.partials_over(run, Interval::point(k)));
-    let outside = |g: &Partials<Interval>| !g.f.has_zero() && !g.y.has_zero();
+    let outside = |g: &Partials<Interval<N>>| !g.f.has_zero() && !g.y.has_zero();
     outside(&low)
         && outside(&high)
-        && (low.y.hi < 0.0) != (high.y.hi < 0.0)
-        && (low.f.hi < 0.0) == (high.f.hi < 0.0)
-        && (high.f.hi < 0.0) == (high.y.hi < 0.0)
+        && (low.y.hi < N::ZERO) != (high.y.hi < N::ZERO)
+        && (low.f.hi < N::ZERO) == (high.f.hi < N::ZERO)
+        && (high.f.hi < N::ZERO) == (high.y.hi < N::ZERO)
         && is_plain(chart, sigma, kappa)
 }

@@ -1,36 +1,36 @@
 //! Cells of the parameter torus, and the first grid of them.
 
 use crate::geometry::toric::wrap;
-use std::f64::consts::TAU;
+use crate::number::precision::Number;
 
 /// A rectangle of angles.
 #[derive(Clone, Copy, Debug)]
-pub struct Cell {
+pub struct Cell<N: Number = f64> {
     /// The least angles.
-    pub lo: [f64; 2],
+    pub lo: [N; 2],
     /// The greatest angles.
-    pub hi: [f64; 2],
+    pub hi: [N; 2],
 }
 
-impl Cell {
+impl<N: Number> Cell<N> {
     /// The angles in the middle.
-    pub fn centre(&self) -> [f64; 2] {
+    pub fn centre(&self) -> [N; 2] {
         [
-            0.5 * (self.lo[0] + self.hi[0]),
-            0.5 * (self.lo[1] + self.hi[1]),
+            N::HALF * (self.lo[0] + self.hi[0]),
+            N::HALF * (self.lo[1] + self.hi[1]),
         ]
     }
 
     /// Half the sides.
-    pub fn half(&self) -> [f64; 2] {
+    pub fn half(&self) -> [N; 2] {
         [
-            0.5 * (self.hi[0] - self.lo[0]),
-            0.5 * (self.hi[1] - self.lo[1]),
+            N::HALF * (self.hi[0] - self.lo[0]),
+            N::HALF * (self.hi[1] - self.lo[1]),
         ]
     }
 
     /// Both halves across one angle.
-    pub fn halves(&self, across: usize) -> [Cell; 2] {
+    pub fn halves(&self, across: usize) -> [Cell<N>; 2] {
         let c = self.centre()[across];
         let (mut low, mut high) = (*self, *self);
         low.hi[across] = c;
@@ -48,14 +48,14 @@ const START: [f64; 2] = [0.061_803_4, 0.041_421_4];
 
 /// Where the lines of the first grid lie: they are free, but for a curve that runs through a corner.
 #[derive(Clone, Copy, Debug)]
-pub struct Layout {
+pub struct Layout<N: Number = f64> {
     /// The size of a zone, as a part of the greatest.
-    pub shrink: f64,
+    pub shrink: N,
     /// How far the sides of a zone lie from its point, as parts of its size: low and high, along
     /// both angles.
-    pub skew: [[f64; 2]; 2],
+    pub skew: [[N; 2]; 2],
     /// Where the lines start along each angle.
-    pub start: [f64; 2],
+    pub start: [N; 2],
 }
 
 /// The sides of zones: unequal, so that a curve of a simple slope misses the corners.
@@ -65,21 +65,21 @@ const SKEWS: [[[f64; 2]; 2]; 3] = [
     [[1.0, 0.831_9], [0.537_1, 0.611_3]],
 ];
 
-impl Layout {
+impl<N: Number> Layout<N> {
     /// One after the other: every skew, then with smaller zones.
     pub fn of(attempt: usize) -> Self {
         let n = attempt as i32;
         let skews = SKEWS.len() as i32;
         Self {
-            shrink: 0.5_f64.powi(n / skews),
-            skew: SKEWS[attempt % SKEWS.len()],
-            start: START.map(|s| s * f64::from(n + 1)),
+            shrink: N::HALF.powi(n / skews),
+            skew: SKEWS[attempt % SKEWS.len()].map(|side| side.map(N::of)),
+            start: START.map(|s| N::of(s) * N::whole(n + 1)),
         }
     }
 }
 
 /// The cells of the first grid, without singular points.
-pub fn plain_grid() -> Vec<Cell> {
+pub fn plain_grid<N: Number>() -> Vec<Cell<N>> {
     let layout = Layout::of(0);
     let [xs, ys] = [0, 1].map(|angle| lines(angle, &[], &layout));
     grid(&xs, &ys)
@@ -87,28 +87,30 @@ pub fn plain_grid() -> Vec<Cell> {
 
 /// The lines of the first grid along one `angle`, by its index: even ones, but none through a zone,
 /// and the sides of the zones, given as (centre, size).
-pub fn lines(angle: usize, zones: &[(f64, f64)], layout: &Layout) -> Vec<f64> {
+pub fn lines<N: Number>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Vec<N> {
     let (start, skew) = (layout.start[angle], layout.skew[angle]);
-    let mut all: Vec<f64> = (0..GRID)
-        .map(|i| start + TAU * i as f64 / GRID as f64)
+    let mut all: Vec<N> = (0..GRID)
+        .map(|i| start + N::TAU * N::of(i as f64) / N::of(GRID as f64))
         .collect();
-    all.retain(|x| zones.iter().all(|(c, size)| wrap(x - c).abs() > *size));
+    all.retain(|x| zones.iter().all(|(c, size)| wrap(*x - *c).abs() > *size));
     for &(c, size) in zones {
         for side in [c - size * skew[0], c + size * skew[1]] {
-            let side = start + (side - start).rem_euclid(TAU);
-            let same = all.iter().any(|x| wrap(x - side).abs() < size * SAME);
-            let within = |(c, size): &(f64, f64)| {
+            let side = start + (side - start).rem_euclid(N::TAU);
+            let same = all
+                .iter()
+                .any(|x| wrap(*x - side).abs() < size * N::of(SAME));
+            let within = |&(c, size): &(N, N)| {
                 let d = wrap(side - c);
-                d > -size * skew[0] * WITHIN && d < size * skew[1] * WITHIN
+                d > -size * skew[0] * N::of(WITHIN) && d < size * skew[1] * N::of(WITHIN)
             };
             if !same && !zones.iter().any(within) {
                 all.push(side);
             }
         }
     }
-    all.sort_by(f64::total_cmp);
+    all.sort_by(N::total_cmp);
     let first = all[0];
-    all.push(first + TAU);
+    all.push(first + N::TAU);
     all
 }
 
@@ -119,7 +121,7 @@ const SAME: f64 = 1.0 / (1 << 20) as f64;
 const WITHIN: f64 = 0.999;
 
 /// The cells between lines of both angles.
-pub fn grid(xs: &[f64], ys: &[f64]) -> Vec<Cell> {
+pub fn grid<N: Number>(xs: &[N], ys: &[N]) -> Vec<Cell<N>> {
     let mut cells = Vec::new();
     for x in xs.windows(2) {
         for y in ys.windows(2) {

@@ -9,28 +9,27 @@ use crate::geometry::singular::{Pass, SingularPoint};
 use crate::geometry::surface::Torus;
 use crate::geometry::toric::{Axis, Segment, Toric, wrap};
 use crate::number::interval::Interval;
+use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
-use crate::number::sign::ROUNDING;
 use std::collections::{BTreeMap, HashMap};
-use std::f64::consts::TAU;
 
 /// A root on a side, by the angles there.
 type RootId = usize;
 
 /// The roots on all sides, shared by the cells on both sides of them.
 #[derive(Default)]
-struct Sides {
-    roots: Vec<[f64; 2]>,
-    known: HashMap<(usize, u64, u64, u64), Vec<RootId>>,
+struct Sides<N: Number = f64> {
+    roots: Vec<[N; 2]>,
+    known: HashMap<(usize, Name, Name, Name), Vec<RootId>>,
 }
 
 /// The zones along one angle, by its index, as (centre, size): those that lie over one another have
 /// their lines in common, and the size of the least.
-fn zones(points: &[SingularPoint], k: usize, shrink: f64) -> Vec<(f64, f64)> {
-    let size = |p: &SingularPoint| {
-        let over = |q: &&SingularPoint| wrap(p.angles[k] - q.angles[k]).abs() <= p.zone + q.zone;
+fn zones<N: Number>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, N)> {
+    let size = |p: &SingularPoint<N>| {
+        let over = |q: &&SingularPoint<N>| wrap(p.angles[k] - q.angles[k]).abs() <= p.zone + q.zone;
         let sizes = points.iter().filter(over).map(|q| q.zone);
-        sizes.fold(p.zone, f64::min)
+        sizes.fold(p.zone, N::min)
     };
     points
         .iter()
@@ -38,16 +37,19 @@ fn zones(points: &[SingularPoint], k: usize, shrink: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// What tells a number from all others.
+type Name = [u64; 4];
+
 /// A line's name: lines a period apart are the same.
-fn key(x: f64, first: f64) -> u64 {
-    let y = if x >= first + TAU { first } else { x };
-    y.to_bits()
+fn key<N: Number>(x: N, first: N) -> Name {
+    let y = if x >= first + N::TAU { first } else { x };
+    y.bits()
 }
 
 /// A piece of the curve in one cell: the roots or the singular point it joins.
-struct Piece {
+struct Piece<N: Number = f64> {
     ends: [End; 2],
-    segment: Segment,
+    segment: Segment<N>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -57,30 +59,30 @@ enum End {
     Pass(usize, usize),
 }
 
-impl Tracer<'_> {
+impl<N: Number> Tracer<'_, N> {
     pub(super) fn assemble(
         &self,
-        torus: &Torus,
-        points: &[SingularPoint],
-        layout: &Layout,
-    ) -> Result<Traced, Unresolved> {
+        torus: &Torus<N>,
+        points: &[SingularPoint<N>],
+        layout: &Layout<N>,
+    ) -> Result<Traced<N>, Unresolved> {
         let zones = [0, 1].map(|k| zones(points, k, layout.shrink));
         let [xs, ys] = [0, 1].map(|k| lines(k, &zones[k], layout));
         let cells = grid(&xs, &ys);
-        let home = |c: &Cell| {
+        let home = |c: &Cell<N>| {
             let centre = c.centre();
             let holds = |k: usize, i: usize| {
                 let (at, size) = zones[k][i];
-                wrap(centre[k] - at).abs() <= 0.9 * size
+                wrap(centre[k] - at).abs() <= N::of(0.9) * size
             };
             (0..points.len()).find(|&i| holds(0, i) && holds(1, i))
         };
-        let (own, free): (Vec<Cell>, Vec<Cell>) =
+        let (own, free): (Vec<Cell<N>>, Vec<Cell<N>>) =
             cells.into_iter().partition(|c| home(c).is_some());
         if own.len() != points.len() {
-            return Err(Unresolved {
-                angles: points.first().map_or([0.0; 2], |p| p.angles),
-            });
+            return Err(Unresolved::at(
+                points.first().map_or([N::ZERO; 2], |p| p.angles),
+            ));
         }
         let leaves = self.leaves(free)?;
         let mut sides = Sides::default();
@@ -102,11 +104,11 @@ impl Tracer<'_> {
     /// The roots around a cell: (id, angles next to the cell).
     fn around(
         &self,
-        cell: &Cell,
-        corners: &Corners,
-        origin: [f64; 2],
-        sides: &mut Sides,
-    ) -> Result<Vec<(RootId, [f64; 2])>, Unresolved> {
+        cell: &Cell<N>,
+        corners: &Corners<N>,
+        origin: [N; 2],
+        sides: &mut Sides<N>,
+    ) -> Result<Vec<(RootId, [N; 2])>, Unresolved> {
         let mut all = Vec::new();
         for fixed in [0, 1] {
             let other = 1 - fixed;
@@ -114,13 +116,11 @@ impl Tracer<'_> {
                 let name = key(at, origin[fixed]);
                 let marks = corners.between(fixed, name, cell.lo[other], cell.hi[other]);
                 for pair in marks.windows(2) {
-                    let id = (fixed, name, pair[0].to_bits(), pair[1].to_bits());
+                    let id = (fixed, name, pair[0].bits(), pair[1].bits());
                     if !sides.known.contains_key(&id) {
-                        let roots =
-                            self.roots_on(fixed, at, pair[0], pair[1])
-                                .ok_or(Unresolved {
-                                    angles: cell.centre(),
-                                })?;
+                        let roots = self
+                            .roots_on(fixed, at, pair[0], pair[1])
+                            .ok_or(Unresolved::at(cell.centre()))?;
                         let ids = roots.into_iter().map(|t| {
                             sides.roots.push(if fixed == 0 { [at, t] } else { [t, at] });
                             sides.roots.len() - 1
@@ -142,21 +142,19 @@ impl Tracer<'_> {
     /// Joins the roots around a cell in which the curve is a graph.
     fn join(
         &self,
-        cell: &Cell,
+        cell: &Cell<N>,
         axis: Axis,
-        mut roots: Vec<(RootId, [f64; 2])>,
-        pieces: &mut Vec<Piece>,
+        mut roots: Vec<(RootId, [N; 2])>,
+        pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
         let k = if axis == Axis::Around { 0 } else { 1 };
         roots.sort_by(|a, b| a.1[k].total_cmp(&b.1[k]));
         if roots.len() % 2 == 1 {
-            return Err(Unresolved {
-                angles: cell.centre(),
-            });
+            return Err(Unresolved::at(cell.centre()));
         }
         for pair in roots.chunks(2) {
             let (p, q) = (pair[0].1, pair[1].1);
-            let slope = |p: [f64; 2]| {
+            let slope = |p: [N; 2]| {
                 let g = self.form.partials(p[0], p[1]);
                 if k == 0 { -g.x / g.y } else { -g.y / g.x }
             };
@@ -166,7 +164,7 @@ impl Tracer<'_> {
                 to: q[k],
                 ends: [p[1 - k], q[1 - k]],
                 slopes: [slope(p), slope(q)],
-                steep: STEEP,
+                steep: N::of(STEEP),
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
                 chart: None,
             };
@@ -181,15 +179,13 @@ impl Tracer<'_> {
     /// Joins the roots around a singular point to its branches, two to each.
     fn pass(
         &self,
-        points: &[SingularPoint],
+        points: &[SingularPoint<N>],
         index: usize,
-        roots: &[(RootId, [f64; 2])],
-        pieces: &mut Vec<Piece>,
+        roots: &[(RootId, [N; 2])],
+        pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
         let point = &points[index];
-        let unresolved = Unresolved {
-            angles: point.angles,
-        };
+        let unresolved = Unresolved::at(point.angles);
         let first: usize = points[..index].iter().map(|p| p.passes.len()).sum();
         let mut used = vec![[false; 2]; point.passes.len()];
         for (root, p) in roots {
@@ -199,7 +195,7 @@ impl Tracer<'_> {
                 .map(|(b, pass)| (b, Reached::by(pass, away)))
                 .min_by(|a, b| a.1.miss.total_cmp(&b.1.miss))
                 .ok_or(unresolved)?;
-            let forward = usize::from(end.sigma > 0.0);
+            let forward = usize::from(end.sigma > N::ZERO);
             if std::mem::replace(&mut used[b][forward], true) {
                 return Err(unresolved);
             }
@@ -217,15 +213,15 @@ impl Tracer<'_> {
 }
 
 /// A root on the side of a singular point's zone in the coordinates of a branch.
-struct Reached {
-    sigma: f64,
-    kappa: f64,
+struct Reached<N: Number = f64> {
+    sigma: N,
+    kappa: N,
     /// How far it is from the branch's leading term.
-    miss: f64,
+    miss: N,
 }
 
-impl Reached {
-    fn by(pass: &Pass, away: [f64; 2]) -> Self {
+impl<N: Number> Reached<N> {
+    fn by(pass: &Pass<N>, away: [N; 2]) -> Self {
         let chart = &pass.chart;
         let [s, y] = match chart.axis {
             Axis::Around => away,
@@ -237,31 +233,27 @@ impl Reached {
         Self {
             sigma,
             kappa,
-            miss: if miss.is_finite() {
-                miss
-            } else {
-                f64::INFINITY
-            },
+            miss: if miss.is_finite() { miss } else { N::INFINITY },
         }
     }
 }
 
 /// The graph of κ from a singular point to a root around it; none where it is not known to be the
 /// only one.
-fn node_segment(index: usize, pass: &Pass, end: &Reached) -> Option<Segment> {
+fn node_segment<N: Number>(index: usize, pass: &Pass<N>, end: &Reached<N>) -> Option<Segment<N>> {
     let chart = &pass.chart;
-    let slope = |sigma: f64, kappa: f64| {
+    let slope = |sigma: N, kappa: N| {
         let g = chart.partials(sigma, kappa);
         -g.x / g.y
     };
     let (from, to) = (pass.kappa, end.kappa);
-    let slopes = [slope(0.0, from), slope(end.sigma, to)];
-    let run = Interval::new(0.0, end.sigma);
+    let slopes = [slope(N::ZERO, from), slope(end.sigma, to)];
+    let run = Interval::new(N::ZERO, end.sigma);
     let steepest = slopes[0].abs().max(slopes[1].abs());
     // A bracket that the graph cannot leave with the slopes that it has in there.
     let mut margin = (to - from).abs().max(steepest * end.sigma.abs());
     for _ in 0..BRACKETS {
-        margin = 2.0 * margin + ROUNDING.sqrt();
+        margin = N::TWO * margin + N::ROUNDING.sqrt();
         let bracket = Interval::new(from - margin, from + margin);
         let g = chart.partials_over(run, bracket);
         if g.y.has_zero() {
@@ -272,7 +264,7 @@ fn node_segment(index: usize, pass: &Pass, end: &Reached) -> Option<Segment> {
         if reach <= margin {
             return Some(Segment {
                 axis: chart.axis,
-                from: 0.0,
+                from: N::ZERO,
                 to: end.sigma,
                 ends: [from, to],
                 slopes,
@@ -291,12 +283,12 @@ fn node_segment(index: usize, pass: &Pass, end: &Reached) -> Option<Segment> {
 const BRACKETS: u32 = 6;
 
 /// The corners of cells on every line of the grid.
-struct Corners {
-    on: [HashMap<u64, Vec<f64>>; 2],
+struct Corners<N: Number = f64> {
+    on: [HashMap<Name, Vec<N>>; 2],
 }
 
-fn corners<'a>(cells: impl Iterator<Item = &'a Cell>, x0: f64, y0: f64) -> Corners {
-    let mut on: [HashMap<u64, Vec<f64>>; 2] = Default::default();
+fn corners<'a, N: Number>(cells: impl Iterator<Item = &'a Cell<N>>, x0: N, y0: N) -> Corners<N> {
+    let mut on: [HashMap<Name, Vec<N>>; 2] = Default::default();
     for c in cells {
         for fixed in [0, 1] {
             let first = if fixed == 0 { x0 } else { y0 };
@@ -308,14 +300,14 @@ fn corners<'a>(cells: impl Iterator<Item = &'a Cell>, x0: f64, y0: f64) -> Corne
         }
     }
     for list in on.iter_mut().flat_map(|m| m.values_mut()) {
-        list.sort_by(f64::total_cmp);
+        list.sort_by(N::total_cmp);
         list.dedup();
     }
     Corners { on }
 }
 
-impl Corners {
-    fn between(&self, fixed: usize, name: u64, lo: f64, hi: f64) -> Vec<f64> {
+impl<N: Number> Corners<N> {
+    fn between(&self, fixed: usize, name: Name, lo: N, hi: N) -> Vec<N> {
         let list = self.on[fixed].get(&name).map_or(&[][..], Vec::as_slice);
         list.iter()
             .copied()
@@ -325,12 +317,12 @@ impl Corners {
 }
 
 /// Pieces joined to closed branches.
-fn chain(
-    torus: &Torus,
-    form: &BiTrig,
-    points: &[SingularPoint],
-    pieces: Vec<Piece>,
-) -> Result<Traced, Unresolved> {
+fn chain<N: Number>(
+    torus: &Torus<N>,
+    form: &BiTrig<N>,
+    points: &[SingularPoint<N>],
+    pieces: Vec<Piece<N>>,
+) -> Result<Traced<N>, Unresolved> {
     let mut at: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
     let name = |e: &End| match *e {
         End::Root(r) => (0, r, 0),
@@ -343,11 +335,9 @@ fn chain(
     }
     if let Some((_, list)) = at.iter().find(|(_, l)| l.len() != 2) {
         let s = &pieces[list[0]].segment;
-        return Err(Unresolved {
-            angles: [s.from, s.ends[0]],
-        });
+        return Err(Unresolved::at([s.from, s.ends[0]]));
     }
-    let mut singular: Vec<Singular> = points
+    let mut singular: Vec<Singular<N>> = points
         .iter()
         .map(|p| Singular {
             angles: p.angles,
@@ -355,7 +345,7 @@ fn chain(
         })
         .collect();
     let passes = points.iter().flat_map(|p| &p.passes);
-    let charts: Vec<Chart> = passes.map(|p| p.chart.clone()).collect();
+    let charts: Vec<Chart<N>> = passes.map(|p| p.chart.clone()).collect();
     let mut used = vec![false; pieces.len()];
     let mut branches = Vec::new();
     for start in 0..pieces.len() {
@@ -369,7 +359,9 @@ fn chain(
             let p = &pieces[here];
             let forward = p.ends[0] == entry;
             if let End::Pass(s, _) = entry {
-                singular[s].on.push((branches.len(), segments.len() as f64));
+                singular[s]
+                    .on
+                    .push((branches.len(), N::of(segments.len() as f64)));
             }
             segments.push(if forward {
                 p.segment

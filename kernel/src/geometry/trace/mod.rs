@@ -15,27 +15,28 @@ use super::surface::Torus;
 use super::toric::{Axis, Toric, wrap};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros, isolate};
 use grid::{Cell, Layout};
 
 /// A point where the curve crosses or touches itself, by its angles.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Singular {
+pub struct Singular<N: Number = f64> {
     /// (θ, φ).
-    pub angles: [f64; 2],
+    pub angles: [N; 2],
     /// Where the branches pass: (index of the branch, parameter). Empty for an isolated point.
-    pub on: Vec<(usize, f64)>,
+    pub on: Vec<(usize, N)>,
 }
 
 /// The zero set of F.
 #[derive(Clone, Debug, Default)]
-pub struct Traced {
+pub struct Traced<N: Number = f64> {
     /// The branches, all closed.
-    pub branches: Vec<Toric>,
+    pub branches: Vec<Toric<N>>,
     /// The singular points.
-    pub singular: Vec<Singular>,
+    pub singular: Vec<Singular<N>>,
     /// The critical points of F, by their angles, that are singular points or nearly so.
-    pub close: Vec<[f64; 2]>,
+    pub close: Vec<[N; 2]>,
 }
 
 /// The curve has a singular point of a kind that is not known, or branches too close to be told apart.
@@ -46,35 +47,43 @@ pub struct Unresolved {
     pub angles: [f64; 2],
 }
 
+impl Unresolved {
+    pub(super) fn at<N: Number>(angles: [N; 2]) -> Self {
+        Self {
+            angles: angles.map(N::rounded),
+        }
+    }
+}
+
 /// Taylor's bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
-pub(super) struct Bounds {
+pub(super) struct Bounds<N: Number = f64> {
     /// The least |F|; below zero where F may vanish.
-    pub least: f64,
+    pub least: N,
     /// The least and the greatest |F_x|.
-    pub x: [f64; 2],
+    pub x: [N; 2],
     /// The least and the greatest |F_y|.
-    pub y: [f64; 2],
+    pub y: [N; 2],
     /// At the centre.
-    pub at: Partials<f64>,
+    pub at: Partials<N>,
     /// The angle along which the form varies more over the cell.
     pub wide: usize,
 }
 
 #[derive(Default)]
-struct Remainders {
-    third: f64,
-    x: f64,
-    y: f64,
-    across: [f64; 2],
+struct Remainders<N: Number = f64> {
+    third: N,
+    x: N,
+    y: N,
+    across: [N; 2],
 }
 
-pub(super) struct Tracer<'a> {
-    pub form: &'a BiTrig,
+pub(super) struct Tracer<'a, N: Number = f64> {
+    pub form: &'a BiTrig<N>,
     /// A bound of the third derivatives.
-    pub third: f64,
+    pub third: N,
     /// A bound of the rounding error of the form.
-    pub slop: f64,
-    pub band: f64,
+    pub slop: N,
+    pub band: N,
 }
 
 /// The depth at which a cell that is still undecided is given up: sides of 1e-7 radians.
@@ -83,19 +92,20 @@ pub(super) const DEPTH: u32 = 48;
 /// A graph's slope is at most this in an accepted cell.
 const STEEP: f64 = 2.0;
 
-impl Tracer<'_> {
-    pub(super) fn bounds(&self, cell: &Cell) -> Bounds {
+impl<N: Number> Tracer<'_, N> {
+    pub(super) fn bounds(&self, cell: &Cell<N>) -> Bounds<N> {
         let [cx, cy] = cell.centre();
         let [hx, hy] = cell.half();
         let p = self.form.partials(cx, cy);
         let r = self.remainders(hx, hy);
         let spread = p.x.abs() * hx
             + p.y.abs() * hy
-            + 0.5 * (p.xx.abs() * hx * hx + 2.0 * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy)
-            + r.third / 6.0
+            + N::HALF
+                * (p.xx.abs() * hx * hx + N::TWO * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy)
+            + r.third / N::of(6.0)
             + self.slop;
-        let rx = p.xx.abs() * hx + p.xy.abs() * hy + 0.5 * r.x + self.slop;
-        let ry = p.xy.abs() * hx + p.yy.abs() * hy + 0.5 * r.y + self.slop;
+        let rx = p.xx.abs() * hx + p.xy.abs() * hy + N::HALF * r.x + self.slop;
+        let ry = p.xy.abs() * hx + p.yy.abs() * hy + N::HALF * r.y + self.slop;
         Bounds {
             least: p.f.abs() - spread,
             x: [p.x.abs() - rx, p.x.abs() + rx],
@@ -107,12 +117,12 @@ impl Tracer<'_> {
 
     /// Bounds of the third derivatives in the direction (hx, hy), of those of both first partial
     /// derivatives, and how much the form varies along each angle.
-    fn remainders(&self, hx: f64, hy: f64) -> Remainders {
-        let degree = [0.0, 1.0, 1.0, 2.0, 2.0];
+    fn remainders(&self, hx: N, hy: N) -> Remainders<N> {
+        let degree = [N::ZERO, N::ONE, N::ONE, N::TWO, N::TWO];
         let mut r = Remainders::default();
         for (row, dx) in self.form.0.iter().zip(degree) {
             for (c, dy) in row.iter().zip(degree) {
-                let d: f64 = dx * hx + dy * hy;
+                let d: N = dx * hx + dy * hy;
                 let c = c.abs() * d * d;
                 r.third += c * d;
                 r.x += c * dx;
@@ -125,22 +135,20 @@ impl Tracer<'_> {
     }
 
     /// The cells that hold a piece of the curve, each with the angle its graph runs over.
-    fn leaves(&self, cells: Vec<Cell>) -> Result<Vec<(Cell, Axis)>, Unresolved> {
+    fn leaves(&self, cells: Vec<Cell<N>>) -> Result<Vec<(Cell<N>, Axis)>, Unresolved> {
         let mut leaves = Vec::new();
-        let mut stack: Vec<(Cell, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
+        let mut stack: Vec<(Cell<N>, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
         while let Some((cell, depth)) = stack.pop() {
             let b = self.bounds(&cell);
-            if b.least > 0.0 {
+            if b.least > N::ZERO {
                 continue;
             }
-            if b.y[0] > 0.0 && b.x[1] <= STEEP * b.y[0] {
+            if b.y[0] > N::ZERO && b.x[1] <= N::of(STEEP) * b.y[0] {
                 leaves.push((cell, Axis::Around));
-            } else if b.x[0] > 0.0 && b.y[1] <= STEEP * b.x[0] {
+            } else if b.x[0] > N::ZERO && b.y[1] <= N::of(STEEP) * b.x[0] {
                 leaves.push((cell, Axis::Tube));
             } else if depth >= DEPTH {
-                return Err(Unresolved {
-                    angles: cell.centre(),
-                });
+                return Err(Unresolved::at(cell.centre()));
             } else {
                 stack.extend(cell.halves(b.wide).map(|c| (c, depth + 1)));
             }
@@ -149,8 +157,8 @@ impl Tracer<'_> {
     }
 
     /// The roots of F on a side of a cell: the angle that is `fixed` on it, and its ends.
-    fn roots_on(&self, fixed: usize, at: f64, lo: f64, hi: f64) -> Option<Vec<f64>> {
-        let f = |t: Interval| {
+    fn roots_on(&self, fixed: usize, at: N, lo: N, hi: N) -> Option<Vec<N>> {
+        let f = |t: Interval<N>| {
             let c = Interval::point(at);
             if fixed == 0 {
                 let p = self.form.partials(c, t);
@@ -177,17 +185,21 @@ impl Tracer<'_> {
     }
 }
 
-pub(super) fn near(a: &[f64; 2], b: &[f64; 2], reach: f64) -> bool {
+pub(super) fn near<N: Number>(a: &[N; 2], b: &[N; 2], reach: N) -> bool {
     wrap(a[0] - b[0]).abs() <= reach && wrap(a[1] - b[1]).abs() <= reach
 }
 
 /// All branches of `form` = 0 on the torus, where `form` is a distance to first order and `band`
 /// the resolution.
-pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolved> {
-    let slop = form.bound() * f64::EPSILON * 64.0;
+pub fn trace<N: Number>(
+    torus: &Torus<N>,
+    form: &BiTrig<N>,
+    band: N,
+) -> Result<Traced<N>, Unresolved> {
+    let slop = form.bound() * N::EPSILON * N::of(64.0);
     let tracer = Tracer {
         form,
-        third: 6.0 * form.variation(3),
+        third: N::of(6.0) * form.variation(3),
         slop,
         band: band.max(slop),
     };
@@ -202,8 +214,8 @@ pub fn trace(torus: &Torus, form: &BiTrig, band: f64) -> Result<Traced, Unresolv
             Err(e) => failed = failed.or(Some(e)),
         }
     }
-    let angles = points.first().map_or([0.0; 2], |p| p.angles);
-    Err(failed.unwrap_or(Unresolved { angles }))
+    let angles = points.first().map_or([N::ZERO; 2], |p| p.angles);
+    Err(failed.unwrap_or(Unresolved::at(angles)))
 }
 
 /// How many layouts are tried.

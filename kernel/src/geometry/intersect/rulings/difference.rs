@@ -9,15 +9,17 @@
 
 use crate::geometry::relation::{Coefficients, Pair};
 use crate::geometry::surface::Surface;
+use crate::geometry::vector::Length;
 use crate::number::enclosure::Enclosure;
+use crate::number::precision::Number;
 use crate::number::real::Real;
 use nalgebra::{Matrix3, Vector3};
 
 /// pᵀ A p + 2 b·p + c in the frame of the base.
-pub(super) struct Difference {
-    pub a: Matrix3<f64>,
-    pub b: Vector3<f64>,
-    pub c: f64,
+pub(super) struct Difference<N: Number = f64> {
+    pub a: Matrix3<N>,
+    pub b: Vector3<N>,
+    pub c: N,
 }
 
 /// Directions that lie apart by less than this are reckoned with more bits.
@@ -26,14 +28,14 @@ const LEAN: f64 = 1.0 / (1 << 10) as f64;
 /// To so many bits.
 const BITS: usize = 256;
 
-impl Difference {
+impl<N: Number> Difference<N> {
     /// Of a pair, the first the base: to first order twice the distance times a length.
-    pub fn of(pair: &Pair<'_>) -> Self {
+    pub fn of(pair: &Pair<'_, N>) -> Self {
         let surfaces = [pair.a.surface, pair.b.surface];
-        let [a, b] = [pair.a, pair.b].map(|c| c.doubles());
+        let [a, b] = [pair.a, pair.b].map(|c| c.numbers());
         let parts = Parts::of(surfaces, &a, &b);
-        let lean = Vector3::from(parts.lean).norm();
-        if lean > LEAN {
+        let lean = Vector3::from(parts.lean).length();
+        if lean > N::of(LEAN) {
             return parts.difference(surfaces);
         }
         let [a, b] = [pair.a, pair.b].map(|c| c.reckoned(BITS));
@@ -44,33 +46,33 @@ impl Difference {
 }
 
 /// What the difference is made of, over any number.
-struct Parts<N> {
+struct Parts<R> {
     /// f/|f|: its part across d, and its component along d.
-    lean: [N; 3],
-    along: N,
+    lean: [R; 3],
+    along: R,
     /// e of the other, and A's component along d.
-    bulge: N,
-    rise: N,
+    bulge: R,
+    rise: R,
     /// b: its part across d, and its component along d.
-    across: [N; 3],
-    up: N,
+    across: [R; 3],
+    up: R,
     /// c.
-    level: N,
+    level: R,
 }
 
-fn dot<N: Real>(a: &[N; 3], b: &[N; 3]) -> N {
+fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
     let [x, y, z] = [0, 1, 2].map(|i| a[i].clone() * b[i].clone());
     x + y + z
 }
 
 /// a - k b.
-fn less<N: Real>(a: &[N; 3], k: &N, b: &[N; 3]) -> [N; 3] {
+fn less<R: Real>(a: &[R; 3], k: &R, b: &[R; 3]) -> [R; 3] {
     [0, 1, 2].map(|i| a[i].clone() - k.clone() * b[i].clone())
 }
 
 /// e and r².
-fn shape<N: Real>(surface: &Surface, size: &N) -> [N; 2] {
-    let (one, none) = (N::constant(1.0), N::constant(0.0));
+fn shape<N: Number, R: Real>(surface: &Surface<N>, size: &R) -> [R; 2] {
+    let (one, none) = (R::constant(1.0), R::constant(0.0));
     let square = size.clone() * size.clone();
     match surface {
         Surface::Cylinder(_) => [one, square],
@@ -79,15 +81,19 @@ fn shape<N: Real>(surface: &Surface, size: &N) -> [N; 2] {
     }
 }
 
-impl<N: Real> Parts<N> {
-    fn of(surfaces: [&Surface; 2], base: &Coefficients<N>, other: &Coefficients<N>) -> Self {
+impl<R: Real> Parts<R> {
+    fn of<N: Number>(
+        surfaces: [&Surface<N>; 2],
+        base: &Coefficients<R>,
+        other: &Coefficients<R>,
+    ) -> Self {
         let (d, f) = (&base.direction, &other.direction);
         let [own, own_square] = shape(surfaces[0], &base.size);
         let [bulge, square] = shape(surfaces[1], &other.size);
         let (dd, ff) = (dot(d, d), dot(f, f));
         let turned = dot(d, f).over(dd.clone());
         let aside = less(f, &turned, d);
-        let away = less(&base.point, &N::constant(1.0), &other.point);
+        let away = less(&base.point, &R::constant(1.0), &other.point);
         let high = dot(&away, d).over(dd.clone());
         let beside = less(&away, &high, d);
         // (f·δ)/f²
@@ -109,7 +115,7 @@ impl<N: Real> Parts<N> {
         }
     }
 
-    fn map<M>(self, to: impl Fn(&N) -> M) -> Parts<M> {
+    fn map<M>(self, to: impl Fn(&R) -> M) -> Parts<M> {
         Parts {
             lean: self.lean.each_ref().map(&to),
             along: to(&self.along),
@@ -122,15 +128,15 @@ impl<N: Real> Parts<N> {
     }
 }
 
-impl Parts<f64> {
+impl<N: Number> Parts<N> {
     /// In the base's frame; a cone's equation is a distance times a length with the cosine's square.
-    fn difference(&self, [base, other]: [&Surface; 2]) -> Difference {
+    fn difference(&self, [base, other]: [&Surface<N>; 2]) -> Difference<N> {
         let f = base.frame();
         let scale = match other {
             Surface::Cone(c) => c.cos * c.cos,
-            _ => 1.0,
+            _ => N::ONE,
         };
-        let inside = |v: &[f64; 3], z: f64| {
+        let inside = |v: &[N; 3], z: N| {
             let v = Vector3::from(*v);
             Vector3::new(f.x.dot(&v), f.y.dot(&v), z)
         };

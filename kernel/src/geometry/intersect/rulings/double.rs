@@ -8,20 +8,21 @@ use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place, positive_parts};
 use crate::geometry::quartic::{Along, Height, Quartic, Ruled, Sweep};
 use crate::geometry::trigonometric::{Trig1, between, derivative, divide, trig1, zeros_of};
+use crate::geometry::vector::Length;
 use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::roots::Function;
 use crate::number::scalar::Scalar;
-use crate::number::sign::{Judge, ROUNDING, Side};
-use std::f64::consts::TAU;
+use crate::number::sign::{Judge, Side};
 
-impl Rulings<'_> {
+impl<N: Number> Rulings<'_, N> {
     /// k ≠ 0: two points on each ruling where Δ > 0.
     pub(in crate::geometry::intersect) fn double(
         &self,
         judge: &Judge,
-    ) -> Result<Meeting, IntersectionError> {
+    ) -> Result<Meeting<N>, IntersectionError> {
         let mut meeting = Meeting::nothing();
         if let Some(root) = self.square_root(judge) {
             self.add_conics(&root, judge, &mut meeting);
@@ -33,17 +34,17 @@ impl Rulings<'_> {
     }
 
     /// The s of degree one with Δ = s², if within the band there is one.
-    fn square_root(&self, judge: &Judge) -> Option<Trig1> {
+    fn square_root(&self, judge: &Judge) -> Option<Trig1<N>> {
         let [a0, c1, s1, c2, s2] = self.radicand;
-        let rho = (2.0 * c2.hypot(s2)).sqrt();
-        let noise = (ROUNDING * self.scale).sqrt();
-        let (sin, cos) = (0.5 * s2.atan2(c2)).sin_cos();
+        let rho = (N::TWO * c2.hypot(s2)).sqrt();
+        let noise = (N::ROUNDING * self.scale).sqrt();
+        let (sin, cos) = (N::HALF * s2.atan2(c2)).sin_cos();
         let root = if rho > noise {
-            [(c1 * cos + s1 * sin) / (2.0 * rho), rho * cos, rho * sin]
+            [(c1 * cos + s1 * sin) / (N::TWO * rho), rho * cos, rho * sin]
         } else {
-            [a0.max(0.0).sqrt(), 0.0, 0.0]
+            [a0.max(N::ZERO).sqrt(), N::ZERO, N::ZERO]
         };
-        let both = |u: f64| {
+        let both = |u: N| {
             let s = trig1(&root, u.sin_cos());
             let middle = trig1(&self.linear, u.sin_cos());
             vec![(s - middle) / self.lead, (-s - middle) / self.lead]
@@ -51,25 +52,25 @@ impl Rulings<'_> {
         self.meets_in_conics(judge, both).then_some(root)
     }
 
-    fn add_conics(&self, root: &Trig1, judge: &Judge, meeting: &mut Meeting) {
-        let w = |sign: f64| {
+    fn add_conics(&self, root: &Trig1<N>, judge: &Judge, meeting: &mut Meeting<N>) {
+        let w = |sign: N| {
             let part = |i: usize| (sign * root[i] - self.linear[i]) / self.lead;
             [part(0), part(1), part(2)]
         };
         // Tangent all along where both conics are one.
         let gap = (0..8)
-            .map(|i| TAU * f64::from(i) / 8.0)
+            .map(|i| N::TAU * N::whole(i) / N::of(8.0))
             .map(|u| (u, self.middle(u)))
             .filter(|(_, m)| self.is_on_base(*m))
             .map(|(u, m)| apart(self.other, &self.world(u, m)))
-            .reduce(f64::max);
+            .reduce(N::max);
         if gap.is_some_and(|g| judge.within(g)) {
-            return self.add_conic(&w(0.0), true, judge, meeting);
+            return self.add_conic(&w(N::ZERO), true, judge, meeting);
         }
-        self.add_conic(&w(1.0), false, judge, meeting);
-        self.add_conic(&w(-1.0), false, judge, meeting);
+        self.add_conic(&w(N::ONE), false, judge, meeting);
+        self.add_conic(&w(-N::ONE), false, judge, meeting);
         // Where they cross, s vanishes.
-        let whole = [root[0], root[1], root[2], 0.0, 0.0];
+        let whole = [root[0], root[1], root[2], N::ZERO, N::ZERO];
         for (u, _) in zeros_of(&whole) {
             let m = self.middle(u);
             let p = self.world(u, m);
@@ -79,7 +80,11 @@ impl Rulings<'_> {
         }
     }
 
-    fn add_quartic(&self, judge: &Judge, meeting: &mut Meeting) -> Result<(), IntersectionError> {
+    fn add_quartic(
+        &self,
+        judge: &Judge,
+        meeting: &mut Meeting<N>,
+    ) -> Result<(), IntersectionError> {
         let structure = self.structure(judge)?;
         for &u in &structure.isolated {
             let p = self.world(u, self.middle(u));
@@ -90,7 +95,7 @@ impl Rulings<'_> {
                 });
             }
         }
-        let mut curves: Vec<(Quartic, Vec<(f64, f64)>)> = Vec::new();
+        let mut curves: Vec<(Quartic<N>, Vec<(N, N)>)> = Vec::new();
         let make = |sweep, height| Quartic {
             base: self.base,
             sweep,
@@ -100,7 +105,7 @@ impl Rulings<'_> {
         if structure.arcs.is_empty() && structure.positive {
             match structure.nodes.first() {
                 None => {
-                    for sign in [1.0, -1.0] {
+                    for sign in [N::ONE, -N::ONE] {
                         let radicand = self.radicand;
                         let height = Height::Whole {
                             along,
@@ -117,9 +122,9 @@ impl Rulings<'_> {
                         along,
                         rest,
                         node: Some(node),
-                        sign: 1.0,
+                        sign: N::ONE,
                     };
-                    let at = vec![(node, node), (node, node + TAU)];
+                    let at = vec![(node, node), (node, node + N::TAU)];
                     curves.push((make(Sweep::Round { turns: 2 }, height), at));
                 }
             }
@@ -127,22 +132,22 @@ impl Rulings<'_> {
         for &[a, b] in &structure.arcs {
             let mut rest = divide(&self.radicand, &between(a, b));
             let node = structure.nodes.iter().copied().find_map(|n| {
-                let n = a + (n - a).rem_euclid(TAU);
+                let n = a + (n - a).rem_euclid(N::TAU);
                 (n < b).then_some(n)
             });
-            let (mid, half) = (0.5 * (a + b), 0.5 * (b - a));
+            let (mid, half) = (N::HALF * (a + b), N::HALF * (b - a));
             let mut at = Vec::new();
             if let Some(n) = node {
                 // rest = K sin²((u - n)/2): only K is wanted.
-                rest = [2.0 * rest[0], 0.0, 0.0];
-                let t = ((mid - n) / half).clamp(-1.0, 1.0).acos();
-                at = vec![(n, t), (n, TAU - t)];
+                rest = [N::TWO * rest[0], N::ZERO, N::ZERO];
+                let t = ((mid - n) / half).clamp(-N::ONE, N::ONE).acos();
+                at = vec![(n, t), (n, N::TAU - t)];
             }
             let height = Height::Deflated {
                 along,
                 rest,
                 node,
-                sign: 1.0,
+                sign: N::ONE,
             };
             curves.push((make(Sweep::Oval { mid, half }, height), at));
         }
@@ -153,10 +158,16 @@ impl Rulings<'_> {
     }
 
     /// Adds a branch, as far as it lies on the base's nappe and on the other's.
-    fn add_clipped(&self, q: Quartic, nodes: &[(f64, f64)], judge: &Judge, meeting: &mut Meeting) {
+    fn add_clipped(
+        &self,
+        q: Quartic<N>,
+        nodes: &[(N, N)],
+        judge: &Judge,
+        meeting: &mut Meeting<N>,
+    ) {
         let curve = Curve::Quartic(Box::new(q));
         let Some(period) = curve.period() else { return };
-        let mut ranges = vec![[0.0, period]];
+        let mut ranges = vec![[N::ZERO, period]];
         if let Ruled::Cone(_) = self.base {
             let above = OnNappe {
                 quartic: &q,
@@ -169,7 +180,7 @@ impl Rulings<'_> {
         }
         for r in ranges {
             for range in self.on_other_nappe(&curve, r, judge) {
-                let closed = range == [0.0, period];
+                let closed = range == [N::ZERO, period];
                 let index = meeting.branches.len();
                 meeting.branches.push(Branch {
                     curve: curve.clone(),
@@ -186,7 +197,7 @@ impl Rulings<'_> {
                     let known = meeting
                         .nodes
                         .iter_mut()
-                        .find(|n| judge.within((n.point - point).norm()));
+                        .find(|n| judge.within((n.point - point).length()));
                     match known {
                         Some(node) => node.on.push((index, t)),
                         None => meeting.nodes.push(Node {
@@ -200,25 +211,25 @@ impl Rulings<'_> {
     }
 
     /// The zeros of Δ by kind.
-    fn structure(&self, judge: &Judge) -> Result<Structure, IntersectionError> {
+    fn structure(&self, judge: &Judge) -> Result<Structure<N>, IntersectionError> {
         let slope = derivative(&self.radicand);
-        let flat = slope.iter().map(|c| c.abs()).sum::<f64>() <= ROUNDING * self.scale;
+        let flat = slope.iter().map(|c| c.abs()).sum::<N>() <= N::ROUNDING * self.scale;
         let extrema = if flat { Vec::new() } else { zeros_of(&slope) };
         let mut out = Structure::default();
         if extrema.is_empty() {
-            out.positive = self.state(0.0, judge) == Side::Inside;
+            out.positive = self.state(N::ZERO, judge) == Side::Inside;
             return Ok(out);
         }
-        let states: Vec<(f64, Side)> = extrema
+        let states: Vec<(N, Side)> = extrema
             .iter()
             .map(|&(u, _)| (u, self.state(u, judge)))
             .collect();
         let n = states.len();
-        let mut roots: Vec<(f64, bool)> = Vec::new();
+        let mut roots: Vec<(N, bool)> = Vec::new();
         for i in 0..n {
             let (u, s) = states[i];
             let (v, t) = states[(i + 1) % n];
-            let v = if i + 1 == n { v + TAU } else { v };
+            let v = if i + 1 == n { v + N::TAU } else { v };
             if (s == Side::Inside) != (t == Side::Inside) && s != Side::On && t != Side::On {
                 let root = bisect(u, v, self.delta(u), |u| self.delta(u));
                 roots.push((root, t == Side::Inside));
@@ -239,7 +250,7 @@ impl Rulings<'_> {
         for (i, &(a, rising)) in roots.iter().enumerate() {
             if rising {
                 let (b, _) = roots[(i + 1) % roots.len()];
-                out.arcs.push([a, if b < a { b + TAU } else { b }]);
+                out.arcs.push([a, if b < a { b + N::TAU } else { b }]);
             }
         }
         Ok(out)
@@ -248,45 +259,45 @@ impl Rulings<'_> {
 
 /// The zeros of Δ by kind.
 #[derive(Default)]
-struct Structure {
+struct Structure<N: Number = f64> {
     /// Δ is nowhere negative.
     positive: bool,
     /// The arcs of angles between simple zeros on which Δ is positive.
-    arcs: Vec<[f64; 2]>,
+    arcs: Vec<[N; 2]>,
     /// Double zeros with Δ positive on both sides.
-    nodes: Vec<f64>,
+    nodes: Vec<N>,
     /// Double zeros with Δ negative on both sides.
-    isolated: Vec<f64>,
+    isolated: Vec<N>,
 }
 
 /// How far the height of a curve on a cone is from where it leaves the nappe's reach, scaled to a
 /// length.
-struct OnNappe<'a> {
-    quartic: &'a Quartic,
-    reach: f64,
+struct OnNappe<'a, N: Number = f64> {
+    quartic: &'a Quartic<N>,
+    reach: N,
 }
 
-impl OnNappe<'_> {
-    fn height<S: Scalar>(&self, t: S) -> S {
+impl<N: Number> OnNappe<'_, N> {
+    fn height<S: Scalar<Number = N>>(&self, t: S) -> S {
         let w = self.quartic.height_at(t);
-        (w - S::constant(1.0 / self.reach)).scale(self.reach * self.reach)
+        (w - S::constant(N::ONE / self.reach)).scale(self.reach * self.reach)
     }
 }
 
-impl Function for OnNappe<'_> {
-    fn over(&self, t: Interval) -> Jet<Interval> {
+impl<N: Number> Function<N> for OnNappe<'_, N> {
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
         self.height(Jet::variable(t))
     }
 
-    fn reach(&self, t: Interval) -> Interval {
+    fn reach(&self, t: Interval<N>) -> Interval<N> {
         self.height(t)
     }
 
-    fn at(&self, t: f64) -> Jet<f64> {
+    fn at(&self, t: N) -> Jet<N> {
         self.height(Jet::variable(t))
     }
 
-    fn value(&self, t: f64) -> f64 {
+    fn value(&self, t: N) -> N {
         self.height(t)
     }
 }

@@ -17,12 +17,13 @@ use crate::geometry::quartic::Ruled;
 use crate::geometry::relation::{Carrier, Pair};
 use crate::geometry::surface::{Plane, Surface};
 use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1, trig2};
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::sign::{Judge, Side};
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::TAU;
 
 /// The distance of a point from the whole quadric of a surface: a cone with both nappes.
-pub(super) fn apart(surface: &Surface, p: &Point3<f64>) -> f64 {
+pub(super) fn apart<N: Number>(surface: &Surface<N>, p: &Point3<N>) -> N {
     match surface {
         Surface::Cone(c) => {
             let q = c.frame.coordinates(p);
@@ -33,28 +34,28 @@ pub(super) fn apart(surface: &Surface, p: &Point3<f64>) -> f64 {
 }
 
 /// The other quadric along the rulings of the base.
-pub(super) struct Rulings<'a> {
-    base: Ruled,
-    other: &'a Surface,
-    pub lead: f64,
-    linear: Trig1,
-    constant: Trig2,
-    radicand: Trig2,
+pub(super) struct Rulings<'a, N: Number = f64> {
+    base: Ruled<N>,
+    other: &'a Surface<N>,
+    pub lead: N,
+    linear: Trig1<N>,
+    constant: Trig2<N>,
+    radicand: Trig2<N>,
     /// The size of the terms that cancel in the radicand.
-    scale: f64,
-    extent: &'a Extent,
+    scale: N,
+    extent: &'a Extent<N>,
 }
 
-fn surface_of(base: &Ruled) -> Surface {
+fn surface_of<N: Number>(base: &Ruled<N>) -> Surface<N> {
     match base {
         Ruled::Cylinder(c) => Surface::Cylinder(*c),
         Ruled::Cone(c) => Surface::Cone(*c),
     }
 }
 
-impl<'a> Rulings<'a> {
+impl<'a, N: Number> Rulings<'a, N> {
     /// Over the rulings of the pair's first.
-    pub(super) fn new(base: Ruled, pair: &Pair<'a>) -> Self {
+    pub(super) fn new(base: Ruled<N>, pair: &Pair<'a, N>) -> Self {
         let q = Difference::of(pair);
         let (a, b) = (&q.a, &q.b);
         // The ruling's point is m (cos, sin, 0) + ... with m the radius or the slope.
@@ -62,33 +63,33 @@ impl<'a> Rulings<'a> {
             Ruled::Cylinder(s) => {
                 let r = s.radius;
                 let linear = [b.z, r * a[(0, 2)], r * a[(1, 2)]];
-                let half = 0.5 * r * r;
+                let half = N::HALF * r * r;
                 let constant = [
                     q.c + half * (a[(0, 0)] + a[(1, 1)]),
-                    2.0 * r * b.x,
-                    2.0 * r * b.y,
+                    N::TWO * r * b.x,
+                    N::TWO * r * b.y,
                     half * (a[(0, 0)] - a[(1, 1)]),
-                    2.0 * half * a[(0, 1)],
+                    N::TWO * half * a[(0, 1)],
                 ];
                 (a[(2, 2)], linear, constant)
             }
             Ruled::Cone(s) => {
                 let m = s.sin / s.cos;
                 let linear = [b.z, m * b.x, m * b.y];
-                let half = 0.5 * m * m;
+                let half = N::HALF * m * m;
                 let constant = [
                     a[(2, 2)] + half * (a[(0, 0)] + a[(1, 1)]),
-                    2.0 * m * a[(0, 2)],
-                    2.0 * m * a[(1, 2)],
+                    N::TWO * m * a[(0, 2)],
+                    N::TWO * m * a[(1, 2)],
                     half * (a[(0, 0)] - a[(1, 1)]),
-                    2.0 * half * a[(0, 1)],
+                    N::TWO * half * a[(0, 1)],
                 ];
                 (q.c, linear, constant)
             }
         };
         let square = product(&linear, &linear);
         let radicand = std::array::from_fn(|i| square[i] - lead * constant[i]);
-        let sum = |k: &[f64]| k.iter().map(|c| c.abs()).sum::<f64>();
+        let sum = |k: &[N]| k.iter().map(|c| c.abs()).sum::<N>();
         let scale = sum(&square) + lead.abs() * sum(&constant);
         Self {
             base,
@@ -103,58 +104,58 @@ impl<'a> Rulings<'a> {
     }
 
     /// The point on the ruling u at height w, in the base's frame.
-    fn local(&self, u: f64, w: f64) -> Vector3<f64> {
+    fn local(&self, u: N, w: N) -> Vector3<N> {
         match &self.base {
             Ruled::Cylinder(s) => Vector3::new(s.radius * u.cos(), s.radius * u.sin(), w),
             Ruled::Cone(s) => {
                 let rho = s.sin / s.cos / w;
-                Vector3::new(rho * u.cos(), rho * u.sin(), 1.0 / w)
+                Vector3::new(rho * u.cos(), rho * u.sin(), N::ONE / w)
             }
         }
     }
 
-    fn world(&self, u: f64, w: f64) -> Point3<f64> {
+    fn world(&self, u: N, w: N) -> Point3<N> {
         let p = self.local(u, w);
         surface_of(&self.base).frame().point(p.x, p.y, p.z)
     }
 
     /// The height of the point of a ruling that is next to the other surface.
-    fn middle(&self, u: f64) -> f64 {
+    fn middle(&self, u: N) -> N {
         -trig1(&self.linear, u.sin_cos()) / self.lead
     }
 
-    fn delta(&self, u: f64) -> f64 {
+    fn delta(&self, u: N) -> N {
         trig2(&self.radicand, u.sin_cos())
     }
 
     /// Whether a height lies on the base and in the extent.
-    fn is_on_base(&self, w: f64) -> bool {
+    fn is_on_base(&self, w: N) -> bool {
         match &self.base {
             Ruled::Cylinder(_) => true,
-            Ruled::Cone(_) => w > 0.0 && 1.0 / w <= self.reach(),
+            Ruled::Cone(_) => w > N::ZERO && N::ONE / w <= self.reach(),
         }
     }
 
     /// The greatest absolute height that can lie in the extent.
-    fn reach(&self) -> f64 {
+    fn reach(&self) -> N {
         let f = *surface_of(&self.base).frame();
         (f.origin - self.extent.centre).dot(&f.z).abs() + self.extent.radius
     }
 
     /// Whether Δ is positive, zero or negative at an angle, decided as the signed distance of the
     /// ruling from the other surface.
-    fn state(&self, u: f64, judge: &Judge) -> Side {
+    fn state(&self, u: N, judge: &Judge) -> Side {
         let w = self.middle(u);
         if !self.is_on_base(w) {
             // The decision concerns the other nappe or lies far off: the plain sign will do.
-            return if self.delta(u) >= 0.0 {
+            return if self.delta(u) >= N::ZERO {
                 Side::Inside
             } else {
                 Side::Outside
             };
         }
         let distance = apart(self.other, &self.world(u, w));
-        let signed = if self.delta(u) >= 0.0 {
+        let signed = if self.delta(u) >= N::ZERO {
             -distance
         } else {
             distance
@@ -163,17 +164,20 @@ impl<'a> Rulings<'a> {
     }
 
     /// The planar conic w = plane(u), where it lies on the base and on the other surface.
-    fn add_conic(&self, w: &Trig1, tangent: bool, judge: &Judge, meeting: &mut Meeting) {
+    fn add_conic(&self, w: &Trig1<N>, tangent: bool, judge: &Judge, meeting: &mut Meeting<N>) {
         let surface = surface_of(&self.base);
         let frame = surface.frame();
         let (normal, offset) = match &self.base {
-            Ruled::Cylinder(s) => (Vector3::new(-w[1] / s.radius, -w[2] / s.radius, 1.0), w[0]),
+            Ruled::Cylinder(s) => (
+                Vector3::new(-w[1] / s.radius, -w[2] / s.radius, N::ONE),
+                w[0],
+            ),
             Ruled::Cone(s) => {
                 let m = s.sin / s.cos;
-                (Vector3::new(w[1] / m, w[2] / m, w[0]), 1.0)
+                (Vector3::new(w[1] / m, w[2] / m, w[0]), N::ONE)
             }
         };
-        let size = normal.norm();
+        let size = normal.length();
         if size * self.reach() * self.reach() < offset.abs() * judge.band() {
             return;
         }
@@ -203,16 +207,16 @@ impl<'a> Rulings<'a> {
     }
 
     /// The parts of a curve that lie on the other surface's own nappe, where it is a cone.
-    fn on_other_nappe(&self, curve: &Curve, range: [f64; 2], judge: &Judge) -> Vec<[f64; 2]> {
+    fn on_other_nappe(&self, curve: &Curve<N>, range: [N; 2], judge: &Judge) -> Vec<[N; 2]> {
         nappe_parts(curve, range, self.other, judge.band())
     }
 
     /// Whether the heights that `conics` gives over each ruling lie on the other surface.
-    fn meets_in_conics(&self, judge: &Judge, conics: impl Fn(f64) -> Vec<f64>) -> bool {
-        let mut worst: f64 = 0.0;
+    fn meets_in_conics(&self, judge: &Judge, conics: impl Fn(N) -> Vec<N>) -> bool {
+        let mut worst: N = N::ZERO;
         let mut asked = false;
         for i in 0..24 {
-            let u = TAU * (f64::from(i) + 0.3) / 24.0;
+            let u = N::TAU * (N::whole(i) + N::of(0.3)) / N::of(24.0);
             for w in conics(u).into_iter().filter(|&w| self.is_on_base(w)) {
                 asked = true;
                 worst = worst.max(apart(self.other, &self.world(u, w)));
@@ -223,7 +227,7 @@ impl<'a> Rulings<'a> {
     }
 
     /// The apexes through which branches pass: singular points.
-    fn add_apexes(&self, judge: &Judge, meeting: &mut Meeting) {
+    fn add_apexes(&self, judge: &Judge, meeting: &mut Meeting<N>) {
         let surface = surface_of(&self.base);
         for (s, o) in [(&surface, self.other), (self.other, &surface)] {
             if let Surface::Cone(c) = s

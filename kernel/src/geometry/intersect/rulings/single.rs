@@ -6,16 +6,17 @@ use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place
 use crate::geometry::quartic::{Height, Quartic, Ruled, Sweep};
 use crate::geometry::surface::Surface;
 use crate::geometry::trigonometric::{Trig1, Trig2, divide, divide_half, trig1, zeros_of};
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::sign::Judge;
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::{PI, TAU};
 
-impl Rulings<'_> {
+impl<N: Number> Rulings<'_, N> {
     /// k = 0: one point on each ruling, w = -C/(2B).
     pub(in crate::geometry::intersect) fn single(
         &self,
         judge: &Judge,
-    ) -> Result<Meeting, IntersectionError> {
+    ) -> Result<Meeting<N>, IntersectionError> {
         let mut meeting = Meeting::nothing();
         let shared = self.shared_ruling(judge);
         let tangent = shared.is_some_and(|u0| self.touches_along(u0, judge));
@@ -47,8 +48,8 @@ impl Rulings<'_> {
     }
 
     /// w = -C/(2B) where that is of degree one: a planar conic.
-    fn single_conic(&self, judge: &Judge) -> Option<Trig1> {
-        let w = divide(&self.constant, &self.linear).map(|q| -0.5 * q);
+    fn single_conic(&self, judge: &Judge) -> Option<Trig1<N>> {
+        let w = divide(&self.constant, &self.linear).map(|q| -N::HALF * q);
         self.meets_in_conics(judge, |u| vec![trig1(&w, u.sin_cos())])
             .then_some(w)
     }
@@ -56,12 +57,12 @@ impl Rulings<'_> {
     /// The curve w = -C/(2B), as far as it lies on both surfaces.
     fn add_single(
         &self,
-        quartic: Quartic,
-        shared: Option<f64>,
+        quartic: Quartic<N>,
+        shared: Option<N>,
         judge: &Judge,
-        meeting: &mut Meeting,
+        meeting: &mut Meeting<N>,
     ) {
-        let whole = [0.0, TAU];
+        let whole = [N::ZERO, N::TAU];
         for range in self.bounded_ranges(&quartic, shared, self.reach()) {
             let curve = Curve::Quartic(Box::new(quartic));
             for range in self.on_other_nappe(&curve, range, judge) {
@@ -77,7 +78,7 @@ impl Rulings<'_> {
     }
 
     /// The ruling that lies on both surfaces, where k = 0: a common zero of B and C.
-    fn shared_ruling(&self, judge: &Judge) -> Option<f64> {
+    fn shared_ruling(&self, judge: &Judge) -> Option<N> {
         if let Ruled::Cylinder(_) = self.base {
             let Surface::Cone(c) = self.other else {
                 return None;
@@ -93,55 +94,55 @@ impl Rulings<'_> {
             return None;
         };
         let q = surface_of(&self.base).frame().coordinates(&c.frame.origin);
-        let w = 1.0 / q.z;
+        let w = N::ONE / q.z;
         let u = q.y.atan2(q.x);
-        let u = if q.z < 0.0 { u + PI } else { u };
+        let u = if q.z < N::ZERO { u + N::PI } else { u };
         let on = judge.within(apart(&surface_of(&self.base), &c.frame.origin));
         (w.is_finite() && on).then_some(u)
     }
 
     /// Whether the surfaces touch all along the ruling u0 that lies on both.
-    fn touches_along(&self, u0: f64, judge: &Judge) -> bool {
+    fn touches_along(&self, u0: N, judge: &Judge) -> bool {
         let surface = surface_of(&self.base);
         let Surface::Cone(cone) = self.other else {
             return false;
         };
-        let p = self.world(u0, 1.0);
+        let p = self.world(u0, N::ONE);
         let along = match &self.base {
             Ruled::Cylinder(c) => c.frame.z,
-            Ruled::Cone(c) => (p - c.frame.origin).normalize(),
+            Ruled::Cone(c) => (p - c.frame.origin).unit(),
         };
         // Square to the ruling, in the plane of it and the axis.
         let axis = cone.frame.z;
-        let normal = (axis - along * axis.dot(&along)).normalize();
-        let drift = surface.normal(&p).cross(&normal).norm() * self.extent.radius;
+        let normal = (axis - along * axis.dot(&along)).unit();
+        let drift = surface.normal(&p).cross(&normal).length() * self.extent.radius;
         judge.coincide("tangent along a ruling", drift, place(&p))
     }
 
     /// w = -C/(2B), where both have a double zero at u0: that is of degree one.
-    fn without_contact(&self, u0: f64) -> Height {
-        let factor = [1.0, -u0.cos(), -u0.sin()];
+    fn without_contact(&self, u0: N) -> Height<N> {
+        let factor = [N::ONE, -u0.cos(), -u0.sin()];
         let [a, b, c] = divide(&self.constant, &factor);
-        let dot = |k: &Trig1| k.iter().zip(&factor).map(|(k, f)| k * f).sum::<f64>();
+        let dot = |k: &Trig1<N>| k.iter().zip(&factor).map(|(k, f)| *k * *f).sum::<N>();
         let linear = dot(&self.linear) / dot(&factor);
         Height::Rational {
-            linear: [linear, 0.0, 0.0],
-            constant: [a, b, c, 0.0, 0.0],
+            linear: [linear, N::ZERO, N::ZERO],
+            constant: [a, b, c, N::ZERO, N::ZERO],
         }
     }
 
     /// The ranges of u over which the single point of a ruling is on the base within reach.
-    fn bounded_ranges(&self, q: &Quartic, shared: Option<f64>, reach: f64) -> Vec<[f64; 2]> {
+    fn bounded_ranges(&self, q: &Quartic<N>, shared: Option<N>, reach: N) -> Vec<[N; 2]> {
         // |w| = reach, w = 1/reach and the poles, as signs of N - x D with w = N/D.
-        let quotient = |u: f64| q.height_at(u);
-        let inside = |u: f64| match &self.base {
+        let quotient = |u: N| q.height_at(u);
+        let inside = |u: N| match &self.base {
             Ruled::Cylinder(_) => quotient(u).abs() <= reach,
-            Ruled::Cone(_) => quotient(u) * reach >= 1.0,
+            Ruled::Cone(_) => quotient(u) * reach >= N::ONE,
         };
-        let bound = |x: f64| -> Trig2 {
+        let bound = |x: N| -> Trig2<N> {
             let mut k = self.constant;
             for (c, b) in k.iter_mut().zip(&self.linear) {
-                *c += 2.0 * x * b;
+                *c += N::TWO * x * *b;
             }
             k
         };
@@ -149,29 +150,35 @@ impl Rulings<'_> {
             Ruled::Cylinder(_) => vec![bound(reach), bound(-reach)],
             Ruled::Cone(_) => {
                 vec![
-                    bound(1.0 / reach),
-                    [self.linear[0], self.linear[1], self.linear[2], 0.0, 0.0],
+                    bound(N::ONE / reach),
+                    [
+                        self.linear[0],
+                        self.linear[1],
+                        self.linear[2],
+                        N::ZERO,
+                        N::ZERO,
+                    ],
                 ]
             }
         };
-        let mut marks: Vec<f64> = shared.into_iter().collect();
+        let mut marks: Vec<N> = shared.into_iter().collect();
         for k in &limits {
             marks.extend(zeros_of(k).into_iter().map(|r| r.0));
         }
-        let mut marks: Vec<f64> = marks.into_iter().map(|u| u.rem_euclid(TAU)).collect();
-        marks.sort_by(f64::total_cmp);
-        marks.dedup_by(|a, b| (*a - *b).abs() < 1.0 / f64::from(1 << 24));
+        let mut marks: Vec<N> = marks.into_iter().map(|u| u.rem_euclid(N::TAU)).collect();
+        marks.sort_by(N::total_cmp);
+        marks.dedup_by(|a, b| (*a - *b).abs() < N::ONE / N::whole(1 << 24));
         let Some(&first) = marks.first() else {
-            return if inside(0.5) {
-                vec![[0.0, TAU]]
+            return if inside(N::HALF) {
+                vec![[N::ZERO, N::TAU]]
             } else {
                 Vec::new()
             };
         };
-        marks.push(first + TAU);
-        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        marks.push(first + N::TAU);
+        let mut ranges: Vec<[N; 2]> = Vec::new();
         for m in marks.windows(2) {
-            if inside(0.5 * (m[0] + m[1])) {
+            if inside(N::HALF * (m[0] + m[1])) {
                 match ranges.last_mut() {
                     // The shared ruling is no end of the curve: it passes over it.
                     Some(last) if last[1] == m[0] && shared.is_some_and(|s| same_turn(s, m[0])) => {
@@ -187,17 +194,17 @@ impl Rulings<'_> {
     /// The ruling common to both surfaces, with the point where the rest of the curve crosses it.
     fn add_shared(
         &self,
-        u0: f64,
-        q: &Quartic,
+        u0: N,
+        q: &Quartic<N>,
         tangent: bool,
         judge: &Judge,
-        meeting: &mut Meeting,
+        meeting: &mut Meeting<N>,
     ) {
         let surface = surface_of(&self.base);
         let frame = surface.frame();
         let (origin, direction) = match &self.base {
             Ruled::Cylinder(s) => (
-                frame.point(s.radius * u0.cos(), s.radius * u0.sin(), 0.0),
+                frame.point(s.radius * u0.cos(), s.radius * u0.sin(), N::ZERO),
                 frame.z,
             ),
             Ruled::Cone(s) => {
@@ -210,7 +217,7 @@ impl Rulings<'_> {
             return;
         };
         let lo = if matches!(self.base, Ruled::Cone(_)) {
-            lo.max(0.0)
+            lo.max(N::ZERO)
         } else {
             lo
         };
@@ -224,7 +231,7 @@ impl Rulings<'_> {
             meeting.branches.push(branch);
         }
         let crossing = Point3::from(q.at(u0));
-        if (crossing - self.extent.centre).norm() <= self.extent.radius {
+        if (crossing - self.extent.centre).length() <= self.extent.radius {
             meeting.nodes.push(Node {
                 point: crossing,
                 on: Vec::new(),
@@ -233,7 +240,7 @@ impl Rulings<'_> {
     }
 }
 
-fn same_turn(a: f64, b: f64) -> bool {
-    let d = (a - b).rem_euclid(TAU);
-    d.min(TAU - d) < 1.0 / f64::from(1 << 20)
+fn same_turn<N: Number>(a: N, b: N) -> bool {
+    let d = (a - b).rem_euclid(N::TAU);
+    d.min(N::TAU - d) < N::ONE / N::whole(1 << 20)
 }

@@ -1,0 +1,68 @@
+//! Lengths of vectors of any precision.
+
+use crate::number::precision::Number;
+use nalgebra::{Point3, SVector, Vector3};
+
+/// What a vector's length is asked for.
+pub trait Length<N> {
+    /// The length.
+    fn length(&self) -> N;
+    /// The square of the length.
+    fn length_squared(&self) -> N;
+    /// The vector of length one in the same direction; not a number where the length is zero.
+    #[must_use]
+    fn unit(&self) -> Self;
+}
+
+impl<N: Number, const D: usize> Length<N> for SVector<N, D> {
+    fn length(&self) -> N {
+        self.length_squared().sqrt()
+    }
+    fn length_squared(&self) -> N {
+        self.dot(self)
+    }
+    fn unit(&self) -> Self {
+        self / self.length()
+    }
+}
+
+/// The solution of m x = right by Gauss's elimination, the greatest pivot first; none where m has no
+/// inverse.
+pub fn solution<N: Number, const D: usize>(
+    mut m: [[N; D]; D],
+    mut right: [N; D],
+) -> Option<[N; D]> {
+    for k in 0..D {
+        let pivot = (k..D).max_by(|&i, &j| m[i][k].abs().total_cmp(&m[j][k].abs()))?;
+        m.swap(k, pivot);
+        right.swap(k, pivot);
+        if m[k][k] == N::ZERO {
+            return None;
+        }
+        for i in k + 1..D {
+            let part = m[i][k] / m[k][k];
+            for j in k..D {
+                let above = m[k][j];
+                m[i][j] -= part * above;
+            }
+            let above = right[k];
+            right[i] -= part * above;
+        }
+    }
+    for k in (0..D).rev() {
+        let rest: N = (k + 1..D).map(|j| m[k][j] * right[j]).sum();
+        right[k] = (right[k] - rest) / m[k][k];
+    }
+    Some(right)
+}
+
+/// The direction of a vector; none where its length is zero.
+pub fn direction<N: Number>(v: &Vector3<N>) -> Option<Vector3<N>> {
+    let length = v.length();
+    (length > N::ZERO).then(|| v / length)
+}
+
+/// A point in doubles.
+pub fn rounded<N: Number>(p: &Point3<N>) -> [f64; 3] {
+    [p.x, p.y, p.z].map(N::rounded)
+}

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use dashu::base::Sign;
 use nalgebra::{Matrix3, Vector3};
 
+use crate::number::precision::Number;
 use crate::number::rational::{Rational, bits, exact_sqrt, from_f64, to_f64};
 
 /// A 3x3 matrix by rows.
@@ -202,8 +203,13 @@ impl Motion {
 
     /// The rotation matrix in doubles, each entry the nearest.
     pub fn rotation_f64(&self) -> Matrix3<f64> {
+        self.rounded_rotation()
+    }
+
+    /// The rotation, rounded once to numbers of some precision.
+    pub fn rounded_rotation<N: Number>(&self) -> Matrix3<N> {
         match &self.rotation {
-            Some(matrix) => Matrix3::from_fn(|i, j| to_f64(&matrix[i][j])),
+            Some(matrix) => Matrix3::from_fn(|i, j| N::nearest(&matrix[i][j])),
             None => Matrix3::identity(),
         }
     }

@@ -223,7 +223,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let slope = curve.derivative(t);
         let middle = curve.point(lo + 0.5 * length);
         let plain = slope.norm() * length > ROUNDING.sqrt() * (middle - curve.point(t)).norm();
-        plain.then(|| slope.normalize() * use_.sense.sign())
+        plain.then(|| slope.normalize() * use_.sense.sign::<f64>())
     }
 
     /// Where a limb ends on an edge of two faces.
@@ -238,7 +238,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let (v, _) = self.scene.projection.towards_eye(&p);
         let effect = |&coedge: &CoedgeId| {
             let face = brep.topology.face_of(coedge);
-            let out = along * brep.topology.coedge(coedge).sense.sign();
+            let out = along * brep.topology.coedge(coedge).sense.sign::<f64>();
             let effect = match self.corner(face, [edge; 2], &p, &v, || Some([out, -out])) {
                 None => Effect::Clear,
                 Some(c) if c.facing.is_none() && end.strand.edge == Some(edge) => {

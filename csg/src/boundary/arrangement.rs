@@ -16,6 +16,7 @@ use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::intersect::{Branch, Extent, meet};
 use premio_kernel::geometry::relation::Carrier;
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::Judge;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -23,20 +24,20 @@ use std::collections::BTreeMap;
 
 /// Where a curve is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cut {
+pub(super) struct Cut<N: Number = f64> {
     /// The parameter.
-    pub t: f64,
+    pub t: N,
     /// The vertex there.
     pub vertex: usize,
 }
 
 /// A curve in which carriers meet.
 #[derive(Clone, Debug)]
-pub(super) struct Meeting {
+pub(super) struct Meeting<N: Number = f64> {
     /// The curve.
-    pub curve: Curve,
+    pub curve: Curve<N>,
     /// The range of its parameter.
-    pub range: [f64; 2],
+    pub range: [N; 2],
     /// Whether the range is a whole period.
     pub closed: bool,
     /// All carriers that hold it, in order.
@@ -46,9 +47,9 @@ pub(super) struct Meeting {
     /// Its box.
     pub bounds: Box3,
     /// Its smooth pieces with their boxes, in order.
-    pub parts: Vec<([f64; 2], Box3)>,
+    pub parts: Vec<([N; 2], Box3)>,
     /// Where it is cut, in order.
-    pub cuts: Vec<Cut>,
+    pub cuts: Vec<Cut<N>>,
 }
 
 /// The solids' boxes, to be asked for what lies near.
@@ -56,27 +57,27 @@ pub(super) type SolidTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
 
 /// All carriers, curves and corners.
 #[derive(Debug)]
-pub(super) struct Arrangement {
+pub(super) struct Arrangement<N: Number = f64> {
     /// The distinct surfaces.
-    pub carriers: Vec<Surface>,
+    pub carriers: Vec<Surface<N>>,
     /// For each half space of each solid: its carrier and the sense relative to it.
     pub sides: Vec<Vec<(usize, Sense)>>,
     /// The curves.
-    pub meetings: Vec<Meeting>,
+    pub meetings: Vec<Meeting<N>>,
     /// The corners.
-    pub corners: Vec<Corner>,
+    pub corners: Vec<Corner<N>>,
     /// The close calls of which it is not yet known whether they concern the boundary.
     pub calls: Vec<Unlisted>,
     /// The solids' boxes.
     pub tree: SolidTree,
 }
 
-pub(super) fn arrange(
+pub(super) fn arrange<N: Number>(
     tree: &Tree,
-    solids: &Solids,
-    extent: &Extent,
+    solids: &Solids<N>,
+    extent: &Extent<N>,
     judge: &Judge,
-) -> Result<Arrangement, EvaluationError> {
+) -> Result<Arrangement<N>, EvaluationError> {
     let Merged {
         carriers,
         sources,
@@ -118,16 +119,16 @@ pub(super) fn arrange(
     for m in &mut found.meetings {
         m.cuts.sort_by(|a, b| a.t.total_cmp(&b.t));
         m.cuts
-            .dedup_by(|a, b| a.vertex == b.vertex && (a.t - b.t).abs() < CLOSE_PASS);
+            .dedup_by(|a, b| a.vertex == b.vertex && (a.t - b.t).abs() < N::of(CLOSE_PASS));
     }
     Ok(found)
 }
 
 type Pairs = BTreeMap<(usize, usize), Vec<Box3>>;
 
-impl Arrangement {
+impl<N: Number> Arrangement<N> {
     /// The pairs of carriers whose faces' boxes meet, with the boxes that they share.
-    fn pairs(&self, solids: &Solids, reach: f64) -> Pairs {
+    fn pairs(&self, solids: &Solids<N>, reach: N) -> Pairs {
         let mut pairs = Pairs::new();
         for (i, s) in solids.all.iter().enumerate() {
             let around = AABB::from_corners(s.bounds.min, s.bounds.max);
@@ -141,7 +142,7 @@ impl Arrangement {
         pairs
     }
 
-    fn add_pairs_of(&self, solids: &Solids, i: usize, j: usize, reach: f64, pairs: &mut Pairs) {
+    fn add_pairs_of(&self, solids: &Solids<N>, i: usize, j: usize, reach: N, pairs: &mut Pairs) {
         let (s, o) = (&solids.all[i], &solids.all[j]);
         for (k, a) in s.sides.iter().enumerate() {
             let box_a = a.bounds.grown(reach);
@@ -162,9 +163,9 @@ impl Arrangement {
         (a, b): (usize, usize),
         supports: &[Box3],
         sources: &[Source<'_>],
-        extent: &Extent,
+        extent: &Extent<N>,
         judge: &Judge,
-        corners: &mut Corners,
+        corners: &mut Corners<N>,
     ) -> Result<(), EvaluationError> {
         let exact = [a, b].map(|c| move || sources[c].exact());
         let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
@@ -188,7 +189,7 @@ impl Arrangement {
             for &(branch, t) in &node.on {
                 for &m in &kept[branch] {
                     let [lo, hi] = self.meetings[m].range;
-                    if t >= lo - judge.band::<f64>() && t <= hi + judge.band::<f64>() {
+                    if t >= lo - judge.band::<N>() && t <= hi + judge.band::<N>() {
                         let t = t.clamp(lo, hi);
                         self.meetings[m].cuts.push(Cut { t, vertex });
                     }
@@ -203,7 +204,7 @@ impl Arrangement {
         &mut self,
         a: usize,
         b: usize,
-        branch: &Branch,
+        branch: &Branch<N>,
         supports: &[Box3],
         judge: &Judge,
     ) -> Vec<usize> {
@@ -217,7 +218,7 @@ impl Arrangement {
             let b3 = parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.1));
             if !supports
                 .iter()
-                .any(|s| common(s, &b3.grown(judge.band())).is_some())
+                .any(|s| common(s, &b3.grown(judge.band::<N>())).is_some())
             {
                 continue;
             }
@@ -247,17 +248,18 @@ pub(super) fn common(a: &Box3, b: &Box3) -> Option<Box3> {
 }
 
 /// The parts of a line within the boxes, overlapping ones joined.
-fn clipped(line: &Line, range: [f64; 2], boxes: &[Box3]) -> Vec<[f64; 2]> {
-    let mut parts: Vec<[f64; 2]> = Vec::new();
+fn clipped<N: Number>(line: &Line<N>, range: [N; 2], boxes: &[Box3]) -> Vec<[N; 2]> {
+    let mut parts: Vec<[N; 2]> = Vec::new();
     for b in boxes {
         let [mut lo, mut hi] = range;
         for i in 0..3 {
             let (o, d) = (line.origin[i], line.direction[i]);
             // Steep enough to cross the slab within the extent, or else it lies along it.
-            let (x, y) = ((b.min[i] - o) / d, (b.max[i] - o) / d);
-            if d == 0.0 || !x.is_finite() || !y.is_finite() {
-                if o < b.min[i] || o > b.max[i] {
-                    hi = f64::NEG_INFINITY;
+            let (min, max) = (N::of(b.min[i]), N::of(b.max[i]));
+            let (x, y) = ((min - o) / d, (max - o) / d);
+            if d == N::ZERO || !x.is_finite() || !y.is_finite() {
+                if o < min || o > max {
+                    hi = N::NEG_INFINITY;
                 }
                 continue;
             }
@@ -269,7 +271,7 @@ fn clipped(line: &Line, range: [f64; 2], boxes: &[Box3]) -> Vec<[f64; 2]> {
         }
     }
     parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let mut joined: Vec<[f64; 2]> = Vec::new();
+    let mut joined: Vec<[N; 2]> = Vec::new();
     for p in parts {
         match joined.last_mut() {
             Some(last) if p[0] <= last[1] => last[1] = last[1].max(p[1]),

@@ -7,8 +7,9 @@ use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::intersect::{Extent, coincidence};
 use premio_kernel::geometry::relation::{Carrier, Coefficients};
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::precision::Number;
 use premio_kernel::number::rational::Rational;
-use premio_kernel::number::sign::{Judge, ROUNDING};
+use premio_kernel::number::sign::Judge;
 
 /// The half space that a carrier was met as first: its exact coefficients are the carrier's.
 #[derive(Clone, Copy, Debug)]
@@ -25,9 +26,9 @@ impl Source<'_> {
 }
 
 /// All half spaces' surfaces, equal ones merged.
-pub(super) struct Merged<'t> {
+pub(super) struct Merged<'t, N: Number = f64> {
     /// The distinct surfaces.
-    pub carriers: Vec<Surface>,
+    pub carriers: Vec<Surface<N>>,
     /// Where each comes from.
     pub sources: Vec<Source<'t>>,
     /// For each half space of each solid: its carrier, and the sense relative to it.
@@ -35,16 +36,16 @@ pub(super) struct Merged<'t> {
 }
 
 /// The distinct surfaces, and each half space's carrier.
-pub(super) fn merge<'t>(
+pub(super) fn merge<'t, N: Number>(
     tree: &'t Tree,
-    solids: &Solids,
-    extent: &Extent,
+    solids: &Solids<N>,
+    extent: &Extent<N>,
     judge: &Judge,
-) -> Merged<'t> {
+) -> Merged<'t, N> {
     let placed: Vec<&Placed> = tree.leaves().map(|leaf| leaf.1).collect();
     // Equal surfaces have nearly the same point next to the extent's centre: sorted by it, only
     // neighbours are compared.
-    let foot = |s: &Surface| {
+    let foot = |s: &Surface<N>| {
         let f = s.frame();
         let away = extent.centre - f.origin;
         match s {
@@ -53,25 +54,25 @@ pub(super) fn merge<'t>(
             Surface::Cone(_) | Surface::Sphere(_) | Surface::Torus(_) => f.origin,
         }
     };
-    let mut list: Vec<(f64, usize, usize, &HalfSpace)> = Vec::new();
+    let mut list: Vec<(N, usize, usize, &HalfSpace<N>)> = Vec::new();
     for (i, s) in solids.all.iter().enumerate() {
         for (k, side) in s.sides.iter().enumerate() {
             list.push((foot(&side.surface).x, i, k, side));
         }
     }
     list.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let window = 4.0 * judge.reach::<f64>() + ROUNDING * extent.radius;
+    let window = N::of(4.0) * judge.reach::<N>() + N::ROUNDING * extent.radius;
     let mut sides: Vec<Vec<(usize, Sense)>> = solids
         .all
         .iter()
         .map(|s| vec![(usize::MAX, Sense::Along); s.sides.len()])
         .collect();
-    let mut carriers: Vec<Surface> = Vec::new();
+    let mut carriers: Vec<Surface<N>> = Vec::new();
     let mut sources: Vec<Source<'t>> = Vec::new();
     // The carriers that may still be met, by the place of their foot.
-    let mut recent: Vec<(f64, usize)> = Vec::new();
+    let mut recent: Vec<(N, usize)> = Vec::new();
     for (x, i, k, side) in list {
-        recent.retain(|(y, _)| x - y <= window);
+        recent.retain(|(y, _)| x - *y <= window);
         let source = Source {
             placed: placed[i],
             side: k,

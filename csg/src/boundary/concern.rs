@@ -10,6 +10,8 @@ use super::halfspaces::{HalfSpace, Solids};
 use super::membership::Membership;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::vector::rounded;
+use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{CloseCall, Judge};
 use rstar::AABB;
 
@@ -30,14 +32,14 @@ pub(super) enum Between {
 pub(super) type Unlisted = (CloseCall, Between);
 
 /// The primitives as a tree joins them, to be asked for what matters next to a point.
-pub(super) struct Concern<'a> {
-    pub solids: &'a Solids,
-    pub arrangement: &'a Arrangement,
+pub(super) struct Concern<'a, N: Number = f64> {
+    pub solids: &'a Solids<N>,
+    pub arrangement: &'a Arrangement<N>,
     pub membership: &'a Membership<'a>,
     pub judge: &'a Judge,
 }
 
-impl Concern<'_> {
+impl<N: Number> Concern<'_, N> {
     /// Lists the close calls that concern the boundary: of those met on the way, and between
     /// corners and surfaces.
     pub fn list(&self) {
@@ -52,9 +54,9 @@ impl Concern<'_> {
     }
 
     /// Lists the surfaces that pass by a corner.
-    fn list_beside(&self, corner: &Corner) {
-        let place = corner.point.into();
-        let mut beside: Vec<(usize, f64)> = Vec::new();
+    fn list_beside(&self, corner: &Corner<N>) {
+        let place = rounded(&corner.point);
+        let mut beside: Vec<(usize, N)> = Vec::new();
         for s in self.arrangement.tree.locate_all_at_point(place) {
             for (side, &(c, _)) in self.sides(s.data) {
                 let distance = side.surface.distance(&corner.point);
@@ -77,7 +79,10 @@ impl Concern<'_> {
     }
 
     /// The sides of a solid, each with its carrier and its sense.
-    fn sides(&self, solid: usize) -> impl Iterator<Item = (&HalfSpace, &(usize, Sense))> + Clone {
+    fn sides(
+        &self,
+        solid: usize,
+    ) -> impl Iterator<Item = (&HalfSpace<N>, &(usize, Sense))> + Clone {
         let sides = self.solids.all[solid].sides.iter();
         sides.zip(&self.arrangement.sides[solid])
     }
@@ -97,10 +102,10 @@ impl Concern<'_> {
     /// The carriers, in order, of the faces next to a place of the primitives on which it depends
     /// where the part is there.
     fn carriers(&self, place: [f64; 3]) -> Vec<usize> {
-        let p = Point3::from(place);
+        let p = Point3::from(place.map(N::of));
         // Both of what a close call lies between are within its distance of the place.
-        let margin = 2.0 * self.judge.reach::<f64>();
-        let [lo, hi] = [-margin, margin].map(|by| <[f64; 3]>::from(p + Vector3::repeat(by)));
+        let margin = N::TWO * self.judge.reach::<N>();
+        let [lo, hi] = [-margin, margin].map(|by| rounded(&(p + Vector3::repeat(by))));
         let around = AABB::from_corners(lo, hi);
         let (mut held, mut open) = (Vec::new(), Vec::new());
         let mut faces = Vec::new();
@@ -111,11 +116,9 @@ impl Concern<'_> {
         {
             let solid = &self.solids.all[s.data];
             let away =
-                |(side, &(c, _)): (&HalfSpace, &(usize, Sense))| (side.surface.distance(&p), c);
+                |(side, &(c, _)): (&HalfSpace<N>, &(usize, Sense))| (side.surface.distance(&p), c);
             let sides = self.sides(s.data).map(away);
-            let outside = sides
-                .clone()
-                .fold(f64::NEG_INFINITY, |most, s| most.max(s.0));
+            let outside = sides.clone().fold(N::NEG_INFINITY, |most, s| most.max(s.0));
             if outside < -margin {
                 held.push(solid.leaf);
             } else if outside <= margin {
@@ -135,7 +138,7 @@ impl Concern<'_> {
 
 /// Whether a corner is one of the carriers that matter alone: two of them have it by themselves, or
 /// three meet in it.
-fn is_vertex(corner: &Corner, has: impl Fn(&usize) -> bool) -> bool {
+fn is_vertex<N: Number>(corner: &Corner<N>, has: impl Fn(&usize) -> bool) -> bool {
     let through = corner.carriers.iter().filter(|c| has(c)).count();
     through > 2 || corner.nodes.iter().any(|both| both.iter().all(&has))
 }

@@ -8,10 +8,12 @@
 use super::arrangement::{Arrangement, Meeting};
 use nalgebra::Point3;
 use premio_kernel::geometry::cut::lies_on;
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::precision::Number;
 use premio_kernel::number::roots::probes;
 use premio_kernel::number::sign::Judge;
 
-impl Arrangement {
+impl<N: Number> Arrangement<N> {
     /// Puts contacts along curves where other curves run inside their strips.
     pub(super) fn settle_contacts(&mut self, judge: &Judge) {
         let mut settled = vec![false; self.meetings.len()];
@@ -39,7 +41,7 @@ impl Arrangement {
 
     /// How wide the strip is between the contact of two carriers and another curve of one of them,
     /// where that runs along all of it and is not the same.
-    fn strip(&self, both: [usize; 2], contact: usize, other: usize, judge: &Judge) -> Option<f64> {
+    fn strip(&self, both: [usize; 2], contact: usize, other: usize, judge: &Judge) -> Option<N> {
         let (contact, other) = (&self.meetings[contact], &self.meetings[other]);
         let third = both.map(|c| !other.carriers.contains(&c));
         if third[0] == third[1] {
@@ -50,31 +52,31 @@ impl Arrangement {
         if !lies_on(&other.curve, other.range, missing, judge.band()) {
             return None;
         }
-        let mut width: f64 = 0.0;
+        let mut width: N = N::ZERO;
         let [lo, hi] = contact.range;
-        for part in probes().chain([0.0, 1.0]) {
+        for part in probes().chain([N::ZERO, N::ONE]) {
             let t = lo + (hi - lo) * part;
             let p = contact.curve.point(t);
             let aside = other.beside(&p, judge.reach())? - p;
             let along = aside.dot(&contact.curve.tangent(t)).abs();
-            let middle = p + aside * 0.5;
+            let middle = p + aside * N::HALF;
             let inside = carriers.iter().all(|s| judge.within(s.distance(&middle)));
-            if !inside || 2.0 * along > aside.norm() + judge.reach::<f64>() {
+            if !inside || N::TWO * along > aside.length() + judge.reach::<N>() {
                 return None;
             }
-            width = width.max(aside.norm());
+            width = width.max(aside.length());
         }
         (!judge.within(width)).then_some(width)
     }
 }
 
-impl Meeting {
+impl<N: Number> Meeting<N> {
     /// The point next to another one, where that is not beyond the ends.
-    fn beside(&self, p: &Point3<f64>, reach: f64) -> Option<Point3<f64>> {
+    fn beside(&self, p: &Point3<N>, reach: N) -> Option<Point3<N>> {
         let [lo, hi] = self.range;
         let t = self.curve.in_cycle(self.curve.parameter(p), lo);
         let q = self.curve.point(t.clamp(lo, hi));
-        let beyond = (q - self.curve.point(t)).norm();
+        let beyond = (q - self.curve.point(t)).length();
         (beyond <= reach).then_some(q)
     }
 }

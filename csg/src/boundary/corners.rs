@@ -2,14 +2,16 @@
 
 use super::concern::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::vector::{Length, rounded};
+use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{Judge, Side};
 use std::collections::HashMap;
 
 /// A point where a curve is cut.
 #[derive(Clone, Debug)]
-pub(super) struct Corner {
+pub(super) struct Corner<N: Number = f64> {
     /// The place.
-    pub point: Point3<f64>,
+    pub point: Point3<N>,
     /// The carriers through it, in order.
     pub carriers: Vec<usize>,
     /// The pairs of carriers that have it by themselves: where they touch, where their curve
@@ -17,39 +19,42 @@ pub(super) struct Corner {
     pub nodes: Vec<[usize; 2]>,
 }
 
-impl Corner {
+impl<N: Number> Corner<N> {
     /// Whether a carrier passes through it.
     pub fn is_on(&self, carrier: usize) -> bool {
         self.carriers.binary_search(&carrier).is_ok()
     }
 }
 
+/// The cell of a grid that holds a point.
+type Key = [[u64; 4]; 3];
+
 /// Corners by place, so that equal ones are one.
-pub(super) struct Corners {
+pub(super) struct Corners<N: Number = f64> {
     /// In the order in which they were found.
-    pub all: Vec<Corner>,
+    pub all: Vec<Corner<N>>,
     /// The close calls met.
     pub calls: Vec<Unlisted>,
-    grid: HashMap<[i64; 3], Vec<usize>>,
-    cell: f64,
+    grid: HashMap<Key, Vec<usize>>,
+    cell: N,
 }
 
-impl Corners {
-    pub fn new(band: f64) -> Self {
+impl<N: Number> Corners<N> {
+    pub fn new(band: N) -> Self {
         Self {
             all: Vec::new(),
             calls: Vec::new(),
             grid: HashMap::new(),
-            cell: 256.0 * band,
+            cell: N::of(256.0) * band,
         }
     }
 
-    fn key(&self, p: &Point3<f64>) -> [i64; 3] {
-        [0, 1, 2].map(|i| (p[i] / self.cell).floor() as i64)
+    fn key(&self, p: &Point3<N>) -> Key {
+        [0, 1, 2].map(|i| (p[i] / self.cell).floor().bits())
     }
 
     /// The corner at `p`, which the given carriers define, or are known to pass through.
-    pub fn at(&mut self, p: &Point3<f64>, carriers: &[usize], judge: &Judge) -> usize {
+    pub fn at(&mut self, p: &Point3<N>, carriers: &[usize], judge: &Judge) -> usize {
         let v = self.found(p, carriers, judge);
         let corner = &mut self.all[v];
         for &c in carriers {
@@ -64,10 +69,10 @@ impl Corners {
     }
 
     /// The corner that coincides with `p`, or a new one.
-    fn found(&mut self, p: &Point3<f64>, carriers: &[usize], judge: &Judge) -> usize {
+    fn found(&mut self, p: &Point3<N>, carriers: &[usize], judge: &Judge) -> usize {
         let new = self.all.len();
         if let Some((d, v)) = self.nearest(p, judge.reach()) {
-            let (side, call) = judge.decide("point on point", d, [p.x, p.y, p.z]);
+            let (side, call) = judge.decide("point on point", d, rounded(p));
             let one = side == Side::On;
             let between = match one {
                 true => Between::CornerAndPoint(v, carriers.to_vec()),
@@ -88,15 +93,17 @@ impl Corners {
     }
 
     /// The corner nearest to `p` that is nearer than `reach`, with its distance.
-    fn nearest(&self, p: &Point3<f64>, reach: f64) -> Option<(f64, usize)> {
+    fn nearest(&self, p: &Point3<N>, reach: N) -> Option<(N, usize)> {
         let lo = self.key(&(p - Vector3::repeat(reach)));
         let hi = self.key(&(p + Vector3::repeat(reach)));
-        let mut best: Option<(f64, usize)> = None;
-        for x in lo[0]..=hi[0] {
-            for y in lo[1]..=hi[1] {
-                for z in lo[2]..=hi[2] {
+        let mut best: Option<(N, usize)> = None;
+        // A cell is wider than twice the reach: there are two at most along each axis.
+        let both = |i: usize| [Some(lo[i]), (hi[i] != lo[i]).then_some(hi[i])];
+        for x in both(0).into_iter().flatten() {
+            for y in both(1).into_iter().flatten() {
+                for z in both(2).into_iter().flatten() {
                     for &v in self.grid.get(&[x, y, z]).into_iter().flatten() {
-                        let d = (self.all[v].point - p).norm();
+                        let d = (self.all[v].point - p).length();
                         if best.is_none_or(|b| d < b.0) {
                             best = Some((d, v));
                         }

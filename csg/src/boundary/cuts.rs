@@ -5,13 +5,15 @@ use super::arrangement::{Arrangement, Cut, Meeting, common};
 use super::concern::{Between, Unlisted};
 use super::corners::Corners;
 use super::halfspaces::Solids;
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::cut::{comes_near, lies_on, roots};
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::{Length, rounded, solution};
+use premio_kernel::number::precision::Number;
 use premio_kernel::number::roots::{Contact, Root};
-use premio_kernel::number::sign::{Judge, ROUNDING};
+use premio_kernel::number::sign::Judge;
 use rstar::AABB;
 use std::collections::HashMap;
 
@@ -19,33 +21,33 @@ use std::collections::HashMap;
 pub(super) const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
 
 /// A contact of so high an order that many points are within the band.
-pub(super) struct Wide {
+pub(super) struct Wide<N: Number = f64> {
     meeting: usize,
     carrier: usize,
     /// The parameter that fits best.
-    t: f64,
+    t: N,
     /// How far from there the points are within the band.
-    pub reach: f64,
+    pub reach: N,
 }
 
 /// What is met on the way and dealt with when all curves are cut.
 #[derive(Default)]
-pub(super) struct Later {
+pub(super) struct Later<N: Number = f64> {
     /// The contacts of high order.
-    pub wide: Vec<Wide>,
+    pub wide: Vec<Wide<N>>,
     /// The close calls.
     pub calls: Vec<Unlisted>,
 }
 
-impl Arrangement {
+impl<N: Number> Arrangement<N> {
     /// Cuts a curve by the carriers of all faces that come near it.
     pub(super) fn cut_meeting(
         &mut self,
         index: usize,
-        solids: &Solids,
+        solids: &Solids<N>,
         judge: &Judge,
-        corners: &mut Corners,
-        later: &mut Later,
+        corners: &mut Corners<N>,
+        later: &mut Later<N>,
     ) {
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
@@ -53,14 +55,14 @@ impl Arrangement {
         for s in self.tree.locate_in_envelope_intersecting(around) {
             for (k, side) in solids.all[s.data].sides.iter().enumerate() {
                 let c = self.sides[s.data][k].0;
-                let face = side.bounds.grown(judge.reach());
+                let face = side.bounds.grown(judge.reach::<N>());
                 if !m.carriers.contains(&c) && common(&face, &m.bounds).is_some() {
                     near.push((c, face));
                 }
             }
         }
         near.sort_by_key(|n| n.0);
-        let known: Vec<Cut> = m.cuts.clone();
+        let known: Vec<Cut<N>> = m.cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for faces in near.chunk_by(|a, b| a.0 == b.0) {
@@ -80,23 +82,23 @@ impl Arrangement {
         &self,
         index: usize,
         faces: &[(usize, Box3)],
-        known: &[Cut],
+        known: &[Cut<N>],
         judge: &Judge,
-        corners: &mut Corners,
-        later: &mut Later,
-    ) -> Option<Vec<Cut>> {
+        corners: &mut Corners<N>,
+        later: &mut Later<N>,
+    ) -> Option<Vec<Cut<N>>> {
         let c = faces[0].0;
         let m = &self.meetings[index];
         let mut cuts = self.special_points(index, c, known, judge, corners);
-        let special: Vec<(f64, Point3<f64>)> = cuts
+        let special: Vec<(N, Point3<N>)> = cuts
             .iter()
             .map(|s| (s.t, corners.all[s.vertex].point))
             .collect();
         let at_special =
-            |p: &Point3<f64>| special.iter().any(|s| (s.1 - p).norm() <= judge.reach());
+            |p: &Point3<N>| special.iter().any(|s| (s.1 - p).length() <= judge.reach());
         let (roots, misses) = m.meet(&self.carriers[c], faces, judge)?;
-        let mut note = |question, distance, p: &Point3<f64>| {
-            let (_, call) = judge.decide(question, distance, (*p).into());
+        let mut note = |question, distance, p: &Point3<N>| {
+            let (_, call) = judge.decide(question, distance, rounded(p));
             let call = call.map(|call| (call, Between::Curve(index, c)));
             later.calls.extend(call);
         };
@@ -108,7 +110,7 @@ impl Arrangement {
             if let Some(margin) = r.margin {
                 note("curve on surface", margin, &p);
             }
-            let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).norm());
+            let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).length());
             let mut reach = ends[0].max(ends[1]);
             if r.contact == Contact::Touching {
                 reach = reach.max(m.touching_length(r.t, &self.carriers[c], judge));
@@ -140,19 +142,19 @@ impl Arrangement {
     }
 
     /// Puts a cut whose place is not well known at a corner that is, where there is one in reach.
-    pub(super) fn place_wide(&mut self, w: &Wide, judge: &Judge, corners: &mut Corners) {
+    pub(super) fn place_wide(&mut self, w: &Wide<N>, judge: &Judge, corners: &mut Corners<N>) {
         let m = &self.meetings[w.meeting];
         let all = [m.carriers[0], m.carriers[1], w.carrier];
         let middle = m.curve.point(w.t);
         let fits = |v: &usize| {
             let p = corners.all[*v].point;
-            (p - middle).norm() <= w.reach
+            (p - middle).length() <= w.reach
                 && all
                     .iter()
                     .all(|&c| judge.within(self.carriers[c].distance(&p)))
-                && judge.within((m.curve.point(m.curve.parameter(&p)) - p).norm())
+                && judge.within((m.curve.point(m.curve.parameter(&p)) - p).length())
         };
-        let away = |v: &usize| (corners.all[*v].point - middle).norm();
+        let away = |v: &usize| (corners.all[*v].point - middle).length();
         let best = (0..corners.all.len())
             .filter(fits)
             .min_by(|a, b| away(a).total_cmp(&away(b)));
@@ -160,7 +162,7 @@ impl Arrangement {
             Some(v) => {
                 let p = corners.all[v].point;
                 // A curve may pass its corner twice: only elsewhere its parameter is asked for.
-                let t = match judge.within((p - middle).norm()) {
+                let t = match judge.within((p - middle).length()) {
                     true => w.t,
                     false => in_range(&m.curve, m.range, m.curve.parameter(&p)),
                 };
@@ -178,13 +180,13 @@ impl Arrangement {
         &self,
         index: usize,
         carrier: usize,
-        known: &[Cut],
+        known: &[Cut<N>],
         judge: &Judge,
-        corners: &mut Corners,
-    ) -> Vec<Cut> {
+        corners: &mut Corners<N>,
+    ) -> Vec<Cut<N>> {
         let m = &self.meetings[index];
         let surface = &self.carriers[carrier];
-        let mut special: Vec<Cut> = Vec::new();
+        let mut special: Vec<Cut<N>> = Vec::new();
         for cut in known {
             let p = corners.all[cut.vertex].point;
             if judge.within(surface.distance(&p)) {
@@ -194,9 +196,9 @@ impl Arrangement {
         }
         if let Surface::Cone(cone) = surface {
             let apex = cone.frame.origin;
-            if m.bounds.grown(judge.band()).holds(&apex) {
+            if m.bounds.grown(judge.band::<N>()).holds(&apex) {
                 let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
-                let away = (m.curve.point(t) - apex).norm();
+                let away = (m.curve.point(t) - apex).length();
                 if t >= m.range[0] && t <= m.range[1] && judge.within(away) {
                     let all = [m.carriers[0], m.carriers[1], carrier];
                     special.push(Cut {
@@ -211,17 +213,16 @@ impl Arrangement {
 
     /// The common point of three surfaces next to `p`, by Newton's steps where they are well
     /// apart in direction.
-    fn polished(&self, p: Point3<f64>, all: [usize; 3]) -> Point3<f64> {
+    fn polished(&self, p: Point3<N>, all: [usize; 3]) -> Point3<N> {
         let mut q = p;
         for _ in 0..2 {
-            let rows = all.map(|c| self.carriers[c].normal(&q).transpose());
-            let off = Vector3::from_fn(|i, _| self.carriers[all[i]].distance(&q));
-            let m = Matrix3::from_rows(&rows);
-            if m.determinant().abs() < ROUNDING.sqrt() {
+            let rows = all.map(|c| self.carriers[c].normal(&q));
+            let off = all.map(|c| self.carriers[c].distance(&q));
+            if rows[0].dot(&rows[1].cross(&rows[2])).abs() < N::ROUNDING.sqrt() {
                 return p;
             }
-            match m.lu().solve(&off) {
-                Some(step) => q -= step,
+            match solution(rows.map(<[N; 3]>::from), off) {
+                Some(step) => q -= Vector3::from(step),
                 None => return p,
             }
         }
@@ -249,7 +250,7 @@ impl Arrangement {
             asked.dedup();
             for i in asked {
                 let m = &mut self.meetings[i];
-                if m.bounds.grown(judge.band()).holds(&corner.point) {
+                if m.bounds.grown(judge.band::<N>()).holds(&corner.point) {
                     m.pass(v, &corner.point, judge);
                 }
             }
@@ -258,12 +259,12 @@ impl Arrangement {
 }
 
 /// The roots of a surface along a curve, and the nearest misses.
-type Met = (Vec<Root>, Vec<(f64, f64)>);
+type Met<N> = (Vec<Root<N>>, Vec<(N, N)>);
 
-impl Meeting {
+impl<N: Number> Meeting<N> {
     /// Where the curve meets a surface, as far as it runs through the boxes of faces of it; none
     /// where it lies on the surface.
-    fn meet(&self, surface: &Surface, faces: &[(usize, Box3)], judge: &Judge) -> Option<Met> {
+    fn meet(&self, surface: &Surface<N>, faces: &[(usize, Box3)], judge: &Judge) -> Option<Met<N>> {
         let band = judge.band();
         if lies_on(&self.curve, self.range, surface, band) {
             return None;
@@ -288,32 +289,33 @@ impl Meeting {
 
     /// How far from a point where the curve touches a surface it leaves that by more than the
     /// resolution, to a factor of two.
-    fn touching_length(&self, t: f64, surface: &Surface, judge: &Judge) -> f64 {
+    fn touching_length(&self, t: N, surface: &Surface<N>, judge: &Judge) -> N {
         let length = self.range[1] - self.range[0];
-        let leaves = |step: &f64| {
-            let sides = [t - step, t + step].map(|t| surface.distance(&self.curve.point(t)));
+        let leaves = |step: &N| {
+            let sides = [t - *step, t + *step].map(|t| surface.distance(&self.curve.point(t)));
             *step >= length || !sides.iter().any(|&away| judge.within(away))
         };
-        let mut steps = std::iter::successors(Some(length * ROUNDING), |step| Some(2.0 * step));
+        let mut steps =
+            std::iter::successors(Some(length * N::ROUNDING), |step| Some(N::TWO * *step));
         let first = steps.find(leaves).unwrap_or(length);
-        (self.curve.point(t + first) - self.curve.point(t)).norm()
+        (self.curve.point(t + first) - self.curve.point(t)).length()
     }
 
     /// Whether a parameter lies in a range, on a closed curve a turn more or less.
-    fn holds_within(&self, lo: f64, hi: f64, t: f64) -> bool {
+    fn holds_within(&self, lo: N, hi: N, t: N) -> bool {
         let period = if self.closed {
             self.range[1] - self.range[0]
         } else {
-            0.0
+            N::ZERO
         };
-        [-period, 0.0, period]
+        [-period, N::ZERO, period]
             .iter()
-            .any(|turn| lo <= t + turn && t + turn <= hi)
+            .any(|&turn| lo <= t + turn && t + turn <= hi)
     }
 
     /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, and
     /// a quartic that runs into an apex, where it has no direction, at its ends, too.
-    fn pass(&mut self, vertex: usize, p: &Point3<f64>, judge: &Judge) {
+    fn pass(&mut self, vertex: usize, p: &Point3<N>, judge: &Judge) {
         let [lo, hi] = self.range;
         let t = in_range(&self.curve, self.range, self.curve.parameter(p));
         let runs_into = matches!(self.curve, Curve::Quartic(_)) || self.curve.period().is_some();
@@ -327,8 +329,8 @@ impl Meeting {
             let known = self
                 .cuts
                 .iter()
-                .any(|c| c.vertex == vertex && (!opened || (c.t - t).abs() < CLOSE_PASS));
-            let on = t >= lo && t <= hi && judge.within((self.curve.point(t) - p).norm());
+                .any(|c| c.vertex == vertex && (!opened || (c.t - t).abs() < N::of(CLOSE_PASS)));
+            let on = t >= lo && t <= hi && judge.within((self.curve.point(t) - p).length());
             if on && !known {
                 self.cuts.push(Cut { t, vertex });
             }
@@ -337,6 +339,6 @@ impl Meeting {
 }
 
 /// A parameter brought into the cycle that starts with a range.
-fn in_range(curve: &Curve, range: [f64; 2], t: f64) -> f64 {
+fn in_range<N: Number>(curve: &Curve<N>, range: [N; 2], t: N) -> N {
     curve.in_cycle(t, range[0])
 }

@@ -6,56 +6,58 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
-use premio_kernel::number::rational::{Rational, to_f64};
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::precision::Number;
+use premio_kernel::number::rational::Rational;
 
 /// A half space: one side of a surface, and the box of the face it gives its primitive.
 #[derive(Clone, Debug)]
-pub(super) struct HalfSpace {
+pub(super) struct HalfSpace<N: Number> {
     /// The surface, with the half space on its negative side.
-    pub surface: Surface,
+    pub surface: Surface<N>,
     /// The box of the face.
     pub bounds: Box3,
 }
 
 /// A primitive at its place.
 #[derive(Clone, Debug)]
-pub(super) struct Solid {
+pub(super) struct Solid<N: Number> {
     /// Its leaf in the tree.
     pub leaf: NodeId,
     /// Its half spaces.
-    pub sides: Vec<HalfSpace>,
+    pub sides: Vec<HalfSpace<N>>,
     /// Its box.
     pub bounds: Box3,
 }
 
 /// All primitives of a tree.
 #[derive(Debug)]
-pub(super) struct Solids {
+pub(super) struct Solids<N: Number> {
     /// In the order of the leaves.
-    pub all: Vec<Solid>,
+    pub all: Vec<Solid<N>>,
     /// The box of all.
     pub bounds: Box3,
 }
 
 /// The rotation and offset of a primitive, rounded once from their exact values.
-struct Pose<'a> {
+struct Pose<'a, N: Number> {
     placed: &'a Placed,
-    turn: Matrix3<f64>,
+    turn: Matrix3<N>,
 }
 
-impl Pose<'_> {
+impl<N: Number> Pose<'_, N> {
     /// The place of an exact point of the primitive's frame, rounded once.
-    fn point(&self, p: [Rational; 3]) -> Point3<f64> {
+    fn point(&self, p: [Rational; 3]) -> Point3<N> {
         let q = self.placed.motion.apply_point(&p);
-        Point3::new(to_f64(&q[0]), to_f64(&q[1]), to_f64(&q[2]))
+        Point3::from(q.each_ref().map(N::nearest))
     }
 
-    fn axis(&self, i: usize) -> Vector3<f64> {
+    fn axis(&self, i: usize) -> Vector3<N> {
         self.turn.column(i).into()
     }
 
     /// The primitive's frame moved to an exact point of it.
-    fn frame(&self, p: [Rational; 3]) -> Frame {
+    fn frame(&self, p: [Rational; 3]) -> Frame<N> {
         Frame {
             origin: self.point(p),
             x: self.axis(0),
@@ -64,23 +66,22 @@ impl Pose<'_> {
         }
     }
 
-    fn plane(&self, through: [Rational; 3], normal: Vector3<f64>) -> Surface {
+    fn plane(&self, through: [Rational; 3], normal: Vector3<N>) -> Surface<N> {
         let origin = self.point(through);
         Surface::Plane(Plane {
             frame: Frame::about(origin, self.turn * normal),
         })
     }
 
-    /// The box of a box of the primitive's frame.
-    fn boxed(&self, lo: [f64; 3], hi: [f64; 3]) -> Box3 {
-        let offset = self.placed.motion.translation_f64();
-        let mid = Vector3::from_fn(|i, _| 0.5 * (lo[i] + hi[i]));
-        let half = Vector3::from_fn(|i, _| 0.5 * (hi[i] - lo[i]));
-        let centre = self.turn * mid + offset;
-        let reach = self.turn.abs() * half;
+    /// The box of a box of the primitive's frame, as far as it is known: to rounding.
+    fn boxed(&self, lo: [N; 3], hi: [N; 3]) -> Box3 {
+        let mid = Vector3::from_fn(|i, _| N::HALF * (lo[i] + hi[i]));
+        let half = Vector3::from_fn(|i, _| N::HALF * (hi[i] - lo[i]));
+        let centre = self.point(zero()) + self.turn * mid;
+        let reach = self.turn.map(N::abs) * half;
         Box3 {
-            min: (centre - reach).into(),
-            max: (centre + reach).into(),
+            min: <[N; 3]>::from(centre - reach).map(N::below),
+            max: <[N; 3]>::from(centre + reach).map(N::above),
         }
     }
 }
@@ -93,10 +94,10 @@ fn up(z: &Rational) -> [Rational; 3] {
     [Rational::ZERO, Rational::ZERO, z.clone()]
 }
 
-impl Solids {
+impl<N: Number> Solids<N> {
     /// The primitives of a tree, not yet merged.
     pub fn of(tree: &Tree) -> Self {
-        let all: Vec<Solid> = tree
+        let all: Vec<Solid<N>> = tree
             .leaves()
             .map(|(leaf, placed)| solid(leaf, placed))
             .collect();
@@ -105,19 +106,23 @@ impl Solids {
     }
 }
 
-fn solid(leaf: NodeId, placed: &Placed) -> Solid {
+fn solid<N: Number>(leaf: NodeId, placed: &Placed) -> Solid<N> {
     let pose = Pose {
         placed,
-        turn: placed.motion.rotation_f64(),
+        turn: placed.motion.rounded_rotation(),
     };
     let mut sides = Vec::new();
-    let mut add = |surface: Surface, lo: [f64; 3], hi: [f64; 3]| {
+    let mut add = |surface: Surface<N>, lo: [N; 3], hi: [N; 3]| {
         let bounds = pose.boxed(lo, hi);
         sides.push(HalfSpace { surface, bounds });
     };
     match &placed.primitive {
         Primitive::Block { size } => {
-            let s = [to_f64(&size[0]), to_f64(&size[1]), to_f64(&size[2])];
+            let s = [
+                N::nearest(&size[0]),
+                N::nearest(&size[1]),
+                N::nearest(&size[2]),
+            ];
             for i in 0..3 {
                 for high in [false, true] {
                     add_block_side(&pose, size, &s, i, high, &mut add);
@@ -125,29 +130,33 @@ fn solid(leaf: NodeId, placed: &Placed) -> Solid {
             }
         }
         Primitive::Wedge { size } => {
-            let s = [to_f64(&size[0]), to_f64(&size[1]), to_f64(&size[2])];
+            let s = [
+                N::nearest(&size[0]),
+                N::nearest(&size[1]),
+                N::nearest(&size[2]),
+            ];
             for (i, high) in [(0, false), (1, false), (1, true), (2, false)] {
                 add_block_side(&pose, size, &s, i, high, &mut add);
             }
-            let normal = Vector3::new(s[2], 0.0, s[0]).normalize();
+            let normal = Vector3::new(s[2], N::ZERO, s[0]).unit();
             let through = [size[0].clone(), Rational::ZERO, Rational::ZERO];
-            add(pose.plane(through, normal), [0.0; 3], s);
+            add(pose.plane(through, normal), [N::ZERO; 3], s);
         }
         Primitive::Cylinder { radius, height } => {
-            let (r, h) = (to_f64(radius), to_f64(height));
+            let (r, h) = (N::nearest(radius), N::nearest(height));
             let wall = Cylinder {
                 frame: pose.frame(zero()),
                 radius: r,
             };
-            add(Surface::Cylinder(wall), [-r, -r, 0.0], [r, r, h]);
-            add_disc(&pose, &Rational::ZERO, 0.0, r, -1.0, &mut add);
-            add_disc(&pose, height, h, r, 1.0, &mut add);
+            add(Surface::Cylinder(wall), [-r, -r, N::ZERO], [r, r, h]);
+            add_disc(&pose, &Rational::ZERO, N::ZERO, r, -N::ONE, &mut add);
+            add_disc(&pose, height, h, r, N::ONE, &mut add);
         }
         Primitive::Frustum { base, top, height } => {
             add_frustum(&pose, base, top, height, &mut add);
         }
         Primitive::Sphere { radius } => {
-            let r = to_f64(radius);
+            let r = N::nearest(radius);
             let s = Sphere {
                 frame: pose.frame(zero()),
                 radius: r,
@@ -155,13 +164,13 @@ fn solid(leaf: NodeId, placed: &Placed) -> Solid {
             add(Surface::Sphere(s), [-r; 3], [r; 3]);
         }
         Primitive::Torus { major, minor } => {
-            let (a, b) = (to_f64(major), to_f64(minor));
+            let (a, b) = (N::nearest(major), N::nearest(minor));
             let t = Torus {
                 frame: pose.frame(zero()),
                 major: a,
                 minor: b,
             };
-            let w = to_f64(&(major + minor));
+            let w = N::nearest(&(major + minor));
             add(Surface::Torus(t), [-w, -w, -b], [w, w, b]);
         }
     }
@@ -179,31 +188,38 @@ fn solid(leaf: NodeId, placed: &Placed) -> Solid {
     }
 }
 
-type Add<'a> = dyn FnMut(Surface, [f64; 3], [f64; 3]) + 'a;
+type Add<'a, N> = dyn FnMut(Surface<N>, [N; 3], [N; 3]) + 'a;
 
-fn add_block_side(
-    pose: &Pose<'_>,
+fn add_block_side<N: Number>(
+    pose: &Pose<'_, N>,
     size: &[Rational; 3],
-    s: &[f64; 3],
+    s: &[N; 3],
     i: usize,
     high: bool,
-    add: &mut Add<'_>,
+    add: &mut Add<'_, N>,
 ) {
-    let (mut lo, mut hi) = ([0.0; 3], *s);
+    let (mut lo, mut hi) = ([N::ZERO; 3], *s);
     let mut through = zero();
     let mut normal = Vector3::zeros();
     if high {
         through[i] = size[i].clone();
         lo[i] = s[i];
-        normal[i] = 1.0;
+        normal[i] = N::ONE;
     } else {
-        hi[i] = 0.0;
-        normal[i] = -1.0;
+        hi[i] = N::ZERO;
+        normal[i] = -N::ONE;
     }
     add(pose.plane(through, normal), lo, hi);
 }
 
-fn add_disc(pose: &Pose<'_>, at: &Rational, z: f64, r: f64, sign: f64, add: &mut Add<'_>) {
+fn add_disc<N: Number>(
+    pose: &Pose<'_, N>,
+    at: &Rational,
+    z: N,
+    r: N,
+    sign: N,
+    add: &mut Add<'_, N>,
+) {
     add(
         pose.plane(up(at), Vector3::z() * sign),
         [-r, -r, z],
@@ -211,20 +227,20 @@ fn add_disc(pose: &Pose<'_>, at: &Rational, z: f64, r: f64, sign: f64, add: &mut
     );
 }
 
-fn add_frustum(
-    pose: &Pose<'_>,
+fn add_frustum<N: Number>(
+    pose: &Pose<'_, N>,
     base: &Rational,
     top: &Rational,
     height: &Rational,
-    add: &mut Add<'_>,
+    add: &mut Add<'_, N>,
 ) {
-    let (b, t, h) = (to_f64(base), to_f64(top), to_f64(height));
+    let (b, t, h) = (N::nearest(base), N::nearest(top), N::nearest(height));
     // The apex lies where the radius runs out, above or below.
     let apex = height.clone() * base.clone() / (base.clone() - top.clone());
-    let slope = to_f64(&(base.clone() - top.clone()));
+    let slope = N::nearest(&(base.clone() - top.clone()));
     let length = slope.hypot(h);
     let f = pose.frame(up(&apex));
-    let frame = if slope > 0.0 {
+    let frame = if slope > N::ZERO {
         Frame {
             x: f.x,
             y: -f.y,
@@ -240,11 +256,11 @@ fn add_frustum(
         cos: h / length,
     };
     let r = b.max(t);
-    add(Surface::Cone(cone), [-r, -r, 0.0], [r, r, h]);
-    if b > 0.0 {
-        add_disc(pose, &Rational::ZERO, 0.0, b, -1.0, add);
+    add(Surface::Cone(cone), [-r, -r, N::ZERO], [r, r, h]);
+    if b > N::ZERO {
+        add_disc(pose, &Rational::ZERO, N::ZERO, b, -N::ONE, add);
     }
-    if t > 0.0 {
-        add_disc(pose, height, h, t, 1.0, add);
+    if t > N::ZERO {
+        add_disc(pose, height, h, t, N::ONE, add);
     }
 }

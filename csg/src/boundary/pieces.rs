@@ -6,16 +6,18 @@ use super::cuts::CLOSE_PASS;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::cut::lies_on;
-use premio_kernel::number::sign::{Judge, ROUNDING};
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::precision::Number;
+use premio_kernel::number::sign::Judge;
 use std::collections::HashMap;
 
 /// A piece of a curve between two corners, or a closed curve without any.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
+pub(super) struct Piece<N: Number = f64> {
     /// The index of the curve's meeting.
     pub meeting: usize,
     /// The range of the parameter, increasing.
-    pub range: [f64; 2],
+    pub range: [N; 2],
     /// The corners at both ends.
     pub ends: Option<[usize; 2]>,
     /// All carriers that hold it, in order.
@@ -27,9 +29,9 @@ pub(super) struct Piece {
 /// What two copies of a piece have in common: the home of a closed curve, the corners at both ends.
 type Name = (Option<usize>, Option<[usize; 2]>);
 
-pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
+pub(super) fn pieces<N: Number>(arrangement: &Arrangement<N>, judge: &Judge) -> Vec<Piece<N>> {
     let homes = homes(arrangement, judge);
-    let mut all: Vec<Piece> = Vec::new();
+    let mut all: Vec<Piece<N>> = Vec::new();
     // Two pieces that run over the same points share their ends, and a home or, where the curves
     // are one within the resolution only, two carriers.
     let mut known: HashMap<Name, Vec<usize>> = HashMap::new();
@@ -47,9 +49,9 @@ pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
                 let home = homes[index];
                 let list = known.entry((name.is_none().then_some(home), name));
                 let list = list.or_default();
-                let middle = m.curve.point(0.5 * (range[0] + range[1]));
+                let middle = m.curve.point(N::HALF * (range[0] + range[1]));
                 let same = list.iter().copied().find(|&i| {
-                    let other: &Piece = &all[i];
+                    let other: &Piece<N> = &all[i];
                     let curve = &arrangement.meetings[other.meeting].curve;
                     (homes[other.meeting] == home || other.shares_two(&piece))
                         && passes(curve, other.range, &middle, judge)
@@ -74,7 +76,7 @@ pub(super) fn pieces(arrangement: &Arrangement, judge: &Judge) -> Vec<Piece> {
 
 /// For each meeting the first one on the same curve. Of the copies found from several pairs of
 /// carriers each is clipped to faces of its own pair, and knows only the carriers near these.
-fn homes(arrangement: &Arrangement, judge: &Judge) -> Vec<usize> {
+fn homes<N: Number>(arrangement: &Arrangement<N>, judge: &Judge) -> Vec<usize> {
     let mut homes: Vec<usize> = (0..arrangement.meetings.len()).collect();
     let mut by_pair: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
     for (i, m) in arrangement.meetings.iter().enumerate() {
@@ -107,28 +109,29 @@ fn first_home(homes: &[usize], mut i: usize) -> usize {
 
 /// Whether two meetings that have two carriers in common run over one curve: two points of the
 /// longer one tell, of which one at most is where they cross.
-fn same_curve(a: &Meeting, b: &Meeting, judge: &Judge) -> bool {
+fn same_curve<N: Number>(a: &Meeting<N>, b: &Meeting<N>, judge: &Judge) -> bool {
     let (long, short) = match a.bounds.diagonal() > b.bounds.diagonal() {
         true => (a, b),
         false => (b, a),
     };
     let [lo, hi] = long.range;
-    [1.0, 2.0].iter().all(|part| {
-        let p = long.curve.point(lo + (hi - lo) * part / 3.0);
-        (short.curve.point(short.curve.parameter(&p)) - p).norm() <= SAME * judge.band::<f64>()
+    [N::ONE, N::TWO].iter().all(|&part| {
+        let p = long.curve.point(lo + (hi - lo) * part / N::of(3.0));
+        (short.curve.point(short.curve.parameter(&p)) - p).length()
+            <= N::of(SAME) * judge.band::<N>()
     })
 }
 
 /// Curves and pieces that may be one lie within this many times the resolution, or far apart.
 const SAME: f64 = 64.0;
 
-impl Arrangement {
+impl<N: Number> Arrangement<N> {
     /// The carriers that hold a span of a meeting: the meeting's, and what both corners lie on and
     /// the span does not leave by more than the resolution, next to a contact.
     fn holding(
         &self,
-        m: &Meeting,
-        range: [f64; 2],
+        m: &Meeting<N>,
+        range: [N; 2],
         ends: Option<[usize; 2]>,
         judge: &Judge,
     ) -> Vec<usize> {
@@ -147,7 +150,7 @@ impl Arrangement {
     }
 }
 
-impl Piece {
+impl<N: Number> Piece<N> {
     /// Whether two carriers at least hold another one, too.
     fn shares_two(&self, other: &Self) -> bool {
         let shared = self.carriers.iter().filter(|c| other.carriers.contains(c));
@@ -155,7 +158,7 @@ impl Piece {
     }
 
     /// Takes what a copy of it is known by.
-    fn add(&mut self, copy: &Piece) {
+    fn add(&mut self, copy: &Piece<N>) {
         self.tangent.extend(&copy.tangent);
         self.carriers.extend(&copy.carriers);
         self.carriers.sort_unstable();
@@ -163,14 +166,14 @@ impl Piece {
     }
 
     /// Puts a piece on another copy of its curve, so that it can be joined to the pieces there.
-    fn move_to(&mut self, home: usize, arrangement: &Arrangement) {
+    fn move_to(&mut self, home: usize, arrangement: &Arrangement<N>) {
         let Some([a, b]) = self.ends else { return };
         let own = &arrangement.meetings[self.meeting].curve;
         let curve = &arrangement.meetings[home].curve;
-        let middle = 0.5 * (self.range[0] + self.range[1]);
+        let middle = N::HALF * (self.range[0] + self.range[1]);
         let at = |v: usize| curve.parameter(&arrangement.corners[v].point);
         let (mut lo, mut hi, t) = (at(a), at(b), curve.parameter(&own.point(middle)));
-        if own.tangent(middle).dot(&curve.tangent(t)) < 0.0 {
+        if own.tangent(middle).dot(&curve.tangent(t)) < N::ZERO {
             (lo, hi) = (hi, lo);
             self.ends = Some([b, a]);
         }
@@ -185,7 +188,7 @@ impl Piece {
 
 /// The ranges between consecutive cuts, with the corners at their ends. What lies before the first
 /// and after the last cut of an open curve is outside one of the faces' boxes.
-fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
+fn spans<N: Number>(m: &Meeting<N>) -> Vec<([N; 2], Option<[usize; 2]>)> {
     if m.cuts.is_empty() {
         return if m.closed {
             vec![(m.range, None)]
@@ -207,16 +210,18 @@ fn spans(m: &Meeting) -> Vec<([f64; 2], Option<[usize; 2]>)> {
         ));
     }
     // Past the end of a closed curve its last and first cut may be one.
-    let length = |r: &[f64; 2]| r[1] - r[0];
-    let short = length(&m.range) * ROUNDING;
+    let length = |r: &[N; 2]| r[1] - r[0];
+    let short = length(&m.range) * N::ROUNDING;
     let one = |ends: &Option<[usize; 2]>| ends.is_some_and(|[a, b]| a == b);
-    spans.retain(|(r, ends)| length(r) > if one(ends) { CLOSE_PASS } else { short });
+    spans.retain(|(r, ends)| length(r) > if one(ends) { N::of(CLOSE_PASS) } else { short });
     spans
 }
 
 /// Whether a curve passes through a point within a range.
-fn passes(curve: &Curve, range: [f64; 2], p: &Point3<f64>, judge: &Judge) -> bool {
+fn passes<N: Number>(curve: &Curve<N>, range: [N; 2], p: &Point3<N>, judge: &Judge) -> bool {
     let t = curve.in_cycle(curve.parameter(p), range[0]);
     // Two pieces between the same corners in the same carriers are one or far apart.
-    t >= range[0] && t <= range[1] && (curve.point(t) - p).norm() <= SAME * judge.band::<f64>()
+    t >= range[0]
+        && t <= range[1]
+        && (curve.point(t) - p).length() <= N::of(SAME) * judge.band::<N>()
 }

@@ -20,34 +20,36 @@ use premio_kernel::brep::assemble::{RawBoundary, RawEdge, RawPoint, Wing};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::frame::perpendicular;
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::{Length, rounded};
+use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{Judge, Side};
 use std::collections::HashMap;
 
 /// A half sheet of a carrier at a point of a piece.
 #[derive(Clone, Copy, Debug)]
-struct Sheet {
+struct Sheet<N: Number = f64> {
     /// The carrier, as its place among the piece's carriers.
     carrier: usize,
     /// Its angle about the tangent.
-    angle: f64,
+    angle: N,
     /// How fast it turns counterclockwise with the distance.
-    bend: f64,
+    bend: N,
     /// The side of the carrier just counterclockwise of the sheet.
     beyond: Sense,
 }
 
 /// How a carrier leaves a piece.
-struct Axis {
+struct Axis<N: Number = f64> {
     carrier: usize,
     /// Across the piece.
-    direction: Vector3<f64>,
+    direction: Vector3<N>,
     /// How it bends up, counterclockwise, in that direction.
-    rise: f64,
+    rise: N,
 }
 
-impl Axis {
+impl<N: Number> Axis<N> {
     /// Its direction, as near to another one as it can be.
-    fn aligned(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+    fn aligned(&self, direction: &Vector3<N>) -> Vector3<N> {
         self.direction * self.direction.dot(direction).signum()
     }
 }
@@ -60,23 +62,23 @@ struct Near {
 }
 
 /// What was seen from a point of a piece.
-struct Look {
+struct Look<N: Number = f64> {
     /// The primitives that hold it, by leaf.
     near: Vec<Near>,
     /// The distance of the surface that is nearest to changing the answer.
-    margin: f64,
+    margin: N,
 }
 
-impl Look {
+impl<N: Number> Look<N> {
     /// Whether any surface through the point belongs to a primitive that is there.
     fn may_have_faces(&self) -> bool {
         self.near.iter().any(|n| !n.open.is_empty())
     }
 }
 
-struct Classifier<'a> {
-    solids: &'a Solids,
-    arrangement: &'a Arrangement,
+struct Classifier<'a, N: Number = f64> {
+    solids: &'a Solids<N>,
+    arrangement: &'a Arrangement<N>,
     membership: &'a Membership<'a>,
     judge: &'a Judge,
 }
@@ -85,7 +87,9 @@ struct Classifier<'a> {
 /// passes through the first.
 const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
 
-pub(super) fn boundary(concern: &Concern<'_>) -> Result<RawBoundary, EvaluationError> {
+pub(super) fn boundary<N: Number>(
+    concern: &Concern<'_, N>,
+) -> Result<RawBoundary<N>, EvaluationError> {
     let Concern {
         solids,
         arrangement,
@@ -98,7 +102,7 @@ pub(super) fn boundary(concern: &Concern<'_>) -> Result<RawBoundary, EvaluationE
         membership,
         judge,
     };
-    let mut edges: Vec<(Piece, Vec<Wing>)> = Vec::new();
+    let mut edges: Vec<(Piece<N>, Vec<Wing>)> = Vec::new();
     for piece in pieces(arrangement, judge) {
         let wings = classifier.wings(&piece)?;
         if !wings.is_empty() {
@@ -107,7 +111,7 @@ pub(super) fn boundary(concern: &Concern<'_>) -> Result<RawBoundary, EvaluationE
     }
     let joined = join(edges, arrangement);
     let whole = classifier.whole_surfaces(&joined);
-    let raw = |e: Joined| RawEdge {
+    let raw = |e: Joined<N>| RawEdge {
         curve: e.piece.meeting,
         range: e.piece.range,
         ends: e.piece.ends,
@@ -115,7 +119,7 @@ pub(super) fn boundary(concern: &Concern<'_>) -> Result<RawBoundary, EvaluationE
         wings: e.wings,
         passes: e.passes,
     };
-    let point = |c: &Corner| RawPoint {
+    let point = |c: &Corner<N>| RawPoint {
         place: c.point,
         surfaces: c.carriers.clone(),
         nodes: c.nodes.clone(),
@@ -133,18 +137,18 @@ pub(super) fn boundary(concern: &Concern<'_>) -> Result<RawBoundary, EvaluationE
     })
 }
 
-impl Classifier<'_> {
-    fn surface(&self, carrier: usize) -> &Surface {
+impl<N: Number> Classifier<'_, N> {
+    fn surface(&self, carrier: usize) -> &Surface<N> {
         &self.arrangement.carriers[carrier]
     }
 
     /// The faces around a piece, none where it is no edge: pairs enclose material, in order.
-    fn wings(&self, piece: &Piece) -> Result<Vec<Wing>, EvaluationError> {
+    fn wings(&self, piece: &Piece<N>) -> Result<Vec<Wing>, EvaluationError> {
         let curve = &self.arrangement.meetings[piece.meeting].curve;
         let [lo, hi] = piece.range;
-        let mut best: Option<(f64, Look)> = None;
+        let mut best: Option<(N, Look<N>)> = None;
         for look in LOOKS {
-            let t = lo + (hi - lo) * look;
+            let t = lo + (hi - lo) * N::of(look);
             let look = self.look(&curve.point(t), &piece.carriers);
             if !look.may_have_faces() {
                 return Ok(Vec::new());
@@ -167,14 +171,14 @@ impl Classifier<'_> {
     }
 
     /// What is near `p` as far as the piece's own carriers leave it open.
-    fn look(&self, p: &Point3<f64>, carriers: &[usize]) -> Look {
+    fn look(&self, p: &Point3<N>, carriers: &[usize]) -> Look<N> {
         let mut near = Vec::new();
-        let mut margin = f64::INFINITY;
-        for s in self.arrangement.tree.locate_all_at_point([p.x, p.y, p.z]) {
+        let mut margin = N::INFINITY;
+        for s in self.arrangement.tree.locate_all_at_point(rounded(p)) {
             let solid = &self.solids.all[s.data];
             let mut open = Vec::new();
             // By how much the point is inside all other sides, and outside one of them.
-            let (mut inside, mut outside) = (f64::INFINITY, f64::NEG_INFINITY);
+            let (mut inside, mut outside) = (N::INFINITY, N::NEG_INFINITY);
             for (side, &(c, sense)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
                 if let Ok(at) = carriers.binary_search(&c) {
                     open.push((at, sense));
@@ -184,7 +188,7 @@ impl Classifier<'_> {
                 inside = inside.min(distance.abs());
                 outside = outside.max(distance);
             }
-            if outside >= 0.0 {
+            if outside >= N::ZERO {
                 margin = margin.min(outside);
             } else {
                 margin = margin.min(inside);
@@ -200,9 +204,9 @@ impl Classifier<'_> {
 
     fn wings_at(
         &self,
-        piece: &Piece,
-        p: &Point3<f64>,
-        tangent: &Vector3<f64>,
+        piece: &Piece<N>,
+        p: &Point3<N>,
+        tangent: &Vector3<N>,
         near: &[Near],
     ) -> Result<Vec<Wing>, EvaluationError> {
         let sheets = self.sheets(piece, p, tangent, near)?;
@@ -260,16 +264,16 @@ impl Classifier<'_> {
     /// a primitive that is there has a face.
     fn sheets(
         &self,
-        piece: &Piece,
-        p: &Point3<f64>,
-        tangent: &Vector3<f64>,
+        piece: &Piece<N>,
+        p: &Point3<N>,
+        tangent: &Vector3<N>,
         near: &[Near],
-    ) -> Result<Vec<Sheet>, EvaluationError> {
+    ) -> Result<Vec<Sheet<N>>, EvaluationError> {
         let e1 = perpendicular(tangent);
         let e2 = tangent.cross(&e1);
         let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
         // A carrier tangent to an earlier one takes its angle: only the bend tells them apart.
-        let mut axes: Vec<Axis> = Vec::new();
+        let mut axes: Vec<Axis<N>> = Vec::new();
         let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
         for (at, &c) in piece.carriers.iter().enumerate() {
             if !has_face(at) {
@@ -277,8 +281,8 @@ impl Classifier<'_> {
             }
             let surface = self.surface(c);
             let normal = surface.normal(p);
-            let mut direction = normal.cross(tangent).normalize();
-            let rise = |direction: &Vector3<f64>| {
+            let mut direction = normal.cross(tangent).unit();
+            let rise = |direction: &Vector3<N>| {
                 let up = normal.dot(&tangent.cross(direction));
                 -surface.normal_curvature(p, direction) * up.signum()
             };
@@ -300,7 +304,7 @@ impl Classifier<'_> {
                     carrier: at,
                     angle: d.dot(&e2).atan2(d.dot(&e1)),
                     bend: rise(&d),
-                    beyond: if up > 0.0 {
+                    beyond: if up > N::ZERO {
                         Sense::Against
                     } else {
                         Sense::Along
@@ -312,8 +316,8 @@ impl Classifier<'_> {
         for pair in sheets.windows(2) {
             let tied = pair[0].angle == pair[1].angle;
             let gap = (pair[1].bend - pair[0].bend).abs() * self.reach(piece) * self.reach(piece);
-            if tied && self.judge.side("sheets that touch", gap, (*p).into()) == Side::On {
-                return Err(EvaluationError::Sheets { place: (*p).into() });
+            if tied && self.judge.side("sheets that touch", gap, rounded(p)) == Side::On {
+                return Err(EvaluationError::Sheets { place: rounded(p) });
             }
         }
         Ok(sheets)
@@ -323,43 +327,43 @@ impl Classifier<'_> {
     /// their angle, or as near to it as they are apart.
     fn touches(
         &self,
-        piece: &Piece,
-        axis: &Axis,
+        piece: &Piece<N>,
+        axis: &Axis<N>,
         carrier: usize,
-        direction: &Vector3<f64>,
-        rise: impl Fn(&Vector3<f64>) -> f64,
+        direction: &Vector3<N>,
+        rise: impl Fn(&Vector3<N>) -> N,
     ) -> bool {
         let both = [axis.carrier, carrier];
         let mut told = piece.tangent.iter();
         let told = told.any(|t| *t == both || *t == [carrier, axis.carrier]);
-        let sine = axis.direction.cross(direction).norm();
+        let sine = axis.direction.cross(direction).length();
         let bend = (rise(&axis.direction) - axis.rise).abs();
         told || self.judge.within(sine * self.reach(piece))
-            || self.judge.within(sine * sine / (2.0 * bend))
+            || self.judge.within(sine * sine / (N::TWO * bend))
     }
 
     /// The length over which directions are compared: the extent of the piece's curve.
-    fn reach(&self, piece: &Piece) -> f64 {
-        self.arrangement.meetings[piece.meeting].bounds.diagonal()
+    fn reach(&self, piece: &Piece<N>) -> N {
+        N::of(self.arrangement.meetings[piece.meeting].bounds.diagonal())
     }
 
     /// Whether the two faces of an edge continue one another smoothly.
-    fn is_smooth(&self, piece: &Piece, wings: &[Wing]) -> bool {
+    fn is_smooth(&self, piece: &Piece<N>, wings: &[Wing]) -> bool {
         let [a, b] = *wings else { return false };
         let told = piece
             .tangent
             .iter()
             .any(|t| *t == [a.surface, b.surface] || *t == [b.surface, a.surface]);
         let curve = &self.arrangement.meetings[piece.meeting].curve;
-        let p = curve.point(0.5 * (piece.range[0] + piece.range[1]));
-        let normal = |w: &Wing| self.surface(w.surface).normal(&p) * w.outward.sign();
+        let p = curve.point(N::HALF * (piece.range[0] + piece.range[1]));
+        let normal = |w: &Wing| self.surface(w.surface).normal(&p) * w.outward.sign::<N>();
         let (m, n) = (normal(&a), normal(&b));
-        let tangent = told || self.judge.within(m.cross(&n).norm() * self.reach(piece));
-        tangent && m.dot(&n) > 0.0
+        let tangent = told || self.judge.within(m.cross(&n).length() * self.reach(piece));
+        tangent && m.dot(&n) > N::ZERO
     }
 
     /// The closed carriers without any edge that are faces as a whole.
-    fn whole_surfaces(&self, edges: &[Joined]) -> Vec<(usize, Sense)> {
+    fn whole_surfaces(&self, edges: &[Joined<N>]) -> Vec<(usize, Sense)> {
         let mut bounded = vec![false; self.arrangement.carriers.len()];
         for wing in edges.iter().flat_map(|e| &e.wings) {
             bounded[wing.surface] = true;
@@ -377,11 +381,11 @@ impl Classifier<'_> {
     }
 
     /// Whether material changes across a closed surface at a point of it where nothing else is.
-    fn whole(&self, carrier: usize, surface: &Surface) -> Option<Sense> {
+    fn whole(&self, carrier: usize, surface: &Surface<N>) -> Option<Sense> {
         for i in 1..40 {
             // Steps of the golden section spread over the surface.
-            let u = f64::from(i) * 2.399_963_229_728_653;
-            let v = 1.3 * (f64::from(i) * 0.7).sin();
+            let u = N::whole(i) * N::of(2.399_963_229_728_653);
+            let v = N::of(1.3) * (N::whole(i) * N::of(0.7)).sin();
             let look = self.look(&surface.point(u, v), &[carrier]);
             if !look.may_have_faces() {
                 return None;
@@ -409,9 +413,9 @@ impl Classifier<'_> {
 }
 
 /// An edge: pieces of one curve, one after the other.
-struct Joined {
+struct Joined<N: Number = f64> {
     /// All of it.
-    piece: Piece,
+    piece: Piece<N>,
     /// The faces around it.
     wings: Vec<Wing>,
     /// The corners inside it.
@@ -419,7 +423,10 @@ struct Joined {
 }
 
 /// Joins the pieces of one curve at corners where nothing else ends and the faces stay the same.
-fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<Joined> {
+fn join<N: Number>(
+    edges: Vec<(Piece<N>, Vec<Wing>)>,
+    arrangement: &Arrangement<N>,
+) -> Vec<Joined<N>> {
     let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, (piece, _)) in edges.iter().enumerate() {
         for v in piece.ends.iter().flatten() {
@@ -487,8 +494,8 @@ fn join(edges: Vec<(Piece, Vec<Wing>)>, arrangement: &Arrangement) -> Vec<Joined
 }
 
 /// Whether two parameters are the same point of a curve.
-fn meets_at(period: Option<f64>, a: f64, b: f64) -> bool {
-    let scale = 1.0 / f64::from(1 << 24);
+fn meets_at<N: Number>(period: Option<N>, a: N, b: N) -> bool {
+    let scale = N::ONE / N::whole(1 << 24);
     let away = match period {
         Some(p) => {
             let d = (a - b).rem_euclid(p);
@@ -496,7 +503,7 @@ fn meets_at(period: Option<f64>, a: f64, b: f64) -> bool {
         }
         None => (a - b).abs(),
     };
-    away <= scale * (1.0 + a.abs())
+    away <= scale * (N::ONE + a.abs())
 }
 
 /// Whether two pieces have the same faces around them, wherever the count starts.

@@ -3,6 +3,8 @@
 use super::walk::{DirectedArc, Walk};
 use crate::geometry::bounds::{Box3, bounds, pieces};
 use crate::geometry::curve::Curve;
+use crate::geometry::vector::{Length, rounded};
+use crate::number::precision::Number;
 use nalgebra::Point3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
@@ -14,28 +16,28 @@ const FEW: usize = 12;
 
 /// A smooth piece of an arc without a closed form.
 #[derive(Clone, Copy, Debug)]
-struct Part {
-    range: [f64; 2],
+struct Part<N: Number = f64> {
+    range: [N; 2],
     bounds: Box3,
 }
 
 /// Directed arcs with their boxes.
 #[derive(Debug)]
-pub(super) struct Arcs<'a> {
+pub(super) struct Arcs<'a, N: Number = f64> {
     /// The arcs.
-    pub all: Vec<DirectedArc<'a>>,
+    pub all: Vec<DirectedArc<'a, N>>,
     /// Their boxes, in the same order, grown by the resolution.
     pub boxes: Vec<Box3>,
-    parts: Vec<Vec<Part>>,
+    parts: Vec<Vec<Part<N>>>,
     tree: Option<RTree<ArcBox>>,
 }
 
-struct Along<'w> {
-    walk: &'w Walk,
-    band: f64,
+struct Along<'w, N: Number = f64> {
+    walk: &'w Walk<N>,
+    band: N,
 }
 
-impl SelectionFunction<ArcBox> for Along<'_> {
+impl<N: Number> SelectionFunction<ArcBox> for Along<'_, N> {
     fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
         self.walk.may_meet(&e.lower(), &e.upper(), self.band)
     }
@@ -47,11 +49,11 @@ impl SelectionFunction<ArcBox> for Along<'_> {
 
 /// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
 /// closed form.
-fn parts(arc: &DirectedArc<'_>, band: f64) -> Vec<Part> {
+fn parts<N: Number>(arc: &DirectedArc<'_, N>, band: N) -> Vec<Part<N>> {
     let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
         return Vec::new();
     };
-    let grown = |(range, b): ([f64; 2], Box3)| Part {
+    let grown = |(range, b): ([N; 2], Box3)| Part {
         range,
         bounds: b.grown(band),
     };
@@ -59,11 +61,11 @@ fn parts(arc: &DirectedArc<'_>, band: f64) -> Vec<Part> {
     all.into_iter().map(grown).collect()
 }
 
-impl<'a> Arcs<'a> {
+impl<'a, N: Number> Arcs<'a, N> {
     /// The arcs with their boxes; `band` is the resolution.
-    pub fn new(all: Vec<DirectedArc<'a>>, band: f64) -> Self {
-        let parts: Vec<Vec<Part>> = all.iter().map(|a| parts(a, band)).collect();
-        let hull = |(a, parts): (&DirectedArc<'_>, &Vec<Part>)| match parts.as_slice() {
+    pub fn new(all: Vec<DirectedArc<'a, N>>, band: N) -> Self {
+        let parts: Vec<Vec<Part<N>>> = all.iter().map(|a| parts(a, band)).collect();
+        let hull = |(a, parts): (&DirectedArc<'_, N>, &Vec<Part<N>>)| match parts.as_slice() {
             [] => bounds(a.curve, a.range).grown(band),
             parts => parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.bounds)),
         };
@@ -88,8 +90,8 @@ impl<'a> Arcs<'a> {
     }
 
     /// The arcs whose boxes hold `p`.
-    pub fn around(&self, p: &Point3<f64>) -> impl Iterator<Item = usize> {
-        let at = AABB::from_point([p.x, p.y, p.z]);
+    pub fn around(&self, p: &Point3<N>) -> impl Iterator<Item = usize> {
+        let at = AABB::from_point(rounded(p));
         let tree = self.tree.iter();
         let from_tree = tree.flat_map(move |t| t.locate_in_envelope_intersecting(at));
         let few = match self.tree {
@@ -102,19 +104,19 @@ impl<'a> Arcs<'a> {
     }
 
     /// Whether an arc ends at `p`, within the resolution.
-    pub fn ends_at(&self, arc: usize, p: &Point3<f64>, band: f64) -> bool {
+    pub fn ends_at(&self, arc: usize, p: &Point3<N>, band: N) -> bool {
         let DirectedArc { curve, range, .. } = self.all[arc];
-        range.iter().any(|&t| (curve.point(t) - p).norm() <= band)
+        range.iter().any(|&t| (curve.point(t) - p).length() <= band)
     }
 
     /// Whether an arc may pass through `p`.
-    pub fn may_hold(&self, arc: usize, p: &Point3<f64>) -> bool {
+    pub fn may_hold(&self, arc: usize, p: &Point3<N>) -> bool {
         let parts = &self.parts[arc];
         parts.is_empty() || parts.iter().any(|part| part.bounds.holds(p))
     }
 
     /// Calls `meet` for every arc that a walk may meet, with the ranges of it in which it may.
-    pub fn met_by(&self, walk: &Walk, band: f64, meet: &mut impl FnMut(usize, &[[f64; 2]])) {
+    pub fn met_by(&self, walk: &Walk<N>, band: N, meet: &mut impl FnMut(usize, &[[N; 2]])) {
         let mut ask = |i: usize| {
             if self.parts[i].is_empty() {
                 meet(i, &[self.all[i].range]);
@@ -133,10 +135,10 @@ impl<'a> Arcs<'a> {
     }
 
     /// The ranges of an arc in parts that a walk may meet.
-    fn ranges(&self, walk: &Walk, i: usize, band: f64) -> Vec<[f64; 2]> {
+    fn ranges(&self, walk: &Walk<N>, i: usize, band: N) -> Vec<[N; 2]> {
         let parts = &self.parts[i];
-        let mut ranges: Vec<[f64; 2]> = Vec::new();
-        let may = |part: &&Part| walk.may_meet_box(&part.bounds, band);
+        let mut ranges: Vec<[N; 2]> = Vec::new();
+        let may = |part: &&Part<N>| walk.may_meet_box(&part.bounds, band);
         for part in parts.iter().filter(may) {
             match ranges.last_mut() {
                 Some(last) if last[1] == part.range[0] => last[1] = part.range[1],

@@ -15,11 +15,12 @@ use super::{Arc, Brep, Geometry, Patch};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::Surface;
+use crate::geometry::vector::{Length, rounded};
 use crate::number::bisection::bisect;
-use crate::number::sign::{Judge, ROUNDING};
+use crate::number::precision::Number;
+use crate::number::sign::Judge;
 use nalgebra::Point3;
 use std::collections::{BTreeMap, HashMap};
-use std::f64::consts::TAU;
 
 /// A face at an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,11 +35,11 @@ pub struct Wing {
 
 /// An edge with the faces around it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RawEdge {
+pub struct RawEdge<N: Number = f64> {
     /// The index of the curve.
     pub curve: usize,
     /// The range of the parameter, increasing.
-    pub range: [f64; 2],
+    pub range: [N; 2],
     /// The points (by index) at both ends; none for a closed edge.
     pub ends: Option<[usize; 2]>,
     /// Counterclockwise about the curve's direction; pairs enclose material.
@@ -51,9 +52,9 @@ pub struct RawEdge {
 
 /// A point where curves end, cross or touch a surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RawPoint {
+pub struct RawPoint<N: Number = f64> {
     /// The place.
-    pub place: Point3<f64>,
+    pub place: Point3<N>,
     /// The indices of all surfaces through it.
     pub surfaces: Vec<usize>,
     /// The pairs of surfaces that have it by themselves: where they touch, where their curve
@@ -63,15 +64,15 @@ pub struct RawPoint {
 
 /// All edges of a boundary, and the closed surfaces that are faces without an edge.
 #[derive(Clone, Debug, Default)]
-pub struct RawBoundary {
+pub struct RawBoundary<N: Number = f64> {
     /// The surfaces.
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<Surface<N>>,
     /// The curves.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<Curve<N>>,
     /// The points.
-    pub points: Vec<RawPoint>,
+    pub points: Vec<RawPoint<N>>,
     /// The edges.
-    pub edges: Vec<RawEdge>,
+    pub edges: Vec<RawEdge<N>>,
     /// Whole surfaces, with the sense of their outward normal.
     pub whole: Vec<(usize, Sense)>,
 }
@@ -141,8 +142,8 @@ type Group = (usize, Sense);
 /// An edge, and whether it is its first end that is meant.
 type End = (usize, bool);
 
-struct Assembler<'a> {
-    raw: &'a RawBoundary,
+struct Assembler<'a, N: Number = f64> {
+    raw: &'a RawBoundary<N>,
     judge: &'a Judge,
     halves: Vec<Half>,
     /// Where the halves of each edge begin.
@@ -151,7 +152,7 @@ struct Assembler<'a> {
 }
 
 /// The boundary representation with the given edges.
-pub fn assemble(raw: RawBoundary, judge: &Judge) -> Result<Brep, AssemblyError> {
+pub fn assemble<N: Number>(raw: RawBoundary<N>, judge: &Judge) -> Result<Brep<N>, AssemblyError> {
     let mut assembler = Assembler::new(&raw, judge);
     assembler.link()?;
     let rings = assembler.rings();
@@ -183,8 +184,8 @@ struct Region {
     euler: i32,
 }
 
-impl<'a> Assembler<'a> {
-    fn new(raw: &'a RawBoundary, judge: &'a Judge) -> Self {
+impl<'a, N: Number> Assembler<'a, N> {
+    fn new(raw: &'a RawBoundary<N>, judge: &'a Judge) -> Self {
         let mut halves = Vec::new();
         let mut first = Vec::new();
         for (edge, e) in raw.edges.iter().enumerate() {
@@ -226,7 +227,7 @@ impl<'a> Assembler<'a> {
         for ((vertex, group), [into, out]) in meeting {
             if into.len() != out.len() {
                 return Err(AssemblyError::Open {
-                    place: self.raw.points[vertex].place.into(),
+                    place: rounded(&self.raw.points[vertex].place),
                 });
             }
             match (&into[..], &out[..]) {
@@ -265,7 +266,7 @@ impl<'a> Assembler<'a> {
         followers.dedup();
         if followers.len() != into.len() {
             return Err(AssemblyError::Order {
-                place: self.raw.points[vertex].place.into(),
+                place: rounded(&self.raw.points[vertex].place),
             });
         }
         Ok(())
@@ -291,7 +292,7 @@ impl<'a> Assembler<'a> {
         while let Some(at) = bundles.iter().position(|b| b.len() > 1) {
             let parts = self.told_apart(&v, &frame, &bundles[at]);
             if parts.len() < 2 {
-                return Err(AssemblyError::Order { place: v.into() });
+                return Err(AssemblyError::Order { place: rounded(&v) });
             }
             bundles.splice(at..=at, parts);
         }
@@ -299,19 +300,20 @@ impl<'a> Assembler<'a> {
     }
 
     /// Edge ends counterclockwise, in as many bundles as any sphere tells apart that all reach.
-    fn told_apart(&self, v: &Point3<f64>, frame: &Frame, ends: &[End]) -> Vec<Vec<End>> {
+    fn told_apart(&self, v: &Point3<N>, frame: &Frame<N>, ends: &[End]) -> Vec<Vec<End>> {
         let mut best = Vec::new();
-        for Around { along, part, clear } in SPHERES {
+        for sphere in &SPHERES {
+            let [along, part, clear] = [sphere.along, sphere.part, sphere.clear].map(N::of);
             let reaches = ends
                 .iter()
-                .map(|e| (self.point_along(*e, along) - v).norm());
-            let radius = reaches.fold(f64::INFINITY, f64::min) * part;
+                .map(|e| (self.point_along(*e, along) - v).length());
+            let radius = reaches.fold(N::INFINITY, N::min) * part;
             let angle = |&end: &End| {
                 let p = self.point_at(end, along, v, radius);
                 let d = frame.components(&(p - v));
                 (d.y.atan2(d.x), end)
             };
-            let least = self.judge.band::<f64>() / radius * clear + ROUNDING;
+            let least = self.judge.band::<N>() / radius * clear + N::ROUNDING;
             let bundles = bundled(ends.iter().map(angle).collect(), least);
             if bundles.len() > best.len() {
                 best = bundles;
@@ -323,19 +325,19 @@ impl<'a> Assembler<'a> {
         best
     }
 
-    fn tangent_frame(&self, (surface, outward): Group, v: &Point3<f64>) -> Frame {
+    fn tangent_frame(&self, (surface, outward): Group, v: &Point3<N>) -> Frame<N> {
         let s = &self.raw.surfaces[surface];
         let normal = match s {
             // At the apex the rulings are ordered around the axis.
-            Surface::Cone(c) if self.judge.within((v - c.frame.origin).norm()) => -c.frame.z,
+            Surface::Cone(c) if self.judge.within((v - c.frame.origin).length()) => -c.frame.z,
             _ => s.normal(v),
         };
-        Frame::about(*v, normal * outward.sign())
+        Frame::about(*v, normal * outward.sign::<N>())
     }
 
     /// The parameters where an edge leaves the vertex at one of its ends, and a part of its range
     /// further on.
-    fn stretch(&self, (edge, first): End, along: f64) -> [f64; 2] {
+    fn stretch(&self, (edge, first): End, along: N) -> [N; 2] {
         let [lo, hi] = self.raw.edges[edge].range;
         match first {
             true => [lo, lo + (hi - lo) * along],
@@ -344,17 +346,17 @@ impl<'a> Assembler<'a> {
     }
 
     /// The point of an edge that part of its range from one of its ends.
-    fn point_along(&self, end: End, along: f64) -> Point3<f64> {
+    fn point_along(&self, end: End, along: N) -> Point3<N> {
         let [_, t] = self.stretch(end, along);
         self.raw.curves[self.raw.edges[end.0].curve].point(t)
     }
 
     /// The point of an edge at a distance from the vertex at one of its ends, no further than a part
     /// of its range.
-    fn point_at(&self, end: End, along: f64, v: &Point3<f64>, radius: f64) -> Point3<f64> {
+    fn point_at(&self, end: End, along: N, v: &Point3<N>, radius: N) -> Point3<N> {
         let curve = &self.raw.curves[self.raw.edges[end.0].curve];
         let [start, far] = self.stretch(end, along);
-        let gap = |t: f64| (curve.point(t) - v).norm() - radius;
+        let gap = |t: N| (curve.point(t) - v).length() - radius;
         let t = match start < far {
             true => bisect(start, far, -radius, gap),
             false => bisect(far, start, radius, gap),
@@ -381,7 +383,7 @@ impl<'a> Assembler<'a> {
         rings
     }
 
-    fn arc(&self, half: usize) -> DirectedArc<'_> {
+    fn arc(&self, half: usize) -> DirectedArc<'_, N> {
         let h = &self.halves[half];
         let e = &self.raw.edges[h.edge];
         DirectedArc {
@@ -400,7 +402,7 @@ impl<'a> Assembler<'a> {
         }
         let mut faces = Vec::new();
         for (group, list) in groups {
-            let arcs: Vec<Vec<DirectedArc<'_>>> = list
+            let arcs: Vec<Vec<DirectedArc<'_, N>>> = list
                 .iter()
                 .map(|&r| rings[r].iter().map(|&h| self.arc(h)).collect())
                 .collect();
@@ -430,7 +432,7 @@ impl<'a> Assembler<'a> {
     }
 
     /// The entities but for shells, solids and touches, and how they are called.
-    fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep, Names) {
+    fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep<N>, Names) {
         let raw = self.raw;
         let mut topology = Topology::default();
         let mut geometry = Geometry::default();
@@ -512,11 +514,11 @@ impl<'a> Assembler<'a> {
 
 /// Ends by their angles, in order from the widest gap on, in bundles that are parted by more than
 /// `least`.
-fn bundled(mut angles: Vec<(f64, End)>, least: f64) -> Vec<Vec<End>> {
+fn bundled<N: Number>(mut angles: Vec<(N, End)>, least: N) -> Vec<Vec<End>> {
     angles.sort_by(|a, b| a.0.total_cmp(&b.0));
     let n = angles.len();
     let gap = |i: usize| match i {
-        0 => angles[0].0 + TAU - angles[n - 1].0,
+        0 => angles[0].0 + N::TAU - angles[n - 1].0,
         _ => angles[i].0 - angles[i - 1].0,
     };
     let Some(start) = (0..n).max_by(|&a, &b| gap(a).total_cmp(&gap(b))) else {

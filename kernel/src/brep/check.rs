@@ -4,6 +4,8 @@ use super::Brep;
 use super::mass::{face_areas, shell_volume};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use super::welch;
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use nalgebra::Point3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -90,7 +92,7 @@ const PLAY: f64 = 8.0;
 
 /// The farthest that an edge lies from a vertex at its end or from a face, where that is more than
 /// the resolution `band` accounts for: the place on the edge, and the distance.
-pub fn worst_gap(brep: &Brep, band: f64) -> Option<(Point3<f64>, f64)> {
+pub fn worst_gap<N: Number>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
     let t = &brep.topology;
     let gaps = t.edge_ids().flat_map(|id| {
         let ends = gaps_at_ends(brep, id).map(|(_, place, distance)| (place, distance));
@@ -102,53 +104,56 @@ pub fn worst_gap(brep: &Brep, band: f64) -> Option<(Point3<f64>, f64)> {
 }
 
 /// Whether a distance is what making one of what coincides may leave.
-fn is_accounted(distance: f64, band: f64) -> bool {
-    distance <= PLAY * band
+fn is_accounted<N: Number>(distance: N, band: N) -> bool {
+    distance <= N::of(PLAY) * band
 }
 
 /// The ends of an edge: the vertex, the place on the edge, and how far they are apart.
-fn gaps_at_ends(brep: &Brep, id: EdgeId) -> impl Iterator<Item = (VertexId, Point3<f64>, f64)> {
+fn gaps_at_ends<N: Number>(
+    brep: &Brep<N>,
+    id: EdgeId,
+) -> impl Iterator<Item = (VertexId, Point3<N>, N)> {
     let range = brep.range(id);
     let ends = brep.topology.edge(id).ends.into_iter().flatten();
     ends.zip(range).map(move |(vertex, t)| {
         let place = brep.curve(id).point(t);
-        (vertex, place, (brep.point(vertex) - place).norm())
+        (vertex, place, (brep.point(vertex) - place).length())
     })
 }
 
 /// Where an edge lies farthest off a face's surface, and how far.
-fn gap_from_face(brep: &Brep, id: EdgeId, face: FaceId) -> (Point3<f64>, f64) {
+fn gap_from_face<N: Number>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3<N>, N) {
     let ([lo, hi], curve) = (brep.range(id), brep.curve(id));
     let gaps = (0..=PLACES).map(|k| {
-        let p = curve.point(lo + (hi - lo) * f64::from(k) / f64::from(PLACES));
+        let p = curve.point(lo + (hi - lo) * N::whole(k) / N::whole(PLACES));
         (p, brep.surface(face).distance(&p).abs())
     });
     let worst = gaps.max_by(|a, b| a.1.total_cmp(&b.1));
-    worst.unwrap_or((Point3::origin(), 0.0))
+    worst.unwrap_or((Point3::origin(), N::ZERO))
 }
 
 /// At how many places, less one, an edge is held against a face.
 const PLACES: u32 = 8;
 
 /// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
-pub fn check(brep: &Brep, band: f64) -> Vec<Violation> {
+pub fn check<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
     let mut found = Vec::new();
     check_loops(brep, &mut found);
     check_edges(brep, band, &mut found);
     check_touches(brep, band, &mut found);
     check_shells(brep, &mut found);
     for (i, area) in face_areas(brep).into_iter().enumerate() {
-        if area.is_nan() || area <= 0.0 {
+        if area.is_nan() || area <= N::ZERO {
             found.push(Violation::Area {
                 face: FaceId(i as u32),
-                area,
+                area: area.rounded(),
             });
         }
     }
     found
 }
 
-fn check_loops(brep: &Brep, found: &mut Vec<Violation>) {
+fn check_loops<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     let t = &brep.topology;
     for (i, ring) in t.loops.iter().enumerate() {
         let id = LoopId(i as u32);
@@ -170,7 +175,7 @@ fn check_loops(brep: &Brep, found: &mut Vec<Violation>) {
 }
 
 /// The loops of a face against the cycles of its boundary.
-fn check_cycles(brep: &Brep, loops: &[LoopId], found: &mut Vec<Violation>) {
+fn check_cycles<N: Number>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Violation>) {
     let t = &brep.topology;
     let mut number: BTreeMap<EdgeId, usize> = BTreeMap::new();
     let mut links = Vec::new();
@@ -202,7 +207,7 @@ fn check_cycles(brep: &Brep, loops: &[LoopId], found: &mut Vec<Violation>) {
     }
 }
 
-fn check_edges(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
+fn check_edges<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
     let t = &brep.topology;
     for id in t.edge_ids() {
         let edge = t.edge(id);
@@ -220,7 +225,7 @@ fn check_edges(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
                 found.push(Violation::EdgeEnd {
                     edge: id,
                     vertex,
-                    distance,
+                    distance: distance.rounded(),
                 });
             }
         }
@@ -230,14 +235,14 @@ fn check_edges(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
                 found.push(Violation::EdgeOffFace {
                     edge: id,
                     face,
-                    distance,
+                    distance: distance.rounded(),
                 });
             }
         }
     }
 }
 
-fn check_touches(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
+fn check_touches<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
     let touches = brep.topology.touches.iter().zip(&brep.geometry.touches);
     for (i, (touch, place)) in touches.enumerate() {
         let vertices = touch.vertex.iter().map(|&v| brep.point(v));
@@ -245,19 +250,22 @@ fn check_touches(brep: &Brep, band: f64, found: &mut Vec<Violation>) {
             let curve = brep.curve(e);
             curve.point(curve.parameter(place))
         });
-        let points = vertices.chain(edges).map(|p| (p - place).norm());
+        let points = vertices.chain(edges).map(|p| (p - place).length());
         let faces = touch.faces.iter();
         let faces = faces.map(|&f| brep.surface(f).distance(place).abs());
-        let distance = points.chain(faces).fold(0.0, f64::max);
+        let distance = points.chain(faces).fold(N::ZERO, N::max);
         let meeting = touch.fans + touch.edges.len() + touch.faces.len();
-        if meeting < 2 || distance.is_nan() || distance > PLAY * band {
+        if meeting < 2 || distance.is_nan() || distance > N::of(PLAY) * band {
             let touch = TouchId(i as u32);
-            found.push(Violation::TouchOff { touch, distance });
+            found.push(Violation::TouchOff {
+                touch,
+                distance: distance.rounded(),
+            });
         }
     }
 }
 
-fn check_shells(brep: &Brep, found: &mut Vec<Violation>) {
+fn check_shells<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     for (i, shell) in brep.topology.shells.iter().enumerate() {
         let id = ShellId(i as u32);
         if shell.genus < 0 || shell.odd {
@@ -265,8 +273,11 @@ fn check_shells(brep: &Brep, found: &mut Vec<Violation>) {
             found.push(Violation::Euler { shell: id, euler });
         }
         let volume = shell_volume(brep, &shell.faces);
-        if volume.is_nan() || volume == 0.0 || (volume < 0.0) != shell.void {
-            found.push(Violation::Orientation { shell: id, volume });
+        if volume.is_nan() || volume == N::ZERO || (volume < N::ZERO) != shell.void {
+            found.push(Violation::Orientation {
+                shell: id,
+                volume: volume.rounded(),
+            });
         }
     }
 }

@@ -5,15 +5,27 @@ use super::locate::{FaceLocator, Place};
 use super::topology::FaceId;
 use crate::geometry::curve::{Curve, Line};
 use crate::geometry::cut::cut;
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros};
 use nalgebra::{Point3, Vector3};
 
 /// Whether the faces of a closed shell hold a point that is not on them. Rays are tried until one
 /// crosses plainly.
-pub(super) fn shell_holds(brep: &Brep, faces: &[FaceId], p: &Point3<f64>, band: f64) -> bool {
+pub(super) fn shell_holds<N: Number>(
+    brep: &Brep<N>,
+    faces: &[FaceId],
+    p: &Point3<N>,
+    band: N,
+) -> bool {
     for k in 0..16 {
-        let a = 0.61 + 2.4 * f64::from(k);
-        let direction = Vector3::new(a.cos(), a.sin(), 0.37 - 0.21 * f64::from(k % 5)).normalize();
+        let a = N::of(0.61) + N::of(2.4) * N::whole(k);
+        let direction = Vector3::new(
+            a.cos(),
+            a.sin(),
+            N::of(0.37) - N::of(0.21) * N::whole(k % 5),
+        )
+        .unit();
         if let Some(count) = crossings(
             brep,
             faces,
@@ -30,26 +42,26 @@ pub(super) fn shell_holds(brep: &Brep, faces: &[FaceId], p: &Point3<f64>, band: 
 }
 
 /// How often the ray from the line's origin crosses the faces; none where that is unclear.
-fn crossings(brep: &Brep, faces: &[FaceId], line: &Line, band: f64) -> Option<u32> {
+fn crossings<N: Number>(brep: &Brep<N>, faces: &[FaceId], line: &Line<N>, band: N) -> Option<u32> {
     let mut count = 0;
     let curve = Curve::Line(*line);
     let reach = brep
         .geometry
         .points
         .iter()
-        .map(|q| (q - line.origin).norm());
+        .map(|q| (q - line.origin).length());
     let arcs = brep
         .topology
         .edge_ids()
-        .map(|e| (brep.curve(e).point(brep.range(e)[0]) - line.origin).norm());
+        .map(|e| (brep.curve(e).point(brep.range(e)[0]) - line.origin).length());
     let sizes = brep
         .geometry
         .surfaces
         .iter()
-        .map(|s| (s.frame().origin - line.origin).norm());
-    let far = 4.0 * reach.chain(arcs).chain(sizes).fold(1.0, f64::max);
+        .map(|s| (s.frame().origin - line.origin).length());
+    let far = N::of(4.0) * reach.chain(arcs).chain(sizes).fold(N::ONE, N::max);
     for &face in faces {
-        let Zeros::At { roots, .. } = cut(&curve, [0.0, far], brep.surface(face), band) else {
+        let Zeros::At { roots, .. } = cut(&curve, [N::ZERO, far], brep.surface(face), band) else {
             return None;
         };
         if roots.is_empty() {

@@ -11,8 +11,9 @@ use super::walk::{DirectedArc, Passage, Walk};
 use crate::geometry::bounds::Box3;
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::{Surface, Torus};
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use nalgebra::Point3;
-use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 /// Where a point of a surface lies with respect to a face of it.
@@ -33,13 +34,13 @@ const SPREAD: f64 = 0.618_033_988_749_894_9;
 
 /// Answers for one face where points lie.
 #[derive(Debug)]
-pub struct FaceLocator<'a> {
-    surface: &'a Surface,
+pub struct FaceLocator<'a, N: Number = f64> {
+    surface: &'a Surface<N>,
     side: Sense,
-    arcs: Arcs<'a>,
+    arcs: Arcs<'a, N>,
     /// About how far it is from one arc to the next.
-    spacing: f64,
-    band: f64,
+    spacing: N,
+    band: N,
 }
 
 /// The outcome of one walk.
@@ -49,13 +50,18 @@ enum Outcome {
     Unclear,
 }
 
-impl<'a> FaceLocator<'a> {
+impl<'a, N: Number> FaceLocator<'a, N> {
     /// A locator for the region of `surface` that `arcs` bound; `side` tells whether the outward
     /// normal of the face is the surface's own, `band` is the resolution.
-    pub fn new(surface: &'a Surface, side: Sense, arcs: Vec<DirectedArc<'a>>, band: f64) -> Self {
+    pub fn new(
+        surface: &'a Surface<N>,
+        side: Sense,
+        arcs: Vec<DirectedArc<'a, N>>,
+        band: N,
+    ) -> Self {
         let arcs = Arcs::new(arcs, band);
         let hull = arcs.boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b));
-        let spacing = 2.0 * hull.diagonal() / (arcs.all.len() as f64).sqrt();
+        let spacing = N::of(2.0 * hull.diagonal()) / (N::of(arcs.all.len() as f64)).sqrt();
         Self {
             surface,
             side,
@@ -66,7 +72,7 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// The locator of a face of a boundary representation.
-    pub fn of(brep: &'a Brep, face: FaceId, band: f64) -> Self {
+    pub fn of(brep: &'a Brep<N>, face: FaceId, band: N) -> Self {
         let topology = &brep.topology;
         let coedges = topology
             .face(face)
@@ -85,7 +91,7 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// The directed arcs of the boundary.
-    pub fn arcs(&self) -> &[DirectedArc<'a>] {
+    pub fn arcs(&self) -> &[DirectedArc<'a, N>] {
         &self.arcs.all
     }
 
@@ -95,7 +101,7 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// Where `p`, a point of the surface, lies.
-    pub fn place(&self, p: &Point3<f64>) -> Place {
+    pub fn place(&self, p: &Point3<N>) -> Place {
         if self.arcs.all.is_empty() {
             return Place::Inside;
         }
@@ -106,7 +112,7 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// Where `p` lies, which is known not to be on the boundary.
-    pub fn place_off_boundary(&self, p: &Point3<f64>) -> Place {
+    pub fn place_off_boundary(&self, p: &Point3<N>) -> Place {
         if self.arcs.all.is_empty() {
             return Place::Inside;
         }
@@ -122,11 +128,11 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// Whether `p`, a point of the surface, is on the boundary of the face, within the resolution.
-    pub fn on_boundary(&self, p: &Point3<f64>) -> bool {
+    pub fn on_boundary(&self, p: &Point3<N>) -> bool {
         self.arcs.around(p).any(|i| self.on_arc(p, i))
     }
 
-    fn on_arc(&self, p: &Point3<f64>, i: usize) -> bool {
+    fn on_arc(&self, p: &Point3<N>, i: usize) -> bool {
         if !self.arcs.may_hold(i, p) {
             return false;
         }
@@ -135,18 +141,18 @@ impl<'a> FaceLocator<'a> {
         if let Curve::Circle(c) = curve {
             // Most points in the box of a circle are plainly aside of it.
             let q = c.frame.coordinates(p);
-            if (q.x.hypot(q.y) - c.radius).abs() > 2.0 * self.band {
+            if (q.x.hypot(q.y) - c.radius).abs() > N::TWO * self.band {
                 return false;
             }
         }
-        let near = |t: f64| (curve.point(t) - p).norm() <= self.band;
+        let near = |t: N| (curve.point(t) - p).length() <= self.band;
         let t = curve.in_cycle(curve.parameter(p), lo);
         ((lo..=hi).contains(&t) && near(t)) || near(lo) || near(hi)
     }
 
     /// The k-th walk from `p`, in one or two legs.
-    fn attempt(&self, p: &Point3<f64>, k: usize) -> Outcome {
-        let turn = TAU * (0.123 + SPREAD * k as f64).fract();
+    fn attempt(&self, p: &Point3<N>, k: usize) -> Outcome {
+        let turn = N::TAU * (N::of(0.123) + N::of(SPREAD) * N::of(k as f64)).fract();
         match self.surface {
             Surface::Plane(s) => {
                 let (sin, cos) = turn.sin_cos();
@@ -163,13 +169,13 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// A ruling, after the first attempts from another point of the parallel.
-    fn ruled(&self, p: &Point3<f64>, k: usize, turn: f64) -> Outcome {
+    fn ruled(&self, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         let sense = if k.is_multiple_of(2) {
             Sense::Along
         } else {
             Sense::Against
         };
-        let direct = |walk: Option<Walk>| match walk {
+        let direct = |walk: Option<Walk<N>>| match walk {
             Some(walk) => self.take(&walk),
             None => Outcome::Unclear,
         };
@@ -180,7 +186,7 @@ impl<'a> FaceLocator<'a> {
         let Some(walk) = Walk::parallel(self.surface, p, sense, self.band) else {
             return direct(Walk::ruling(self.surface, p, turn, sense));
         };
-        let radius = self.surface.frame().coordinates(p).xy().norm();
+        let radius = self.surface.frame().coordinates(p).xy().length();
         let leg = walk.upto(turn * radius);
         match self.take(&leg) {
             Outcome::Nothing => {
@@ -192,7 +198,7 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// Around the tube, or along both circles of a torus to a point of the boundary.
-    fn toric(&self, torus: &Torus, p: &Point3<f64>, k: usize, turn: f64) -> Outcome {
+    fn toric(&self, torus: &Torus<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         if k == 0 {
             match self.take(&Walk::tube(torus, p, Sense::Along)) {
                 Outcome::Nothing => {}
@@ -215,11 +221,16 @@ impl<'a> FaceLocator<'a> {
     /// The k-th way to a point of the boundary: along one circle to where the other, once round,
     /// passes it. Every target is reached both ways. Where the boundary runs along the circles
     /// through `p` they do not cross it: later ways first lead aside, by an angle.
-    fn toric_way(&self, torus: &Torus, p: &Point3<f64>, k: usize, turn: f64) -> Option<Vec<Walk>> {
+    fn toric_way(
+        &self,
+        torus: &Torus<N>,
+        p: &Point3<N>,
+        k: usize,
+        turn: N,
+    ) -> Option<Vec<Walk<N>>> {
         let target = self.target(k / 2);
-        let tube = |from: &Point3<f64>| Some(Walk::tube(torus, from, Sense::Along));
-        let round =
-            |from: &Point3<f64>| Walk::parallel(self.surface, from, Sense::Along, self.band);
+        let tube = |from: &Point3<N>| Some(Walk::tube(torus, from, Sense::Along));
+        let round = |from: &Point3<N>| Walk::parallel(self.surface, from, Sense::Along, self.band);
         let tube_last = k.is_multiple_of(2);
         let mut way = Vec::with_capacity(3);
         let mut from = *p;
@@ -244,40 +255,41 @@ impl<'a> FaceLocator<'a> {
     }
 
     /// The point with the first angle of `a` and the second of `b`.
-    fn with_tube_angle(&self, a: &Point3<f64>, b: &Point3<f64>) -> Point3<f64> {
+    fn with_tube_angle(&self, a: &Point3<N>, b: &Point3<N>) -> Point3<N> {
         let [theta, _] = self.surface.parameters(a);
         let [_, phi] = self.surface.parameters(b);
         self.surface.point(theta, phi)
     }
 
     /// A point inside some arc of the boundary.
-    fn target(&self, k: usize) -> Point3<f64> {
+    fn target(&self, k: usize) -> Point3<N> {
         let arc = &self.arcs.all[k % self.arcs.all.len()];
-        let part = (0.5 + SPREAD * (k / self.arcs.all.len()) as f64).fract();
+        let part = (N::HALF + N::of(SPREAD) * N::of((k / self.arcs.all.len()) as f64)).fract();
         let [lo, hi] = arc.range;
-        arc.curve.point(lo + (hi - lo) * (0.1 + 0.8 * part))
+        arc.curve
+            .point(lo + (hi - lo) * (N::of(0.1) + N::of(0.8) * part))
     }
 
     /// A walk without end, in growing lengths where there are many arcs: mostly the nearest
     /// crossing is near.
-    fn reach(&self, walk: &Walk) -> Outcome {
+    fn reach(&self, walk: &Walk<N>) -> Outcome {
         let mut length = self.spacing;
         if self.arcs.are_many() {
             for _ in 0..3 {
                 match self.take(&walk.upto(length)) {
                     Outcome::Found(place) => return Outcome::Found(place),
-                    Outcome::Nothing | Outcome::Unclear => length *= 4.0,
+                    Outcome::Nothing | Outcome::Unclear => length *= N::of(4.0),
                 }
             }
         }
         self.take(walk)
     }
 
-    fn take(&self, walk: &Walk) -> Outcome {
+    fn take(&self, walk: &Walk<N>) -> Outcome {
         let mut first = First::default();
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
-            let mut note = |at: f64, _: f64, passage: Passage| {
+            let mut note = |at: N, _: N, passage: Passage| {
                 first.note(Met {
                     at,
                     passage,
@@ -293,20 +305,20 @@ impl<'a> FaceLocator<'a> {
 
 /// Where a walk meets an arc.
 #[derive(Clone, Copy, Debug)]
-struct Met {
-    at: f64,
+struct Met<N: Number = f64> {
+    at: N,
     passage: Passage,
     arc: usize,
 }
 
 /// The first three meetings of a walk, in order.
 #[derive(Clone, Copy, Debug, Default)]
-struct First {
-    met: [Option<Met>; 3],
+struct First<N: Number = f64> {
+    met: [Option<Met<N>>; 3],
 }
 
-impl First {
-    fn note(&mut self, mut met: Met) {
+impl<N: Number> First<N> {
+    fn note(&mut self, mut met: Met<N>) {
         for slot in &mut self.met {
             match slot {
                 Some(known) if known.at <= met.at => {}
@@ -319,11 +331,11 @@ impl First {
         }
     }
 
-    fn outcome(&self, band: f64, one_edge: impl Fn(usize, usize) -> bool) -> Outcome {
+    fn outcome(&self, band: N, one_edge: impl Fn(usize, usize) -> bool) -> Outcome {
         let [Some(first), second, third] = self.met else {
             return Outcome::Nothing;
         };
-        let with_first = |other: Option<Met>| other.filter(|m| m.at - first.at <= band);
+        let with_first = |other: Option<Met<N>>| other.filter(|m| m.at - first.at <= band);
         match (with_first(second), with_first(third)) {
             (None, _) => match first.passage {
                 Passage::Entering => Outcome::Found(Place::Outside),
@@ -346,15 +358,15 @@ impl First {
 /// Answers for all faces of a boundary representation; each face's index is built when it is first
 /// asked for.
 #[derive(Debug)]
-pub struct Locator<'a> {
-    brep: &'a Brep,
-    faces: Vec<OnceLock<FaceLocator<'a>>>,
-    band: f64,
+pub struct Locator<'a, N: Number = f64> {
+    brep: &'a Brep<N>,
+    faces: Vec<OnceLock<FaceLocator<'a, N>>>,
+    band: N,
 }
 
-impl<'a> Locator<'a> {
+impl<'a, N: Number> Locator<'a, N> {
     /// A locator for all faces of `brep`; `band` is the resolution.
-    pub fn new(brep: &'a Brep, band: f64) -> Self {
+    pub fn new(brep: &'a Brep<N>, band: N) -> Self {
         let faces = brep.topology.faces.iter().map(|_| OnceLock::new());
         Self {
             brep,
@@ -364,12 +376,12 @@ impl<'a> Locator<'a> {
     }
 
     /// The locator of one face.
-    pub fn face(&self, face: FaceId) -> &FaceLocator<'a> {
+    pub fn face(&self, face: FaceId) -> &FaceLocator<'a, N> {
         self.faces[face.index()].get_or_init(|| FaceLocator::of(self.brep, face, self.band))
     }
 
     /// Where `p`, a point of the face's surface, lies with respect to the face.
-    pub fn place(&self, face: FaceId, p: &Point3<f64>) -> Place {
+    pub fn place(&self, face: FaceId, p: &Point3<N>) -> Place {
         self.face(face).place(p)
     }
 }

@@ -13,10 +13,11 @@ use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::section::plane_roots;
 use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
-use crate::number::quadrature::{Rule, TWENTY, TWO, adaptive, integral};
-use crate::number::sign::{RELATIVE_RESOLUTION, ROUNDING};
+use crate::geometry::vector::{Length, direction, rounded};
+use crate::number::precision::Number;
+use crate::number::quadrature::{Rule, adaptive, integral};
+use crate::number::sign::RELATIVE_RESOLUTION;
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::{PI, TAU};
 
 /// The mass properties of a body of density one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,45 +31,45 @@ pub struct Mass {
 }
 
 /// ∫ dA, ∫ h dA and ∫ h P dA over a face.
-type Moments = [f64; 5];
+type Moments<N> = [N; 5];
 
 /// The mass properties of the solid that a boundary encloses.
-pub fn mass(brep: &Brep) -> Mass {
+pub fn mass<N: Number>(brep: &Brep<N>) -> Mass {
     let amid = &Amid::of(brep);
-    let mut total = [0.0; 5];
+    let mut total = [N::ZERO; 5];
     for face in brep.topology.face_ids() {
         let m = moments(brep, face, amid);
-        let sign = brep.sense(face).sign();
+        let sign = brep.sense(face).sign::<N>();
         total[0] += m[0];
         for i in 1..5 {
             total[i] += sign * m[i];
         }
     }
-    let volume = total[1] / 3.0;
-    let offset = Vector3::new(total[2], total[3], total[4]) / (4.0 * volume);
-    let centroid = if volume == 0.0 {
+    let volume = total[1] / N::of(3.0);
+    let offset = Vector3::new(total[2], total[3], total[4]) / (N::of(4.0) * volume);
+    let centroid = if volume == N::ZERO {
         amid.reference
     } else {
         amid.reference + offset
     };
     Mass {
-        volume,
-        area: total[0],
-        centroid,
+        volume: volume.rounded(),
+        area: total[0].rounded(),
+        centroid: rounded(&centroid).into(),
     }
 }
 
 /// The signed volume that a shell encloses, negative for a void.
-pub fn shell_volume(brep: &Brep, faces: &[FaceId]) -> f64 {
+pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId]) -> N {
     let amid = &Amid::of(brep);
     faces
         .iter()
-        .map(|&f| brep.sense(f).sign() * moments(brep, f, amid)[1] / 3.0)
+        .map(|&f| brep.sense(f).sign::<N>() * moments(brep, f, amid)[1] / N::of(3.0))
         .sum()
 }
 
 /// The areas of all faces, by id.
-pub fn face_areas(brep: &Brep) -> Vec<f64> {
+pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<N> {
     let amid = &Amid::of(brep);
     brep.topology
         .face_ids()
@@ -78,19 +79,19 @@ pub fn face_areas(brep: &Brep) -> Vec<f64> {
 
 /// A point amid the part, relative to which sums do not cancel, and the errors of the moments that
 /// do not matter: rounding, in terms of the part's size.
-struct Amid {
-    reference: Point3<f64>,
-    size: f64,
-    floor: Moments,
+struct Amid<N: Number = f64> {
+    reference: Point3<N>,
+    size: N,
+    floor: Moments<N>,
 }
 
-impl Amid {
-    fn of(brep: &Brep) -> Self {
+impl<N: Number> Amid<N> {
+    fn of(brep: &Brep<N>) -> Self {
         let mut b = Box3::EMPTY;
         for e in brep.topology.edge_ids() {
             let [lo, hi] = brep.range(e);
             b = b.hull(&Box3::of(&brep.curve(e).point(lo)));
-            b = b.hull(&Box3::of(&brep.curve(e).point(0.5 * (lo + hi))));
+            b = b.hull(&Box3::of(&brep.curve(e).point(N::HALF * (lo + hi))));
         }
         // What bulges beyond its edges, and a whole surface that has none.
         let faces = brep.topology.face_ids();
@@ -102,12 +103,12 @@ impl Amid {
             };
             let is_whole = brep.topology.face(face).loops.is_empty();
             let centre = Box3::of(&s.frame().origin);
-            b = b.hull(&centre.grown(if is_whole { radius } else { 0.0 }));
+            b = b.hull(&centre.grown(if is_whole { radius } else { N::ZERO }));
         }
-        let l = b.diagonal();
-        let area = l * l * ROUNDING;
+        let l = N::of(b.diagonal());
+        let area = l * l * N::ROUNDING;
         let reference = if l.is_finite() {
-            b.centre()
+            b.centre().map(N::of)
         } else {
             Point3::origin()
         };
@@ -120,25 +121,25 @@ impl Amid {
 }
 
 /// The integrand over the parameters of a surface, and its integral along v.
-struct Density<'a> {
-    surface: Surface,
-    amid: &'a Amid,
-    rule: &'static Rule,
+struct Density<'a, N: Number = f64> {
+    surface: Surface<N>,
+    amid: &'a Amid<N>,
+    rule: &'static Rule<N>,
     /// The v at which the surface is cut open, or has a pole.
-    base: f64,
+    base: N,
     /// Where the integral along v starts: a v amid the edges, so that what is the same on all of
     /// them does not have to cancel.
-    start: f64,
+    start: N,
 }
 
-impl Density<'_> {
-    fn at(&self, u: f64, v: f64) -> Moments {
+impl<N: Number> Density<'_, N> {
+    fn at(&self, u: N, v: N) -> Moments<N> {
         let p = self.surface.point(u, v) - self.amid.reference;
         let (sin, cos) = u.sin_cos();
         let f = self.surface.frame();
         let radial = f.x * cos + f.y * sin;
         let (normal, jacobian) = match &self.surface {
-            Surface::Plane(_) => (f.z, 1.0),
+            Surface::Plane(_) => (f.z, N::ONE),
             Surface::Cylinder(c) => (radial, c.radius),
             Surface::Cone(c) => (
                 radial * c.cos - f.z * c.sin,
@@ -158,24 +159,24 @@ impl Density<'_> {
     }
 
     /// G(u, v).
-    fn along(&self, u: f64, v: f64) -> Moments {
+    fn along(&self, u: N, v: N) -> Moments<N> {
         integral(self.rule, self.start, v, |w| self.at(u, w))
     }
 
     /// The integral over all that lies between two v.
-    fn between(&self, from: f64, to: f64) -> Moments {
-        self.over([0.0, TAU], [from, to])
+    fn between(&self, from: N, to: N) -> Moments<N> {
+        self.over([N::ZERO, N::TAU], [from, to])
     }
 
     /// The integral over a range of u and of v.
-    fn over(&self, [a, b]: [f64; 2], [from, to]: [f64; 2]) -> Moments {
-        let of = |u: f64| integral(self.rule, from, to, |w| self.at(u, w));
+    fn over(&self, [a, b]: [N; 2], [from, to]: [N; 2]) -> Moments<N> {
+        let of = |u: N| integral(self.rule, from, to, |w| self.at(u, w));
         adaptive(a, b, &self.amid.floor, &mut |u| of(u))
     }
 }
 
 /// The moments of a face.
-fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
+fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N> {
     let loops = &brep.topology.face(face).loops;
     let coedges: Vec<CoedgeId> = loops
         .iter()
@@ -188,10 +189,11 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
         }),
         other => other,
     };
-    let (rule, base): (&'static Rule, f64) = match &surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => (&TWO, 0.0),
-        Surface::Sphere(_) => (&TWENTY, -PI / 2.0),
-        Surface::Torus(_) => (&TWENTY, BASE),
+    let rules = N::rules();
+    let (rule, base): (&'static Rule<N>, N) = match &surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => (&rules.low, N::ZERO),
+        Surface::Sphere(_) => (&rules.turn, -N::PI / N::TWO),
+        Surface::Torus(_) => (&rules.turn, N::of(BASE)),
     };
     let start = match &surface {
         // Edges may pass through the apex, where nothing is between.
@@ -211,8 +213,8 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
         }
         Surface::Sphere(s) => {
             let sum = boundary_sum(brep, face, &coedges, &d, &|_| Vec::new());
-            let whole = d.between(base, PI / 2.0);
-            let opposite = s.frame.point(0.0, 0.0, s.radius);
+            let whole = d.between(base, N::PI / N::TWO);
+            let opposite = s.frame.point(N::ZERO, N::ZERO, s.radius);
             if holds_far(brep, face, amid, sum[0] / whole[0], &opposite) {
                 add(sum, whole)
             } else {
@@ -224,33 +226,39 @@ fn moments(brep: &Brep, face: FaceId, amid: &Amid) -> Moments {
 }
 
 /// A v amid the edges of a face, where a torus or a sphere is cut open at `base`.
-fn amid_edges(brep: &Brep, surface: &Surface, base: f64, coedges: &[CoedgeId]) -> f64 {
+fn amid_edges<N: Number>(brep: &Brep<N>, surface: &Surface<N>, base: N, coedges: &[CoedgeId]) -> N {
     let middle = |&c: &CoedgeId| {
         let e = brep.topology.coedge(c).edge;
         let [lo, hi] = brep.range(e);
-        let [_, v] = surface.parameters(&brep.curve(e).point(0.5 * (lo + hi)));
+        let [_, v] = surface.parameters(&brep.curve(e).point(N::HALF * (lo + hi)));
         match surface {
-            Surface::Torus(_) => base + (v - base).rem_euclid(TAU),
+            Surface::Torus(_) => base + (v - base).rem_euclid(N::TAU),
             _ => v,
         }
     };
     match coedges.len() {
         0 => base,
-        n => coedges.iter().map(middle).sum::<f64>() / n as f64,
+        n => coedges.iter().map(middle).sum::<N>() / N::of(n as f64),
     }
 }
 
 /// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
 /// the face's part of the whole surface all or nothing is missing, so its sign tells, unless next to
 /// nothing is left.
-fn holds_far(brep: &Brep, face: FaceId, amid: &Amid, part: f64, far: &Point3<f64>) -> bool {
+fn holds_far<N: Number>(
+    brep: &Brep<N>,
+    face: FaceId,
+    amid: &Amid<N>,
+    part: N,
+    far: &Point3<N>,
+) -> bool {
     if brep.topology.face(face).loops.is_empty() {
         return true;
     }
-    if part.abs() > FEW {
-        return part < 0.0;
+    if part.abs() > N::of(FEW) {
+        return part < N::ZERO;
     }
-    let locator = FaceLocator::of(brep, face, amid.size * RELATIVE_RESOLUTION);
+    let locator = FaceLocator::of(brep, face, amid.size * N::of(RELATIVE_RESOLUTION));
     locator.place(far) != Place::Outside
 }
 
@@ -259,36 +267,36 @@ const FEW: f64 = 1.0 / (1u64 << 40) as f64;
 /// The angle about the tube at which a torus is cut open.
 const BASE: f64 = 2.0;
 
-fn add(a: Moments, b: Moments) -> Moments {
+fn add<N: Number>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
 /// −∮ G du over the boundary of a face, each edge broken where `marks` says, and G counted from the
 /// base: what lies between that and where it starts counts as often as the edges go round.
-fn boundary_sum(
-    brep: &Brep,
+fn boundary_sum<N: Number>(
+    brep: &Brep<N>,
     face: FaceId,
     coedges: &[CoedgeId],
-    density: &Density<'_>,
-    marks: &dyn Fn(CoedgeId) -> Vec<f64>,
-) -> Moments {
-    let side = brep.sense(face).sign();
+    density: &Density<'_, N>,
+    marks: &dyn Fn(CoedgeId) -> Vec<N>,
+) -> Moments<N> {
+    let side = brep.sense(face).sign::<N>();
     let [a, v, x, y, z] = density.amid.floor;
-    let floor = [a, v, x, y, z, ROUNDING];
-    let mut total = [0.0; 6];
+    let floor = [a, v, x, y, z, N::ROUNDING];
+    let mut total = [N::ZERO; 6];
     for &c in coedges {
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
         let [lo, hi] = brep.range(coedge.edge);
         let mut breaks = curve.breaks(lo, hi);
         breaks.extend(marks(c));
-        breaks.sort_by(f64::total_cmp);
-        let sign = -side * coedge.sense.sign();
+        breaks.sort_by(N::total_cmp);
+        let sign = -side * coedge.sense.sign::<N>();
         for pair in breaks.windows(2) {
             // The middle tells on which side of a cut the piece lies.
             let [_, near] = density
                 .surface
-                .parameters(&curve.point(0.5 * (pair[0] + pair[1])));
+                .parameters(&curve.point(N::HALF * (pair[0] + pair[1])));
             let part = adaptive(pair[0], pair[1], &floor, &mut |t| {
                 edge_density(curve, t, density, near)
             });
@@ -299,8 +307,8 @@ fn boundary_sum(
     }
     let [a, v, x, y, z, way] = total;
     let sum = [a, v, x, y, z];
-    let turns = (way / TAU).round();
-    if turns == 0.0 || matches!(density.surface, Surface::Plane(_)) {
+    let turns = (way / N::TAU).round();
+    if turns == N::ZERO || matches!(density.surface, Surface::Plane(_)) {
         return sum;
     }
     add(
@@ -312,7 +320,7 @@ fn boundary_sum(
 }
 
 /// G du/dt and du/dt on an edge.
-fn edge_density(curve: &Curve, t: f64, density: &Density<'_>, near: f64) -> [f64; 6] {
+fn edge_density<N: Number>(curve: &Curve<N>, t: N, density: &Density<'_, N>, near: N) -> [N; 6] {
     let j = curve.jet(t);
     let p = Point3::new(j[0].v, j[1].v, j[2].v);
     let f = density.surface.frame();
@@ -324,35 +332,37 @@ fn edge_density(curve: &Curve, t: f64, density: &Density<'_>, near: f64) -> [f64
         _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
     };
     if let Surface::Torus(_) = density.surface {
-        let near = density.base + (near - density.base).rem_euclid(TAU);
-        v = near + (v - near + PI).rem_euclid(TAU) - PI;
+        let near = density.base + (near - density.base).rem_euclid(N::TAU);
+        v = near + (v - near + N::PI).rem_euclid(N::TAU) - N::PI;
     }
-    if rate == 0.0 || !rate.is_finite() {
-        return [0.0; 6];
+    if rate == N::ZERO || !rate.is_finite() {
+        return [N::ZERO; 6];
     }
     let [a, h, x, y, z] = density.along(u, v).map(|g| g * rate);
     [a, h, x, y, z, rate]
 }
 
 /// A frame of a sphere whose poles keep clear of the edges.
-fn clear_axis(brep: &Brep, s: &Sphere, coedges: &[CoedgeId]) -> Frame {
+fn clear_axis<N: Number>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> Frame<N> {
     let o = s.frame.origin;
-    let mut best = (-1.0, s.frame);
+    let mut best = (-N::ONE, s.frame);
     for k in 0..12 {
         let (z, a) = (
-            1.0 - (2.0 * f64::from(k) + 1.0) / 24.0,
-            2.4 * f64::from(k) + 0.3,
+            N::ONE - (N::TWO * N::whole(k) + N::ONE) / N::of(24.0),
+            N::of(2.4) * N::whole(k) + N::of(0.3),
         );
-        let across = (1.0 - z * z).sqrt();
+        let across = (N::ONE - z * z).sqrt();
         let axis = Vector3::new(across * a.cos(), across * a.sin(), z);
-        let mut clear: f64 = 1.0;
+        let mut clear: N = N::ONE;
         for &c in coedges {
             let e = brep.topology.coedge(c).edge;
             let [lo, hi] = brep.range(e);
             for i in 0..=16 {
-                let p = brep.curve(e).point(lo + (hi - lo) * f64::from(i) / 16.0);
-                let d = (p - o).normalize();
-                clear = clear.min(d.cross(&axis).norm());
+                let p = brep
+                    .curve(e)
+                    .point(lo + (hi - lo) * N::whole(i) / N::of(16.0));
+                let d = (p - o).unit();
+                clear = clear.min(d.cross(&axis).length());
             }
         }
         if clear > best.0 {
@@ -364,29 +374,35 @@ fn clear_axis(brep: &Brep, s: &Sphere, coedges: &[CoedgeId]) -> Frame {
 
 /// A torus is cut open along the parallel v = BASE: what of it lies in the face is part of the
 /// boundary of the opened face.
-fn torus_moments(
-    brep: &Brep,
+fn torus_moments<N: Number>(
+    brep: &Brep<N>,
     face: FaceId,
     coedges: &[CoedgeId],
-    t: &Torus,
-    d: &Density<'_>,
-) -> Moments {
-    let side = brep.sense(face).sign();
-    let height = t.minor * BASE.sin();
+    t: &Torus<N>,
+    d: &Density<'_, N>,
+) -> Moments<N> {
+    let side = brep.sense(face).sign::<N>();
+    let height = t.minor * N::of(BASE).sin();
     let frame = t.frame.at(t.frame.origin + t.frame.z * height);
     let plane = Plane { frame };
     // (u, whether the face lies behind it, towards smaller u).
-    let mut passes: Vec<(f64, bool)> = Vec::new();
+    let mut passes: Vec<(N, bool)> = Vec::new();
     let roots_of = |c: CoedgeId| {
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
         let mut roots = Vec::new();
-        plane_roots(curve, brep.range(coedge.edge), &plane, 0.0, &mut |s, _| {
-            let q = t.frame.coordinates(&curve.point(s));
-            if (q.x.hypot(q.y) - t.major) * BASE.cos() > 0.0 {
-                roots.push(s);
-            }
-        });
+        plane_roots(
+            curve,
+            brep.range(coedge.edge),
+            &plane,
+            N::ZERO,
+            &mut |s, _| {
+                let q = t.frame.coordinates(&curve.point(s));
+                if (q.x.hypot(q.y) - t.major) * N::of(BASE).cos() > N::ZERO {
+                    roots.push(s);
+                }
+            },
+        );
         roots
     };
     for &c in coedges {
@@ -394,25 +410,27 @@ fn torus_moments(
         let curve = brep.curve(coedge.edge);
         for s in roots_of(c) {
             let [u, _] = d.surface.parameters(&curve.point(s));
-            let rise = curve.derivative(s).dot(&t.frame.z) * BASE.cos();
-            let up = rise * side * coedge.sense.sign() > 0.0;
+            let rise = curve.derivative(s).dot(&t.frame.z) * N::of(BASE).cos();
+            let up = rise * side * coedge.sense.sign::<N>() > N::ZERO;
             passes.push((u, up));
         }
     }
     let mut sum = boundary_sum(brep, face, coedges, d, &roots_of);
     passes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let top = BASE + TAU;
+    let top = N::of(BASE) + N::TAU;
     for (i, &(u, up)) in passes.iter().enumerate() {
         if !up {
             let (mut end, _) = passes[(i + 1) % passes.len()];
             if end <= u {
-                end += TAU;
+                end += N::TAU;
             }
-            sum = add(sum, d.over([u, end], [BASE, top]));
+            sum = add(sum, d.over([u, end], [N::of(BASE), top]));
         }
     }
-    let whole = d.between(BASE, top);
-    let far = t.frame.point(t.major + t.minor * BASE.cos(), 0.0, height);
+    let whole = d.between(N::of(BASE), top);
+    let far = t
+        .frame
+        .point(t.major + t.minor * N::of(BASE).cos(), N::ZERO, height);
     if passes.is_empty() && holds_far(brep, face, d.amid, sum[0] / whole[0], &far) {
         add(sum, whole)
     } else {
@@ -421,7 +439,7 @@ fn torus_moments(
 }
 
 /// The box of a boundary: of its edges, and of its faces where they bulge beyond them.
-pub fn bounds(brep: &Brep) -> Box3 {
+pub fn bounds<N: Number>(brep: &Brep<N>) -> Box3 {
     let mut all = Box3::EMPTY;
     for e in brep.topology.edge_ids() {
         all = all.hull(&bounds::tight_bounds(brep.curve(e), brep.range(e)));
@@ -434,21 +452,26 @@ pub fn bounds(brep: &Brep) -> Box3 {
 
 /// The box of the points of a face whose normal is along an axis, where it bulges, and of a cone's
 /// apex.
-fn bulge(brep: &Brep, face: FaceId) -> Box3 {
+fn bulge<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
     let surface = brep.surface(face);
     let f = surface.frame();
     let mut points = Vec::new();
     for i in 0..3 {
         let mut axis = Vector3::zeros();
-        axis[i] = 1.0;
+        axis[i] = N::ONE;
         match surface {
             Surface::Sphere(s) => {
-                points.extend([-1.0, 1.0].map(|k| f.origin + axis * (k * s.radius)));
+                points.extend([-N::ONE, N::ONE].map(|k| f.origin + axis * (k * s.radius)));
             }
             Surface::Torus(t) => {
                 let across = axis - f.z * f.z.dot(&axis);
-                let out = across.try_normalize(0.0).unwrap_or(f.x);
-                for (k, l) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+                let out = direction(&across).unwrap_or(f.x);
+                for (k, l) in [
+                    (-N::ONE, -N::ONE),
+                    (-N::ONE, N::ONE),
+                    (N::ONE, -N::ONE),
+                    (N::ONE, N::ONE),
+                ] {
                     points.push(f.origin + out * (k * t.major) + axis * (l * t.minor));
                 }
             }
@@ -463,9 +486,9 @@ fn bulge(brep: &Brep, face: FaceId) -> Box3 {
     }
     // A band of nothing would miss boundaries by rounding.
     let size = points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)));
-    let arcs = FaceLocator::of(brep, face, 0.0);
+    let arcs = FaceLocator::of(brep, face, N::ZERO);
     let size = arcs.boxes().iter().fold(size, |a, b| a.hull(b));
-    let band = RELATIVE_RESOLUTION * size.diagonal();
+    let band = N::of(RELATIVE_RESOLUTION * size.diagonal());
     let locator = FaceLocator::of(brep, face, band);
     points.retain(|p| locator.place(p) != Place::Outside);
     points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)))

@@ -20,35 +20,36 @@ pub mod welch;
 
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;
+use crate::number::precision::Number;
 use nalgebra::{Point3, Vector3};
 use topology::{EdgeId, FaceId, Sense, Topology, VertexId};
 
 /// The geometry that hangs on the entities: indexed by their ids.
 #[derive(Clone, Debug, Default)]
-pub struct Geometry {
+pub struct Geometry<N: Number = f64> {
     /// The distinct carriers that have a face.
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<Surface<N>>,
     /// The distinct curves that have an edge.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<Curve<N>>,
     /// The place of each vertex, by [`VertexId`].
-    pub points: Vec<Point3<f64>>,
+    pub points: Vec<Point3<N>>,
     /// Each edge's curve (an index into `curves`) and range of its parameter, by [`EdgeId`]; a
     /// closed edge runs over one period, and a range may pass the end of a period.
-    pub arcs: Vec<Arc>,
+    pub arcs: Vec<Arc<N>>,
     /// Each face's surface (an index into `surfaces`) and whether the face's outward normal is the
     /// surface's own, by [`FaceId`].
     pub patches: Vec<Patch>,
     /// The place of each touch, by [`TouchId`](topology::TouchId).
-    pub touches: Vec<Point3<f64>>,
+    pub touches: Vec<Point3<N>>,
 }
 
 /// The geometry of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc {
+pub struct Arc<N: Number = f64> {
     /// The index of the curve.
     pub curve: usize,
     /// The parameter from the edge's first end to its last, increasing.
-    pub range: [f64; 2],
+    pub range: [N; 2],
 }
 
 /// The geometry of a face.
@@ -62,26 +63,26 @@ pub struct Patch {
 
 /// A boundary representation.
 #[derive(Clone, Debug, Default)]
-pub struct Brep {
+pub struct Brep<N: Number = f64> {
     /// Who meets whom.
     pub topology: Topology,
     /// Where.
-    pub geometry: Geometry,
+    pub geometry: Geometry<N>,
 }
 
-impl Brep {
+impl<N: Number> Brep<N> {
     /// The curve of an edge.
-    pub fn curve(&self, edge: EdgeId) -> &Curve {
+    pub fn curve(&self, edge: EdgeId) -> &Curve<N> {
         &self.geometry.curves[self.geometry.arcs[edge.0 as usize].curve]
     }
 
     /// The range of an edge on its curve.
-    pub fn range(&self, edge: EdgeId) -> [f64; 2] {
+    pub fn range(&self, edge: EdgeId) -> [N; 2] {
         self.geometry.arcs[edge.0 as usize].range
     }
 
     /// The surface of a face.
-    pub fn surface(&self, face: FaceId) -> &Surface {
+    pub fn surface(&self, face: FaceId) -> &Surface<N> {
         &self.geometry.surfaces[self.geometry.patches[face.0 as usize].surface]
     }
 
@@ -91,12 +92,12 @@ impl Brep {
     }
 
     /// The place of a vertex.
-    pub fn point(&self, vertex: VertexId) -> Point3<f64> {
+    pub fn point(&self, vertex: VertexId) -> Point3<N> {
         self.geometry.points[vertex.0 as usize]
     }
 
     /// The normal of a face at a point of it, pointing out of the material.
-    pub fn outward(&self, face: FaceId, p: &Point3<f64>) -> Vector3<f64> {
+    pub fn outward(&self, face: FaceId, p: &Point3<N>) -> Vector3<N> {
         let n = self.surface(face).normal(p);
         match self.sense(face) {
             Sense::Along => n,

@@ -14,6 +14,8 @@ use super::topology::Sense;
 use super::walk::{Crossing, DirectedArc, Passage, Walk};
 use crate::geometry::frame::perpendicular;
 use crate::geometry::surface::Surface;
+use crate::geometry::vector::{Length, rounded};
+use crate::number::precision::Number;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use torus::Turns;
 
@@ -44,33 +46,33 @@ const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
 const ATTEMPTS: usize = 4;
 
 /// A point of a loop from which walks start.
-struct Start {
+struct Start<N: Number = f64> {
     arc: usize,
-    point: Point3<f64>,
+    point: Point3<N>,
     /// The direction into the face.
-    left: Vector3<f64>,
+    left: Vector3<N>,
 }
 
-struct Sorter<'a> {
-    surface: &'a Surface,
+struct Sorter<'a, N: Number = f64> {
+    surface: &'a Surface<N>,
     outward: Sense,
-    arcs: Arcs<'a>,
+    arcs: Arcs<'a, N>,
     /// The loop of each arc.
     owner: Vec<usize>,
     /// The first arc of each loop, and one beyond the last.
     firsts: Vec<usize>,
-    band: f64,
+    band: N,
     parent: Vec<usize>,
     /// Whether a loop on a torus winds around the axis, and around the tube.
     winding: [bool; 2],
 }
 
 /// The regions of `surface` bounded by `loops`, the region to the left of each, seen from outside.
-pub(super) fn regions<'a>(
-    surface: &'a Surface,
+pub(super) fn regions<'a, N: Number>(
+    surface: &'a Surface<N>,
     outward: Sense,
-    loops: &[Vec<DirectedArc<'a>>],
-    band: f64,
+    loops: &[Vec<DirectedArc<'a, N>>],
+    band: N,
 ) -> Result<Vec<Region>, RegionError> {
     let mut owner = Vec::new();
     let mut arcs = Vec::new();
@@ -116,7 +118,7 @@ pub(super) fn regions<'a>(
     Ok(regions)
 }
 
-impl Sorter<'_> {
+impl<N: Number> Sorter<'_, N> {
     fn find(&mut self, mut i: usize) -> usize {
         while self.parent[i] != i {
             self.parent[i] = self.parent[self.parent[i]];
@@ -151,7 +153,7 @@ impl Sorter<'_> {
         }
         let mut place = [0.0; 3];
         for start in self.starts(ring) {
-            place = start.point.into();
+            place = rounded(&start.point);
             if self.walk_from(ring, &start, attempt) {
                 return None;
             }
@@ -160,22 +162,22 @@ impl Sorter<'_> {
     }
 
     /// The points of a loop from which walks may start.
-    fn starts(&self, ring: usize) -> Vec<Start> {
+    fn starts(&self, ring: usize) -> Vec<Start<N>> {
         let mut starts = Vec::new();
         for &fraction in &STARTS {
             let arcs = self.firsts[ring]..self.firsts[ring + 1];
-            starts.extend(arcs.map(|arc| self.start_on(arc, fraction)));
+            starts.extend(arcs.map(|arc| self.start_on(arc, N::of(fraction))));
         }
         starts
     }
 
     /// The point of an arc at a fraction of its range.
-    fn start_on(&self, arc: usize, fraction: f64) -> Start {
+    fn start_on(&self, arc: usize, fraction: N) -> Start<N> {
         let a = &self.arcs.all[arc];
         let t = a.range[0] + fraction * (a.range[1] - a.range[0]);
         let point = a.curve.point(t);
-        let tangent = a.curve.tangent(t) * a.sense.sign();
-        let normal = self.surface.normal(&point) * self.outward.sign();
+        let tangent = a.curve.tangent(t) * a.sense.sign::<N>();
+        let normal = self.surface.normal(&point) * self.outward.sign::<N>();
         let left = normal.cross(&tangent);
         Start { arc, point, left }
     }
@@ -191,25 +193,25 @@ impl Sorter<'_> {
                 continue;
             };
             let heading = walk.direction(&start.point).dot(&start.left);
-            below |= heading >= SLANT;
-            across += usize::from(heading.abs() < SLANT);
-            if heading >= SLANT && self.follow_down(ring, start, vec![walk], attempt) {
+            below |= heading >= N::of(SLANT);
+            across += usize::from(heading.abs() < N::of(SLANT));
+            if heading >= N::of(SLANT) && self.follow_down(ring, start, vec![walk], attempt) {
                 return None;
             }
         }
         if !below && across < starts.len() {
             return None;
         }
-        let turn = 0.5 + 0.7 * attempt as f64;
+        let turn = N::HALF + N::of(0.7) * N::of(attempt as f64);
         let turned = starts
             .iter()
             .any(|start| self.turn_down(ring, start, turn, attempt));
-        let place = starts.first().map_or([0.0; 3], |s| s.point.into());
+        let place = starts.first().map_or([0.0; 3], |s| rounded(&s.point));
         (!turned).then_some(RegionError { place })
     }
 
     /// The walk down the ruling through a point, without end.
-    fn down(&self, p: &Point3<f64>) -> Option<Walk> {
+    fn down(&self, p: &Point3<N>) -> Option<Walk<N>> {
         let [u, _] = self.surface.parameters(p);
         Some(Walk::ruling(self.surface, p, u, Sense::Along)?.reversed())
     }
@@ -220,8 +222,8 @@ impl Sorter<'_> {
     fn follow_down(
         &mut self,
         ring: usize,
-        start: &Start,
-        mut legs: Vec<Walk>,
+        start: &Start<N>,
+        mut legs: Vec<Walk<N>>,
         attempt: usize,
     ) -> bool {
         let mut goal = None;
@@ -235,8 +237,8 @@ impl Sorter<'_> {
                 .into_iter()
                 .any(|i| self.arcs.ends_at(i, &apex, self.band));
             if passed {
-                let near = (self.band / height).powf(1.0 / (2 + attempt) as f64);
-                let height = height * (1.0 - near);
+                let near = (self.band / height).powf(N::ONE / N::of((2 + attempt) as f64));
+                let height = height * (N::ONE - near);
                 let corner = down.point(height);
                 let round = Walk::parallel(self.surface, &corner, Sense::Along, self.band);
                 legs.push(down.upto(height));
@@ -250,13 +252,13 @@ impl Sorter<'_> {
     }
 
     /// A turn along the parallel into the face, then down.
-    fn turn_down(&mut self, ring: usize, start: &Start, turn: f64, attempt: usize) -> bool {
+    fn turn_down(&mut self, ring: usize, start: &Start<N>, turn: N, attempt: usize) -> bool {
         let p = &start.point;
         let Some(round) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
             return false;
         };
         let round = round.toward(p, &start.left);
-        let length = turn * self.surface.frame().coordinates(p).xy().norm();
+        let length = turn * self.surface.frame().coordinates(p).xy().length();
         match self.down(&round.point(length)) {
             Some(down) => {
                 let legs = vec![round.upto(length), down];
@@ -267,7 +269,7 @@ impl Sorter<'_> {
     }
 
     /// Walks from a point of a loop; false where the walk was unclear.
-    fn walk_from(&mut self, ring: usize, start: &Start, attempt: usize) -> bool {
+    fn walk_from(&mut self, ring: usize, start: &Start<N>, attempt: usize) -> bool {
         let Start { arc, point, left } = start;
         match self.surface {
             Surface::Torus(t) => self.walk_torus(*t, ring, *arc, point, left),
@@ -283,7 +285,7 @@ impl Sorter<'_> {
             }
             Surface::Plane(plane) => {
                 let f = &plane.frame;
-                let angle = 0.7 + 1.9 * attempt as f64;
+                let angle = N::of(0.7) + N::of(1.9) * N::of(attempt as f64);
                 let d = f.x * angle.cos() + f.y * angle.sin();
                 let walk = Walk::straight(plane, point, d).toward(point, left);
                 self.follow(ring, *arc, point, left, &[walk], None)
@@ -298,15 +300,15 @@ impl Sorter<'_> {
         &mut self,
         ring: usize,
         arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
-        legs: &[Walk],
+        p: &Point3<N>,
+        left: &Vector3<N>,
+        legs: &[Walk<N>],
         goal: Option<usize>,
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
         // What ends next to the arc has not left it: the next leg may run to its other side.
         let leaves = legs.len() == 1 || legs[0].length() > self.start();
-        if heading < SLANT || !leaves {
+        if heading < N::of(SLANT) || !leaves {
             return false;
         }
         let mut inside = Some(ring);
@@ -360,8 +362,8 @@ impl Sorter<'_> {
     }
 
     /// As far as this from a walk's start the arc is that it starts on.
-    fn start(&self) -> f64 {
-        64.0 * self.band
+    fn start(&self) -> N {
+        N::of(64.0) * self.band
     }
 
     /// The arc that runs over the same edge the other way.
@@ -372,13 +374,13 @@ impl Sorter<'_> {
     }
 
     /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.
-    fn crossings(&self, walk: &Walk, start: Option<usize>) -> Option<Vec<Crossing>> {
-        let mut found: Vec<Crossing> = Vec::new();
+    fn crossings(&self, walk: &Walk<N>, start: Option<usize>) -> Option<Vec<Crossing<N>>> {
+        let mut found: Vec<Crossing<N>> = Vec::new();
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
             // Arcs of both senses run over the starting edge where a face bounds itself.
             let own = start.is_some_and(|start| arc.shares_edge(&self.arcs.all[start]));
-            let mut note = |at: f64, t: f64, passage: Passage| {
+            let mut note = |at: N, t: N, passage: Passage| {
                 let here = own && (at <= self.start() || self.is_full_turn(walk, at));
                 if !here {
                     found.push(Crossing {
@@ -416,27 +418,28 @@ impl Sorter<'_> {
     }
 
     /// Whether a closed walk is back at its start.
-    fn is_full_turn(&self, walk: &Walk, at: f64) -> bool {
-        (walk.point(at) - walk.point(0.0)).norm() <= self.start()
+    fn is_full_turn(&self, walk: &Walk<N>, at: N) -> bool {
+        (walk.point(at) - walk.point(N::ZERO)).length() <= self.start()
     }
 
     /// The Euler characteristic of a region.
-    fn euler(&self, loops: &[Vec<DirectedArc<'_>>], list: &[usize]) -> i32 {
+    fn euler(&self, loops: &[Vec<DirectedArc<'_, N>>], list: &[usize]) -> i32 {
         let n = list.len() as i32;
         if !matches!(self.surface, Surface::Torus(_)) {
             return 2 - n;
         }
         // With a loop that does not shrink to a point the region is an annulus with holes; with
         // one that runs counterclockwise, a disc with holes; else a torus with holes.
-        let turns: Vec<Turns> = list.iter().map(|&i| self.turns(&loops[i])).collect();
-        let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area > 0.0);
+        let turns: Vec<Turns<N>> = list.iter().map(|&i| self.turns(&loops[i])).collect();
+        let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area > N::ZERO);
         if is_part_of_sphere { 2 - n } else { -n }
     }
 }
 
 /// A point of a sphere where nothing is likely to be: another for each attempt.
-fn pole(centre: Point3<f64>, radius: f64, attempt: usize) -> Point3<f64> {
-    let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).normalize();
+fn pole<N: Number>(centre: Point3<N>, radius: N, attempt: usize) -> Point3<N> {
+    let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).unit();
     let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);
-    centre + Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d * radius
+    let d = Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d;
+    centre + d.map(N::of).unit() * radius
 }

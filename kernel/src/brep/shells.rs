@@ -6,6 +6,8 @@ use super::assemble::AssemblyError;
 use super::inside::shell_holds;
 use super::mass::shell_volume;
 use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
+use crate::geometry::vector::rounded;
+use crate::number::precision::Number;
 use crate::number::sign::Judge;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
@@ -97,8 +99,8 @@ pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
 }
 
 /// Names the shells, tells voids from outer shells, and gives every void to its solid.
-pub(super) fn bind_shells(
-    brep: &mut Brep,
+pub(super) fn bind_shells<N: Number>(
+    brep: &mut Brep<N>,
     fans: &Fans,
     judge: &Judge,
 ) -> Result<(), AssemblyError> {
@@ -112,19 +114,19 @@ pub(super) fn bind_shells(
     for (s, faces) in members.iter().enumerate() {
         // One shell alone is an outer one.
         let volume = if members.len() == 1 {
-            1.0
+            N::ONE
         } else {
             shell_volume(brep, faces)
         };
-        if volume == 0.0 || !volume.is_finite() {
+        if volume == N::ZERO || !volume.is_finite() {
             return Err(AssemblyError::Flat {
-                place: point_of(brep, faces[0]).into(),
+                place: rounded(&point_of(brep, faces[0])),
             });
         }
         brep.topology.shells.push(Shell {
             faces: faces.clone(),
             solid: SolidId(u32::MAX),
-            void: volume < 0.0,
+            void: volume < N::ZERO,
             genus: (2 - fans.euler[s]).div_euclid(2),
             odd: fans.euler[s].rem_euclid(2) == 1,
         });
@@ -154,7 +156,7 @@ pub(super) fn bind_shells(
 }
 
 /// The smallest outer shell around a void.
-fn home_of(brep: &Brep, void: usize, outer: &[usize], judge: &Judge) -> usize {
+fn home_of<N: Number>(brep: &Brep<N>, void: usize, outer: &[usize], judge: &Judge) -> usize {
     if let [only] = outer {
         return *only;
     }
@@ -170,17 +172,17 @@ fn home_of(brep: &Brep, void: usize, outer: &[usize], judge: &Judge) -> usize {
 }
 
 /// A point of a face's boundary, or of the face where it has none.
-pub(super) fn point_of(brep: &Brep, face: FaceId) -> Point3<f64> {
+pub(super) fn point_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Point3<N> {
     let topology = &brep.topology;
     match topology.face(face).loops.first() {
         Some(&l) => {
             let edge = topology.coedge(topology.ring(l).coedges[0]).edge;
             let [lo, hi] = brep.range(edge);
-            brep.curve(edge).point(lo + 0.37 * (hi - lo))
+            brep.curve(edge).point(lo + N::of(0.37) * (hi - lo))
         }
         None => {
             let s = brep.surface(face);
-            s.point(0.3, 0.4) + Vector3::zeros()
+            s.point(N::of(0.3), N::of(0.4)) + Vector3::zeros()
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Who meets whom: no coordinates here.
 
+use crate::number::precision::Number;
+
 /// Along or against the direction that geometry gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Sense {
@@ -19,10 +21,10 @@ impl Sense {
     }
 
     /// +1 or -1.
-    pub fn sign(self) -> f64 {
+    pub fn sign<N: Number>(self) -> N {
         match self {
-            Self::Along => 1.0,
-            Self::Against => -1.0,
+            Self::Along => N::ONE,
+            Self::Against => -N::ONE,
         }
     }
 }

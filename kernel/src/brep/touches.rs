@@ -9,18 +9,19 @@ use super::assemble::{Names, RawBoundary};
 use super::locate::{Locator, Place};
 use super::shells::Fans;
 use super::topology::{EdgeId, FaceId, Touch};
+use crate::number::precision::Number;
 use crate::number::sign::Judge;
 use nalgebra::Point3;
 use std::collections::{HashMap, HashSet};
 
 /// The touches of a boundary, with their places.
-pub(super) fn touches(
-    brep: &Brep,
-    raw: &RawBoundary,
+pub(super) fn touches<N: Number>(
+    brep: &Brep<N>,
+    raw: &RawBoundary<N>,
     names: &Names,
     fans: &Fans,
     judge: &Judge,
-) -> Vec<(Point3<f64>, Touch)> {
+) -> Vec<(Point3<N>, Touch)> {
     let edges = Edges::of(raw, names);
     let faces = Faces::of(brep, judge.band());
     let mut found = Vec::new();
@@ -74,7 +75,7 @@ struct Edges {
 }
 
 impl Edges {
-    fn of(raw: &RawBoundary, names: &Names) -> Self {
+    fn of<N: Number>(raw: &RawBoundary<N>, names: &Names) -> Self {
         let mut found = Self::default();
         for (id, edge) in raw.edges.iter().enumerate() {
             for &point in &edge.passes {
@@ -93,13 +94,13 @@ impl Edges {
 }
 
 /// The faces of each surface.
-struct Faces<'a> {
+struct Faces<'a, N: Number = f64> {
     of_surface: Vec<Vec<FaceId>>,
-    locator: Locator<'a>,
+    locator: Locator<'a, N>,
 }
 
-impl<'a> Faces<'a> {
-    fn of(brep: &'a Brep, band: f64) -> Self {
+impl<'a, N: Number> Faces<'a, N> {
+    fn of(brep: &'a Brep<N>, band: N) -> Self {
         let mut of_surface = vec![Vec::new(); brep.geometry.surfaces.len()];
         for (patch, face) in brep.geometry.patches.iter().zip(brep.topology.face_ids()) {
             of_surface[patch.surface].push(face);
@@ -111,7 +112,7 @@ impl<'a> Faces<'a> {
     }
 
     /// The face of a surface that holds a point of it inside.
-    fn holding(&self, surface: usize, p: &Point3<f64>) -> Option<FaceId> {
+    fn holding(&self, surface: usize, p: &Point3<N>) -> Option<FaceId> {
         let mut faces = self.of_surface[surface].iter().copied();
         faces.find(|&face| self.locator.place(face, p) == Place::Inside)
     }

@@ -13,23 +13,23 @@ use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::section::{line_meets, section_roots, surface_roots};
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
-use crate::number::sign::ROUNDING;
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::TAU;
 
 /// A piece of a face's boundary: the face lies to the left of its sense, seen from the side the
 /// face's outward normal points to.
 #[derive(Clone, Copy, Debug)]
-pub struct DirectedArc<'a> {
+pub struct DirectedArc<'a, N: Number = f64> {
     /// The curve.
-    pub curve: &'a Curve,
+    pub curve: &'a Curve<N>,
     /// The range of its parameter, increasing.
-    pub range: [f64; 2],
+    pub range: [N; 2],
     /// Whether it is run along the curve's direction.
     pub sense: Sense,
 }
 
-impl DirectedArc<'_> {
+impl<N: Number> DirectedArc<'_, N> {
     /// Whether both are of one edge: if a face has two such arcs, it lies on both sides of the edge.
     /// Several edges may be of one curve.
     pub fn shares_edge(&self, other: &Self) -> bool {
@@ -51,35 +51,35 @@ pub enum Passage {
 
 /// A meeting of a walk with an arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct Crossing<N: Number = f64> {
     /// The length along the walk from its start, in the part's unit.
-    pub at: f64,
+    pub at: N,
     /// The index of the arc.
     pub arc: usize,
     /// The parameter on the arc's curve.
-    pub t: f64,
+    pub t: N,
     /// What the walk does there.
     pub passage: Passage,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Track {
-    Line(Vector3<f64>),
+enum Track<N: Number = f64> {
+    Line(Vector3<N>),
     /// About the frame's z axis, from its x axis, with the radius.
-    Circle(Frame, f64),
+    Circle(Frame<N>, N),
 }
 
 /// Which part of the plane section the walk is.
 #[derive(Clone, Copy, Debug)]
-enum Branch {
+enum Branch<N: Number = f64> {
     Whole,
     /// On this side of the plane through the point.
-    Half(Point3<f64>, Vector3<f64>),
+    Half(Point3<N>, Vector3<N>),
     /// The outer (+1) or inner (-1) of a torus's two circles at one height.
-    Parallel(Torus, f64),
+    Parallel(Torus<N>, N),
     /// A torus's circle next to its top (+1) or bottom (-1): of the two that the cylinder shares
     /// with it, which stands upright on the walk.
-    Level(Cylinder, f64),
+    Level(Cylinder<N>, N),
 }
 
 /// Next to the top of a torus, as a part of the tube's radius: there the two circles at one height
@@ -88,24 +88,24 @@ const TOP: f64 = 0.5;
 
 /// A walk on a surface from a point of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Walk {
+pub struct Walk<N: Number = f64> {
     /// Of the plane that the walk lies in.
-    normal: Vector3<f64>,
-    start: Point3<f64>,
-    track: Track,
-    branch: Branch,
-    length: f64,
+    normal: Vector3<N>,
+    start: Point3<N>,
+    track: Track<N>,
+    branch: Branch<N>,
+    length: N,
     /// What holds a straight walk of a given length; else without bounds.
     extent: Box3,
 }
 
-impl Walk {
+impl<N: Number> Walk<N> {
     fn new(
-        start: &Point3<f64>,
-        normal: Vector3<f64>,
-        track: Track,
-        branch: Branch,
-        length: f64,
+        start: &Point3<N>,
+        normal: Vector3<N>,
+        track: Track<N>,
+        branch: Branch<N>,
+        length: N,
     ) -> Self {
         Self {
             normal,
@@ -118,46 +118,37 @@ impl Walk {
     }
 
     /// A straight line without end in a plane, along the unit vector `direction`.
-    pub fn straight(plane: &Plane, start: &Point3<f64>, direction: Vector3<f64>) -> Self {
-        let normal = direction.cross(&plane.frame.z).normalize();
+    pub fn straight(plane: &Plane<N>, start: &Point3<N>, direction: Vector3<N>) -> Self {
+        let normal = direction.cross(&plane.frame.z).unit();
         let track = Track::Line(direction);
-        Self::new(start, normal, track, Branch::Whole, f64::INFINITY)
+        Self::new(start, normal, track, Branch::Whole, N::INFINITY)
     }
 
     /// The great circle of a sphere from `start` towards `target`, once round; none where they
     /// lie on one diameter.
-    pub fn great_circle(
-        centre: &Point3<f64>,
-        start: &Point3<f64>,
-        target: &Point3<f64>,
-    ) -> Option<Self> {
+    pub fn great_circle(centre: &Point3<N>, start: &Point3<N>, target: &Point3<N>) -> Option<Self> {
         let arm = start - centre;
         let normal = arm.cross(&(target - centre));
-        let size = normal.norm();
-        let clear = size > arm.norm_squared() * ROUNDING.sqrt();
+        let size = normal.length();
+        let clear = size > arm.length_squared() * N::ROUNDING.sqrt();
         clear.then(|| Self::circle(start, *centre, normal / size, Branch::Whole))
     }
 
-    fn circle(
-        start: &Point3<f64>,
-        centre: Point3<f64>,
-        axis: Vector3<f64>,
-        branch: Branch,
-    ) -> Self {
+    fn circle(start: &Point3<N>, centre: Point3<N>, axis: Vector3<N>, branch: Branch<N>) -> Self {
         let arm = start - centre;
         let frame = Frame::toward(centre, axis, arm);
-        let radius = arm.norm();
+        let radius = arm.length();
         let track = Track::Circle(frame, radius);
-        Self::new(start, axis, track, branch, TAU * radius)
+        Self::new(start, axis, track, branch, N::TAU * radius)
     }
 
     /// The parallel circle of a cylinder, a cone, a sphere or a torus through `start`, once round
     /// in the given sense about the axis. None on the axis and on a plane.
     pub fn parallel(
-        surface: &Surface,
-        start: &Point3<f64>,
+        surface: &Surface<N>,
+        start: &Point3<N>,
         sense: Sense,
-        band: f64,
+        band: N,
     ) -> Option<Self> {
         let f = surface.frame();
         let q = f.coordinates(start);
@@ -166,7 +157,7 @@ impl Walk {
             Surface::Plane(_) => return None,
             Surface::Torus(t) => {
                 let away = rho - t.major;
-                if away.abs() <= TOP * t.minor {
+                if away.abs() <= N::of(TOP) * t.minor {
                     let upright = Cylinder {
                         frame: *f,
                         radius: rho,
@@ -179,13 +170,13 @@ impl Walk {
             _ => Branch::Whole,
         };
         let centre = f.origin + f.z * q.z;
-        let away = rho > band.max(ROUNDING * q.norm());
-        away.then(|| Self::circle(start, centre, f.z * sense.sign(), branch))
+        let away = rho > band.max(N::ROUNDING * q.length());
+        away.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
     }
 
     /// The ruling of a cylinder or a cone through `start`, or at the angle `u` from a cone's apex,
     /// without end; along the axis or, on a cylinder, against it.
-    pub fn ruling(surface: &Surface, start: &Point3<f64>, u: f64, sense: Sense) -> Option<Self> {
+    pub fn ruling(surface: &Surface<N>, start: &Point3<N>, u: N, sense: Sense) -> Option<Self> {
         let f = surface.frame();
         let (sin, cos) = u.sin_cos();
         Self::ruling_over(surface, start, f.x * cos + f.y * sin, sense)
@@ -193,11 +184,11 @@ impl Walk {
 
     /// The ruling of a cylinder or a cone through a point of it; on the axis, as the one at the
     /// angle zero.
-    pub fn ruling_through(surface: &Surface, start: &Point3<f64>, sense: Sense) -> Option<Self> {
+    pub fn ruling_through(surface: &Surface<N>, start: &Point3<N>, sense: Sense) -> Option<Self> {
         let f = surface.frame();
         let q = f.coordinates(start);
         let rho = q.x.hypot(q.y);
-        let radial = match rho > 0.0 {
+        let radial = match rho > N::ZERO {
             true => f.x * (q.x / rho) + f.y * (q.y / rho),
             false => f.x,
         };
@@ -206,14 +197,14 @@ impl Walk {
 
     /// The ruling over a unit vector across the axis.
     fn ruling_over(
-        surface: &Surface,
-        start: &Point3<f64>,
-        radial: Vector3<f64>,
+        surface: &Surface<N>,
+        start: &Point3<N>,
+        radial: Vector3<N>,
         sense: Sense,
     ) -> Option<Self> {
         let f = surface.frame();
         let direction = match surface {
-            Surface::Cylinder(_) => f.z * sense.sign(),
+            Surface::Cylinder(_) => f.z * sense.sign::<N>(),
             Surface::Cone(c) => f.z * c.cos + radial * c.sin,
             _ => return None,
         };
@@ -224,24 +215,24 @@ impl Walk {
             f.z.cross(&radial),
             track,
             branch,
-            f64::INFINITY,
+            N::INFINITY,
         ))
     }
 
     /// The circle about the tube of a torus through `start`, once round with the angle about the
     /// tube rising or falling.
-    pub fn tube(torus: &Torus, start: &Point3<f64>, sense: Sense) -> Self {
+    pub fn tube(torus: &Torus<N>, start: &Point3<N>, sense: Sense) -> Self {
         let f = &torus.frame;
         let q = f.coordinates(start);
-        let radial = (f.x * q.x + f.y * q.y).normalize();
-        let axis = radial.cross(&f.z) * sense.sign();
+        let radial = (f.x * q.x + f.y * q.y).unit();
+        let axis = radial.cross(&f.z) * sense.sign::<N>();
         let centre = f.origin + radial * torus.major;
         Self::circle(start, centre, axis, Branch::Half(f.origin, radial))
     }
 
     /// The walk from the same point that way round which leads to the side of `left` at `p`.
-    pub(super) fn toward(self, p: &Point3<f64>, left: &Vector3<f64>) -> Self {
-        if self.direction(p).dot(left) < 0.0 {
+    pub(super) fn toward(self, p: &Point3<N>, left: &Vector3<N>) -> Self {
+        if self.direction(p).dot(left) < N::ZERO {
             self.reversed()
         } else {
             self
@@ -258,7 +249,7 @@ impl Walk {
     }
 
     /// The same walk, no longer than `length`.
-    pub fn upto(self, length: f64) -> Self {
+    pub fn upto(self, length: N) -> Self {
         let length = self.length.min(length);
         let extent = match &self.track {
             Track::Line(d) if length.is_finite() => {
@@ -274,68 +265,73 @@ impl Walk {
     }
 
     /// How long it is.
-    pub(super) fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> N {
         self.length
     }
 
     /// Whether the walk ends where it starts.
     pub(super) fn closes(&self) -> bool {
-        matches!(self.track, Track::Circle(_, radius) if self.length >= TAU * radius)
+        matches!(self.track, Track::Circle(_, radius) if self.length >= N::TAU * radius)
     }
 
     /// The point at the length s.
-    pub fn point(&self, s: f64) -> Point3<f64> {
-        match &self.track {
+    pub fn point(&self, s: N) -> Point3<N> {
+        match self.track {
             Track::Line(d) => self.start + d * s,
-            Track::Circle(f, r) => {
+            Track::Circle(ref f, r) => {
                 let (sin, cos) = (s / r).sin_cos();
-                f.point(r * cos, r * sin, 0.0)
+                f.point(r * cos, r * sin, N::ZERO)
             }
         }
     }
 
     /// The length at which the walk passes a point of it.
-    pub fn at(&self, p: &Point3<f64>) -> f64 {
-        match &self.track {
-            Track::Line(d) => (p - self.start).dot(d),
-            Track::Circle(f, r) => {
+    pub fn at(&self, p: &Point3<N>) -> N {
+        match self.track {
+            Track::Line(d) => (p - self.start).dot(&d),
+            Track::Circle(ref f, r) => {
                 let q = f.coordinates(p);
-                q.y.atan2(q.x).rem_euclid(TAU) * r
+                q.y.atan2(q.x).rem_euclid(N::TAU) * r
             }
         }
     }
 
     /// The unit direction at a point of the walk.
-    pub(super) fn direction(&self, p: &Point3<f64>) -> Vector3<f64> {
-        match &self.track {
-            Track::Line(d) => *d,
-            Track::Circle(f, _) => f.z.cross(&(p - f.origin)).normalize(),
+    pub(super) fn direction(&self, p: &Point3<N>) -> Vector3<N> {
+        match self.track {
+            Track::Line(d) => d,
+            Track::Circle(ref f, _) => f.z.cross(&(p - f.origin)).unit(),
         }
     }
 
-    fn passes(&self, p: &Point3<f64>, band: f64) -> bool {
+    fn passes(&self, p: &Point3<N>, band: N) -> bool {
         let on_branch = match &self.branch {
             Branch::Whole => true,
             Branch::Half(o, side) => (p - o).dot(side) > -band,
             Branch::Parallel(t, side) => {
                 let q = t.frame.coordinates(p);
-                (q.x.hypot(q.y) - t.major) * side > -band
+                (q.x.hypot(q.y) - t.major) * *side > -band
             }
-            Branch::Level(c, side) => (p - c.frame.origin).dot(&c.frame.z) * side > -band,
+            Branch::Level(c, side) => (p - c.frame.origin).dot(&c.frame.z) * *side > -band,
         };
         let s = self.at(p);
         on_branch && s > -band && s < self.length + band
     }
 
     /// Whether the walk may pass through a box.
-    pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: f64) -> bool {
+    pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: N) -> bool {
         let Box3 { min, max } = &self.extent;
-        if (0..3).any(|i| lo[i] - band > max[i] || hi[i] + band < min[i]) {
+        let reach = band.above();
+        if (0..3).any(|i| lo[i] - reach > max[i] || hi[i] + reach < min[i]) {
             return false;
         }
-        let above = |o: &Point3<f64>, n: &Vector3<f64>| {
-            let mid: f64 = (0..3).map(|i| n[i] * (0.5 * (lo[i] + hi[i]) - o[i])).sum();
-            let half: f64 = (0..3).map(|i| n[i].abs() * 0.5 * (hi[i] - lo[i])).sum();
+        let above = |o: &Point3<N>, n: &Vector3<N>| {
+            let mid: N = (0..3)
+                .map(|i| n[i] * (N::of(0.5 * (lo[i] + hi[i])) - o[i]))
+                .sum();
+            let half: N = (0..3)
+                .map(|i| n[i].abs() * N::of(0.5 * (hi[i] - lo[i])))
+                .sum();
             (mid, half + band)
         };
         let (mid, half) = above(&self.start, &self.normal);
@@ -358,7 +354,7 @@ impl Walk {
     }
 
     /// [`Self::may_meet`] of a box.
-    pub fn may_meet_box(&self, b: &Box3, band: f64) -> bool {
+    pub fn may_meet_box(&self, b: &Box3, band: N) -> bool {
         self.may_meet(&b.min, &b.max, band)
     }
 
@@ -366,11 +362,11 @@ impl Walk {
     /// of the face is the surface's own, `band` is the resolution.
     pub fn crossings(
         &self,
-        surface: &Surface,
+        surface: &Surface<N>,
         side: Sense,
-        arcs: &[DirectedArc<'_>],
-        band: f64,
-    ) -> Vec<Crossing> {
+        arcs: &[DirectedArc<'_, N>],
+        band: N,
+    ) -> Vec<Crossing<N>> {
         let mut found = Vec::new();
         for (i, arc) in arcs.iter().enumerate() {
             self.meet(
@@ -397,24 +393,24 @@ impl Walk {
     /// walk, parameter, passage).
     pub(super) fn meet(
         &self,
-        surface: &Surface,
+        surface: &Surface<N>,
         side: Sense,
-        arc: &DirectedArc<'_>,
-        ranges: &[[f64; 2]],
-        band: f64,
-        found: &mut impl FnMut(f64, f64, Passage),
+        arc: &DirectedArc<'_, N>,
+        ranges: &[[N; 2]],
+        band: N,
+        found: &mut impl FnMut(N, N, Passage),
     ) {
         let [lo, hi] = arc.range;
         if !closes(arc) {
             for t in [lo, hi] {
                 let p = arc.curve.point(t);
                 if self.off(&p).abs() <= band && self.passes(&p, band) {
-                    found(self.at(&p).max(0.0), t, Passage::Unclear);
+                    found(self.at(&p).max(N::ZERO), t, Passage::Unclear);
                 }
             }
         }
-        let sign = arc.sense.sign() * side.sign();
-        let mut root = |t: f64, plain: bool| {
+        let sign = arc.sense.sign::<N>() * side.sign::<N>();
+        let mut root = |t: N, plain: bool| {
             let p = arc.curve.point(t);
             if !self.passes(&p, band) {
                 return;
@@ -423,14 +419,14 @@ impl Walk {
             let across = self.direction(&p).cross(&surface.normal(&p));
             let turn = sign * across.dot(&arc.curve.tangent(t));
             let at_end = s <= band || s >= self.length - band;
-            let passage = if !plain || at_end || turn.is_nan() || turn.abs() < ROUNDING.sqrt() {
+            let passage = if !plain || at_end || turn.is_nan() || turn.abs() < N::ROUNDING.sqrt() {
                 Passage::Unclear
-            } else if turn > 0.0 {
+            } else if turn > N::ZERO {
                 Passage::Entering
             } else {
                 Passage::Leaving
             };
-            found(s.max(0.0), t, passage);
+            found(s.max(N::ZERO), t, passage);
         };
         if let Track::Line(d) = &self.track
             && line_meets(arc.curve, arc.range, (&self.start, d), band, &mut root)
@@ -451,7 +447,7 @@ impl Walk {
     }
 
     /// The distance of a point from what cuts the walk out of its surface.
-    fn off(&self, p: &Point3<f64>) -> f64 {
+    fn off(&self, p: &Point3<N>) -> N {
         match self.branch {
             Branch::Level(c, _) => Surface::Cylinder(c).distance(p),
             _ => (p - self.start).dot(&self.normal),
@@ -460,9 +456,9 @@ impl Walk {
 }
 
 /// Whether the arc runs over its whole closed curve.
-fn closes(arc: &DirectedArc<'_>) -> bool {
+fn closes<N: Number>(arc: &DirectedArc<'_, N>) -> bool {
     arc.curve.period().is_some_and(|period| {
         let [lo, hi] = arc.range;
-        hi - lo >= period * (1.0 - ROUNDING)
+        hi - lo >= period * (N::ONE - N::ROUNDING)
     })
 }

@@ -5,9 +5,9 @@ use super::frame::Frame;
 use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
 use nalgebra::Point3;
-use std::f64::consts::TAU;
 
 /// An axis-parallel box: its least and its greatest corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +32,12 @@ impl Box3 {
     };
 
     /// The box around one point.
-    pub fn of(p: &Point3<f64>) -> Self {
+    pub fn of<N: Number>(p: &Point3<N>) -> Self {
         let c = [p.x, p.y, p.z];
-        Self { min: c, max: c }
+        Self {
+            min: c.map(N::below),
+            max: c.map(N::above),
+        }
     }
 
     /// The smallest box that holds both.
@@ -46,7 +49,8 @@ impl Box3 {
     }
 
     /// The box grown by `by` on all sides.
-    pub fn grown(&self, by: f64) -> Self {
+    pub fn grown<N: Number>(&self, by: N) -> Self {
+        let by = by.above();
         Self {
             min: self.min.map(|x| x - by),
             max: self.max.map(|x| x + by),
@@ -54,8 +58,8 @@ impl Box3 {
     }
 
     /// Whether a point lies in it.
-    pub fn holds(&self, p: &Point3<f64>) -> bool {
-        (0..3).all(|i| self.min[i] <= p[i] && p[i] <= self.max[i])
+    pub fn holds<N: Number>(&self, p: &Point3<N>) -> bool {
+        (0..3).all(|i| N::of(self.min[i]) <= p[i] && p[i] <= N::of(self.max[i]))
     }
 
     /// Its middle.
@@ -74,7 +78,7 @@ impl Box3 {
 
 /// The box of the arc of a curve over `range`: tight for lines and conics with an angle, an
 /// enclosure for the rest.
-pub fn bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
+pub fn bounds<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
     match curve {
         Curve::Line(_) => ends(curve, range),
         Curve::Circle(c) => turn_bounds(&c.frame, c.radius, c.radius, range, ends(curve, range)),
@@ -84,7 +88,7 @@ pub fn bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
 }
 
 /// Consecutive pieces of a curve over `range`, each smooth and with a box that holds it.
-pub fn pieces(curve: &Curve, [lo, hi]: [f64; 2]) -> Vec<([f64; 2], Box3)> {
+pub fn pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Box3)> {
     let breaks = curve.breaks(lo, hi);
     let smooth = breaks.windows(2).map(|p| [p[0], p[1]]);
     if has_exact_bounds(curve) {
@@ -98,24 +102,24 @@ pub fn pieces(curve: &Curve, [lo, hi]: [f64; 2]) -> Vec<([f64; 2], Box3)> {
 }
 
 /// Whether the box of every arc is known in closed form.
-fn has_exact_bounds(curve: &Curve) -> bool {
+fn has_exact_bounds<N: Number>(curve: &Curve<N>) -> bool {
     matches!(curve, Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_))
 }
 
-fn ends(curve: &Curve, [lo, hi]: [f64; 2]) -> Box3 {
+fn ends<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Box3 {
     Box3::of(&curve.point(lo)).hull(&Box3::of(&curve.point(hi)))
 }
 
 /// Grows the box of the ends by the extrema a x cos t + b y sin t that the range passes.
-fn turn_bounds(f: &Frame, a: f64, b: f64, [lo, hi]: [f64; 2], mut hull: Box3) -> Box3 {
+fn turn_bounds<N: Number>(f: &Frame<N>, a: N, b: N, [lo, hi]: [N; 2], mut hull: Box3) -> Box3 {
     for i in 0..3 {
         let (c, s) = (a * f.x[i], b * f.y[i]);
         let (size, at) = (c.hypot(s), s.atan2(c));
-        if lo + (at - lo).rem_euclid(TAU) <= hi {
-            hull.max[i] = hull.max[i].max(f.origin[i] + size);
+        if lo + (at - lo).rem_euclid(N::TAU) <= hi {
+            hull.max[i] = hull.max[i].max((f.origin[i] + size).above());
         }
-        if lo + (at + TAU / 2.0 - lo).rem_euclid(TAU) <= hi {
-            hull.min[i] = hull.min[i].min(f.origin[i] - size);
+        if lo + (at + N::TAU / N::TWO - lo).rem_euclid(N::TAU) <= hi {
+            hull.min[i] = hull.min[i].min((f.origin[i] - size).below());
         }
     }
     hull
@@ -130,7 +134,7 @@ const SAMPLES: u32 = 16;
 const PIECES: usize = 2048;
 
 /// The box of the arc of a curve, to rounding.
-pub fn tight_bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
+pub fn tight_bounds<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
     if has_exact_bounds(curve) {
         bounds(curve, range)
     } else {
@@ -140,19 +144,19 @@ pub fn tight_bounds(curve: &Curve, range: [f64; 2]) -> Box3 {
 
 /// The box of the ends and of the points at which a coordinate turns back: between samples of its
 /// derivative, found by halving.
-fn extremes(curve: &Curve, range: [f64; 2]) -> Box3 {
+fn extremes<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
     let mut hull = ends(curve, range);
     for pair in curve.breaks(range[0], range[1]).windows(2) {
-        let step = (pair[1] - pair[0]) / f64::from(SAMPLES);
+        let step = (pair[1] - pair[0]) / N::whole(SAMPLES);
         let mut before = (pair[0], curve.derivative(pair[0]));
         for k in 1..=SAMPLES {
-            let t = pair[0] + step * f64::from(k);
+            let t = pair[0] + step * N::whole(k);
             let after = (t, curve.derivative(t));
             // A sample may be an extreme itself.
             hull = hull.hull(&Box3::of(&curve.point(t)));
             for i in 0..3 {
-                if before.1[i] * after.1[i] < 0.0 {
-                    let turn = |t: f64| curve.derivative(t)[i];
+                if before.1[i] * after.1[i] < N::ZERO {
+                    let turn = |t: N| curve.derivative(t)[i];
                     let t = bisect(before.0, after.0, before.1[i], turn);
                     hull = hull.hull(&Box3::of(&curve.point(t)));
                 }
@@ -163,7 +167,7 @@ fn extremes(curve: &Curve, range: [f64; 2]) -> Box3 {
     hull
 }
 
-fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
+fn enclosure<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
     let mut all = Box3::EMPTY;
     enclosed(curve, &curve.breaks(range[0], range[1]), |_, part| {
         all = all.hull(&part);
@@ -173,15 +177,15 @@ fn enclosure(curve: &Curve, range: [f64; 2]) -> Box3 {
 
 /// Branch and bound: pieces are halved until none reaches beyond the points seen by more than a
 /// part of their size; each is handed over with its box, in order.
-fn enclosed(curve: &Curve, breaks: &[f64], mut give: impl FnMut([f64; 2], Box3)) {
+fn enclosed<N: Number>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 2], Box3)) {
     let mut seen = Box3::EMPTY;
     for pair in breaks.windows(2) {
         for k in 0..=4 {
-            let t = pair[0] + (pair[1] - pair[0]) * f64::from(k) / 4.0;
+            let t = pair[0] + (pair[1] - pair[0]) * N::whole(k) / N::of(4.0);
             seen = seen.hull(&Box3::of(&curve.point(t)));
         }
     }
-    let mut stack: Vec<(f64, f64)> = breaks.windows(2).rev().map(|p| (p[0], p[1])).collect();
+    let mut stack: Vec<(N, N)> = breaks.windows(2).rev().map(|p| (p[0], p[1])).collect();
     let mut looked = 0;
     while let Some((a, b)) = stack.pop() {
         looked += 1;
@@ -192,7 +196,7 @@ fn enclosed(curve: &Curve, breaks: &[f64], mut give: impl FnMut([f64; 2], Box3))
             give([a, b], part);
             continue;
         }
-        let m = 0.5 * (a + b);
+        let m = N::HALF * (a + b);
         seen = seen.hull(&Box3::of(&curve.point(m)));
         stack.push((m, b));
         stack.push((a, m));
@@ -201,19 +205,19 @@ fn enclosed(curve: &Curve, breaks: &[f64], mut give: impl FnMut([f64; 2], Box3))
 
 /// A box that holds the piece [a, b], to rounding: of its ends where a coordinate only rises or
 /// falls.
-fn piece_box(curve: &Curve, a: f64, b: f64) -> Box3 {
+fn piece_box<N: Number>(curve: &Curve<N>, a: N, b: N) -> Box3 {
     let t = Interval { lo: a, hi: b };
     let wide = curve.jet_over(t);
     let mid = curve.jet(t.mid());
     let run = t - Interval::point(t.mid());
     let ends = ends(curve, [a, b]);
     let range = |i: usize| {
-        let (w, m): (&Jet<Interval>, &Jet<f64>) = (&wide[i], &mid[i]);
+        let (w, m): (&Jet<Interval<N>>, &Jet<N>) = (&wide[i], &mid[i]);
         let (v, d) = (Interval::point(m.v), Interval::point(m.d));
         if w.d.has_zero() {
             // To the second order, too: next to an extremum the slope alone tells little.
-            let second = v + d * run + (w.dd * run.square()).scale(0.5);
-            w.v.meet(v + w.d * run).meet(second)
+            let second = v + d * run + (w.dd * run.square()).times(0.5);
+            w.v.meet(v + w.d * run).meet(second).in_doubles()
         } else {
             Interval::new(ends.min[i], ends.max[i])
         }
@@ -230,6 +234,7 @@ mod tests {
     use super::super::curve::{Circle, Conic};
     use super::*;
     use nalgebra::Vector3;
+    use std::f64::consts::TAU;
 
     #[test]
     fn an_extreme_in_the_middle_of_a_range_is_in_the_tight_box() {

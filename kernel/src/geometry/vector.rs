@@ -39,12 +39,12 @@ pub fn solution<N: Number, const D: usize>(
         if m[k][k] == N::ZERO {
             return None;
         }
-        for i in k + 1..D {
-            let part = m[i][k] / m[k][k];
-            for j in k..D {
-                let above = m[k][j];
-                m[i][j] -= part * above;
-            }
+        let (row, below) = (m[k], k + 1..D);
+        for i in below {
+            let part = m[i][k] / row[k];
+            m[i].iter_mut()
+                .zip(row)
+                .for_each(|(x, above)| *x -= part * above);
             let above = right[k];
             right[i] -= part * above;
         }

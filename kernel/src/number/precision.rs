@@ -1,10 +1,12 @@
 //! The precisions in which coordinates are kept.
 
+use super::quadrature::Rules;
 use super::rational::{Rational, from_f64, to_f64};
 use super::scalar::Scalar;
 use std::cmp::Ordering;
 use std::iter::Sum;
 use std::ops::{AddAssign, Div, DivAssign, MulAssign, SubAssign};
+use std::sync::LazyLock;
 
 /// A floating-point number of some precision: a coordinate, a length, an angle in radians.
 ///
@@ -42,6 +44,9 @@ pub trait Number:
     const SINC_TERMS: u32;
     /// The relative rounding error allowed to a short chain of operations.
     const ROUNDING: Self;
+
+    /// The rules by which integrals are taken.
+    fn rules() -> &'static Rules<Self>;
 
     /// A double, exactly.
     fn of(x: f64) -> Self;
@@ -122,6 +127,11 @@ impl Number for f64 {
     const SINC_TERMS: u32 = 9;
     const ROUNDING: Self = 16.0 * f64::EPSILON;
 
+    fn rules() -> &'static Rules<Self> {
+        static RULES: LazyLock<Rules<f64>> =
+            LazyLock::new(|| Rules::new(10, 20, 64.0 * f64::ROUNDING));
+        &RULES
+    }
     fn of(x: f64) -> Self {
         x
     }

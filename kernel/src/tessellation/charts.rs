@@ -191,7 +191,7 @@ fn centre_of_projection(
         let t = 0.5 * (a.range[0] + a.range[1]);
         let p = a.curve.point(t);
         let out = brep.outward(face, &p);
-        let right = a.curve.tangent(t).cross(&out) * a.sense.sign();
+        let right = a.curve.tangent(t).cross(&out) * a.sense.sign::<f64>();
         let size = (a.curve.point(a.range[0]) - p).norm();
         (1..NEAREST).map(move |k| (p + right * (size / f64::from(1 << k)) - centre).normalize())
     });

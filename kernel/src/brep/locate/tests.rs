@@ -4,6 +4,7 @@ use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere, Torus};
 use nalgebra::Vector3;
 use proptest::prelude::*;
+use std::f64::consts::TAU;
 
 const BAND: f64 = 1e-10;
 

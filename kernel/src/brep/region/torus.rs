@@ -5,18 +5,19 @@ use crate::brep::topology::Sense;
 use crate::brep::walk::{DirectedArc, Walk};
 use crate::geometry::surface::Torus;
 use crate::geometry::toric::wrap;
+use crate::geometry::vector::Length;
+use crate::number::precision::Number;
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::TAU;
 
-impl Sorter<'_> {
+impl<N: Number> Sorter<'_, N> {
     /// Both circles through a loop's point, and a way to the first loop.
     pub(super) fn walk_torus(
         &mut self,
-        t: Torus,
+        t: Torus<N>,
         ring: usize,
         arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
+        p: &Point3<N>,
+        left: &Vector3<N>,
     ) -> bool {
         let (mut tubes, mut rounds) = (false, false);
         for sense in [Sense::Along, Sense::Against] {
@@ -40,14 +41,14 @@ impl Sorter<'_> {
     /// itself run along edges.
     fn turn_to_winding(
         &mut self,
-        t: &Torus,
+        t: &Torus<N>,
         ring: usize,
         arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
+        p: &Point3<N>,
+        left: &Vector3<N>,
     ) -> bool {
         let [around, along] = self.winding;
-        for turn in [0.4, 2.6, 4.3] {
+        for turn in [N::of(0.4), N::of(2.6), N::of(4.3)] {
             for sense in [Sense::Along, Sense::Against] {
                 let leg = Walk::tube(t, p, sense).upto(turn * t.minor);
                 let corner = leg.point(turn * t.minor);
@@ -61,7 +62,7 @@ impl Sorter<'_> {
                 let Some(round) = Walk::parallel(self.surface, p, sense, self.band) else {
                     continue;
                 };
-                let radius = t.frame.coordinates(p).xy().norm();
+                let radius = t.frame.coordinates(p).xy().length();
                 let leg = round.upto(turn * radius);
                 let tube = Walk::tube(t, &leg.point(turn * radius), sense);
                 if around && self.follow(ring, arc, p, left, &[leg, tube], None) {
@@ -75,29 +76,29 @@ impl Sorter<'_> {
     /// A way around the axis, then around the tube, to a point of the first loop.
     fn way_to_first(
         &mut self,
-        t: Torus,
+        t: Torus<N>,
         ring: usize,
         arc: usize,
-        p: &Point3<f64>,
-        left: &Vector3<f64>,
+        p: &Point3<N>,
+        left: &Vector3<N>,
     ) -> bool {
         let heights = [
             Height::First,
             Height::Last,
-            Height::At(0.4),
-            Height::At(2.6),
-            Height::At(4.3),
+            Height::At(N::of(0.4)),
+            Height::At(N::of(2.6)),
+            Height::At(N::of(4.3)),
         ];
         for &fraction in &STARTS {
             for goal in 0..self.firsts[1] {
-                let q = self.start_on(goal, fraction);
+                let q = self.start_on(goal, N::of(fraction));
                 // The way ends just before the first loop: within its face, or on the other side
                 // of it, where the face of the same edge is another loop's.
                 for height in heights {
                     let Some(legs) = self.legs(&t, p, &q.point, height) else {
                         continue;
                     };
-                    let from_left = |leg: &Walk| leg.direction(&q.point).dot(&q.left) < 0.0;
+                    let from_left = |leg: &Walk<N>| leg.direction(&q.point).dot(&q.left) < N::ZERO;
                     let reached = match self.twin(goal) {
                         Some(twin) if !legs.last().is_some_and(from_left) => twin,
                         _ => goal,
@@ -115,26 +116,26 @@ impl Sorter<'_> {
     /// the parallel at one of their angles about the tube, or at another.
     fn legs(
         &self,
-        t: &Torus,
-        p: &Point3<f64>,
-        q: &Point3<f64>,
-        height: Height,
-    ) -> Option<Vec<Walk>> {
+        t: &Torus<N>,
+        p: &Point3<N>,
+        q: &Point3<N>,
+        height: Height<N>,
+    ) -> Option<Vec<Walk<N>>> {
         let ([u, v], [x, y]) = (self.surface.parameters(p), self.surface.parameters(q));
-        let toward = |a: f64| {
-            if a > 0.0 {
+        let toward = |a: N| {
+            if a > N::ZERO {
                 Sense::Along
             } else {
                 Sense::Against
             }
         };
         let turn = wrap(x - u);
-        let round = |w: f64| {
+        let round = |w: N| {
             let from = self.surface.point(u, w);
             let walk = Walk::parallel(self.surface, &from, toward(turn), self.band)?;
             Some((walk, turn.abs() * (t.major + t.minor * w.cos())))
         };
-        let tube = |from: &Point3<f64>, rise: f64| {
+        let tube = |from: &Point3<N>, rise: N| {
             let walk = Walk::tube(t, from, toward(rise));
             (walk, rise.abs() * t.minor)
         };
@@ -148,24 +149,28 @@ impl Sorter<'_> {
             ],
         };
         if let Some((_, length)) = legs.last_mut() {
-            *length -= 64.0 * self.band;
+            *length -= N::of(64.0) * self.band;
         }
-        let cut = |(walk, length): (Walk, f64)| walk.upto(length.max(0.0));
+        let cut = |(walk, length): (Walk<N>, N)| walk.upto(length.max(N::ZERO));
         Some(legs.into_iter().map(cut).collect())
     }
 
     /// How a loop runs in the two angles of a torus.
-    pub(super) fn turns(&self, ring: &[DirectedArc<'_>]) -> Turns {
-        let mut points: Vec<[f64; 2]> = Vec::new();
+    pub(super) fn turns(&self, ring: &[DirectedArc<'_, N>]) -> Turns<N> {
+        let mut points: Vec<[N; 2]> = Vec::new();
         for a in ring {
             for k in 0..32 {
-                let s = f64::from(k) / 32.0;
-                let s = if a.sense == Sense::Along { s } else { 1.0 - s };
+                let s = N::whole(k) / N::of(32.0);
+                let s = if a.sense == Sense::Along {
+                    s
+                } else {
+                    N::ONE - s
+                };
                 let p = a.curve.point(a.range[0] + s * (a.range[1] - a.range[0]));
                 points.push(self.surface.parameters(&p));
             }
         }
-        let (mut x, mut y, mut area) = (0.0, 0.0, 0.0);
+        let (mut x, mut y, mut area) = (N::ZERO, N::ZERO, N::ZERO);
         for (i, p) in points.iter().enumerate() {
             let q = points[(i + 1) % points.len()];
             let (dx, dy) = (wrap(q[0] - p[0]), wrap(q[1] - p[1]));
@@ -174,31 +179,31 @@ impl Sorter<'_> {
             y += dy;
         }
         Turns {
-            winds: [x, y].map(|turn| turn.abs() > TAU / 2.0),
-            area: area * self.outward.sign(),
+            winds: [x, y].map(|turn| turn.abs() > N::TAU / N::TWO),
+            area: area * self.outward.sign::<N>(),
         }
     }
 }
 
 /// The angle about the tube at which a way on a torus goes around the axis.
 #[derive(Clone, Copy)]
-enum Height {
+enum Height<N: Number = f64> {
     /// Where the way starts.
     First,
     /// Where it ends.
     Last,
-    At(f64),
+    At(N),
 }
 
 /// How a loop runs around a torus.
-pub(super) struct Turns {
+pub(super) struct Turns<N: Number = f64> {
     /// Around the axis, and around the tube.
     pub winds: [bool; 2],
     /// Positive for one that runs counterclockwise, if it does not wind.
-    pub area: f64,
+    pub area: N,
 }
 
-impl Turns {
+impl<N: Number> Turns<N> {
     /// Whether it winds at all.
     pub fn winds(&self) -> bool {
         self.winds.contains(&true)
@@ -212,6 +217,7 @@ mod tests {
     use crate::geometry::curve::{Circle, Curve};
     use crate::geometry::frame::Frame;
     use crate::geometry::surface::Surface;
+    use std::f64::consts::TAU;
 
     fn torus() -> Torus {
         Torus {

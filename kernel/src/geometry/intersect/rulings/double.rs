@@ -17,6 +17,9 @@ use crate::number::roots::Function;
 use crate::number::scalar::Scalar;
 use crate::number::sign::{Judge, Side};
 
+/// Where a curve passes the nodes: (the angle of the node, the parameter).
+type Passes<N> = Vec<(N, N)>;
+
 impl<N: Number> Rulings<'_, N> {
     /// k ≠ 0: two points on each ruling where Δ > 0.
     pub(in crate::geometry::intersect) fn double(
@@ -95,7 +98,7 @@ impl<N: Number> Rulings<'_, N> {
                 });
             }
         }
-        let mut curves: Vec<(Quartic<N>, Vec<(N, N)>)> = Vec::new();
+        let mut curves: Vec<(Quartic<N>, Passes<N>)> = Vec::new();
         let make = |sweep, height| Quartic {
             base: self.base,
             sweep,

@@ -25,7 +25,9 @@ use premio_kernel::brep::assemble::{AssemblyError, assemble};
 use premio_kernel::brep::check::worst_gap;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
-use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, ROUNDING, Zeros};
+use premio_kernel::geometry::vector::rounded;
+use premio_kernel::number::precision::Number;
+use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, Zeros};
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,9 +43,9 @@ pub struct EvaluationOptions {
 
 /// The boundary of a tree, and how it was decided.
 #[derive(Debug)]
-pub struct Evaluation {
+pub struct Evaluation<N: Number = f64> {
     /// The boundary.
-    pub brep: Brep,
+    pub brep: Brep<N>,
     /// How the decisions were made.
     pub decisions: Decisions,
     /// The resolution used, in the part's unit.
@@ -115,6 +117,14 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     if options.zeros == Zeros::Proven {
         return Err(EvaluationError::Unproven);
     }
+    evaluate_over(tree, options)
+}
+
+/// The same, reckoned in numbers of some precision.
+pub fn evaluate_over<N: Number>(
+    tree: &Tree,
+    options: &EvaluationOptions,
+) -> Result<Evaluation<N>, EvaluationError> {
     let solids = halfspaces::Solids::of(tree);
     let size = solids.bounds.diagonal();
     if tree.is_empty() {
@@ -130,11 +140,11 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     if !(size > 1.0 / LARGEST && size < LARGEST) {
         return Err(EvaluationError::Size);
     }
-    let resolution = resolution_of(&solids.bounds, options)?;
+    let resolution = resolution_of::<N>(&solids.bounds, options)?;
     let judge = Judge::new(resolution);
     let extent = Extent {
-        centre: solids.bounds.centre(),
-        radius: 0.75 * size,
+        centre: solids.bounds.centre().map(N::of),
+        radius: N::of(0.75 * size),
     };
     let arrangement = arrangement::arrange(tree, &solids, &extent, &judge)?;
     let concern = concern::Concern {
@@ -146,10 +156,10 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     concern.list();
     let raw = wings::boundary(&concern)?;
     let brep = assemble(raw, &judge)?;
-    if let Some((place, distance)) = worst_gap(&brep, resolution) {
+    if let Some((place, distance)) = worst_gap(&brep, N::of(resolution)) {
         return Err(EvaluationError::Vague {
-            place: place.into(),
-            distance,
+            place: rounded(&place),
+            distance: distance.rounded(),
             resolution,
         });
     }
@@ -164,11 +174,11 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
 
 /// The resolution that is asked for, or the default: wider where the part lies so far from the
 /// origin that its coordinates are rounded by more.
-fn resolution_of(bounds: &Box3, options: &EvaluationOptions) -> Result<f64, EvaluationError> {
+fn resolution_of<N: Number>(bounds: &Box3, options: &EvaluationOptions) -> Result<f64, EvaluationError> {
     let size = bounds.diagonal();
     let far = bounds.min.iter().chain(&bounds.max);
     let far = far.fold(size, |far, x| far.max(x.abs()));
-    let (least, most) = (ROUNDING * far, COARSEST * size);
+    let (least, most) = (N::ROUNDING.rounded() * far, COARSEST * size);
     if least > size * FARTHEST {
         return Err(EvaluationError::Far { far, size });
     }

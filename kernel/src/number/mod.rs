@@ -13,3 +13,4 @@ pub mod real;
 pub mod roots;
 pub mod scalar;
 pub mod sign;
+pub mod wide;

@@ -1,0 +1,398 @@
+//! Numbers of 237 bits: for what doubles do not tell.
+
+use super::precision::Number;
+use super::quadrature::Rules;
+use super::rational::Rational;
+use super::scalar::{Scalar, sinc_jet};
+use dashu::base::{BitTest, Sign, Signed, UnsignedAbs};
+use dashu::integer::{IBig, UBig};
+use ::f256::{consts, f256};
+use std::cmp::Ordering;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::sync::LazyLock;
+
+/// A binary floating-point number of octuple precision (IEEE 754 binary256).
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub struct Wide(f256);
+
+/// More bits than are kept, so that what is cut off does not count.
+const SPARE: isize = 12;
+
+/// The bits of a significand.
+const DIGITS: isize = 237;
+
+macro_rules! operators {
+    ($($operator:ident $name:ident, $assign:ident $assigning:ident);*) => {
+        $(
+            impl $operator for Wide {
+                type Output = Self;
+                fn $name(self, o: Self) -> Self {
+                    Self(self.0.$name(o.0))
+                }
+            }
+            impl $assign for Wide {
+                fn $assigning(&mut self, o: Self) {
+                    *self = $operator::$name(*self, o);
+                }
+            }
+        )*
+    };
+}
+operators!(Add add, AddAssign add_assign; Sub sub, SubAssign sub_assign;
+    Mul mul, MulAssign mul_assign; Div div, DivAssign div_assign);
+
+impl Neg for Wide {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Sum for Wide {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::ZERO, |sum, x| sum + x)
+    }
+}
+
+impl num_traits::Zero for Wide {
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn is_zero(&self) -> bool {
+        self.0.eq_zero()
+    }
+}
+
+impl num_traits::One for Wide {
+    fn one() -> Self {
+        Self::ONE
+    }
+}
+
+impl Scalar for Wide {
+    type Number = Self;
+    fn constant(x: Self) -> Self {
+        x
+    }
+    fn scale(self, k: Self) -> Self {
+        self * k
+    }
+    fn square(self) -> Self {
+        self * self
+    }
+    fn over(self, divisor: Self) -> Self {
+        self / divisor
+    }
+    fn root(self) -> Self {
+        Number::max(self, Self::ZERO).sqrt()
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.0.sin_cos();
+        (Self(sin), Self(cos))
+    }
+    fn sinh_cosh(self) -> (Self, Self) {
+        (self.sinh(), self.cosh())
+    }
+    fn sinc(self) -> Self {
+        sinc_jet(self)[0]
+    }
+    fn is_like(self, o: Self) -> bool {
+        self * o > Self::ZERO
+    }
+}
+
+/// Two to a small power: the exponent of one, 2^18 - 1, stands above 108 bits.
+const fn power(n: i128) -> f256 {
+    f256::from_bits(((((1 << 18) - 1 + n) as u128) << 108, 0))
+}
+
+/// n times two to the power of `exponent`, n of no more than 256 bits.
+fn scaled(n: &UBig, exponent: isize) -> f256 {
+    let low = u128::try_from(n & UBig::from(u128::MAX)).unwrap_or_default();
+    let high = u128::try_from(n >> 128usize).unwrap_or_default();
+    let whole = f256::from(high).mul_pow2(128) + f256::from(low);
+    let power = u32::try_from(exponent.unsigned_abs()).unwrap_or(u32::MAX);
+    if exponent < 0 {
+        whole.div_pow2(power)
+    } else {
+        whole.mul_pow2(power)
+    }
+}
+
+impl Wide {
+    /// The sign, and the magnitude as an integer times a power of two.
+    fn parts(self) -> (Sign, UBig, isize) {
+        let (sign, exponent, (high, low)) = self.0.as_sign_exp_signif();
+        let sign = if sign == 0 { Sign::Positive } else { Sign::Negative };
+        let significand = (UBig::from(high) << 128usize) + UBig::from(low);
+        (sign, significand, exponent as isize)
+    }
+
+    /// e^|x| - 1.
+    fn growth(self) -> Self {
+        Self(self.0.abs().exp_m1())
+    }
+}
+
+impl Number for Wide {
+    const ZERO: Self = Self(f256::ZERO);
+    const HALF: Self = Self(power(-1));
+    const ONE: Self = Self(f256::ONE);
+    const TWO: Self = Self(f256::TWO);
+    const PI: Self = Self(consts::PI);
+    const TAU: Self = Self(consts::TAU);
+    const EPSILON: Self = Self(f256::EPSILON);
+    const MIN_POSITIVE: Self = Self(f256::MIN_POSITIVE);
+    const MAX: Self = Self(f256::MAX);
+    const INFINITY: Self = Self(f256::INFINITY);
+    const NEG_INFINITY: Self = Self(f256::NEG_INFINITY);
+    const NAN: Self = Self(f256::NAN);
+    const SINC_TERMS: u32 = 26;
+    const ROUNDING: Self = Self(power(-232));
+
+    fn rules() -> &'static Rules<Self> {
+        // Halves that agree to 2^-150 differ from the integral by far less.
+        static RULES: LazyLock<Rules<Wide>> =
+            LazyLock::new(|| Rules::new(32, 36, Wide(power(-150))));
+        &RULES
+    }
+
+    fn of(x: f64) -> Self {
+        Self(f256::from(x))
+    }
+
+    fn nearest(x: &Rational) -> Self {
+        let (numerator, denominator) = (x.numerator().unsigned_abs(), x.denominator());
+        let size = numerator.bit_len() as isize - denominator.bit_len() as isize;
+        let shift = DIGITS + SPARE - size;
+        let quotient = match usize::try_from(shift) {
+            Ok(shift) => (numerator << shift) / denominator,
+            Err(_) => numerator / (denominator << shift.unsigned_abs()),
+        };
+        let nearest = scaled(&quotient, -shift);
+        Self(if x.is_negative() { -nearest } else { nearest })
+    }
+
+    fn exact(self) -> Option<Rational> {
+        if !self.is_finite() {
+            return None;
+        }
+        let (sign, significand, exponent) = self.parts();
+        let magnitude = match usize::try_from(exponent) {
+            Ok(exponent) => Rational::from(significand << exponent),
+            Err(_) => {
+                Rational::from_parts(IBig::from(significand), UBig::ONE << exponent.unsigned_abs())
+            }
+        };
+        Some(match sign {
+            Sign::Positive => magnitude,
+            Sign::Negative => -magnitude,
+        })
+    }
+
+    fn rounded(self) -> f64 {
+        if self.is_nan() || !self.is_finite() || self.0.eq_zero() {
+            let sign = if self.0.is_sign_negative() { -1.0 } else { 1.0 };
+            return match (self.is_nan(), self.is_finite()) {
+                (true, _) => f64::NAN,
+                (_, true) => 0.0,
+                _ => sign * f64::INFINITY,
+            };
+        }
+        let (sign, exponent, (high, low)) = self.0.as_sign_exp_signif();
+        // The upper 64 bits, and whether anything is left below them.
+        let zeros = if high == 0 { 128 + low.leading_zeros() } else { high.leading_zeros() };
+        let drop = 256 - 64 - zeros as i32;
+        let (upper, rest) = match drop {
+            128.. => (high >> (drop - 128), low != 0 || high << (256 - drop) != 0),
+            1.. => (
+                (high << (128 - drop)) | (low >> drop),
+                low << (128 - drop) != 0,
+            ),
+            _ => (low << -drop, false),
+        };
+        let magnitude = (upper as u64 | u64::from(rest)) as f64;
+        let scaled = by_power(magnitude, exponent + drop);
+        if sign == 0 { scaled } else { -scaled }
+    }
+
+    fn below(self) -> f64 {
+        let near = self.rounded();
+        if Self::of(near) > self { near.next_down() } else { near }
+    }
+
+    fn bits(self) -> [u64; 4] {
+        let (high, low) = (if self.0.eq_zero() { f256::ZERO } else { self.0 }).to_bits();
+        [(high >> 64) as u64, high as u64, (low >> 64) as u64, low as u64]
+    }
+
+    fn index(self) -> usize {
+        self.rounded() as usize
+    }
+
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+    fn signum(self) -> Self {
+        Self(self.0.signum())
+    }
+    fn copysign(self, sign: Self) -> Self {
+        Self(self.0.copysign(sign.0))
+    }
+    fn max(self, o: Self) -> Self {
+        Self(self.0.max(o.0))
+    }
+    fn min(self, o: Self) -> Self {
+        Self(self.0.min(o.0))
+    }
+    fn clamp(self, lo: Self, hi: Self) -> Self {
+        Number::min(Number::max(self, lo), hi)
+    }
+    fn total_cmp(&self, o: &Self) -> Ordering {
+        self.0.total_cmp(&o.0)
+    }
+    fn is_nan(self) -> bool {
+        self.0.is_nan()
+    }
+    fn is_finite(self) -> bool {
+        self.0.is_finite()
+    }
+    fn floor(self) -> Self {
+        Self(self.0.floor())
+    }
+    fn ceil(self) -> Self {
+        Self(self.0.ceil())
+    }
+    fn round(self) -> Self {
+        Self(self.0.round())
+    }
+    fn fract(self) -> Self {
+        Self(self.0.fract())
+    }
+    fn rem_euclid(self, divisor: Self) -> Self {
+        Self(self.0.rem_euclid(divisor.0))
+    }
+    fn powi(self, n: i32) -> Self {
+        Self(self.0.powi(n))
+    }
+    fn powf(self, exponent: Self) -> Self {
+        Self(self.0.powf(&exponent.0))
+    }
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    fn hypot(self, o: Self) -> Self {
+        (self * self + o * o).sqrt()
+    }
+    fn sin(self) -> Self {
+        Self(self.0.sin())
+    }
+    fn cos(self) -> Self {
+        Self(self.0.cos())
+    }
+    fn sinh(self) -> Self {
+        let e = self.growth();
+        (Self::HALF * (e + e / (e + Self::ONE))).copysign(self)
+    }
+    fn cosh(self) -> Self {
+        let e = self.growth() + Self::ONE;
+        Self::HALF * (e + Self::ONE / e)
+    }
+    fn acos(self) -> Self {
+        Self(self.0.acos())
+    }
+    fn atan(self) -> Self {
+        Self(self.0.atan())
+    }
+    fn atan2(self, x: Self) -> Self {
+        Self(self.0.atan2(&x.0))
+    }
+    fn asinh(self) -> Self {
+        let x = Number::abs(self);
+        let more = x + x * x / (Self::ONE + (Self::ONE + x * x).sqrt());
+        Self(more.0.ln_1p()).copysign(self)
+    }
+    fn acosh(self) -> Self {
+        let more = self - Self::ONE;
+        Self((more + (more * (self + Self::ONE)).sqrt()).0.ln_1p())
+    }
+}
+
+/// x times two to the power of n, also where the power alone is beyond doubles.
+fn by_power(x: f64, n: i32) -> f64 {
+    let half = n.clamp(-2000, 2000) / 2;
+    x * 2.0_f64.powi(half) * 2.0_f64.powi(n.clamp(-2000, 2000) - half)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
+mod tests {
+    use super::*;
+    use crate::number::rational::{from_decimal, from_f64, to_f64};
+    use proptest::prelude::*;
+
+    fn near(a: Wide, b: Wide) -> bool {
+        Number::abs(a - b) <= Number::abs(b) * Wide::ROUNDING
+    }
+
+    #[test]
+    fn functions_have_all_digits() {
+        for x in [-3.7, -1e-20, 1e-9, 0.3, 1.0, 2.5, 40.0].map(Wide::of) {
+            let (sin, cos) = x.sin_cos();
+            assert!(near(sin * sin + cos * cos, Wide::ONE), "{x:?}");
+            assert!(near(x.sinh().asinh(), x), "{x:?}");
+            assert!(near(x.sinh() * x.sinh() + Wide::ONE, x.cosh() * x.cosh()), "{x:?}");
+            assert!(near(sin.atan2(cos).sin(), sin), "{x:?}");
+        }
+        let x = Wide::of(1.25);
+        assert!(near(x.acosh().cosh(), x));
+        assert!(near(x.hypot(Wide::of(3.0)) * x.hypot(Wide::of(3.0)), Wide::of(10.5625)));
+        assert!(near(Wide::of(-0.5).acos() * Wide::of(3.0), Wide::TAU));
+        let third = Wide::nearest(&(Rational::ONE / Rational::from(3)));
+        assert!(near(third * Wide::of(3.0), Wide::ONE));
+    }
+
+    #[test]
+    fn sinc_is_smooth_where_its_series_ends() {
+        let [a, b] = [0.499_999_999_9, 0.500_000_000_1].map(Wide::of);
+        for i in 0..2 {
+            // The mean of the derivative at both ends is the slope between, to the third order.
+            let rise = sinc_jet(b)[i] - sinc_jet(a)[i];
+            let mean = Wide::HALF * (sinc_jet(a)[i + 1] + sinc_jet(b)[i + 1]);
+            let off = Number::abs(rise / (b - a) - mean);
+            assert!(off < Wide::of(1e-18), "{off:?}");
+        }
+    }
+
+    #[test]
+    fn doubles_bound_what_lies_between_them() {
+        let third = Wide::ONE / Wide::of(3.0);
+        assert_eq!(third.rounded(), 1.0 / 3.0);
+        assert!(Wide::of(third.below()) < third && third < Wide::of(third.above()));
+        assert_eq!(third.above(), third.below().next_up());
+        assert_eq!(Wide::of(0.1).below(), 0.1);
+        assert_eq!(Wide::of(0.1).above(), 0.1);
+        assert_eq!(Wide::ZERO.rounded(), 0.0);
+        assert_eq!(Wide::NEG_INFINITY.rounded(), f64::NEG_INFINITY);
+        assert!(Wide::NAN.rounded().is_nan());
+    }
+
+    proptest! {
+        #[test]
+        fn a_double_survives(x in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
+            prop_assert_eq!(Wide::of(x).rounded(), x);
+            prop_assert_eq!(Wide::of(x).exact(), from_f64(x));
+        }
+
+        #[test]
+        fn a_rational_is_rounded_once(digits in "[1-9][0-9]{0,60}", e in -80i32..80) {
+            let exact = from_decimal(&format!("-{digits}e{e}")).unwrap();
+            let near = Wide::nearest(&exact);
+            prop_assert_eq!(near.rounded(), to_f64(&exact));
+            let off = near.exact().unwrap() / exact - Rational::ONE;
+            let most = Wide::EPSILON.exact().unwrap();
+            prop_assert!(-most.clone() <= off && off <= most);
+        }
+    }
+}

@@ -174,7 +174,10 @@ pub fn evaluate_over<N: Number>(
 
 /// The resolution that is asked for, or the default: wider where the part lies so far from the
 /// origin that its coordinates are rounded by more.
-fn resolution_of<N: Number>(bounds: &Box3, options: &EvaluationOptions) -> Result<f64, EvaluationError> {
+fn resolution_of<N: Number>(
+    bounds: &Box3,
+    options: &EvaluationOptions,
+) -> Result<f64, EvaluationError> {
     let size = bounds.diagonal();
     let far = bounds.min.iter().chain(&bounds.max);
     let far = far.fold(size, |far, x| far.max(x.abs()));

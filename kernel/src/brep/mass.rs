@@ -5,6 +5,8 @@
 //! gives −∮ G du. What a period or a pole adds is told by the area, which lies between nothing and
 //! the whole surface. Notation: P relative to a reference point, N the surface's normal, h = P·N.
 
+mod strip;
+
 use super::Brep;
 use super::locate::{FaceLocator, Place};
 use super::topology::{CoedgeId, FaceId};
@@ -15,9 +17,10 @@ use crate::geometry::section::plane_roots;
 use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
 use crate::geometry::vector::{Length, direction, rounded};
 use crate::number::precision::Number;
-use crate::number::quadrature::{Rule, adaptive, integral};
+use crate::number::quadrature::adaptive;
 use crate::number::sign::RELATIVE_RESOLUTION;
 use nalgebra::{Point3, Vector3};
+use strip::strip;
 
 /// The mass properties of a body of density one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,11 +123,10 @@ impl<N: Number> Amid<N> {
     }
 }
 
-/// The integrand over the parameters of a surface, and its integral along v.
+/// A surface with what its integrals along v start from.
 struct Density<'a, N: Number = f64> {
     surface: Surface<N>,
     amid: &'a Amid<N>,
-    rule: &'static Rule<N>,
     /// The v at which the surface is cut open, or has a pole.
     base: N,
     /// Where the integral along v starts: a v amid the edges, so that what is the same on all of
@@ -133,34 +135,9 @@ struct Density<'a, N: Number = f64> {
 }
 
 impl<N: Number> Density<'_, N> {
-    fn at(&self, u: N, v: N) -> Moments<N> {
-        let p = self.surface.point(u, v) - self.amid.reference;
-        let (sin, cos) = u.sin_cos();
-        let f = self.surface.frame();
-        let radial = f.x * cos + f.y * sin;
-        let (normal, jacobian) = match &self.surface {
-            Surface::Plane(_) => (f.z, N::ONE),
-            Surface::Cylinder(c) => (radial, c.radius),
-            Surface::Cone(c) => (
-                radial * c.cos - f.z * c.sin,
-                v.abs() * c.sin / (c.cos * c.cos),
-            ),
-            Surface::Sphere(s) => (
-                radial * v.cos() + f.z * v.sin(),
-                s.radius * s.radius * v.cos(),
-            ),
-            Surface::Torus(t) => {
-                let normal = radial * v.cos() + f.z * v.sin();
-                (normal, t.minor * (t.major + t.minor * v.cos()))
-            }
-        };
-        let h = p.dot(&normal) * jacobian;
-        [jacobian, h, h * p.x, h * p.y, h * p.z]
-    }
-
     /// G(u, v).
     fn along(&self, u: N, v: N) -> Moments<N> {
-        integral(self.rule, self.start, v, |w| self.at(u, w))
+        strip(&self.surface, &self.amid.reference, u, [self.start, v])
     }
 
     /// The integral over all that lies between two v.
@@ -170,8 +147,8 @@ impl<N: Number> Density<'_, N> {
 
     /// The integral over a range of u and of v.
     fn over(&self, [a, b]: [N; 2], [from, to]: [N; 2]) -> Moments<N> {
-        let of = |u: N| integral(self.rule, from, to, |w| self.at(u, w));
-        adaptive(a, b, &self.amid.floor, &mut |u| of(u))
+        let of = |u: N| strip(&self.surface, &self.amid.reference, u, [from, to]);
+        adaptive(a, b, &self.amid.floor, &mut { of })
     }
 }
 
@@ -189,11 +166,10 @@ fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N
         }),
         other => other,
     };
-    let rules = N::rules();
-    let (rule, base): (&'static Rule<N>, N) = match &surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => (&rules.low, N::ZERO),
-        Surface::Sphere(_) => (&rules.turn, -N::PI / N::TWO),
-        Surface::Torus(_) => (&rules.turn, N::of(BASE)),
+    let base = match &surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => N::ZERO,
+        Surface::Sphere(_) => -N::PI / N::TWO,
+        Surface::Torus(_) => N::of(BASE),
     };
     let start = match &surface {
         // Edges may pass through the apex, where nothing is between.
@@ -203,7 +179,6 @@ fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N
     let d = Density {
         surface,
         amid,
-        rule,
         base,
         start,
     };

@@ -27,7 +27,7 @@ pub fn trig2<N: Number, S: Scalar<Number = N>>(k: &Trig2<N>, (sin, cos): (S, S))
 }
 
 /// The product of two trigonometric polynomials of degree one.
-pub(super) fn product<N: Number>(m: &Trig1<N>, q: &Trig1<N>) -> Trig2<N> {
+pub(crate) fn product<N: Number>(m: &Trig1<N>, q: &Trig1<N>) -> Trig2<N> {
     [
         m[0] * q[0] + N::HALF * (m[1] * q[1] + m[2] * q[2]),
         m[0] * q[1] + m[1] * q[0],

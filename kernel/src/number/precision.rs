@@ -128,8 +128,7 @@ impl Number for f64 {
     const ROUNDING: Self = 16.0 * f64::EPSILON;
 
     fn rules() -> &'static Rules<Self> {
-        static RULES: LazyLock<Rules<f64>> =
-            LazyLock::new(|| Rules::new(10, 20, 64.0 * f64::ROUNDING));
+        static RULES: LazyLock<Rules<f64>> = LazyLock::new(|| Rules::new(10, 64.0 * f64::ROUNDING));
         &RULES
     }
     fn of(x: f64) -> Self {

@@ -4,9 +4,9 @@ use super::precision::Number;
 use super::quadrature::Rules;
 use super::rational::Rational;
 use super::scalar::{Scalar, sinc_jet};
+use ::f256::{consts, f256};
 use dashu::base::{BitTest, Sign, Signed, UnsignedAbs};
 use dashu::integer::{IBig, UBig};
-use ::f256::{consts, f256};
 use std::cmp::Ordering;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -124,7 +124,11 @@ impl Wide {
     /// The sign, and the magnitude as an integer times a power of two.
     fn parts(self) -> (Sign, UBig, isize) {
         let (sign, exponent, (high, low)) = self.0.as_sign_exp_signif();
-        let sign = if sign == 0 { Sign::Positive } else { Sign::Negative };
+        let sign = if sign == 0 {
+            Sign::Positive
+        } else {
+            Sign::Negative
+        };
         let significand = (UBig::from(high) << 128usize) + UBig::from(low);
         (sign, significand, exponent as isize)
     }
@@ -153,8 +157,7 @@ impl Number for Wide {
 
     fn rules() -> &'static Rules<Self> {
         // Halves that agree to 2^-150 differ from the integral by far less.
-        static RULES: LazyLock<Rules<Wide>> =
-            LazyLock::new(|| Rules::new(32, 36, Wide(power(-150))));
+        static RULES: LazyLock<Rules<Wide>> = LazyLock::new(|| Rules::new(32, Wide(power(-150))));
         &RULES
     }
 
@@ -181,9 +184,10 @@ impl Number for Wide {
         let (sign, significand, exponent) = self.parts();
         let magnitude = match usize::try_from(exponent) {
             Ok(exponent) => Rational::from(significand << exponent),
-            Err(_) => {
-                Rational::from_parts(IBig::from(significand), UBig::ONE << exponent.unsigned_abs())
-            }
+            Err(_) => Rational::from_parts(
+                IBig::from(significand),
+                UBig::ONE << exponent.unsigned_abs(),
+            ),
         };
         Some(match sign {
             Sign::Positive => magnitude,
@@ -202,7 +206,11 @@ impl Number for Wide {
         }
         let (sign, exponent, (high, low)) = self.0.as_sign_exp_signif();
         // The upper 64 bits, and whether anything is left below them.
-        let zeros = if high == 0 { 128 + low.leading_zeros() } else { high.leading_zeros() };
+        let zeros = if high == 0 {
+            128 + low.leading_zeros()
+        } else {
+            high.leading_zeros()
+        };
         let drop = 256 - 64 - zeros as i32;
         let (upper, rest) = match drop {
             128.. => (high >> (drop - 128), low != 0 || high << (256 - drop) != 0),
@@ -219,12 +227,21 @@ impl Number for Wide {
 
     fn below(self) -> f64 {
         let near = self.rounded();
-        if Self::of(near) > self { near.next_down() } else { near }
+        if Self::of(near) > self {
+            near.next_down()
+        } else {
+            near
+        }
     }
 
     fn bits(self) -> [u64; 4] {
         let (high, low) = (if self.0.eq_zero() { f256::ZERO } else { self.0 }).to_bits();
-        [(high >> 64) as u64, high as u64, (low >> 64) as u64, low as u64]
+        [
+            (high >> 64) as u64,
+            high as u64,
+            (low >> 64) as u64,
+            low as u64,
+        ]
     }
 
     fn index(self) -> usize {
@@ -342,12 +359,18 @@ mod tests {
             let (sin, cos) = x.sin_cos();
             assert!(near(sin * sin + cos * cos, Wide::ONE), "{x:?}");
             assert!(near(x.sinh().asinh(), x), "{x:?}");
-            assert!(near(x.sinh() * x.sinh() + Wide::ONE, x.cosh() * x.cosh()), "{x:?}");
+            assert!(
+                near(x.sinh() * x.sinh() + Wide::ONE, x.cosh() * x.cosh()),
+                "{x:?}"
+            );
             assert!(near(sin.atan2(cos).sin(), sin), "{x:?}");
         }
         let x = Wide::of(1.25);
         assert!(near(x.acosh().cosh(), x));
-        assert!(near(x.hypot(Wide::of(3.0)) * x.hypot(Wide::of(3.0)), Wide::of(10.5625)));
+        assert!(near(
+            x.hypot(Wide::of(3.0)) * x.hypot(Wide::of(3.0)),
+            Wide::of(10.5625)
+        ));
         assert!(near(Wide::of(-0.5).acos() * Wide::of(3.0), Wide::TAU));
         let third = Wide::nearest(&(Rational::ONE / Rational::from(3)));
         assert!(near(third * Wide::of(3.0), Wide::ONE));

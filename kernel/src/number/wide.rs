@@ -88,6 +88,9 @@ impl Scalar for Wide {
         Number::max(self, Self::ZERO).sqrt()
     }
     fn sin_cos(self) -> (Self, Self) {
+        if self.is_straight() {
+            return (self, Self::ONE - Self::HALF * self * self);
+        }
         let (sin, cos) = self.0.sin_cos();
         (Self(sin), Self(cos))
     }
@@ -131,6 +134,11 @@ impl Wide {
         };
         let significand = (UBig::from(high) << 128usize) + UBig::from(low);
         (sign, significand, exponent as isize)
+    }
+
+    /// Whether it is its own sine and tangent, to all digits: there the library's lose theirs.
+    fn is_straight(self) -> bool {
+        Number::abs(self) < Self(power(-120))
     }
 
     /// e^|x| - 1.
@@ -303,10 +311,14 @@ impl Number for Wide {
         (self * self + o * o).sqrt()
     }
     fn sin(self) -> Self {
-        Self(self.0.sin())
+        if self.is_straight() {
+            self
+        } else {
+            Self(self.0.sin())
+        }
     }
     fn cos(self) -> Self {
-        Self(self.0.cos())
+        self.sin_cos().1
     }
     fn sinh(self) -> Self {
         let e = self.growth();
@@ -320,10 +332,29 @@ impl Number for Wide {
         Self(self.0.acos())
     }
     fn atan(self) -> Self {
-        Self(self.0.atan())
+        if self.is_straight() {
+            self
+        } else {
+            Self(self.0.atan())
+        }
     }
     fn atan2(self, x: Self) -> Self {
-        Self(self.0.atan2(&x.0))
+        // By arcs of tangents up to one: the library's own is a quarter turn where both are equal.
+        let (along, across) = (Number::abs(x), Number::abs(self));
+        let quarter = Self::HALF * Self::PI;
+        let acute = if along == Self::ZERO && across == Self::ZERO {
+            Self::ZERO
+        } else if across <= along {
+            (across / along).atan()
+        } else {
+            quarter - (along / across).atan()
+        };
+        let turned = if x.0.is_sign_negative() {
+            Self::PI - acute
+        } else {
+            acute
+        };
+        turned.copysign(self)
     }
     fn asinh(self) -> Self {
         let x = Number::abs(self);
@@ -374,6 +405,106 @@ mod tests {
         assert!(near(Wide::of(-0.5).acos() * Wide::of(3.0), Wide::TAU));
         let third = Wide::nearest(&(Rational::ONE / Rational::from(3)));
         assert!(near(third * Wide::of(3.0), Wide::ONE));
+    }
+
+    /// Where the functions of doubles and of wide numbers are held against each other: special
+    /// values, and ordinary ones.
+    const PLACES: [f64; 17] = [
+        0.0, 1e-300, 1e-20, 1e-9, 0.25, 0.5, 0.7, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 10.0, 700.0,
+        1e9,
+    ];
+
+    fn agrees(a: Wide, b: f64, about: (&str, f64, f64)) {
+        let off = (a.rounded() - b).abs();
+        assert!(
+            off <= 4.0 * f64::EPSILON * b.abs(),
+            "{about:?}: {} {b}",
+            a.rounded()
+        );
+    }
+
+    #[test]
+    fn functions_of_one_number_are_those_of_doubles() {
+        for x in PLACES.into_iter().flat_map(|x| [x, -x]) {
+            let w = Wide::of(x);
+            let about = |name| (name, x, 0.0);
+            agrees(w.sin(), x.sin(), about("sin"));
+            agrees(w.cos(), x.cos(), about("cos"));
+            agrees(w.sin_cos().0, x.sin(), about("sin of both"));
+            agrees(w.sin_cos().1, x.cos(), about("cos of both"));
+            agrees(w.atan(), x.atan(), about("atan"));
+            agrees(w.asinh(), x.asinh(), about("asinh"));
+            agrees(w.floor(), x.floor(), about("floor"));
+            agrees(w.ceil(), x.ceil(), about("ceil"));
+            agrees(w.round(), x.round(), about("round"));
+            agrees(w.fract(), x.fract(), about("fract"));
+            if x.abs() <= 700.0 {
+                agrees(w.sinh(), x.sinh(), about("sinh"));
+                agrees(w.cosh(), x.cosh(), about("cosh"));
+            }
+            if x.abs() <= 1.0 {
+                agrees(w.acos(), x.acos(), about("acos"));
+            }
+            if x >= 0.0 {
+                agrees(w.sqrt(), x.sqrt(), about("sqrt"));
+            }
+            if x >= 1.0 {
+                agrees(w.acosh(), x.acosh(), about("acosh"));
+            }
+        }
+    }
+
+    #[test]
+    fn functions_of_two_numbers_are_those_of_doubles() {
+        let all = || PLACES.into_iter().flat_map(|x| [x, -x]);
+        for (x, y) in all().flat_map(|x| all().map(move |y| (x, y))) {
+            let (a, b) = (Wide::of(x), Wide::of(y));
+            agrees(a.atan2(b), x.atan2(y), ("atan2", x, y));
+            agrees(a.hypot(b), x.hypot(y), ("hypot", x, y));
+            agrees(Number::max(a, b), x.max(y), ("max", x, y));
+            agrees(Number::min(a, b), x.min(y), ("min", x, y));
+            if y != 0.0 && x.abs() < 1e3 && y.abs() > 1e-3 {
+                let most = 4.0 * f64::EPSILON * y.abs();
+                let off = (a.rem_euclid(b).rounded() - x.rem_euclid(y)).abs();
+                assert!(off <= most || y.abs() - off <= most, "rem_euclid {x} {y}");
+            }
+            if x > 1e-9 && x < 20.0 && y.abs() < 5.0 {
+                agrees(a.powf(b), x.powf(y), ("powf", x, y));
+            }
+            assert_eq!(a < b, x < y);
+            assert_eq!(a == b, x == y);
+        }
+        for n in -5..6 {
+            agrees(
+                Wide::of(1.75).powi(n),
+                1.75_f64.powi(n),
+                ("powi", 1.75, f64::from(n)),
+            );
+        }
+    }
+
+    #[test]
+    fn small_angles_are_those_of_their_series() {
+        for n in [-7, -20, -60, -110, -119, -121, -400] {
+            let x = Wide::of(1.3) * Wide(f256::TWO).powi(n);
+            let x2 = x * x;
+            let terms = |first: i32| {
+                // The terms of a series of alternating powers over factorials.
+                let mut term = Wide::ONE;
+                (0..20).fold(Wide::ZERO, |sum, k| {
+                    let now = sum + term;
+                    let n = Wide::whole(first + 2 * k);
+                    term *= -x2 / ((n + Wide::ONE) * (n + Wide::TWO));
+                    now
+                })
+            };
+            assert!(near(x.sin(), x * terms(1)), "sin {n}");
+            assert!(near(x.sin_cos().0, x * terms(1)), "sin {n}");
+            assert!(near(x.cos(), terms(0)), "cos {n}");
+            assert!(near((x.sin() / x.cos()).atan(), x), "atan {n}");
+            assert!(near(x.sin().atan2(x.cos()), x), "atan2 {n}");
+            assert!(near(x.sinh().asinh(), x), "asinh {n}");
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What goes to the terminal when something is to be said.
 
+use indicatif::{ProgressBar, ProgressStyle};
 use miette::{
     Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError,
     MietteSpanContents, SourceCode, SourceSpan, SpanContents,
@@ -20,6 +21,8 @@ pub enum Failure {
     Limit(Message),
     /// A self-check does not hold; the report says which.
     Check,
+    /// It was interrupted, and said how far it came.
+    Interrupted,
     /// Nobody reads the output any more.
     BrokenPipe,
 }
@@ -58,6 +61,7 @@ impl Failure {
             Self::Input(message) => (message, 2),
             Self::Limit(message) => (message, 3),
             Self::Check => return ExitCode::from(1),
+            Self::Interrupted => return ExitCode::from(130),
             Self::BrokenPipe => return ExitCode::SUCCESS,
         };
         say(&message.render());
@@ -85,6 +89,16 @@ pub fn notes(name: &str, text: &[u8], notes: &[Note]) {
         let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
         say(&format!("{name}:{line}: note: {}", note.text));
     }
+}
+
+/// A bar that shows how far some work is, on a terminal only.
+pub fn progress(of: u64) -> ProgressBar {
+    let bar = ProgressBar::new(of);
+    let look = "{wide_bar} {human_pos} of {human_len}, {eta} left{msg}";
+    if let Ok(style) = ProgressStyle::with_template(look) {
+        bar.set_style(style);
+    }
+    bar
 }
 
 /// How many close calls are listed before they are only counted.

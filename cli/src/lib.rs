@@ -5,6 +5,7 @@ mod arguments;
 pub mod checks;
 mod commands;
 mod diagnostics;
+pub mod fuzz;
 mod input;
 mod output;
 
@@ -25,6 +26,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Contours(options) => commands::contours::run(options),
         Command::Check(options) => commands::check::run(options),
         Command::Export(options) => commands::export::run(options),
+        Command::Fuzz(options) => commands::fuzz::run(options),
     };
     outcome.map_or_else(Failure::report, |()| ExitCode::SUCCESS)
 }

@@ -32,7 +32,7 @@ fn stdout(text: &str) -> Result<(), Failure> {
 }
 
 /// Writes beside the file and renames: nobody ever sees half of it.
-fn file(text: &str, path: &Path) -> io::Result<()> {
+pub fn file(text: &str, path: &Path) -> io::Result<()> {
     let target = target(path)?;
     if fs::metadata(&target).is_ok_and(|m| !m.is_file()) {
         // A device or a pipe must not be replaced.

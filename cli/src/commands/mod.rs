@@ -3,4 +3,5 @@
 pub mod check;
 pub mod contours;
 pub mod export;
+pub mod fuzz;
 pub mod info;

@@ -1,0 +1,90 @@
+//! The models written to a folder, with a manifest of their true measures.
+
+use super::Error;
+use super::model::Model;
+use super::state::{Item, State};
+use super::trial::{Measures, Outcome, Verdict};
+use super::write::{Format, ending, read, write};
+use crate::output;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// A folder for models.
+#[derive(Clone, Debug)]
+pub struct Archive {
+    folder: PathBuf,
+    formats: Vec<Format>,
+}
+
+/// The name of the manifest in the folder: JSON, a line for each model.
+pub const MANIFEST: &str = "manifest.jsonl";
+
+/// A line of the manifest.
+#[derive(Debug, Serialize)]
+struct Line<'a> {
+    profile: &'static str,
+    seed: u64,
+    /// `right`, and then there are measures; `refused` or `wrong`.
+    verdict: &'static str,
+    measures: Option<&'a Measures>,
+    files: Vec<Written>,
+}
+
+/// A file.
+#[derive(Debug, Serialize)]
+struct Written {
+    file: String,
+    /// Whether what is read from it is the model's tree to the last digit; a csg has its turns in
+    /// matrices.
+    same_tree: bool,
+}
+
+impl Archive {
+    /// Makes the folder, if it is not there.
+    pub fn new(folder: &Path, formats: &[Format]) -> Result<Self, Error> {
+        std::fs::create_dir_all(folder).map_err(|e| Error::file(folder, e))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            formats: formats.to_vec(),
+        })
+    }
+
+    /// Writes a model in every format; gives its line of the manifest.
+    pub fn put(&self, item: Item, model: &Model, outcome: &Outcome) -> Result<String, Error> {
+        let tree = |text: &str, format| read(text, format).map(|d| d.tree).ok();
+        let exact = tree(&write(model, Format::Json), Format::Json);
+        let mut files = Vec::new();
+        for &format in &self.formats {
+            let file = format!("{}-{}.{}", item.profile, item.seed, ending(format));
+            let path = self.folder.join(&file);
+            let text = write(model, format);
+            output::file(&text, &path).map_err(|e| Error::file(&path, e))?;
+            let same_tree = tree(&text, format) == exact;
+            files.push(Written { file, same_tree });
+        }
+        let (verdict, measures) = match &outcome.verdict {
+            Verdict::Right(measures) => ("right", Some(measures)),
+            Verdict::Refused(_) => ("refused", None),
+            Verdict::Wrong(_) => ("wrong", None),
+        };
+        let line = Line {
+            profile: item.profile.name(),
+            seed: item.seed,
+            verdict,
+            measures,
+            files,
+        };
+        serde_json::to_string(&line).map_err(|e| Error::file(&self.folder, e.into()))
+    }
+
+    /// Writes the manifest of all that is done.
+    pub fn finish(&self, state: &State) -> Result<(), Error> {
+        let path = self.folder.join(MANIFEST);
+        let mut text = String::new();
+        for line in state.tallies.values().flat_map(|t| t.lines.values()) {
+            text += line;
+            text.push('\n');
+        }
+        output::file(&text, &path).map_err(|e| Error::file(&path, e))
+    }
+}

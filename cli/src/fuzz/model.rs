@@ -1,0 +1,328 @@
+//! A model: a tree of operations on primitives as a description writes it, in doubles.
+//!
+//! It lies in one arena, children before their parents and the root last, so that models of any
+//! depth can be made, walked, changed and dropped without recursion.
+
+use super::random::Random;
+use serde::{Deserialize, Serialize};
+
+/// A primitive as a description gives it; lengths in the model's unit.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub enum Primitive {
+    /// A block with a corner at the origin and these edges along x, y and z.
+    Block([f64; 3]),
+    /// The half of that block where x/X + z/Z <= 1.
+    Wedge([f64; 3]),
+    /// A cylinder along z with its base at the origin.
+    Cylinder {
+        /// The radius.
+        r: f64,
+        /// The height.
+        h: f64,
+    },
+    /// A frustum of a cone along z with its base at the origin; a cone where `r2` is zero.
+    Frustum {
+        /// The radius at the base.
+        r1: f64,
+        /// The radius at the top.
+        r2: f64,
+        /// The height.
+        h: f64,
+    },
+    /// A sphere about the origin with this radius.
+    Sphere(f64),
+    /// A torus about the origin with axis z.
+    Torus {
+        /// The radius of the circle along which the tube runs.
+        major: f64,
+        /// The tube's radius.
+        minor: f64,
+    },
+}
+
+/// A coordinate axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+/// A step of a transform, in the frame around the node.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub enum Step {
+    /// A shift along x, y and z.
+    Shift([f64; 3]),
+    /// A turn about an axis through the origin, in degrees.
+    Turn(Axis, f64),
+}
+
+/// A regularised set operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub enum Operation {
+    /// What is in any child.
+    Union,
+    /// What is in every child.
+    Intersection,
+    /// What is in the first child and in no later one.
+    Difference,
+}
+
+/// The index of a node in its model.
+pub type NodeId = usize;
+
+/// What a node is.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub enum Kind {
+    /// A primitive.
+    Leaf(Primitive),
+    /// An operation on one child or more.
+    Operation(Operation, Vec<NodeId>),
+}
+
+/// A node.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Node {
+    /// What it is.
+    pub kind: Kind,
+    /// Where it is put: steps in the order in which they are made.
+    pub steps: Vec<Step>,
+}
+
+/// A tree. Every node but the root, which is the last one, is the child of exactly one other.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Model {
+    nodes: Vec<Node>,
+}
+
+/// What is met on the way through a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visit {
+    /// A node, before its children.
+    Enter(NodeId),
+    /// The operation between two of its children.
+    Between(NodeId),
+    /// An operation after its children.
+    Leave(NodeId),
+}
+
+impl Operation {
+    /// The operations.
+    pub const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
+}
+
+impl Axis {
+    /// The axes.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// One of them.
+    pub fn any(random: &mut Random) -> Self {
+        random.choose(&Self::ALL)
+    }
+
+    /// Its number, from 0.
+    pub fn index(self) -> usize {
+        match self {
+            Self::X => 0,
+            Self::Y => 1,
+            Self::Z => 2,
+        }
+    }
+
+    /// A vector along it.
+    pub fn vector(self, length: f64) -> [f64; 3] {
+        std::array::from_fn(|i| if i == self.index() { length } else { 0.0 })
+    }
+}
+
+impl Model {
+    /// A model of one primitive.
+    pub fn of(primitive: Primitive, steps: Vec<Step>) -> Self {
+        let mut model = Self::default();
+        model.leaf(primitive, steps);
+        model
+    }
+
+    /// Adds a primitive.
+    pub fn leaf(&mut self, primitive: Primitive, steps: Vec<Step>) -> NodeId {
+        let kind = Kind::Leaf(primitive);
+        self.nodes.push(Node { kind, steps });
+        self.nodes.len() - 1
+    }
+
+    /// Adds an operation on nodes that are there already, and have no parent yet.
+    pub fn operation(&mut self, op: Operation, of: Vec<NodeId>, steps: Vec<Step>) -> NodeId {
+        let kind = Kind::Operation(op, of);
+        self.nodes.push(Node { kind, steps });
+        self.nodes.len() - 1
+    }
+
+    /// An operation on whole models.
+    pub fn join(op: Operation, models: &[&Self], steps: Vec<Step>) -> Self {
+        let mut all = Self::default();
+        let roots = models.iter().map(|model| all.take_in(model)).collect();
+        all.operation(op, roots, steps);
+        all
+    }
+
+    /// Adds the nodes of another model; its root's index here.
+    fn take_in(&mut self, other: &Self) -> NodeId {
+        let before = self.nodes.len();
+        self.nodes.extend(other.nodes.iter().cloned());
+        for node in &mut self.nodes[before..] {
+            if let Kind::Operation(_, children) = &mut node.kind {
+                children.iter_mut().for_each(|child| *child += before);
+            }
+        }
+        self.nodes.len() - 1
+    }
+
+    /// All nodes, children before their parents.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// A node to be changed in place; its children must stay what they are.
+    pub fn node_mut(&mut self, id: NodeId) -> Option<&mut Node> {
+        self.nodes.get_mut(id)
+    }
+
+    /// The root; none of a model without nodes.
+    pub fn root(&self) -> Option<NodeId> {
+        self.nodes.len().checked_sub(1)
+    }
+
+    /// The nodes that are primitives.
+    pub fn leaves(&self) -> impl Iterator<Item = NodeId> {
+        let is_leaf = |id: &NodeId| matches!(self.nodes[*id].kind, Kind::Leaf(_));
+        (0..self.nodes.len()).filter(is_leaf)
+    }
+
+    /// The subtrees below the root; none of a primitive.
+    pub fn children(&self) -> Vec<Self> {
+        match self.nodes.last().map(|root| &root.kind) {
+            Some(Kind::Operation(_, children)) => {
+                children.iter().map(|&child| self.subtree(child)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// What hangs on a node.
+    pub fn subtree(&self, root: NodeId) -> Self {
+        let mut wanted = vec![false; self.nodes.len()];
+        wanted[root] = true;
+        for id in (0..=root).rev() {
+            if let (true, Kind::Operation(_, children)) = (wanted[id], &self.nodes[id].kind) {
+                children.iter().for_each(|&child| wanted[child] = true);
+            }
+        }
+        let mut part = Self::default();
+        let mut new_id = vec![0; self.nodes.len()];
+        for (id, node) in self.nodes.iter().enumerate().filter(|&(id, _)| wanted[id]) {
+            new_id[id] = part.nodes.len();
+            let mut node = node.clone();
+            if let Kind::Operation(_, children) = &mut node.kind {
+                children
+                    .iter_mut()
+                    .for_each(|child| *child = new_id[*child]);
+            }
+            part.nodes.push(node);
+        }
+        part
+    }
+
+    /// The model without some of its primitives. Operations that have no child left go, too, and
+    /// those with one child become that child.
+    pub fn without(&self, gone: impl Fn(NodeId) -> bool) -> Self {
+        let mut fewer = Self::default();
+        let mut new_id: Vec<Option<NodeId>> = vec![None; self.nodes.len()];
+        for (id, node) in self.nodes.iter().enumerate() {
+            let steps = node.steps.clone();
+            new_id[id] = match &node.kind {
+                Kind::Leaf(_) if gone(id) => None,
+                Kind::Leaf(primitive) => Some(fewer.leaf(*primitive, steps)),
+                Kind::Operation(op, children) => {
+                    let left: Vec<NodeId> = children.iter().filter_map(|&c| new_id[c]).collect();
+                    match left.as_slice() {
+                        [] => None,
+                        &[only] => {
+                            fewer.nodes[only].steps.extend(steps);
+                            Some(only)
+                        }
+                        _ => Some(fewer.operation(*op, left, steps)),
+                    }
+                }
+            };
+        }
+        fewer
+    }
+
+    /// Goes through the model from the root, as a description is written.
+    pub fn walk(&self, mut visit: impl FnMut(Visit)) {
+        let mut ahead: Vec<Visit> = self.root().map(Visit::Enter).into_iter().collect();
+        while let Some(next) = ahead.pop() {
+            visit(next);
+            if let Visit::Enter(id) = next
+                && let Kind::Operation(_, children) = &self.nodes[id].kind
+            {
+                ahead.push(Visit::Leave(id));
+                for (k, &child) in children.iter().enumerate().rev() {
+                    ahead.push(Visit::Enter(child));
+                    if k > 0 {
+                        ahead.push(Visit::Between(id));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn three() -> Model {
+        let ball = |r| Model::of(Primitive::Sphere(r), Vec::new());
+        let two = Model::join(Operation::Union, &[&ball(1.0), &ball(2.0)], Vec::new());
+        Model::join(Operation::Difference, &[&two, &ball(3.0)], Vec::new())
+    }
+
+    #[test]
+    fn a_walk_meets_everything_in_order() {
+        let mut met = Vec::new();
+        three().walk(|visit| met.push(visit));
+        use Visit::{Between, Enter, Leave};
+        let order = [
+            Enter(4),
+            Enter(2),
+            Enter(0),
+            Between(2),
+            Enter(1),
+            Leave(2),
+            Between(4),
+            Enter(3),
+            Leave(4),
+        ];
+        assert_eq!(met, order);
+        Model::default().walk(|visit| panic!("{visit:?}"));
+    }
+
+    #[test]
+    fn parts_of_a_model() {
+        let model = three();
+        let [two, ball] = model.children().try_into().unwrap();
+        assert_eq!((two.nodes().len(), ball.nodes().len()), (3, 1));
+        assert_eq!(model.subtree(2), two);
+        assert_eq!(model.leaves().collect::<Vec<_>>(), [0, 1, 3]);
+        // An operation on one child is that child, one on none is nothing.
+        let fewer = model.without(|id| id == 0);
+        assert_eq!((fewer.nodes().len(), fewer.leaves().count()), (3, 2));
+        let fewer = model.without(|id| id < 2);
+        assert_eq!((fewer.nodes().len(), fewer.leaves().count()), (1, 1));
+        assert_eq!(model.without(|_| true), Model::default());
+    }
+}

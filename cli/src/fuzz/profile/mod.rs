@@ -1,0 +1,113 @@
+//! Profiles: kinds of random trees, each hard in a way of its own.
+
+mod deep;
+mod grid;
+mod near;
+mod tangent;
+mod wide;
+
+use super::model::Model;
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A kind of random trees. A profile and a seed are one tree, on every machine.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Profile {
+    /// 2 to 8 primitives on a half-unit grid: coplanar, tangent and coaxial ones abound
+    Grid,
+    /// A tree of `grid` with primitives moved, turned or grown a little: coincidences just missed
+    Near,
+    /// Two primitives that touch, turned in common, cut by up to two others through the contact
+    Tangent,
+    /// A chain of 100 to 3000 levels of operations, each with a small primitive
+    Deep,
+    /// One operation on 8 to 1500 primitives, most in a lattice
+    Wide,
+}
+
+impl Profile {
+    /// Every profile.
+    pub const ALL: [Self; 5] = [
+        Self::Grid,
+        Self::Near,
+        Self::Tangent,
+        Self::Deep,
+        Self::Wide,
+    ];
+
+    /// The name, as it is written on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::Near => "near",
+            Self::Tangent => "tangent",
+            Self::Deep => "deep",
+            Self::Wide => "wide",
+        }
+    }
+
+    /// The tree of a seed.
+    pub fn model(self, seed: u64) -> Model {
+        match self {
+            Self::Grid => grid::model(seed),
+            Self::Near => near::model(seed),
+            Self::Tangent => tangent::model(seed),
+            Self::Deep => deep::model(seed),
+            Self::Wide => wide::model(seed),
+        }
+    }
+}
+
+impl fmt::Display for Profile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::write::{Format, read, write};
+
+    #[test]
+    fn every_seed_is_a_tree() {
+        for profile in Profile::ALL {
+            for seed in 0..200 {
+                let text = write(&profile.model(seed), Format::Json);
+                let tree = read(&text, Format::Json).expect(&text).tree;
+                let leaves = tree.leaves().count();
+                let most = match profile {
+                    Profile::Grid | Profile::Near => 8,
+                    Profile::Tangent => 4,
+                    Profile::Deep => 3001,
+                    Profile::Wide => 1501,
+                };
+                assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_seed_is_one_tree() {
+        for profile in Profile::ALL {
+            assert_eq!(profile.model(7), profile.model(7));
+            assert_ne!(profile.model(7), profile.model(8));
+        }
+    }
+
+    /// Seeds are cited: a change of a generator makes other trees of them.
+    #[test]
+    fn a_seed_stays_the_tree_that_it_is() {
+        let texts = Profile::ALL.map(|p| write(&p.model(3), Format::Padl));
+        insta::assert_snapshot!("small", texts[..3].join("\n"));
+        // Of the large ones only a sum.
+        let sum = |text: &String| {
+            text.bytes().fold(7u64, |sum, b| {
+                sum.wrapping_mul(31).wrapping_add(u64::from(b))
+            })
+        };
+        insta::assert_debug_snapshot!("large", [&texts[3], &texts[4]].map(sum));
+    }
+}

@@ -1,0 +1,141 @@
+//! One operation on many primitives.
+
+use crate::fuzz::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+use crate::fuzz::random::Random;
+
+/// What sets this profile's numbers apart.
+const PURPOSE: u64 = 4;
+
+/// How primitives are dealt to the cells of a lattice.
+struct Lattice {
+    cells: [usize; 3],
+    /// From cell to cell, in units.
+    pitch: f64,
+    /// One primitive for all cells; a new one for each where there is none.
+    common: Option<Primitive>,
+}
+
+/// A union of primitives in a lattice, a block with such a lattice taken away, or the intersection
+/// of large primitives about the middle. 10 to 60 as a rule, one in 10 of up to 300, one in 100 of
+/// up to 1500; 8 to 24 that intersect.
+pub(super) fn model(seed: u64) -> Model {
+    let random = &mut Random::apart(seed, PURPOSE);
+    match random.below(8) {
+        0 => intersection(random),
+        1..4 => lattice(random, Operation::Union),
+        _ => lattice(random, Operation::Difference),
+    }
+}
+
+fn lattice(random: &mut Random, op: Operation) -> Model {
+    let count = match random.below(100) {
+        0 => random.between(300, 1500),
+        1..10 => random.between(60, 300),
+        _ => random.between(10, 60),
+    };
+    let cells = cells(random, count);
+    let lattice = Lattice {
+        cells,
+        pitch: random.choose(&[1.0, 1.0, 1.5, 0.75]),
+        common: (!random.once_in(4)).then(|| small(random)),
+    };
+    let mut model = Model::default();
+    let mut children = Vec::new();
+    if op == Operation::Difference {
+        children.push(plate(random, &mut model, &lattice));
+    }
+    let left_out = random.choose(&[0, 0, 8]);
+    for cell in 0..cells.iter().product() {
+        if left_out == 0 || !random.once_in(left_out) || children.is_empty() {
+            children.push(in_cell(random, &mut model, &lattice, cell));
+        }
+    }
+    if children.len() < 2 {
+        children.push(in_cell(random, &mut model, &lattice, 0));
+    }
+    model.operation(op, children, Vec::new());
+    model
+}
+
+/// The sides of a lattice of about so many cells: in a row, in a plane, or in space.
+fn cells(random: &mut Random, count: usize) -> [usize; 3] {
+    let count = count as f64;
+    match random.below(8) {
+        0 => [count as usize, 1, 1],
+        1 | 2 => [count.cbrt().floor() as usize; 3],
+        _ => {
+            let side = count.sqrt() as usize;
+            [side, count as usize / side, 1]
+        }
+    }
+}
+
+/// A block with the lattice inside it, through its faces or flush with them.
+fn plate(random: &mut Random, model: &mut Model, lattice: &Lattice) -> NodeId {
+    let margin = random.choose(&[0.0, 0.5, 1.0]);
+    let size = lattice
+        .cells
+        .map(|n| (n - 1) as f64 * lattice.pitch + 2.0 * margin + 0.5);
+    let shift = Step::Shift([-margin, -margin, -random.choose(&[0.0, 0.25, 0.5])]);
+    model.leaf(Primitive::Block(size), vec![shift])
+}
+
+fn in_cell(random: &mut Random, model: &mut Model, lattice: &Lattice, cell: usize) -> NodeId {
+    let [nx, ny, _] = lattice.cells;
+    let at = [cell % nx, cell / nx % ny, cell / (nx * ny)].map(|i| i as f64 * lattice.pitch);
+    let primitive = lattice.common.unwrap_or_else(|| small(random));
+    let mut steps = Vec::new();
+    if lattice.common.is_none() && random.once_in(4) {
+        let degrees = random.choose(&[90.0, 45.0, 30.0]);
+        steps.push(Step::Turn(Axis::any(random), degrees));
+    }
+    steps.push(Step::Shift(at));
+    model.leaf(primitive, steps)
+}
+
+/// A primitive that reaches its neighbours in a lattice, stays away from them, or overlaps.
+fn small(random: &mut Random) -> Primitive {
+    let r = random.choose(&[0.25, 0.375, 0.5, 0.5, 0.625]);
+    let h = random.half(1, 3);
+    match random.below(8) {
+        0 | 1 => Primitive::Block([0; 3].map(|_| random.half(1, 3))),
+        2 => Primitive::Wedge([0; 3].map(|_| random.half(1, 2))),
+        3 | 4 => Primitive::Cylinder { r, h },
+        5 => Primitive::Frustum {
+            r1: r,
+            r2: random.choose(&[0.0, 0.5 * r]),
+            h,
+        },
+        6 => Primitive::Sphere(r),
+        _ => Primitive::Torus {
+            major: 0.375,
+            minor: random.choose(&[0.125, 0.25]),
+        },
+    }
+}
+
+/// Large primitives, each of which holds the middle.
+fn intersection(random: &mut Random) -> Model {
+    let mut model = Model::default();
+    let children = (0..random.between(8, 24))
+        .map(|_| {
+            let (primitive, middle) = match random.below(3) {
+                0 => (Primitive::Block([8.0; 3]), [-4.0; 3]),
+                1 => (Primitive::Sphere(4.0), [0.0; 3]),
+                _ => {
+                    let cylinder = Primitive::Cylinder { r: 4.0, h: 8.0 };
+                    (cylinder, [0.0, 0.0, -4.0])
+                }
+            };
+            let degrees = random.choose(&[0.0, 90.0, 45.0, 30.0, 17.0]);
+            let turn = Step::Turn(Axis::any(random), degrees);
+            let shift = [0; 3].map(|_| random.half(0, 8) - 2.0);
+            model.leaf(
+                primitive,
+                vec![Step::Shift(middle), turn, Step::Shift(shift)],
+            )
+        })
+        .collect();
+    model.operation(Operation::Intersection, children, Vec::new());
+    model
+}

@@ -1,0 +1,437 @@
+//! Many trees on many threads.
+
+use super::Error;
+use super::archive::Archive;
+use super::model::Model;
+use super::shrink::shrink;
+use super::state::{Finds, Item, State};
+use super::trial::{Outcome, Verdict, Wrong, reason};
+use super::worker::Examine;
+use super::write::{Format, write};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How a run is done, besides its plan.
+#[derive(Clone, Copy, Debug)]
+pub struct How<'a> {
+    /// How many threads there are.
+    pub threads: usize,
+    /// Set where the run is to stop.
+    pub stop: &'a AtomicBool,
+    /// The file in which the state is kept.
+    pub state: Option<&'a Path>,
+    /// The folder to which models are written.
+    pub archive: Option<&'a Archive>,
+}
+
+/// How often it is told how far the run is.
+const TELL: Duration = Duration::from_millis(100);
+
+/// How often the state is saved, and how many times longer than a save there is none.
+const SAVE: Duration = Duration::from_secs(5);
+const SAVING: u32 = 20;
+
+/// Of each kind and profile so many finds are made small, the first by seed; of refusals one.
+const SHRUNK: usize = 5;
+
+/// How many smaller trees are tried for a find; each that hangs takes the limit.
+const TRIES: usize = 1000;
+const TRIES_IN_TIME: usize = 30;
+
+/// What all threads share.
+#[derive(Clone, Copy)]
+struct Shared<'a> {
+    how: &'a How<'a>,
+    state: &'a Mutex<State>,
+}
+
+impl<'a> Shared<'a> {
+    /// No thread leaves the state half changed.
+    fn state(&self) -> MutexGuard<'a, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.how.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// Tries what is left of a plan, then makes small what failed, and gives what was found; less where
+/// it is stopped. `make` makes what examines trees, for each thread; `tell` is told how far it is.
+pub fn run<E: Examine>(
+    state: State,
+    how: &How<'_>,
+    make: impl Fn() -> E + Sync,
+    mut tell: impl FnMut(&State),
+) -> Result<State, Error> {
+    let shrink = state.plan.shrink;
+    let state = Mutex::new(state);
+    let shared = Shared { how, state: &state };
+    try_all(shared, &make, &mut tell)?;
+    if shrink && !shared.is_stopped() {
+        shrink_all(shared, &make, &mut tell)?;
+    }
+    Ok(state.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+fn try_all<E: Examine>(
+    shared: Shared<'_>,
+    make: &(impl Fn() -> E + Sync),
+    tell: &mut impl FnMut(&State),
+) -> Result<(), Error> {
+    let next = AtomicU64::new(0);
+    let left = {
+        let state = shared.state();
+        state.plan.trees().saturating_sub(state.done())
+    };
+    let work = |examiner: &mut E| -> Result<bool, Error> {
+        let Some((number, item)) = take(shared, &next) else {
+            return Ok(false);
+        };
+        let model = item.profile.model(item.seed);
+        let started = Instant::now();
+        let Some(outcome) = examiner.examine(&model).map_err(Error::Worker)? else {
+            return Ok(false);
+        };
+        let seconds = started.elapsed().as_secs_f64();
+        let line = match shared.how.archive {
+            Some(archive) => Some(archive.put(item, &model, &outcome)?),
+            None => None,
+        };
+        shared.state().record(number, outcome, seconds, line);
+        Ok(true)
+    };
+    // Few trees need few processes.
+    let threads = left.min(shared.how.threads as u64) as usize;
+    dispatch(shared, threads, make, &work, tell)
+}
+
+/// The next tree that is not done.
+fn take(shared: Shared<'_>, next: &AtomicU64) -> Option<(u64, Item)> {
+    loop {
+        let number = next.fetch_add(1, Ordering::Relaxed);
+        let state = shared.state();
+        let item = state.plan.item(number)?;
+        if !state.is_done(number) {
+            return Some((number, item));
+        }
+    }
+}
+
+/// Makes the first finds of each kind small.
+fn shrink_all<E: Examine>(
+    shared: Shared<'_>,
+    make: &(impl Fn() -> E + Sync),
+    tell: &mut impl FnMut(&State),
+) -> Result<(), Error> {
+    let jobs = jobs(&shared.state());
+    let next = AtomicUsize::new(0);
+    let work = |examiner: &mut E| -> Result<bool, Error> {
+        let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) else {
+            return Ok(false);
+        };
+        let small = job.small(examiner)?;
+        // One that was stopped is not as small as it gets.
+        if shared.is_stopped() {
+            return Ok(false);
+        }
+        job.put(&mut shared.state(), write(&small, Format::Padl));
+        Ok(true)
+    };
+    dispatch(
+        shared,
+        jobs.len().min(shared.how.threads),
+        make,
+        &work,
+        tell,
+    )
+}
+
+/// Lets threads work until there is no more work, and tells and saves meanwhile.
+fn dispatch<E: Examine>(
+    shared: Shared<'_>,
+    threads: usize,
+    make: &(impl Fn() -> E + Sync),
+    work: &(impl Fn(&mut E) -> Result<bool, Error> + Sync),
+    tell: &mut impl FnMut(&State),
+) -> Result<(), Error> {
+    let before = shared.state().seconds;
+    let started = Instant::now();
+    let error: Mutex<Option<Error>> = Mutex::new(None);
+    let failed = AtomicBool::new(false);
+    let busy = AtomicUsize::new(threads);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                let ended = until_done(make(), work, || {
+                    failed.load(Ordering::Relaxed) || shared.is_stopped()
+                });
+                if let (Err(e), Ok(mut error)) = (ended, error.lock()) {
+                    error.get_or_insert(e);
+                    failed.store(true, Ordering::Relaxed);
+                }
+                busy.fetch_sub(1, Ordering::Release);
+            });
+        }
+        let mut saver = Saver::default();
+        while busy.load(Ordering::Acquire) > 0 {
+            std::thread::sleep(TELL);
+            shared.state().seconds = before + started.elapsed().as_secs_f64();
+            tell(&shared.state());
+            if let Some(path) = shared.how.state.filter(|_| saver.is_due()) {
+                let copy = shared.state().clone();
+                if let (Err(e), Ok(mut error)) = (saver.save(&copy, path), error.lock()) {
+                    error.get_or_insert(e);
+                    failed.store(true, Ordering::Relaxed);
+                }
+            }
+        }
+    });
+    let mut state = shared.state();
+    state.seconds = before + started.elapsed().as_secs_f64();
+    if let Some(path) = shared.how.state {
+        state.save(path)?;
+    }
+    match error.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(()),
+    }
+}
+
+fn until_done<E>(
+    mut examiner: E,
+    work: &impl Fn(&mut E) -> Result<bool, Error>,
+    is_over: impl Fn() -> bool,
+) -> Result<(), Error> {
+    while !is_over() && work(&mut examiner)? {}
+    Ok(())
+}
+
+/// Saves the state now and then: the more seldom, the longer it takes.
+#[derive(Default)]
+struct Saver {
+    last: Option<(Instant, Duration)>,
+}
+
+impl Saver {
+    fn is_due(&mut self) -> bool {
+        let (last, took) = *self.last.get_or_insert((Instant::now(), Duration::ZERO));
+        last.elapsed() > SAVE.max(SAVING * took)
+    }
+
+    fn save(&mut self, state: &State, path: &Path) -> Result<(), Error> {
+        let started = Instant::now();
+        let saved = state.save(path);
+        self.last = Some((Instant::now(), started.elapsed()));
+        saved
+    }
+}
+
+/// In which way a tree fails.
+#[derive(Clone, Debug)]
+enum Way {
+    Wrong(Wrong),
+    Refused(String),
+}
+
+/// A find to be made small.
+#[derive(Clone, Debug)]
+struct Job {
+    item: Item,
+    way: Way,
+}
+
+/// The first finds of each kind and profile that are not small yet.
+fn jobs(state: &State) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for (&profile, tally) in &state.tallies {
+        let mut add = |finds: &Finds, most: usize, way: Way| {
+            let first = finds.iter().take(most);
+            for (&seed, _) in first.filter(|(_, find)| find.shrunk.is_none()) {
+                let (item, way) = (Item { profile, seed }, way.clone());
+                jobs.push(Job { item, way });
+            }
+        };
+        for (&kind, finds) in &tally.faults {
+            add(finds, SHRUNK, Way::Wrong(kind));
+        }
+        for (reason, finds) in &tally.refusals {
+            add(finds, 1, Way::Refused(reason.clone()));
+        }
+    }
+    jobs
+}
+
+impl Way {
+    fn is_that_of(&self, outcome: &Outcome) -> bool {
+        match (self, &outcome.verdict) {
+            (Self::Wrong(kind), Verdict::Wrong(faults)) => faults.iter().any(|f| f.kind == *kind),
+            (Self::Refused(kind), Verdict::Refused(text)) => reason(text) == *kind,
+            _ => false,
+        }
+    }
+}
+
+impl Job {
+    /// The smallest tree that fails in the same way.
+    fn small(&self, examiner: &mut impl Examine) -> Result<Model, Error> {
+        let tries = match self.way {
+            Way::Wrong(Wrong::Time) => TRIES_IN_TIME,
+            _ => TRIES,
+        };
+        let mut error = None;
+        let model = self.item.profile.model(self.item.seed);
+        let small = shrink(&model, tries, |smaller| match examiner.examine(smaller) {
+            Ok(Some(outcome)) => self.way.is_that_of(&outcome),
+            Ok(None) => false,
+            Err(e) => {
+                error.get_or_insert(e);
+                false
+            }
+        });
+        error.map_or(Ok(small), |e| Err(Error::Worker(e)))
+    }
+
+    fn put(&self, state: &mut State, text: String) {
+        let Some(tally) = state.tallies.get_mut(&self.item.profile) else {
+            return;
+        };
+        let finds = match &self.way {
+            Way::Wrong(kind) => tally.faults.get_mut(kind),
+            Way::Refused(reason) => tally.refusals.get_mut(reason),
+        };
+        if let Some(find) = finds.and_then(|finds| finds.get_mut(&self.item.seed)) {
+            find.shrunk = Some(text);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::model::{Kind, Primitive};
+    use crate::fuzz::profile::Profile;
+    use crate::fuzz::state::Plan;
+    use crate::fuzz::summary::Summary;
+    use crate::fuzz::trial::{Measures, Terms};
+    use std::io;
+
+    /// Holds that tori are wrong and spheres refused; stops after some trees.
+    struct Planted<'a> {
+        left: &'a AtomicUsize,
+        stop: &'a AtomicBool,
+    }
+
+    impl Examine for Planted<'_> {
+        fn examine(&mut self, model: &Model) -> io::Result<Option<Outcome>> {
+            let left = self.left.load(Ordering::Relaxed);
+            self.left.store(left.saturating_sub(1), Ordering::Relaxed);
+            if left == 0 {
+                self.stop.store(true, Ordering::Relaxed);
+                return Ok(None);
+            }
+            let has = |is: fn(&Primitive) -> bool| {
+                let leaf = |kind: &Kind| matches!(kind, Kind::Leaf(p) if is(p));
+                model.nodes().iter().any(|node| leaf(&node.kind))
+            };
+            if has(|p| matches!(p, Primitive::Torus { .. })) {
+                return Ok(Some(Outcome::wrong(Wrong::Volume, "a torus")));
+            }
+            let measures = Measures {
+                volume: 1.0,
+                area: 1.0,
+                bounds: None,
+                solids: 1,
+            };
+            let verdict = match has(|p| matches!(p, Primitive::Sphere(_))) {
+                true => Verdict::Refused(format!("{} nodes", model.nodes().len())),
+                false => Verdict::Right(measures),
+            };
+            Ok(Some(Outcome {
+                verdict,
+                close_calls: 1,
+            }))
+        }
+    }
+
+    fn plan() -> Plan {
+        Plan {
+            profiles: vec![Profile::Grid, Profile::Tangent],
+            from: 100,
+            count: 50,
+            terms: Terms::default(),
+            limit: 1.0,
+            shrink: true,
+            write: None,
+        }
+    }
+
+    /// A run that is stopped after so many questions.
+    fn ran(state: State, threads: usize, questions: usize, path: Option<&Path>) -> State {
+        let (stop, left) = (AtomicBool::new(false), AtomicUsize::new(questions));
+        let how = How {
+            threads,
+            stop: &stop,
+            state: path,
+            archive: None,
+        };
+        let make = || Planted {
+            left: &left,
+            stop: &stop,
+        };
+        run(state, &how, make, |_| {}).unwrap()
+    }
+
+    /// What does not depend on time.
+    fn told(state: &State) -> serde_json::Value {
+        let mut told = serde_json::to_value(Summary::of(state)).unwrap();
+        told.as_object_mut().unwrap().remove("seconds");
+        told
+    }
+
+    #[test]
+    fn the_summary_is_the_same_for_any_number_of_threads() {
+        let one = ran(State::new(plan()), 1, usize::MAX, None);
+        let many = ran(State::new(plan()), 7, usize::MAX, None);
+        assert_eq!(told(&one), told(&many));
+        let summary = Summary::of(&one);
+        assert!(summary.complete && summary.wrong > 0 && summary.trees == 100);
+    }
+
+    #[test]
+    fn failures_are_made_small() {
+        let state = ran(State::new(plan()), 2, usize::MAX, None);
+        for tally in state.tallies.values() {
+            let [(_, wrong)] = tally.faults.iter().collect::<Vec<_>>()[..] else {
+                panic!("{tally:?}")
+            };
+            let small = wrong.values().filter_map(|find| find.shrunk.as_deref());
+            let small: Vec<&str> = small.collect();
+            assert_eq!(small.len(), SHRUNK.min(wrong.len()));
+            assert!(small.iter().all(|text| text.starts_with("PART = (TOR(")));
+            let refused = tally.refusals.values().next().unwrap();
+            let text = refused.values().next().unwrap().shrunk.as_deref();
+            assert_eq!(text, Some("PART = (SPH(R=1))\n"));
+        }
+    }
+
+    #[test]
+    fn a_run_that_is_stopped_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state.json");
+        let whole = ran(State::new(plan()), 2, usize::MAX, None);
+        let half = ran(State::new(plan()), 2, 50, Some(&path));
+        assert!(half.done() > 0 && half.done() < 100);
+        // Stopped again, while failures are made small.
+        let read = State::load(&path, plan()).unwrap();
+        assert_eq!(told(&read), told(&half));
+        let most = ran(read, 2, 100, Some(&path));
+        assert_eq!(most.done(), 100);
+        assert_ne!(told(&most), told(&whole));
+        let read = State::load(&path, plan()).unwrap();
+        let rest = ran(read, 3, usize::MAX, Some(&path));
+        assert_eq!(told(&rest), told(&whole));
+    }
+}

@@ -1,0 +1,243 @@
+//! Making a failing tree as small as it still fails.
+
+use super::model::{Kind, Model, NodeId, Primitive, Step};
+use std::iter;
+
+/// A smaller tree for which `fails` holds as it does for this one; after `tries` questions the
+/// smallest so far.
+pub fn shrink(model: &Model, tries: usize, mut fails: impl FnMut(&Model) -> bool) -> Model {
+    let mut best = model.clone();
+    let mut left = tries;
+    loop {
+        let smaller = simpler(&best).find(|tree| {
+            left = left.saturating_sub(1);
+            left > 0 && fails(tree)
+        });
+        match smaller {
+            Some(tree) => best = tree,
+            None => return best,
+        }
+    }
+}
+
+/// The trees that are simpler than this one, large steps first: without half of its primitives, a
+/// quarter, and so on down to one; with a step of a transform less; with rounder numbers.
+pub fn simpler(model: &Model) -> impl Iterator<Item = Model> {
+    let leaves: Vec<NodeId> = model.leaves().collect();
+    let halves = iter::successors(Some(leaves.len() / 2), |n| (*n > 1).then_some(n / 2));
+    let fewer = halves.filter(|n| *n > 0).flat_map({
+        let leaves = leaves.clone();
+        move |n| {
+            let chunks: Vec<Vec<NodeId>> = leaves.chunks(n).map(<[NodeId]>::to_vec).collect();
+            chunks
+                .into_iter()
+                .map(|gone| model.without(|id| gone.binary_search(&id).is_ok()))
+        }
+    });
+    let unmoved = (0..model.nodes().len()).flat_map(move |id| without_steps(model, id));
+    let rounder = leaves.into_iter().flat_map(move |id| rounder(model, id));
+    let moved = (0..model.nodes().len()).flat_map(move |id| rounder_steps(model, id));
+    let all = fewer.chain(unmoved).chain(rounder).chain(moved);
+    let weight = weight(model);
+    all.filter(move |tree| tree.root().is_some() && self::weight(tree) < weight)
+}
+
+/// What grows less with every step: primitives, operations, steps, and digits.
+fn weight(model: &Model) -> [usize; 4] {
+    let steps = model.nodes().iter().map(|node| node.steps.len()).sum();
+    let digits = model.nodes().iter().map(digits).sum();
+    let leaves = model.leaves().count();
+    [leaves, model.nodes().len(), steps, digits]
+}
+
+fn digits(node: &super::model::Node) -> usize {
+    let count = |x: &f64| match *x {
+        0.0 => 0,
+        1.0 => 1,
+        _ => format!("{x}").len() + 1,
+    };
+    let steps = node.steps.iter().map(|step| match step {
+        Step::Shift(by) => by.iter().map(count).sum::<usize>(),
+        Step::Turn(_, degrees) => count(degrees),
+    });
+    let lengths = match &node.kind {
+        Kind::Leaf(primitive) => lengths(primitive).iter().map(count).sum(),
+        Kind::Operation(..) => 0,
+    };
+    lengths + steps.sum::<usize>()
+}
+
+/// The tree with one node's steps gone: all of them, or one.
+fn without_steps(model: &Model, id: NodeId) -> Vec<Model> {
+    let steps = &model.nodes()[id].steps;
+    let mut found = Vec::new();
+    if steps.len() > 1 {
+        found.push(with_steps(model, id, Vec::new()));
+    }
+    for gone in 0..steps.len() {
+        let mut fewer = steps.clone();
+        fewer.remove(gone);
+        found.push(with_steps(model, id, fewer));
+    }
+    found
+}
+
+/// The tree with simpler numbers in one node's steps: a coordinate zero or whole, two shifts as one.
+fn rounder_steps(model: &Model, id: NodeId) -> Vec<Model> {
+    let steps = &model.nodes()[id].steps;
+    let mut found = Vec::new();
+    for (k, step) in steps.iter().enumerate() {
+        let mut put = |step: Step| {
+            let mut changed = steps.clone();
+            changed[k] = step;
+            found.push(with_steps(model, id, changed));
+        };
+        match step {
+            Step::Shift(by) => {
+                for (i, x) in by.iter().enumerate() {
+                    for y in [0.0, 1.0, x.trunc()] {
+                        let mut by = *by;
+                        by[i] = y;
+                        put(Step::Shift(by));
+                    }
+                }
+            }
+            Step::Turn(axis, _) => put(Step::Turn(*axis, 90.0)),
+        }
+        if let [Step::Shift(a), Step::Shift(b)] = steps[k..(k + 2).min(steps.len())] {
+            let mut changed = steps.clone();
+            changed[k] = Step::Shift(std::array::from_fn(|i| a[i] + b[i]));
+            changed.remove(k + 1);
+            found.push(with_steps(model, id, changed));
+        }
+    }
+    found
+}
+
+fn with_steps(model: &Model, id: NodeId, steps: Vec<Step>) -> Model {
+    let mut changed = model.clone();
+    if let Some(node) = changed.node_mut(id) {
+        node.steps = steps;
+    }
+    changed
+}
+
+/// The tree with simpler lengths of one primitive, or a block in its place.
+fn rounder(model: &Model, id: NodeId) -> Vec<Model> {
+    let Kind::Leaf(primitive) = &model.nodes()[id].kind else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    let old = lengths(primitive);
+    for (i, x) in old.iter().enumerate() {
+        for y in [1.0, x.round(), (2.0 * x).round() / 2.0] {
+            let mut lengths = old.clone();
+            lengths[i] = y;
+            let changed = with_lengths(primitive, &lengths);
+            found.extend(changed.map(|primitive| {
+                let mut changed = model.clone();
+                if let Some(node) = changed.node_mut(id) {
+                    node.kind = Kind::Leaf(primitive);
+                }
+                changed
+            }));
+        }
+    }
+    found
+}
+
+fn lengths(primitive: &Primitive) -> Vec<f64> {
+    match *primitive {
+        Primitive::Block(size) | Primitive::Wedge(size) => size.to_vec(),
+        Primitive::Cylinder { r, h } => vec![r, h],
+        Primitive::Frustum { r1, r2, h } => vec![r1, r2, h],
+        Primitive::Sphere(r) => vec![r],
+        Primitive::Torus { major, minor } => vec![major, minor],
+    }
+}
+
+/// The same primitive with other lengths; none where these make no solid.
+fn with_lengths(primitive: &Primitive, lengths: &[f64]) -> Option<Primitive> {
+    let changed = match (primitive, lengths) {
+        (Primitive::Block(_), &[x, y, z]) => Primitive::Block([x, y, z]),
+        (Primitive::Wedge(_), &[x, y, z]) => Primitive::Wedge([x, y, z]),
+        (Primitive::Cylinder { .. }, &[r, h]) => Primitive::Cylinder { r, h },
+        (Primitive::Frustum { .. }, &[r1, r2, h]) => Primitive::Frustum { r1, r2, h },
+        (Primitive::Sphere(_), &[r]) => Primitive::Sphere(r),
+        (Primitive::Torus { .. }, &[major, minor]) => Primitive::Torus { major, minor },
+        _ => return None,
+    };
+    let sound = match changed {
+        Primitive::Frustum { r1, r2, h } => r1 > 0.0 && r2 >= 0.0 && h > 0.0,
+        Primitive::Torus { major, minor } => minor > 0.0 && major > minor,
+        _ => lengths.iter().all(|x| *x > 0.0),
+    };
+    sound.then_some(changed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::model::Operation;
+    use crate::fuzz::profile::Profile;
+    use crate::fuzz::write::{Format, read, write};
+
+    fn is_ball(node: &crate::fuzz::model::Node) -> bool {
+        matches!(node.kind, Kind::Leaf(Primitive::Sphere(_)))
+    }
+
+    #[test]
+    fn simpler_trees_are_trees() {
+        for seed in 0..20 {
+            for smaller in simpler(&Profile::Near.model(seed)) {
+                let text = write(&smaller, Format::Json);
+                assert!(read(&text, Format::Json).is_ok(), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_planted_failure_is_all_that_stays() {
+        let planted = |model: &Model| model.nodes().iter().any(is_ball);
+        let mut asked = 0;
+        let seeds = (0..60).filter(|&seed| planted(&Profile::Grid.model(seed)));
+        for seed in seeds {
+            let small = shrink(&Profile::Grid.model(seed), 10_000, |model| {
+                asked += 1;
+                planted(model)
+            });
+            assert_eq!(write(&small, Format::Padl), "PART = (SPH(R=1))\n");
+        }
+        assert!(asked > 0);
+    }
+
+    #[test]
+    fn two_out_of_a_long_chain() {
+        let planted = |model: &Model| {
+            let balls = model.nodes().iter().filter(|node| is_ball(node));
+            let less = |kind: &Kind| matches!(kind, Kind::Operation(Operation::Difference, _));
+            balls.count() >= 2 && model.nodes().iter().any(|node| less(&node.kind))
+        };
+        let mut asked = 0;
+        let small = shrink(&Profile::Deep.model(5), 2000, |model| {
+            asked += 1;
+            planted(model)
+        });
+        assert_eq!(
+            write(&small, Format::Padl),
+            "PART = ((SPH(R=1)\n DIF SPH(R=1)))\n"
+        );
+        assert!(asked < 400, "{asked}");
+    }
+
+    #[test]
+    fn questions_end() {
+        let mut asked = 0;
+        let model = Profile::Wide.model(0);
+        let same = shrink(&model, 10, |_| {
+            asked += 1;
+            false
+        });
+        assert!(same == model && asked < 10);
+    }
+}

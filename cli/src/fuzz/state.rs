@@ -1,0 +1,307 @@
+//! What a run is, and how far it is: kept in a file, so that it goes on where it ended.
+
+use super::Error;
+use super::profile::Profile;
+use super::trial::{Outcome, Terms, Verdict, Wrong, reason};
+use crate::output;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What to try.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Plan {
+    /// The profiles.
+    pub profiles: Vec<Profile>,
+    /// The first seed.
+    pub from: u64,
+    /// How many seeds of each profile.
+    pub count: u64,
+    /// What is asked of each tree.
+    pub terms: Terms,
+    /// After how many seconds a tree is given up.
+    pub limit: f64,
+    /// Whether what failed is made small.
+    pub shrink: bool,
+    /// Where models are written, and how.
+    pub write: Option<Writing>,
+}
+
+/// Where models are written, and how.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Writing {
+    /// The folder.
+    pub folder: PathBuf,
+    /// The endings of the files.
+    pub formats: Vec<String>,
+}
+
+/// A tree of a plan.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub struct Item {
+    /// Its profile.
+    pub profile: Profile,
+    /// Its seed.
+    pub seed: u64,
+}
+
+/// Something that is wrong or refused.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Find {
+    /// What was said.
+    pub text: String,
+    /// The smallest tree found that fails in the same way, in padl.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shrunk: Option<String>,
+}
+
+/// Finds by seed.
+pub type Finds = BTreeMap<u64, Find>;
+
+/// What was found in the trees of a profile.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Tally {
+    /// How many trees were right.
+    pub right: u64,
+    /// How many were refused.
+    pub refused: u64,
+    /// How many were wrong.
+    pub wrong: u64,
+    /// The refused ones, by reason.
+    pub refusals: BTreeMap<String, Finds>,
+    /// The wrong ones, by kind; one tree may be of several.
+    pub faults: BTreeMap<Wrong, Finds>,
+    /// How many trees had close calls.
+    pub close_trees: u64,
+    /// How many close calls there were.
+    pub close_calls: u64,
+    /// The lines of the manifest, by seed, where models are written.
+    pub lines: BTreeMap<u64, String>,
+    /// How long all trials took, in seconds.
+    pub seconds: f64,
+    /// The seed that took longest, and its seconds.
+    pub longest: Option<(u64, f64)>,
+    /// Those that took longer than [`SLOW`], by seed, in seconds.
+    pub slow: BTreeMap<u64, f64>,
+}
+
+/// Trials that take longer are named, in seconds.
+pub const SLOW: f64 = 2.0;
+
+/// The schema of the file.
+const SCHEMA: &str = "premio.fuzz.state/1";
+
+/// How far a run is.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct State {
+    schema: String,
+    /// What to try.
+    pub plan: Plan,
+    /// The items that are done: from the first, included, to the second, not included.
+    done: BTreeMap<u64, u64>,
+    /// What was found.
+    pub tallies: BTreeMap<Profile, Tally>,
+    /// How long it took so far, in seconds.
+    pub seconds: f64,
+}
+
+impl Plan {
+    /// How many trees there are.
+    pub fn trees(&self) -> u64 {
+        self.count.saturating_mul(self.profiles.len() as u64)
+    }
+
+    /// The tree of a number from 0: seed by seed, every profile of each.
+    pub fn item(&self, number: u64) -> Option<Item> {
+        let profiles = self.profiles.len() as u64;
+        let profile = *self.profiles.get(number.checked_rem(profiles)? as usize)?;
+        let seed = self.from.wrapping_add(number / profiles);
+        (number < self.trees()).then_some(Item { profile, seed })
+    }
+}
+
+impl Tally {
+    /// How many trees were tried.
+    pub fn trees(&self) -> u64 {
+        self.right + self.refused + self.wrong
+    }
+
+    fn record(&mut self, seed: u64, outcome: Outcome, seconds: f64) {
+        let find = |text| Find { text, shrunk: None };
+        match outcome.verdict {
+            Verdict::Right(_) => self.right += 1,
+            Verdict::Refused(text) => {
+                self.refused += 1;
+                let finds = self.refusals.entry(reason(&text)).or_default();
+                finds.insert(seed, find(text));
+            }
+            Verdict::Wrong(faults) => {
+                self.wrong += 1;
+                for fault in faults {
+                    let finds = self.faults.entry(fault.kind).or_default();
+                    finds.entry(seed).or_insert_with(|| find(fault.text));
+                }
+            }
+        }
+        self.close_trees += u64::from(outcome.close_calls > 0);
+        self.close_calls += outcome.close_calls as u64;
+        self.seconds += seconds;
+        if self.longest.is_none_or(|(_, longest)| seconds > longest) {
+            self.longest = Some((seed, seconds));
+        }
+        if seconds > SLOW {
+            self.slow.insert(seed, seconds);
+        }
+    }
+}
+
+impl State {
+    /// A run that has not begun.
+    pub fn new(plan: Plan) -> Self {
+        let tallies = plan.profiles.iter().map(|&p| (p, Tally::default()));
+        Self {
+            schema: SCHEMA.to_owned(),
+            tallies: tallies.collect(),
+            plan,
+            done: BTreeMap::new(),
+            seconds: 0.0,
+        }
+    }
+
+    /// The run of a file; a new one where there is no file.
+    pub fn load(path: &Path, plan: Plan) -> Result<Self, Error> {
+        let text = match fs::read_to_string(path) {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Self::new(plan)),
+            read => read.map_err(|source| Error::file(path, source))?,
+        };
+        let name = || path.display().to_string();
+        let state: Self = serde_json::from_str(&text).map_err(|source| Error::NoState {
+            path: name(),
+            source,
+        })?;
+        if state.schema != SCHEMA || state.plan != plan {
+            return Err(Error::OtherPlan { path: name() });
+        }
+        Ok(state)
+    }
+
+    /// Saves the run: the whole file, or none.
+    pub fn save(&self, path: &Path) -> Result<(), Error> {
+        let text = serde_json::to_string(self).map_err(|e| Error::file(path, e.into()))?;
+        output::file(&text, path).map_err(|source| Error::file(path, source))
+    }
+
+    /// How many trees are done.
+    pub fn done(&self) -> u64 {
+        self.done.iter().map(|(from, to)| to - from).sum()
+    }
+
+    /// Whether a tree is done.
+    pub fn is_done(&self, number: u64) -> bool {
+        let before = self.done.range(..=number).next_back();
+        before.is_some_and(|(_, &to)| number < to)
+    }
+
+    /// Puts down the outcome of a tree, how long it took, and its line of the manifest.
+    pub fn record(&mut self, number: u64, outcome: Outcome, seconds: f64, line: Option<String>) {
+        let Some(Item { profile, seed }) = self.plan.item(number) else {
+            return;
+        };
+        if self.is_done(number) {
+            return;
+        }
+        let tally = self.tallies.entry(profile).or_default();
+        tally.record(seed, outcome, seconds);
+        tally.lines.extend(line.map(|line| (seed, line)));
+        self.mark(number);
+    }
+
+    /// Ranges that meet become one.
+    fn mark(&mut self, number: u64) {
+        let to = self.done.remove(&(number + 1)).unwrap_or(number + 1);
+        match self.done.range_mut(..number).next_back() {
+            Some((_, end)) if *end == number => *end = to,
+            _ => {
+                self.done.insert(number, to);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan() -> Plan {
+        Plan {
+            profiles: vec![Profile::Near, Profile::Grid],
+            from: 5,
+            count: 10,
+            terms: Terms::default(),
+            limit: 20.0,
+            shrink: false,
+            write: None,
+        }
+    }
+
+    fn outcome(number: u64) -> Outcome {
+        match number % 3 {
+            0 => Outcome::wrong(Wrong::Volume, "off by 0.1"),
+            1 => Outcome {
+                verdict: Verdict::Refused(format!("near ({number}, 1, 2)")),
+                close_calls: 2,
+            },
+            _ => Outcome::wrong(Wrong::Time, "none"),
+        }
+    }
+
+    #[test]
+    fn items_are_all_profiles_of_each_seed() {
+        let item = |n| plan().item(n).map(|i| (i.profile, i.seed));
+        assert_eq!(item(0), Some((Profile::Near, 5)));
+        assert_eq!(item(1), Some((Profile::Grid, 5)));
+        assert_eq!(item(19), Some((Profile::Grid, 14)));
+        assert_eq!(item(20), None);
+    }
+
+    #[test]
+    fn any_order_is_the_same_state() {
+        let (mut a, mut b) = (State::new(plan()), State::new(plan()));
+        for n in 0..20 {
+            a.record(n, outcome(n), 1.0, None);
+            b.record((n * 7 + 3) % 20, outcome((n * 7 + 3) % 20), 1.0, None);
+            assert_eq!((a.done(), b.done()), (n + 1, n + 1));
+        }
+        // A second time is no other tree.
+        b.record(3, outcome(3), 1.0, None);
+        for state in [&mut a, &mut b] {
+            assert_eq!(state.done, BTreeMap::from([(0, 20)]));
+            for tally in state.tallies.values_mut() {
+                tally.longest = None;
+            }
+        }
+        assert_eq!(a, b);
+        assert!(a.is_done(19) && !a.is_done(20));
+    }
+
+    #[test]
+    fn a_file_is_read_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state.json");
+        let mut state = State::load(&path, plan()).unwrap();
+        assert_eq!(state, State::new(plan()));
+        for n in [4, 9, 5, 12] {
+            state.record(n, outcome(n), 0.1 + n as f64, Some("{}".to_owned()));
+        }
+        state.save(&path).unwrap();
+        assert_eq!(State::load(&path, plan()).unwrap(), state);
+        let other = Plan { from: 6, ..plan() };
+        let error = State::load(&path, other).unwrap_err();
+        assert!(matches!(error, Error::OtherPlan { .. }));
+        fs::write(&path, "{").unwrap();
+        let error = State::load(&path, plan()).unwrap_err();
+        assert!(matches!(error, Error::NoState { .. }));
+    }
+}

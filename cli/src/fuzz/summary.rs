@@ -1,0 +1,213 @@
+//! What a run found, as JSON (premio.fuzz/1) and as text.
+//!
+//! All but the times is the same for any number of threads: finds are in the order of profiles,
+//! kinds and seeds, and the times stand apart, at the end.
+
+use super::profile::Profile;
+use super::state::{Find, Finds, Plan, State, Tally};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The summary.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    schema: &'static str,
+    plan: Plan,
+    /// Whether every tree of the plan was tried.
+    pub complete: bool,
+    /// How many trees were tried.
+    pub trees: u64,
+    right: u64,
+    refused: u64,
+    /// How many were wrong.
+    pub wrong: u64,
+    profiles: BTreeMap<Profile, Part>,
+    seconds: Seconds,
+}
+
+/// What was found in a profile.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Part {
+    trees: u64,
+    right: u64,
+    refused: u64,
+    wrong: u64,
+    refusals: Vec<Kind>,
+    faults: Vec<Kind>,
+    close_calls: CloseCalls,
+}
+
+/// The finds of one kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Kind {
+    kind: String,
+    count: usize,
+    finds: Vec<Seed>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Seed {
+    seed: u64,
+    #[serde(flatten)]
+    find: Find,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct CloseCalls {
+    trees: u64,
+    decisions: u64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Seconds {
+    /// From the beginning to the end.
+    total: f64,
+    profiles: BTreeMap<Profile, Times>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Times {
+    /// Of all trials together.
+    trials: f64,
+    longest: Option<Timed>,
+    slow: Vec<Timed>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Timed {
+    seed: u64,
+    seconds: f64,
+}
+
+impl Summary {
+    /// The summary of a run.
+    pub fn of(state: &State) -> Self {
+        let sum = |of: fn(&Tally) -> u64| state.tallies.values().map(of).sum();
+        let tallies = || state.tallies.iter();
+        Self {
+            schema: "premio.fuzz/1",
+            plan: state.plan.clone(),
+            complete: state.done() == state.plan.trees(),
+            trees: sum(Tally::trees),
+            right: sum(|t| t.right),
+            refused: sum(|t| t.refused),
+            wrong: sum(|t| t.wrong),
+            profiles: tallies().map(|(p, t)| (*p, Part::of(t))).collect(),
+            seconds: Seconds {
+                total: state.seconds,
+                profiles: tallies().map(|(p, t)| (*p, Times::of(t))).collect(),
+            },
+        }
+    }
+}
+
+impl Part {
+    fn of(tally: &Tally) -> Self {
+        let refusals = tally.refusals.iter().map(|(k, f)| Kind::of(k, f));
+        let faults = tally.faults.iter().map(|(k, f)| Kind::of(k.name(), f));
+        Self {
+            trees: tally.trees(),
+            right: tally.right,
+            refused: tally.refused,
+            wrong: tally.wrong,
+            refusals: refusals.collect(),
+            faults: faults.collect(),
+            close_calls: CloseCalls {
+                trees: tally.close_trees,
+                decisions: tally.close_calls,
+            },
+        }
+    }
+}
+
+impl Kind {
+    fn of(kind: &str, finds: &Finds) -> Self {
+        let each = finds.iter().map(|(&seed, find)| Seed {
+            seed,
+            find: find.clone(),
+        });
+        Self {
+            kind: kind.to_owned(),
+            count: finds.len(),
+            finds: each.collect(),
+        }
+    }
+}
+
+impl Times {
+    fn of(tally: &Tally) -> Self {
+        let timed = |(seed, seconds)| Timed { seed, seconds };
+        Self {
+            trials: tally.seconds,
+            longest: tally.longest.map(timed),
+            slow: tally.slow.iter().map(|(&s, &t)| timed((s, t))).collect(),
+        }
+    }
+}
+
+/// How many finds of a kind are listed in the text; JSON has all.
+const LISTED: usize = 10;
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{:<8} {:>9} {:>9} {:>8} {:>6} {:>12} {:>9}",
+            "profile", "trees", "right", "refused", "wrong", "close calls", "seconds"
+        )?;
+        for (profile, part) in &self.profiles {
+            writeln!(
+                f,
+                "{:<8} {:>9} {:>9} {:>8} {:>6} {:>12} {:>9.1}",
+                profile.name(),
+                part.trees,
+                part.right,
+                part.refused,
+                part.wrong,
+                part.close_calls.decisions,
+                self.seconds.profiles.get(profile).map_or(0.0, |t| t.trials),
+            )?;
+        }
+        for (profile, part) in &self.profiles {
+            list(f, *profile, "wrong", &part.faults)?;
+            list(f, *profile, "refused", &part.refusals)?;
+        }
+        for (profile, times) in &self.seconds.profiles {
+            for Timed { seed, seconds } in times.slow.iter().take(LISTED) {
+                writeln!(f, "{profile} {seed}: {seconds:.1} s")?;
+            }
+        }
+        let left = match self.complete {
+            true => "",
+            false => ", not all of the plan",
+        };
+        let Self {
+            trees,
+            refused,
+            wrong,
+            ..
+        } = self;
+        let total = self.seconds.total;
+        writeln!(
+            f,
+            "{trees} trees in {total:.1} s: {wrong} wrong, {refused} refused{left}"
+        )
+    }
+}
+
+fn list(f: &mut fmt::Formatter<'_>, profile: Profile, what: &str, kinds: &[Kind]) -> fmt::Result {
+    for Kind { kind, count, finds } in kinds {
+        writeln!(f, "\n{profile}, {what}: {kind}: {count}")?;
+        for Seed { seed, find } in finds.iter().take(LISTED) {
+            writeln!(f, "  {profile} {seed}: {}", find.text)?;
+            for line in find.shrunk.iter().flat_map(|text| text.lines()) {
+                writeln!(f, "    {line}")?;
+            }
+        }
+        if *count > LISTED {
+            writeln!(f, "  and {} more", count - LISTED)?;
+        }
+    }
+    Ok(())
+}

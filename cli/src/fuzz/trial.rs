@@ -1,0 +1,409 @@
+//! What one tree is put to: it is evaluated, the boundary keeps its rules, the volume is the rays',
+//! nothing is outside the box, the volumes of unions and intersections add up, and, if asked for, no
+//! piece of a view is wrong and no contour missing.
+
+use super::model::{Kind, Model, Operation};
+use super::write::{Format, read, write};
+use crate::checks::{Checker, Report, Subject, views};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::ErrorKind;
+use premio_kernel::brep::mass::{bounds, mass};
+use serde::{Deserialize, Serialize};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The views that are counted again: a perspective, a general orthographic one, and those along the
+/// axes, where limbs lie on edges and on one another.
+pub const VIEWS: [&str; 5] = [
+    "perspective 3",
+    "orthographic 1",
+    "along x",
+    "along y",
+    "along z",
+];
+
+/// What to ask of a tree, and how.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Terms {
+    /// The resolution, in the model's unit; by default 1e-11 of its size.
+    pub resolution: Option<f64>,
+    /// Whether close calls are refused.
+    pub strict: bool,
+    /// Whether views are counted again.
+    pub views: bool,
+    /// How many rays measure the volume.
+    pub rays: u32,
+}
+
+/// What can be wrong with an answer.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Wrong {
+    /// The boundary breaks a rule.
+    Topology,
+    /// The volume is not the rays'.
+    Volume,
+    /// Rays meet material outside the box.
+    Bounds,
+    /// The volumes of A or B, A and B, A less B, A, and B do not add up.
+    Sums,
+    /// A piece of a view has another number of faces before it.
+    View,
+    /// A contour of a view is missing.
+    Contours,
+    /// The evaluation, or a check, panicked.
+    Panic,
+    /// The process ended without an answer: its stack or its memory ran over, or it was aborted.
+    Crash,
+    /// No answer within the limit of time.
+    Time,
+    /// What the generator made is not read.
+    Input,
+}
+
+impl Wrong {
+    /// The name, as it is written in the summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Topology => "topology",
+            Self::Volume => "volume",
+            Self::Bounds => "bounds",
+            Self::Sums => "sums",
+            Self::View => "view",
+            Self::Contours => "contours",
+            Self::Panic => "panic",
+            Self::Crash => "crash",
+            Self::Time => "time",
+            Self::Input => "input",
+        }
+    }
+}
+
+/// Something wrong, with the figures.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Fault {
+    /// Of what kind.
+    pub kind: Wrong,
+    /// What is wrong.
+    pub text: String,
+}
+
+/// The measures of a solid.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Measures {
+    /// The volume, in cubic units.
+    pub volume: f64,
+    /// The area, in square units.
+    pub area: f64,
+    /// The least and the greatest coordinates; none of an empty solid.
+    pub bounds: Option<[[f64; 3]; 2]>,
+    /// How many solids there are that do not hang together.
+    pub solids: usize,
+}
+
+/// How a trial ended.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// All that was asked holds.
+    Right(Measures),
+    /// There is no answer, for this reason.
+    Refused(String),
+    /// An answer, or none, that is wrong in these ways.
+    Wrong(Vec<Fault>),
+}
+
+/// The outcome of a trial.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Outcome {
+    /// How it ended.
+    pub verdict: Verdict,
+    /// How many decisions were close.
+    pub close_calls: usize,
+}
+
+impl Outcome {
+    /// One thing wrong.
+    pub fn wrong(kind: Wrong, text: impl Into<String>) -> Self {
+        let text = text.into();
+        Self {
+            verdict: Verdict::Wrong(vec![Fault { kind, text }]),
+            close_calls: 0,
+        }
+    }
+}
+
+/// A refusal's text without places and other numbers: what kind of refusal it is.
+pub fn reason(text: &str) -> String {
+    let mut kind = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(|c: char| c.is_ascii_digit()) {
+        // A sign belongs to the number, and so does an exponent.
+        let start = rest[..at].trim_end_matches(['-', '+', '.']).len();
+        let number = |c: char| c.is_ascii_digit() || matches!(c, '.' | 'e' | '-' | '+');
+        let end = rest[at..]
+            .find(|c| !number(c))
+            .map_or(rest.len(), |n| at + n);
+        // A full stop that ends a sentence is not the number's.
+        let end = at + rest[at..end].trim_end_matches(['.', '-', '+', 'e']).len();
+        kind += &rest[..start];
+        kind.push('#');
+        rest = &rest[end..];
+    }
+    kind += rest;
+    kind.replace("(#, #, #)", "a point")
+}
+
+/// The same as [`examine`], with a panic as something wrong.
+pub fn guarded(model: &Model, terms: &Terms) -> Outcome {
+    catch_unwind(AssertUnwindSafe(|| examine(model, terms)))
+        .unwrap_or_else(|panic| Outcome::wrong(Wrong::Panic, message(&*panic)))
+}
+
+/// What a panic said.
+pub fn message(panic: &(dyn Any + Send)) -> &str {
+    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
+        (Some(text), _) => text,
+        (None, Some(text)) => text,
+        (None, None) => "of an unknown kind",
+    }
+}
+
+/// Puts a tree to the trial.
+pub fn examine(model: &Model, terms: &Terms) -> Outcome {
+    let description = match read(&write(model, Format::Json), Format::Json) {
+        Ok(description) => description,
+        Err(error) if error.kind == ErrorKind::Limit => return refused(error.to_string(), 0),
+        Err(error) => return Outcome::wrong(Wrong::Input, error.to_string()),
+    };
+    let evaluation = match evaluate(&description.tree, &options(terms)) {
+        Ok(evaluation) => evaluation,
+        Err(error) => return refused(error.to_string(), 0),
+    };
+    let close_calls = evaluation.decisions.close_calls.len();
+    if terms.strict && close_calls > 0 {
+        let text = "decisions close to the resolution, under --strict";
+        return refused(text.to_owned(), close_calls);
+    }
+    let checker = Checker::new(&description.tree, &evaluation);
+    let mut report = checker.solid(terms.rays as usize);
+    if terms.views && report.holds() {
+        let all = views::around(&evaluation.bounds);
+        let wanted = all.iter().filter(|v| VIEWS.contains(&v.name.as_str()));
+        let checks = wanted.flat_map(|v| checker.view(&v.name, &v.camera));
+        report.checks.extend(checks);
+    }
+    let mut faults = faults(&report);
+    faults.extend(sums(model, &evaluation, terms));
+    let verdict = match faults.is_empty() {
+        true => Verdict::Right(measures(&evaluation)),
+        false => Verdict::Wrong(faults),
+    };
+    Outcome {
+        verdict,
+        close_calls,
+    }
+}
+
+fn refused(text: String, close_calls: usize) -> Outcome {
+    Outcome {
+        verdict: Verdict::Refused(text),
+        close_calls,
+    }
+}
+
+fn options(terms: &Terms) -> EvaluationOptions {
+    EvaluationOptions {
+        resolution: terms.resolution,
+        ..EvaluationOptions::default()
+    }
+}
+
+fn faults(report: &Report) -> Vec<Fault> {
+    let fault = |check: &crate::checks::Check| {
+        let kind = match check.subject {
+            Subject::Topology => Wrong::Topology,
+            Subject::Volume => Wrong::Volume,
+            Subject::Bounds => Wrong::Bounds,
+            Subject::View(_) => Wrong::View,
+            Subject::Contours(_) => Wrong::Contours,
+        };
+        let text = format!("{}: {}", check.subject, check.detail);
+        Fault { kind, text }
+    };
+    report.failures().map(fault).collect()
+}
+
+fn measures(evaluation: &Evaluation) -> Measures {
+    let (brep, mass) = (&evaluation.brep, mass(&evaluation.brep));
+    let bounds = (!brep.topology.faces.is_empty()).then(|| bounds(brep));
+    Measures {
+        volume: mass.volume,
+        area: mass.area,
+        bounds: bounds.map(|b| [b.min, b.max]),
+        solids: brep.topology.solids.len(),
+    }
+}
+
+/// Trees with more primitives are not taken apart to see whether volumes add up.
+const FEW: usize = 12;
+
+/// How far the sums of volumes may be off, as a part of the cube of the size, besides what the
+/// resolution makes of the surface: volumes are good to about ten digits.
+const OFF: f64 = 1.0 / (1u64 << 31) as f64;
+
+/// Where the volumes of the root's first child A, of what is done to it B, and of their union,
+/// intersection and difference do not add up.
+fn sums(model: &Model, evaluation: &Evaluation, terms: &Terms) -> Option<Fault> {
+    if model.leaves().count() > FEW {
+        return None;
+    }
+    let Kind::Operation(op, _) = model.nodes().last()?.kind else {
+        return None;
+    };
+    let [a, b] = sides(model, op)?;
+    let join = |op| Model::join(op, &[&a, &b], Vec::new());
+    let known = mass(&evaluation.brep).volume;
+    let volume = |of: Operation| match of == op {
+        true => Some(known),
+        false => volume(&join(of), terms),
+    };
+    let [both, either, rest] = [
+        volume(Operation::Intersection)?,
+        volume(Operation::Union)?,
+        volume(Operation::Difference)?,
+    ];
+    let [of_a, of_b] = [self::volume(&a, terms)?, self::volume(&b, terms)?];
+    let off = [either + both - of_a - of_b, rest + both - of_a];
+    let size = size(&[&a, &b]).max(evaluation.bounds.diagonal());
+    let allowed = size.powi(3) * OFF + 6.0 * size.powi(2) * evaluation.resolution;
+    off.iter().any(|v| v.abs() > allowed).then(|| Fault {
+        kind: Wrong::Sums,
+        text: format!(
+            "A {of_a}, B {of_b}, A or B {either}, A and B {both}, A less B {rest}: off by {off:?}"
+        ),
+    })
+}
+
+/// The root's first child, and its other children as one: joined, or what they have in common.
+fn sides(model: &Model, op: Operation) -> Option<[Model; 2]> {
+    let mut children = model.children();
+    if children.len() < 2 {
+        return None;
+    }
+    let others: Vec<Model> = children.split_off(1);
+    let others: Vec<&Model> = others.iter().collect();
+    let b = match (op, others.as_slice()) {
+        (_, [only]) => (*only).clone(),
+        (Operation::Intersection, _) => Model::join(op, &others, Vec::new()),
+        _ => Model::join(Operation::Union, &others, Vec::new()),
+    };
+    Some([children.pop()?, b])
+}
+
+/// The volume of a tree; none where it is refused, which is for a trial of its own.
+fn volume(model: &Model, terms: &Terms) -> Option<f64> {
+    let tree = read(&write(model, Format::Json), Format::Json).ok()?.tree;
+    let part = evaluate(&tree, &options(terms)).ok()?;
+    Some(mass(&part.brep).volume)
+}
+
+/// The diagonal of a box that holds these models, or more.
+fn size(models: &[&Model]) -> f64 {
+    let boxes = models.iter().filter_map(|model| {
+        let text = write(model, Format::Json);
+        let tree = read(&text, Format::Json).ok()?.tree;
+        let material = premio_csg::rays::Material::of(&tree);
+        Some(*material.bounds())
+    });
+    let all = boxes.reduce(|a, b| a.hull(&b)).map(|b| b.diagonal());
+    all.filter(|d| d.is_finite()).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::model::{Primitive, Step};
+
+    const TERMS: Terms = Terms {
+        resolution: None,
+        strict: false,
+        views: false,
+        rays: 2000,
+    };
+
+    fn two(op: Operation, apart: f64) -> Model {
+        let block = Model::of(Primitive::Block([1.0; 3]), Vec::new());
+        let other = Model::of(
+            Primitive::Block([1.0; 3]),
+            vec![Step::Shift([apart, 0.0, 0.0])],
+        );
+        Model::join(op, &[&block, &other], Vec::new())
+    }
+
+    #[test]
+    fn a_right_answer_has_its_measures() {
+        let outcome = examine(&two(Operation::Union, 0.5), &TERMS);
+        let Verdict::Right(measures) = outcome.verdict else {
+            panic!("{outcome:?}")
+        };
+        assert!((measures.volume - 1.5).abs() < 1e-12 && (measures.area - 8.0).abs() < 1e-12);
+        assert_eq!(measures.bounds, Some([[0.0; 3], [1.5, 1.0, 1.0]]));
+        assert_eq!(measures.solids, 1);
+        let empty = examine(&two(Operation::Intersection, 2.0), &TERMS);
+        let Verdict::Right(measures) = empty.verdict else {
+            panic!("{empty:?}")
+        };
+        assert_eq!((measures.bounds, measures.solids), (None, 0));
+    }
+
+    #[test]
+    fn close_calls_are_counted_and_refused_if_strict() {
+        let model = two(Operation::Union, 1.0 + 1e-10);
+        let outcome = examine(&model, &TERMS);
+        assert!(matches!(outcome.verdict, Verdict::Right(_)) && outcome.close_calls > 0);
+        let strict = Terms {
+            strict: true,
+            ..TERMS
+        };
+        assert!(matches!(
+            examine(&model, &strict).verdict,
+            Verdict::Refused(_)
+        ));
+    }
+
+    #[test]
+    fn what_is_beyond_a_limit_is_refused() {
+        let coarse = Terms {
+            resolution: Some(1.0),
+            ..TERMS
+        };
+        let refused = examine(&two(Operation::Union, 0.5), &coarse);
+        assert!(
+            matches!(refused.verdict, Verdict::Refused(_)),
+            "{refused:?}"
+        );
+    }
+
+    #[test]
+    fn views_are_counted_again() {
+        let views = Terms {
+            views: true,
+            ..TERMS
+        };
+        let outcome = examine(&two(Operation::Difference, 0.5), &views);
+        assert!(matches!(outcome.verdict, Verdict::Right(_)), "{outcome:?}");
+    }
+
+    #[test]
+    fn a_reason_has_no_numbers() {
+        let text = "what meets near (1.250000, -0.5, 2) is known to 1.2e-9 only: surfaces";
+        assert_eq!(
+            reason(text),
+            "what meets near a point is known to # only: surfaces"
+        );
+        assert_eq!(reason("3."), "#.");
+        assert_eq!(reason("no number"), "no number");
+        assert_eq!(reason("angles (0.1, -2e-3)"), "angles (#, #)");
+    }
+}

@@ -1,11 +1,14 @@
-//! Examines random trees by the thousand; prints the failing ones with their trees, and a summary.
+//! Examines the random trees of `premio fuzz` with what takes longer, too: counting all pieces, and
+//! casting rays on meshes. Prints the failing ones with their trees, and a summary.
 //!
 //! `cargo run --release -p premio-tests --example trees -- --from 0 --count 10000 --views`
 
 use clap::Parser;
+use premio::fuzz::model::Model;
+use premio::fuzz::profile::Profile;
+use premio::fuzz::shrink::shrink;
 use premio_tests::examine::{Depth, VIEWS, examine};
-use premio_tests::random::{simpler, tree};
-use serde_json::Value;
+use premio_tests::random::text;
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 use std::process::{Command, ExitCode, Stdio};
@@ -16,6 +19,9 @@ use std::time::{Duration, Instant};
 /// Examines random trees.
 #[derive(Debug, Parser)]
 struct Arguments {
+    /// The kind of trees.
+    #[arg(long, value_enum, default_value_t = Profile::Grid)]
+    profile: Profile,
     /// The first seed.
     #[arg(long, default_value_t = 0)]
     from: u64,
@@ -37,9 +43,9 @@ struct Arguments {
     /// Make each failing tree as small as it fails in the same way.
     #[arg(long)]
     shrink: bool,
-    /// Examine this tree alone, in this process.
+    /// Examine the tree on standard input alone, in this process.
     #[arg(long)]
-    tree: Option<String>,
+    one: bool,
 }
 
 /// What took longer is named in the summary.
@@ -55,8 +61,8 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     // Panics are caught and counted.
     std::panic::set_hook(Box::new(|_| {}));
-    if let Some(tree) = &arguments.tree {
-        return one(tree, &arguments);
+    if arguments.one {
+        return one(&arguments);
     }
     let started = Instant::now();
     let next = AtomicU64::new(arguments.from);
@@ -95,12 +101,12 @@ fn work(arguments: &Arguments, next: &AtomicU64, summary: &Mutex<Summary>) {
             return;
         }
         let started = Instant::now();
-        let mut json = tree(seed);
-        let mut wrong = in_a_process(&json, arguments);
+        let mut model = arguments.profile.model(seed);
+        let mut wrong = in_a_process(&model, arguments);
         let time = started.elapsed();
         if arguments.shrink && !wrong.is_empty() {
-            json = shrunk(json, &wrong, arguments);
-            wrong = in_a_process(&json, arguments);
+            model = shrunk(&model, &wrong, arguments);
+            wrong = in_a_process(&model, arguments);
         }
         let Ok(mut summary) = summary.lock() else {
             return;
@@ -109,6 +115,7 @@ fn work(arguments: &Arguments, next: &AtomicU64, summary: &Mutex<Summary>) {
             summary.slow.push((seed, time));
         }
         if !wrong.is_empty() {
+            let json = text(&model);
             say(&format!("seed {seed}\n  {}\n  {json}", wrong.join("\n  ")));
         }
         for text in wrong {
@@ -124,46 +131,38 @@ fn kind(text: &str) -> &str {
 }
 
 /// A smaller tree that is wrong in the same way as far as the first thing goes.
-fn shrunk(mut tree: Value, wrong: &[String], arguments: &Arguments) -> Value {
-    let Some(first) = wrong.first().map(|text| kind(text)) else {
-        return tree;
-    };
-    loop {
-        let smaller = simpler(&tree).into_iter().find(|tree| {
-            let found = in_a_process(tree, arguments);
-            found
-                .iter()
-                .any(|text| kind(text) == first && !text.contains("tree:"))
-        });
-        match smaller {
-            Some(smaller) => tree = smaller,
-            None => return tree,
-        }
-    }
+fn shrunk(model: &Model, wrong: &[String], arguments: &Arguments) -> Model {
+    let first = wrong.first().map(|text| kind(text));
+    shrink(model, TRIES, |smaller| {
+        let found = in_a_process(smaller, arguments);
+        found.iter().any(|text| Some(kind(text)) == first)
+    })
 }
 
+/// How many smaller trees are tried.
+const TRIES: usize = 1000;
+
 /// Examines one tree in a process of its own, which may hang, overflow its stack or eat memory.
-fn in_a_process(tree: &Value, arguments: &Arguments) -> Vec<String> {
+fn in_a_process(model: &Model, arguments: &Arguments) -> Vec<String> {
     let mut command = Command::new(std::env::current_exe().unwrap_or_default());
-    command.args([
-        "--tree",
-        &tree.to_string(),
-        "--rays",
-        &arguments.rays.to_string(),
-    ]);
+    command.args(["--one", "--rays", &arguments.rays.to_string()]);
     if arguments.views {
         command.arg("--views");
     }
-    command.stdout(Stdio::piped()).stderr(Stdio::null());
-    match run(command, Duration::from_secs(arguments.limit)) {
+    command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    command.stderr(Stdio::null());
+    match run(command, &text(model), Duration::from_secs(arguments.limit)) {
         Ok(lines) => lines,
         Err(error) => vec![format!("process: {error}")],
     }
 }
 
-fn run(mut command: Command, limit: Duration) -> io::Result<Vec<String>> {
+fn run(mut command: Command, tree: &str, limit: Duration) -> io::Result<Vec<String>> {
     let started = Instant::now();
     let mut child = command.spawn()?;
+    if let Some(mut input) = child.stdin.take() {
+        input.write_all(tree.as_bytes())?;
+    }
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
@@ -186,12 +185,16 @@ fn run(mut command: Command, limit: Duration) -> io::Result<Vec<String>> {
 }
 
 /// The child's part.
-fn one(tree: &str, arguments: &Arguments) -> ExitCode {
+fn one(arguments: &Arguments) -> ExitCode {
+    let mut tree = String::new();
+    if io::stdin().read_to_string(&mut tree).is_err() {
+        return ExitCode::FAILURE;
+    }
     let depth = Depth {
         rays: arguments.rays,
         views: if arguments.views { &VIEWS } else { &[] },
     };
-    for text in examine(tree, depth) {
+    for text in examine(&tree, depth) {
         // One line each; a pipe holds that much.
         say(&text
             .replace('\n', " ")

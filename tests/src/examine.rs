@@ -5,6 +5,7 @@
 use crate::cast::Cast;
 use nalgebra::Point3;
 use premio::checks::{Checker, views};
+use premio::fuzz::trial::message;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::brep::locate::{FaceLocator, Place};
@@ -17,15 +18,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// A perspective, a general orthographic and the axis views: along the axes limbs lie on edges and
-/// on one another.
-pub const VIEWS: [&str; 5] = [
-    "perspective 3",
-    "orthographic 1",
-    "along x",
-    "along y",
-    "along z",
-];
+pub use premio::fuzz::trial::VIEWS;
 
 /// The place in a piece that is asked first for what lies before it, as a part of its range.
 const COUNTED_AT: f64 = 0.47;
@@ -72,14 +65,6 @@ pub fn examine_within(json: &str, depth: Depth, limit: Duration) -> Vec<String> 
 pub fn examine(json: &str, depth: Depth) -> Vec<String> {
     let work = AssertUnwindSafe(|| examine_unguarded(json, depth));
     catch_unwind(work).unwrap_or_else(|panic| vec![format!("panic: {}", message(&*panic))])
-}
-
-fn message(panic: &(dyn std::any::Any + Send)) -> &str {
-    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
-        (Some(text), _) => text,
-        (None, Some(text)) => text,
-        (None, None) => "of an unknown kind",
-    }
 }
 
 fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {

@@ -36,7 +36,7 @@ pub fn write(model: &Model, format: Format) -> String {
     text
 }
 
-/// Reads a text that [`write`] made.
+/// Reads a text that [`write()`] made.
 pub fn read(text: &str, format: Format) -> Result<Description, ReadError> {
     reader::read("model", text.as_bytes(), format, &Options::default())
 }

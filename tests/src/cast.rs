@@ -13,7 +13,6 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::ray::Ray;
 use premio_csg::boundary::Evaluation;
-use premio_kernel::brep::mass::mass;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::SurfaceKind;
@@ -121,7 +120,7 @@ impl Cast {
 
     /// What is wrong with the mesh: it is watertight, and encloses the volume but for its distance.
     pub fn faults(&self, evaluation: &Evaluation) -> Option<String> {
-        let exact = mass(&evaluation.brep);
+        let exact = evaluation.mass();
         let volume = self.mesh.volume();
         if !self.mesh.is_watertight() {
             return Some("mesh: not watertight".to_owned());

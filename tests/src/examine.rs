@@ -86,7 +86,8 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     }
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(depth.rays);
-    if !depth.views.is_empty() && report.holds() {
+    let drawn = !evaluation.is_beyond_doubles();
+    if drawn && !depth.views.is_empty() && report.holds() {
         let all = views::around(&evaluation.bounds);
         let cast = Cast::of(&evaluation);
         match &cast {

@@ -4,8 +4,7 @@ use crate::random::tree;
 use crate::signature::Signature;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::check::check;
-use premio_kernel::brep::mass::{Mass, mass};
+use premio_kernel::brep::mass::Mass;
 use serde_json::{Value, json};
 
 /// How far volumes and areas may be apart, as a part of those of the greatest part.
@@ -147,12 +146,12 @@ pub fn side(tree: &Value) -> Result<Side, String> {
     let tree = read.map_err(|error| error.to_string())?.tree;
     let part: Evaluation =
         evaluate(&tree, &EvaluationOptions::default()).map_err(|e| e.to_string())?;
-    if let Some(defect) = check(&part.brep, part.resolution).first() {
+    if let Some(defect) = part.violations().first() {
         return Err(format!("{defect:?}"));
     }
     Ok(Side {
         signature: Signature::of(&part.brep),
-        mass: mass(&part.brep),
+        mass: part.mass(),
         close: !part.decisions.close_calls.is_empty(),
     })
 }

@@ -2,8 +2,6 @@
 
 use premio_csg::boundary::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::check::check;
-use premio_kernel::brep::mass::mass;
 
 /// Two solids in PADL, with `D` by how much they miss the coincidence.
 #[derive(Clone, Copy, Debug)]
@@ -138,8 +136,8 @@ fn volume_of(text: &str) -> Result<f64, String> {
     let tree = read("part", text.as_bytes(), Format::Padl, &Options::default());
     let tree = tree.map_err(|error| error.to_string())?.tree;
     let part = evaluate(&tree, &EvaluationOptions::default()).map_err(|error| error.to_string())?;
-    match check(&part.brep, part.resolution).first() {
+    match part.violations().first() {
         Some(defect) => Err(format!("{defect:?}")),
-        None => Ok(mass(&part.brep).volume),
+        None => Ok(part.mass().volume),
     }
 }

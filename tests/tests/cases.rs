@@ -6,8 +6,7 @@
 
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, Options, read};
-use premio_kernel::brep::check::check;
-use premio_kernel::brep::mass::{bounds, mass};
+use premio_kernel::brep::mass::bounds;
 use premio_tests::examine::within;
 use premio_tests::formula::Definitions;
 use serde::Deserialize;
@@ -117,7 +116,7 @@ fn compare(case: &Case, answer: &Answer, description: &Description) -> Vec<Strin
     };
     let mut wrong = measures(case, answer, &evaluation);
     wrong.extend(counts(answer, &evaluation));
-    let violations = check(&evaluation.brep, evaluation.resolution);
+    let violations = evaluation.violations();
     wrong.extend(violations.iter().map(ToString::to_string));
     let calls = &evaluation.decisions.close_calls;
     if calls.is_empty() == answer.close_calls {
@@ -134,7 +133,7 @@ fn measures(case: &Case, answer: &Answer, evaluation: &Evaluation) -> Vec<String
     for definition in &case.given {
         known.define(definition).unwrap();
     }
-    let found = mass(&evaluation.brep);
+    let found = evaluation.mass();
     let mut wrong = Vec::new();
     let mut near = |what: &str, found: f64, expected: f64, slack: f64| {
         let off = (found - expected).abs();

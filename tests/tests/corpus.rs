@@ -4,7 +4,6 @@
 use premio::checks::{Checker, Subject};
 use premio_csg::boundary::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::mass::mass;
 use premio_tests::examine::within;
 use serde::Deserialize;
 use serde_json::Value;
@@ -85,7 +84,7 @@ fn wrong(
     };
     let evaluation = evaluate(&description.tree, &how).map_err(|e| e.to_string())?;
     if let Some((volume, slack)) = expected {
-        let found = mass(&evaluation.brep).volume;
+        let found = evaluation.mass().volume;
         if (found - volume).abs() > slack || found.is_nan() {
             return Err(format!("volume {found} for {volume} ± {slack:e}"));
         }

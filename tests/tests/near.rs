@@ -4,7 +4,6 @@
 
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::check::check;
 use premio_kernel::number::sign::CloseCall;
 use premio_tests::random::tree;
 
@@ -65,7 +64,7 @@ fn near_misses_are_close_calls_on_either_side() {
             if part.decisions.close_calls.is_empty() == close {
                 wrong.push(format!("{name} at {gap}: {:?}", part.decisions.close_calls));
             }
-            for defect in check(&part.brep, part.resolution) {
+            for defect in part.violations() {
                 wrong.push(format!("{name} at {gap}: {defect:?}"));
             }
         }

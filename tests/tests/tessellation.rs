@@ -4,7 +4,6 @@
 use premio::checks::views;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::mass::mass;
 use premio_kernel::tessellation::{Accuracy, tessellate};
 use premio_tests::cast::Cast;
 use premio_tests::random::tree;
@@ -29,7 +28,7 @@ fn fault(part: &Evaluation, deviation: f64) -> Option<String> {
         Ok(mesh) => mesh,
         Err(error) => return Some(error.to_string()),
     };
-    let exact = mass(&part.brep);
+    let exact = part.mass();
     let off = (mesh.volume() - exact.volume).abs();
     // Triangles that are off everywhere, by as much as they may be.
     if off.is_nan() || off > exact.area * deviation {

@@ -4,7 +4,6 @@
 use nalgebra::{Point3, Vector3};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::check::check;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -113,7 +112,7 @@ proptest! {
         let topology = &touching.brep.topology;
         prop_assert_eq!(topology.touches.len(), 1, "{} {:?}", solid, at);
         prop_assert_eq!(topology.solids.len(), 2);
-        prop_assert!(check(&touching.brep, touching.resolution).is_empty());
+        prop_assert!(touching.violations().is_empty());
         let touch = &topology.touches[0];
         let expected = match place {
             Place::Face => (0, 0, 2),

@@ -13,8 +13,6 @@ pub use recount::{Recount, WrongPiece};
 use premio_csg::boundary::Evaluation;
 use premio_csg::rays::{Clearance, Estimate, Material};
 use premio_csg::tree::Tree;
-use premio_kernel::brep::check::check;
-use premio_kernel::brep::mass::mass;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::{Camera, contours};
@@ -110,7 +108,7 @@ impl<'a> Checker<'a> {
     }
 
     fn topology(&self) -> Check {
-        let violations = check(&self.evaluation.brep, self.evaluation.resolution);
+        let violations = self.evaluation.violations();
         let texts: Vec<String> = violations.iter().map(ToString::to_string).collect();
         Check {
             subject: Subject::Topology,
@@ -124,7 +122,7 @@ impl<'a> Checker<'a> {
     }
 
     fn volume(&self, rays: usize) -> Check {
-        let volume = mass(&self.evaluation.brep).volume;
+        let volume = self.evaluation.mass().volume;
         let mut estimate = self.material.volume(rays, 1);
         let mut off = self.deviation(&estimate, volume);
         // Chance alone exceeds the bound now and then, or misses a small part: fresh rays decide.
@@ -177,6 +175,13 @@ impl<'a> Checker<'a> {
         let Evaluation {
             brep, resolution, ..
         } = self.evaluation;
+        if self.evaluation.is_beyond_doubles() {
+            return vec![Check {
+                subject,
+                holds: true,
+                detail: "refused: surfaces lie closer together than doubles tell".to_owned(),
+            }];
+        }
         let seen = match contours(brep, camera, *resolution) {
             Ok(seen) => seen,
             Err(error) => {

@@ -6,11 +6,18 @@ use crate::{input, output};
 use premio_visibility::drawing::{self, Drawing, dxf, svg};
 use premio_visibility::{Contours, contours};
 
+/// Why there is no view of some parts.
+const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do not tell them apart: \
+    the boundary is known, but no view of it is reckoned with more digits";
+
 /// Runs the command.
 pub fn run(options: &ContoursOptions) -> Result<(), Failure> {
     let camera = input::camera(&options.camera)?;
     let part = input::part(&options.description)?;
     let evaluation = &part.evaluation;
+    if evaluation.is_beyond_doubles() {
+        return Err(Failure::limit(format!("{}: {UNSEEN}", part.name)));
+    }
     let mut seen = contours(&evaluation.brep, &camera, evaluation.resolution)
         .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))?;
     let to = options.output.as_deref();

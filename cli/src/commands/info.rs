@@ -4,7 +4,7 @@ use crate::arguments::InfoOptions;
 use crate::diagnostics::Failure;
 use crate::input::{self, Part};
 use crate::output;
-use premio_kernel::brep::mass::{bounds, mass};
+use premio_kernel::brep::mass::bounds;
 use premio_kernel::number::sign::Decisions;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -83,7 +83,7 @@ impl Info {
                 .entry(brep.surface(face).kind().name())
                 .or_default() += 1;
         }
-        let mass = mass(brep);
+        let mass = part.evaluation.mass();
         Self {
             schema: "premio.info/1",
             volume: mass.volume,

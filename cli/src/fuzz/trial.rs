@@ -7,7 +7,7 @@ use super::write::{Format, read, write};
 use crate::checks::{Checker, Report, Subject, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
-use premio_kernel::brep::mass::{bounds, mass};
+use premio_kernel::brep::mass::bounds;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -235,7 +235,7 @@ fn faults(report: &Report) -> Vec<Fault> {
 }
 
 fn measures(evaluation: &Evaluation) -> Measures {
-    let (brep, mass) = (&evaluation.brep, mass(&evaluation.brep));
+    let (brep, mass) = (&evaluation.brep, evaluation.mass());
     let bounds = (!brep.topology.faces.is_empty()).then(|| bounds(brep));
     Measures {
         volume: mass.volume,
@@ -263,7 +263,7 @@ fn sums(model: &Model, evaluation: &Evaluation, terms: &Terms) -> Option<Fault> 
     };
     let [a, b] = sides(model, op)?;
     let join = |op| Model::join(op, &[&a, &b], Vec::new());
-    let known = mass(&evaluation.brep).volume;
+    let known = evaluation.mass().volume;
     let volume = |of: Operation| match of == op {
         true => Some(known),
         false => volume(&join(of), terms),
@@ -305,7 +305,7 @@ fn sides(model: &Model, op: Operation) -> Option<[Model; 2]> {
 fn volume(model: &Model, terms: &Terms) -> Option<f64> {
     let tree = read(&write(model, Format::Json), Format::Json).ok()?.tree;
     let part = evaluate(&tree, &options(terms)).ok()?;
-    Some(mass(&part.brep).volume)
+    Some(part.mass().volume)
 }
 
 /// The diagonal of a box that holds these models, or more.

@@ -257,11 +257,10 @@ mod tests {
     use super::*;
     use crate::fuzz::profile::Profile;
     use premio_csg::boundary::evaluate;
-    use premio_kernel::brep::mass::mass;
 
     fn volume(description: &Description) -> f64 {
         let part = evaluate(&description.tree, &Default::default()).unwrap();
-        mass(&part.brep).volume
+        part.mass().volume
     }
 
     #[test]

@@ -22,12 +22,14 @@ mod wings;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
-use premio_kernel::brep::check::worst_gap;
+use premio_kernel::brep::check::{Violation, check, worst_gap};
+use premio_kernel::brep::mass::{Mass, mass};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, Zeros};
+use premio_kernel::number::wide::Wide;
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,15 +45,76 @@ pub struct EvaluationOptions {
 
 /// The boundary of a tree, and how it was decided.
 #[derive(Debug)]
-pub struct Evaluation<N: Number = f64> {
+pub struct Evaluation {
     /// The boundary.
-    pub brep: Brep<N>,
+    pub brep: Brep,
     /// How the decisions were made.
     pub decisions: Decisions,
     /// The resolution used, in the part's unit.
     pub resolution: f64,
     /// A box that holds the part.
     pub bounds: Box3,
+    /// The boundary before it was rounded, where doubles did not tell it.
+    wide: Option<Box<Brep<Wide>>>,
+}
+
+impl Evaluation {
+    /// Whether doubles did not tell the boundary: rounded to them, surfaces may lie on one another
+    /// that do not, so that nothing can be seen of it.
+    pub fn is_beyond_doubles(&self) -> bool {
+        self.wide.is_some()
+    }
+
+    /// The volume, the area and the centroid.
+    pub fn mass(&self) -> Mass {
+        match &self.wide {
+            Some(wide) => mass(wide),
+            None => mass(&self.brep),
+        }
+    }
+
+    /// The rules that the boundary breaks.
+    pub fn violations(&self) -> Vec<Violation> {
+        match &self.wide {
+            Some(wide) => check(wide, Wide::of(self.resolution)),
+            None => check(&self.brep, self.resolution),
+        }
+    }
+}
+
+/// The same, in numbers of one precision.
+struct Evaluated<N: Number> {
+    brep: Brep<N>,
+    decisions: Decisions,
+    resolution: f64,
+    bounds: Box3,
+}
+
+impl From<Evaluated<f64>> for Evaluation {
+    fn from(known: Evaluated<f64>) -> Self {
+        Self {
+            brep: known.brep,
+            decisions: known.decisions,
+            resolution: known.resolution,
+            bounds: known.bounds,
+            wide: None,
+        }
+    }
+}
+
+impl From<Evaluated<Wide>> for Evaluation {
+    fn from(known: Evaluated<Wide>) -> Self {
+        let mut decisions = known.decisions;
+        // All of them took more bits than doubles have.
+        decisions.refined += std::mem::take(&mut decisions.filtered);
+        Self {
+            brep: known.brep.in_doubles(),
+            decisions,
+            resolution: known.resolution,
+            bounds: known.bounds,
+            wide: Some(Box::new(known.brep)),
+        }
+    }
 }
 
 /// Why a tree has no boundary here.
@@ -112,25 +175,51 @@ pub enum EvaluationError {
     },
 }
 
+impl EvaluationError {
+    /// Whether numbers with more digits may tell what doubles do not.
+    fn is_of_doubles(&self) -> bool {
+        match self {
+            Self::Intersection(_)
+            | Self::Sheets { .. }
+            | Self::Assembly(_)
+            | Self::Vague { .. }
+            | Self::Resolution { .. } => true,
+            Self::Size | Self::Unproven | Self::Far { .. } => false,
+        }
+    }
+}
+
+/// Trees of no more primitives are evaluated with more digits where doubles do not tell: that takes
+/// some hundred times as long.
+const FEW: usize = 64;
+
 /// The boundary of the solid that a tree describes; empty for an empty solid.
+///
+/// In doubles, and where these do not tell what meets, in numbers of 237 bits by the same
+/// resolution.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     if options.zeros == Zeros::Proven {
         return Err(EvaluationError::Unproven);
     }
-    evaluate_over(tree, options)
+    match evaluated::<f64>(tree, options) {
+        Ok(known) => Ok(known.into()),
+        Err(error) if error.is_of_doubles() && tree.leaves().count() <= FEW => {
+            evaluated::<Wide>(tree, options).map(Evaluation::from)
+        }
+        Err(error) => Err(error),
+    }
 }
 
-/// The same, reckoned in numbers of some precision.
-pub fn evaluate_over<N: Number>(
+fn evaluated<N: Number>(
     tree: &Tree,
     options: &EvaluationOptions,
-) -> Result<Evaluation<N>, EvaluationError> {
+) -> Result<Evaluated<N>, EvaluationError> {
     let solids = halfspaces::Solids::of(tree);
     let size = solids.bounds.diagonal();
     if tree.is_empty() {
         let decisions = Judge::new(0.0).decisions();
         let (brep, bounds) = (Brep::default(), Box3::EMPTY);
-        return Ok(Evaluation {
+        return Ok(Evaluated {
             brep,
             decisions,
             resolution: 0.0,
@@ -164,7 +253,7 @@ pub fn evaluate_over<N: Number>(
         });
     }
     let decisions = judge.decisions();
-    Ok(Evaluation {
+    Ok(Evaluated {
         brep,
         decisions,
         resolution,

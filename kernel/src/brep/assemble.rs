@@ -95,8 +95,8 @@ pub enum AssemblyError {
     /// The loops of a surface cannot be sorted into faces.
     #[error(transparent)]
     Region(#[from] RegionError),
-    /// A shell encloses no volume.
-    #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume", place[0], place[1], place[2])]
+    /// A shell encloses no volume that is told from rounding.
+    #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume that is told from rounding", place[0], place[1], place[2])]
     Flat {
         /// A point of it.
         place: [f64; 3],

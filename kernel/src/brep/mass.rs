@@ -62,13 +62,38 @@ pub fn mass<N: Number>(brep: &Brep<N>) -> Mass {
     }
 }
 
-/// The signed volume that a shell encloses, negative for a void.
-pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId]) -> N {
+/// The signed volume that a shell encloses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosed<N: Number = f64> {
+    /// The volume, negative for a void, in cubic units.
+    pub volume: N,
+    /// What rounding may make of it.
+    pub noise: N,
+}
+
+impl<N: Number> Enclosed<N> {
+    /// Whether its sign is known.
+    pub fn is_clear(&self) -> bool {
+        self.volume.abs() > self.noise
+    }
+}
+
+/// How many times the rounding of its area times the part's size a volume may be off.
+const NOISE: f64 = 64.0;
+
+/// The signed volume that a shell encloses.
+pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId]) -> Enclosed<N> {
     let amid = &Amid::of(brep);
-    faces
-        .iter()
-        .map(|&f| brep.sense(f).sign::<N>() * moments(brep, f, amid)[1] / N::of(3.0))
-        .sum()
+    let (mut area, mut volume) = (N::ZERO, N::ZERO);
+    for &f in faces {
+        let m = moments(brep, f, amid);
+        area += m[0];
+        volume += brep.sense(f).sign::<N>() * m[1] / N::of(3.0);
+    }
+    Enclosed {
+        volume,
+        noise: N::of(NOISE) * N::ROUNDING * area * amid.size,
+    }
 }
 
 /// The areas of all faces, by id.

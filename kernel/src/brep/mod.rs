@@ -104,4 +104,24 @@ impl<N: Number> Brep<N> {
             Sense::Against => -n,
         }
     }
+
+    /// The same in doubles: what lies closer together than these tell has one place.
+    pub fn in_doubles(&self) -> Brep {
+        let g = &self.geometry;
+        let arc = |a: &Arc<N>| Arc {
+            curve: a.curve,
+            range: a.range.map(N::rounded),
+        };
+        Brep {
+            topology: self.topology.clone(),
+            geometry: Geometry {
+                surfaces: g.surfaces.iter().map(Surface::in_doubles).collect(),
+                curves: g.curves.iter().map(Curve::in_doubles).collect(),
+                points: g.points.iter().map(|p| p.map(N::rounded)).collect(),
+                arcs: g.arcs.iter().map(arc).collect(),
+                patches: g.patches.clone(),
+                touches: g.touches.iter().map(|p| p.map(N::rounded)).collect(),
+            },
+        }
+    }
 }

@@ -113,20 +113,19 @@ pub(super) fn bind_shells<N: Number>(
     }
     for (s, faces) in members.iter().enumerate() {
         // One shell alone is an outer one.
-        let volume = if members.len() == 1 {
-            N::ONE
-        } else {
-            shell_volume(brep, faces)
+        let void = members.len() > 1 && {
+            let enclosed = shell_volume(brep, faces);
+            if !enclosed.is_clear() {
+                return Err(AssemblyError::Flat {
+                    place: rounded(&point_of(brep, faces[0])),
+                });
+            }
+            enclosed.volume < N::ZERO
         };
-        if volume == N::ZERO || !volume.is_finite() {
-            return Err(AssemblyError::Flat {
-                place: rounded(&point_of(brep, faces[0])),
-            });
-        }
         brep.topology.shells.push(Shell {
             faces: faces.clone(),
             solid: SolidId(u32::MAX),
-            void: volume < N::ZERO,
+            void,
             genus: (2 - fans.euler[s]).div_euclid(2),
             odd: fans.euler[s].rem_euclid(2) == 1,
         });
@@ -166,7 +165,7 @@ fn home_of<N: Number>(brep: &Brep<N>, void: usize, outer: &[usize], judge: &Judg
         .iter()
         .copied()
         .filter(|&s| shell_holds(brep, &brep.topology.shells[s].faces, &p, judge.band()));
-    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces);
+    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces).volume;
     let home = around.min_by(|a, b| volume(a).total_cmp(&volume(b)));
     home.or(outer.first().copied()).unwrap_or(void)
 }

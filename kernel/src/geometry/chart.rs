@@ -218,6 +218,20 @@ impl<N: Number> Chart<N> {
         self.above(s, y) / self.sigma(s, y).powi(self.weights.rise as i32)
     }
 
+    /// The same in doubles.
+    pub(super) fn in_doubles(&self) -> Chart {
+        let round = |all: &Vec<N>| all.iter().map(|&x| x.rounded()).collect();
+        Chart {
+            axis: self.axis,
+            origin: self.origin.map(N::rounded),
+            side: self.side.rounded(),
+            trend: round(&self.trend),
+            weights: self.weights,
+            rows: self.rows.iter().map(round).collect(),
+            rest: self.rest.rounded(),
+        }
+    }
+
     /// G over κ at a fixed σ, by the powers of κ.
     pub fn section(&self, sigma: N) -> [N; DEGREE + 1] {
         let mut section = [N::ZERO; DEGREE + 1];

@@ -5,6 +5,7 @@ pub mod bounds;
 pub mod chart;
 pub mod curve;
 pub mod cut;
+mod doubles;
 pub mod frame;
 pub mod intersect;
 pub mod quartic;

@@ -180,3 +180,15 @@ fn a_near_miss_counts_where_both_have_faces() {
         }
     }
 }
+
+/// The reach of close calls, a billionth of the size, is the length of an edge here: what runs just as
+/// far from a surface all along was halved without end.
+#[test]
+fn what_runs_along_a_surface_at_the_reach_comes_to_an_end() {
+    let far = part(
+        "BLO(X=1,Y=1,Z=1) UN BLO(X=1,Y=1,Z=1) AT (MOVX=D)",
+        "1000000000",
+    );
+    assert_eq!(far.brep.topology.solids.len(), 2);
+    assert!((far.mass().volume - 2.0).abs() < 1e-12);
+}

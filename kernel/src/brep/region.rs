@@ -237,7 +237,7 @@ impl<N: Number> Sorter<'_, N> {
                 .into_iter()
                 .any(|i| self.arcs.ends_at(i, &apex, self.band));
             if passed {
-                let near = (self.band / height).powf(N::ONE / N::of((2 + attempt) as f64));
+                let near = (self.band / height).rough_root(2 + attempt as u32);
                 let height = height * (N::ONE - near);
                 let corner = down.point(height);
                 let round = Walk::parallel(self.surface, &corner, Sense::Along, self.band);

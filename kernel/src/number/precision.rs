@@ -67,6 +67,11 @@ pub trait Number:
         Self::of(n.into())
     }
 
+    /// The n-th root, to the digits of a double.
+    fn rough_root(self, n: u32) -> Self {
+        Self::of(self.rounded().powf(1.0 / f64::from(n)))
+    }
+
     /// What tells it from every other number.
     fn bits(self) -> [u64; 4];
     /// The whole number that it is, where it is not negative.
@@ -87,7 +92,6 @@ pub trait Number:
     fn fract(self) -> Self;
     fn rem_euclid(self, divisor: Self) -> Self;
     fn powi(self, n: i32) -> Self;
-    fn powf(self, exponent: Self) -> Self;
     /// Not a number where it is negative.
     fn sqrt(self) -> Self;
     fn hypot(self, o: Self) -> Self;
@@ -153,7 +157,7 @@ impl Number for f64 {
         self as usize
     }
     own!(f64: abs(), signum(), copysign(sign), max(o), min(o), clamp(lo, hi), floor(), ceil(),
-        round(), fract(), rem_euclid(divisor), powf(exponent), sqrt(), hypot(o), sin(), cos(), sinh(), cosh(),
+        round(), fract(), rem_euclid(divisor), sqrt(), hypot(o), sin(), cos(), sinh(), cosh(),
         acos(), atan(), atan2(x), asinh(), acosh());
     fn total_cmp(&self, o: &Self) -> Ordering {
         f64::total_cmp(self, o)

@@ -248,7 +248,8 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
                 continue;
             }
             let misses = v.lo > self.band || v.hi < -self.band;
-            if misses && (v.magnitude() <= self.reach || b - a <= self.floor) {
+            // Beyond the reach, too: what is level at its edge would be halved without end.
+            if misses && (v.magnitude() <= N::TWO * self.reach || b - a <= self.floor) {
                 self.beside(a, b);
                 continue;
             }

@@ -88,7 +88,7 @@ fn multiple<N: Number>(
     }
     let k = taylor(tracer.form, p, Axis::Around);
     let size = |d: usize| (0..=d).map(|j| k[d - j][j].abs()).sum::<N>();
-    let reach = (tracer.band / size(n)).powf(N::ONE / N::of(n as f64));
+    let reach = (tracer.band / size(n)).rough_root(n as u32);
     let vanishes = (0..n).all(|d| size(d) * reach.powi(d as i32) <= tracer.band);
     let leads = reach < N::of(ZONE) && N::of(LEAD) * size(n + 1) * reach <= size(n);
     if !(vanishes && leads) {
@@ -279,7 +279,7 @@ fn rank_one<N: Number>(
     let sheet = Sheet::at(form, p);
     let last = sheet.along[k].abs();
     // Where the leading term leaves the band.
-    let reach = (band / last).powf(N::ONE / N::of(k as f64));
+    let reach = (band / last).rough_root(k as u32);
     let vanishes = (0..k).all(|j| sheet.along[j].abs() * reach.powi(j as i32) <= band);
     let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::of(LEAD) * band
         && reach < N::of(ZONE)

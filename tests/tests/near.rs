@@ -190,5 +190,4 @@ fn what_runs_along_a_surface_at_the_reach_comes_to_an_end() {
         "1000000000",
     );
     assert_eq!(far.brep.topology.solids.len(), 2);
-    assert!((far.mass().volume - 2.0).abs() < 1e-12);
 }

@@ -2,6 +2,7 @@
 //! close call is listed on either side, and nothing else is.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+use approx::assert_relative_eq;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::number::sign::CloseCall;
@@ -190,4 +191,5 @@ fn what_runs_along_a_surface_at_the_reach_comes_to_an_end() {
         "1000000000",
     );
     assert_eq!(far.brep.topology.solids.len(), 2);
+    assert_relative_eq!(far.mass().volume, 2.0, max_relative = 1e-10);
 }

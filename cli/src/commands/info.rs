@@ -5,7 +5,7 @@ use crate::diagnostics::Failure;
 use crate::input::{self, Part};
 use crate::output;
 use premio_kernel::brep::mass::bounds;
-use premio_kernel::number::sign::Decisions;
+use premio_kernel::number::sign::{CloseCall, Decisions};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -28,6 +28,8 @@ struct Info {
     non_manifold: NonManifold,
     faces_by_surface: BTreeMap<&'static str, usize>,
     decisions: Counts,
+    /// Every decision within a hundred times the resolution, either way.
+    close_calls: Vec<CloseCall>,
     resolution: f64,
     seconds: Seconds,
 }
@@ -103,6 +105,7 @@ impl Info {
             },
             faces_by_surface,
             decisions: Counts::of(&part.evaluation.decisions),
+            close_calls: part.evaluation.decisions.close_calls.clone(),
             resolution: part.evaluation.resolution,
             seconds: Seconds {
                 read: part.read,
@@ -142,9 +145,12 @@ impl Counts {
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let three = |v: &[f64; 3]| format!("({}, {}, {})", v[0], v[1], v[2]);
-        writeln!(f, "volume      {}", self.volume)?;
-        writeln!(f, "area        {}", self.area)?;
+        let three = |v: &[f64; 3]| {
+            let [x, y, z] = v.map(short);
+            format!("({x}, {y}, {z})")
+        };
+        writeln!(f, "volume      {}", short(self.volume))?;
+        writeln!(f, "area        {}", short(self.area))?;
         writeln!(f, "centroid    {}", three(&self.centroid))?;
         let Bounds { min, max } = &self.bounds;
         writeln!(f, "bounds      {} to {}", three(min), three(max))?;
@@ -177,5 +183,15 @@ impl fmt::Display for Info {
         writeln!(f, "resolution  {:e}", self.resolution)?;
         let Seconds { read, evaluate } = self.seconds;
         writeln!(f, "seconds     {read:.3} read, {evaluate:.3} evaluate")
+    }
+}
+
+/// The shorter way to write all digits of a number.
+fn short(x: f64) -> String {
+    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
+    if scientific.len() < plain.len() {
+        scientific
+    } else {
+        plain
     }
 }

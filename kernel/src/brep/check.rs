@@ -1,7 +1,7 @@
 //! The checker: one named violation for each rule that a boundary must keep.
 
 use super::Brep;
-use super::mass::{face_areas, shell_volume};
+use super::mass::{face_areas, shell_volume, size};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use super::welch;
 use crate::geometry::vector::Length;
@@ -266,13 +266,14 @@ fn check_touches<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>)
 }
 
 fn check_shells<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
+    let size = size(brep);
     for (i, shell) in brep.topology.shells.iter().enumerate() {
         let id = ShellId(i as u32);
         if shell.genus < 0 || shell.odd {
             let euler = 2 - 2 * shell.genus - i32::from(shell.odd);
             found.push(Violation::Euler { shell: id, euler });
         }
-        let enclosed = shell_volume(brep, &shell.faces);
+        let enclosed = shell_volume(brep, &shell.faces, size);
         let volume = enclosed.volume;
         // The volume of a sliver may be below rounding: then it tells nothing.
         let is_turned = enclosed.is_clear() && (volume < N::ZERO) != shell.void;

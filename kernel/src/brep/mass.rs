@@ -36,28 +36,28 @@ pub struct Mass {
 /// ∫ dA, ∫ h dA and ∫ h P dA over a face.
 type Moments<N> = [N; 5];
 
-/// The mass properties of the solid that a boundary encloses.
+/// The mass properties of the solid that a boundary encloses: the sum over its shells, each reckoned
+/// about a point amid it, so that how far apart they lie costs no digits.
 pub fn mass<N: Number>(brep: &Brep<N>) -> Mass {
-    let amid = &Amid::of(brep);
-    let mut total = [N::ZERO; 5];
-    for face in brep.topology.face_ids() {
-        let m = moments(brep, face, amid);
-        let sign = brep.sense(face).sign::<N>();
-        total[0] += m[0];
-        for i in 1..5 {
-            total[i] += sign * m[i];
-        }
+    let reference = Amid::of(brep, brep.topology.face_ids()).reference;
+    let (mut area, mut volume, mut first) = (N::ZERO, N::ZERO, Vector3::zeros());
+    for shell in &brep.topology.shells {
+        let amid = Amid::of(brep, shell.faces.iter().copied());
+        let m = shell_moments(brep, &shell.faces, &amid);
+        let enclosed = m[1] / N::of(3.0);
+        area += m[0];
+        volume += enclosed;
+        first += (amid.reference - reference) * enclosed;
+        first += Vector3::new(m[2], m[3], m[4]) / N::of(4.0);
     }
-    let volume = total[1] / N::of(3.0);
-    let offset = Vector3::new(total[2], total[3], total[4]) / (N::of(4.0) * volume);
     let centroid = if volume == N::ZERO {
-        amid.reference
+        reference
     } else {
-        amid.reference + offset
+        reference + first / volume
     };
     Mass {
         volume: volume.rounded(),
-        area: total[0].rounded(),
+        area: area.rounded(),
         centroid: rounded(&centroid).into(),
     }
 }
@@ -81,32 +81,49 @@ impl<N: Number> Enclosed<N> {
 /// How many times the rounding of its area times the part's size a volume may be off.
 const NOISE: f64 = 64.0;
 
-/// The signed volume that a shell encloses.
-pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId]) -> Enclosed<N> {
-    let amid = &Amid::of(brep);
-    let (mut area, mut volume) = (N::ZERO, N::ZERO);
-    for &f in faces {
-        let m = moments(brep, f, amid);
-        area += m[0];
-        volume += brep.sense(f).sign::<N>() * m[1] / N::of(3.0);
-    }
+/// The size of a part, in terms of which its coordinates are rounded.
+pub fn size<N: Number>(brep: &Brep<N>) -> N {
+    Amid::of(brep, brep.topology.face_ids()).size
+}
+
+/// The signed volume that a shell encloses; `size` is that of the part.
+pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId], size: N) -> Enclosed<N> {
+    let amid = Amid::of(brep, faces.iter().copied());
+    let [area, volume, ..] = shell_moments(brep, faces, &amid);
     Enclosed {
-        volume,
-        noise: N::of(NOISE) * N::ROUNDING * area * amid.size,
+        volume: volume / N::of(3.0),
+        noise: N::of(NOISE) * N::ROUNDING * area * size,
     }
+}
+
+/// The moments of a shell: its area, and the others signed.
+fn shell_moments<N: Number>(brep: &Brep<N>, faces: &[FaceId], amid: &Amid<N>) -> Moments<N> {
+    let mut total = [N::ZERO; 5];
+    for &face in faces {
+        let m = moments(brep, face, amid);
+        let sign = brep.sense(face).sign::<N>();
+        total[0] += m[0];
+        for i in 1..5 {
+            total[i] += sign * m[i];
+        }
+    }
+    total
 }
 
 /// The areas of all faces, by id.
 pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<N> {
-    let amid = &Amid::of(brep);
-    brep.topology
-        .face_ids()
-        .map(|face| moments(brep, face, amid)[0])
-        .collect()
+    let mut areas = vec![N::ZERO; brep.topology.faces.len()];
+    for shell in &brep.topology.shells {
+        let amid = Amid::of(brep, shell.faces.iter().copied());
+        for &face in &shell.faces {
+            areas[face.index()] = moments(brep, face, &amid)[0];
+        }
+    }
+    areas
 }
 
-/// A point amid the part, relative to which sums do not cancel, and the errors of the moments that
-/// do not matter: rounding, in terms of the part's size.
+/// A point amid some faces, relative to which sums do not cancel, and the errors of the moments that
+/// do not matter: rounding, in terms of their size and of where they lie.
 struct Amid<N: Number = f64> {
     reference: Point3<N>,
     size: N,
@@ -114,38 +131,50 @@ struct Amid<N: Number = f64> {
 }
 
 impl<N: Number> Amid<N> {
-    fn of(brep: &Brep<N>) -> Self {
+    fn of(brep: &Brep<N>, faces: impl Iterator<Item = FaceId>) -> Self {
         let mut b = Box3::EMPTY;
-        for e in brep.topology.edge_ids() {
-            let [lo, hi] = brep.range(e);
-            b = b.hull(&Box3::of(&brep.curve(e).point(lo)));
-            b = b.hull(&Box3::of(&brep.curve(e).point(N::HALF * (lo + hi))));
+        for face in faces {
+            b = b.hull(&box_of(brep, face));
         }
-        // What bulges beyond its edges, and a whole surface that has none.
-        let faces = brep.topology.face_ids();
-        for (face, s) in faces.map(|f| (f, brep.surface(f))) {
-            let radius = match s {
-                Surface::Sphere(s) => s.radius,
-                Surface::Torus(t) => t.major + t.minor,
-                _ => continue,
-            };
-            let is_whole = brep.topology.face(face).loops.is_empty();
-            let centre = Box3::of(&s.frame().origin);
-            b = b.hull(&centre.grown(if is_whole { radius } else { N::ZERO }));
-        }
-        let l = N::of(b.diagonal());
-        let area = l * l * N::ROUNDING;
-        let reference = if l.is_finite() {
+        let size = N::of(b.diagonal());
+        let reference = if size.is_finite() {
             b.centre().map(N::of)
         } else {
             Point3::origin()
         };
+        let rounding = N::ROUNDING * (size + reference.coords.length());
+        let area = rounding * size;
+        let (volume, first) = (area * size, area * size * size);
         Self {
             reference,
-            size: l,
-            floor: [area, area * l, area * l * l, area * l * l, area * l * l],
+            size,
+            floor: [area, volume, first, first, first],
         }
     }
+}
+
+/// A box about a face: its edges' ends and middles, and what of it has no edges.
+fn box_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
+    let topology = &brep.topology;
+    let mut b = Box3::EMPTY;
+    for &l in &topology.face(face).loops {
+        for &c in &topology.ring(l).coedges {
+            let edge = topology.coedge(c).edge;
+            let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
+            b = b.hull(&Box3::of(&curve.point(lo)));
+            b = b.hull(&Box3::of(&curve.point(N::HALF * (lo + hi))));
+        }
+    }
+    // What bulges beyond its edges, and a whole surface that has none.
+    let surface = brep.surface(face);
+    let radius = match surface {
+        Surface::Sphere(s) => s.radius,
+        Surface::Torus(t) => t.major + t.minor,
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => return b,
+    };
+    let is_whole = topology.face(face).loops.is_empty();
+    let centre = Box3::of(&surface.frame().origin);
+    b.hull(&centre.grown(if is_whole { radius } else { N::ZERO }))
 }
 
 /// A surface with what its integrals along v start from.

@@ -4,7 +4,7 @@
 use super::Brep;
 use super::assemble::AssemblyError;
 use super::inside::shell_holds;
-use super::mass::shell_volume;
+use super::mass::{shell_volume, size};
 use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
 use crate::geometry::vector::rounded;
 use crate::number::precision::Number;
@@ -111,10 +111,11 @@ pub(super) fn bind_shells<N: Number>(
     for (f, &s) in fans.shell_of.iter().enumerate() {
         members[s].push(FaceId(f as u32));
     }
+    let size = size(brep);
     for (s, faces) in members.iter().enumerate() {
         // One shell alone is an outer one.
         let void = members.len() > 1 && {
-            let enclosed = shell_volume(brep, faces);
+            let enclosed = shell_volume(brep, faces, size);
             if !enclosed.is_clear() {
                 return Err(AssemblyError::Flat {
                     place: rounded(&point_of(brep, faces[0])),
@@ -165,7 +166,8 @@ fn home_of<N: Number>(brep: &Brep<N>, void: usize, outer: &[usize], judge: &Judg
         .iter()
         .copied()
         .filter(|&s| shell_holds(brep, &brep.topology.shells[s].faces, &p, judge.band()));
-    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces).volume;
+    let size = size(brep);
+    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces, size).volume;
     let home = around.min_by(|a, b| volume(a).total_cmp(&volume(b)));
     home.or(outer.first().copied()).unwrap_or(void)
 }

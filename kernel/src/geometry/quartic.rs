@@ -9,9 +9,9 @@
 //! a change of sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
 
 use super::surface::{Cone, Cylinder};
-use super::trigonometric::{Trig1, Trig2, trig1, trig2};
+use super::trigonometric::{Trig1, Trig2, trig1};
 use crate::number::precision::Number;
-use crate::number::scalar::Scalar;
+use crate::number::scalar::{Scalar, harmonic};
 
 /// The surface whose rulings carry the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,12 +65,12 @@ impl<N: Number> Along<N> {
     }
 
     /// Δ, where its coefficients are known to be the given ones.
-    fn radicand<S: Scalar<Number = N>>(&self, whole: &Trig2<N>, at: (S, S)) -> S {
+    fn radicand<S: Scalar<Number = N>>(&self, whole: &Trig2<N>, u: S, at: (S, S)) -> S {
         match &self.constant {
             Some(constant) => {
-                trig1(&self.linear, at).square() - trig2(constant, at).scale(self.lead)
+                trig1(&self.linear, at).square() - u.harmonic(constant, at).scale(self.lead)
             }
-            None => trig2(whole, at),
+            None => u.harmonic(whole, at),
         }
     }
 
@@ -78,7 +78,7 @@ impl<N: Number> Along<N> {
     fn quotient<S: Scalar<Number = N>>(&self, root: S, at: (S, S)) -> (S, S) {
         let linear = trig1(&self.linear, at);
         match &self.constant {
-            Some(constant) if root.is_like(linear) => (trig2(constant, at), -(linear + root)),
+            Some(constant) if root.is_like(linear) => (harmonic(constant, at), -(linear + root)),
             _ => (root - linear, S::constant(self.lead)),
         }
     }
@@ -163,7 +163,7 @@ impl<N: Number> Quartic<N> {
                 along,
                 radicand,
                 sign,
-            } => along.quotient(along.radicand(radicand, at).root().scale(*sign), at),
+            } => along.quotient(along.radicand(radicand, u, at).root().scale(*sign), at),
             Height::Deflated {
                 along,
                 rest,
@@ -180,7 +180,7 @@ impl<N: Number> Quartic<N> {
                 along.quotient(root, at)
             }
             Height::Rational { linear, constant } => {
-                (-trig2(constant, at), trig1(linear, at).times(2.0))
+                (-harmonic(constant, at), trig1(linear, at).times(2.0))
             }
             Height::Cubic { linear, constant } => {
                 let (s1, c1) = u.times(0.5).sin_cos();

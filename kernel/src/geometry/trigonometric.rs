@@ -5,7 +5,7 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::precision::Number;
 use crate::number::roots::{Contact, Function, Zeros, isolate};
-use crate::number::scalar::Scalar;
+use crate::number::scalar::{Scalar, harmonic, harmonic_slope};
 use nalgebra::{SMatrix, SVector};
 
 /// A trigonometric polynomial of degree one: constant, cosine, sine.
@@ -17,13 +17,6 @@ pub type Trig2<N> = [N; 5];
 /// The value of a trigonometric polynomial of degree one.
 pub fn trig1<N: Number, S: Scalar<Number = N>>(k: &Trig1<N>, (sin, cos): (S, S)) -> S {
     S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2])
-}
-
-/// The value of a trigonometric polynomial of degree two.
-pub fn trig2<N: Number, S: Scalar<Number = N>>(k: &Trig2<N>, (sin, cos): (S, S)) -> S {
-    let cos2 = cos.square().times(2.0) - S::plain(1.0);
-    let sin2 = (sin * cos).times(2.0);
-    S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])
 }
 
 /// The product of two trigonometric polynomials of degree one.
@@ -61,22 +54,18 @@ pub(super) fn between<N: Number>(a: N, b: N) -> Trig1<N> {
     ]
 }
 
-pub(super) fn derivative<N: Number>([_, c1, s1, c2, s2]: &Trig2<N>) -> Trig2<N> {
-    [N::ZERO, *s1, -*c1, N::TWO * *s2, -N::TWO * *c2]
-}
-
 /// A trigonometric polynomial of degree two with its derivatives, which are such, too.
 struct Trigonometric<N: Number = f64>([Trig2<N>; 3]);
 
 impl<N: Number> Trigonometric<N> {
     fn new(k: &Trig2<N>) -> Self {
-        let slope = derivative(k);
-        Self([*k, slope, derivative(&slope)])
+        let slope = harmonic_slope(k);
+        Self([*k, slope, harmonic_slope(&slope)])
     }
 
     fn jet<S: Scalar<Number = N>>(&self, u: S) -> Jet<S> {
         let at = u.sin_cos();
-        let [v, d, dd] = [0, 1, 2].map(|i| trig2(&self.0[i], at));
+        let [v, d, dd] = [0, 1, 2].map(|i| harmonic(&self.0[i], at));
         Jet { v, d, dd }
     }
 }
@@ -91,7 +80,7 @@ impl<N: Number> Function<N> for Trigonometric<N> {
     }
 
     fn value(&self, u: N) -> N {
-        trig2(&self.0[0], u.sin_cos())
+        harmonic(&self.0[0], u.sin_cos())
     }
 }
 
@@ -134,7 +123,7 @@ pub(super) fn divide_half<N: Number>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 
         nb += f * f.transpose();
         rb += f * (trig1(b, u.sin_cos()) / half(u));
         nc += g * g.transpose();
-        rc += g * (trig2(c, u.sin_cos()) / half(u));
+        rc += g * (harmonic(c, u.sin_cos()) / half(u));
     }
     let fb = solution(nb.into(), rb.into()).unwrap_or([N::ZERO; 2]);
     let fc = solution(nc.into(), rc.into()).unwrap_or([N::ZERO; 4]);

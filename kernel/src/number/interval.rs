@@ -1,7 +1,7 @@
 //! Closed intervals of doubles, rounded outwards: the first filter of every sign.
 
 use super::precision::Number;
-use super::scalar::{Scalar, sinc_jet};
+use super::scalar::{Scalar, harmonic, harmonic_slope, sinc_jet};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A closed interval that holds the exact value.
@@ -341,6 +341,16 @@ impl<N: Number> Scalar for Interval<N> {
     }
     fn sinc(self) -> Self {
         self.sinc_jet()[0]
+    }
+    fn harmonic(self, k: &[N; 5], at: (Self, Self)) -> Self {
+        let plain = harmonic(k, at);
+        if N::TWO * plain.mid().abs() > plain.width() {
+            return plain;
+        }
+        // Its mean value form.
+        let middle = Self::point(self.mid());
+        let slope = harmonic(&harmonic_slope(k), at);
+        plain.meet(harmonic(k, middle.sin_cos()) + slope * (self - middle))
     }
     fn is_like(self, o: Self) -> bool {
         (self * o).lo > N::ZERO

@@ -2,7 +2,7 @@
 
 use super::interval::Interval;
 use super::precision::Number;
-use super::scalar::{Scalar, sinc_jet};
+use super::scalar::{Scalar, harmonic_slope, sinc_jet};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A value, its first and its second derivative.
@@ -143,6 +143,12 @@ impl<S: Base> Scalar for Jet<S> {
     }
     fn sinc(self) -> Self {
         let [h, dh, ddh] = self.v.sinc_with_derivatives();
+        self.chain(h, dh, ddh)
+    }
+    fn harmonic(self, k: &[S::Number; 5], at: (Self, Self)) -> Self {
+        let at = (at.0.v, at.1.v);
+        let slope = harmonic_slope(k);
+        let [h, dh, ddh] = [*k, slope, harmonic_slope(&slope)].map(|k| self.v.harmonic(&k, at));
         self.chain(h, dh, ddh)
     }
     fn is_like(self, o: Self) -> bool {

@@ -188,30 +188,28 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
         }
     }
 
-    /// The ranges over an interval, `run` from its middle, narrowed by Taylor's sums about that as
-    /// far as they do not tell enough: by the second only where the interval is `small`.
-    fn narrowed(
-        &self,
-        wide: Jet<Interval<N>>,
-        run: Interval<N>,
-        middle: N,
-        small: bool,
-    ) -> Jet<Interval<N>> {
-        let Jet { v, d, dd } = wide;
-        if !(v.has_zero() && d.has_zero() && d.width().is_finite()) {
-            return wide;
+    /// The ranges over an interval, unless no value in it is near zero: the cheapest that tells,
+    /// narrowed by Taylor's sums about the middle, by the second only where the interval is `small`.
+    fn unclear(&self, x: Interval<N>, small: bool) -> Option<Jet<Interval<N>>> {
+        let unclear = |v: &Interval<N>| !self.is_clear(*v);
+        Some(self.f.reach(x)).filter(unclear)?;
+        let Jet { v, d, dd } = self.f.over(x);
+        Some(v).filter(unclear)?;
+        if !(d.has_zero() && d.width().is_finite()) {
+            return Some(Jet { v, d, dd });
         }
+        let middle = x.mid();
+        let run = x - Interval::point(middle);
         let v = v.meet(self.value_over(middle) + d * run);
-        if !(small && v.has_zero() && dd.has_zero() && dd.width().is_finite()) {
-            return Jet { v, d, dd };
+        Some(v).filter(unclear)?;
+        if !(small && dd.has_zero() && dd.width().is_finite()) {
+            return Some(Jet { v, d, dd });
         }
         let at = self.f.over(Interval::point(middle));
         let bent = (dd * run.square()).times(0.5);
-        Jet {
-            v: v.meet(at.v + at.d * run + bent),
-            d: d.meet(at.d + dd * run),
-            dd,
-        }
+        let v = v.meet(at.v + at.d * run + bent);
+        let d = d.meet(at.d + dd * run);
+        Some(Jet { v, d, dd }).filter(|jet| unclear(&jet.v))
     }
 
     fn slope(&self, t: N) -> N {
@@ -236,24 +234,19 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
         while let Some((a, b)) = stack.pop() {
             let m = N::HALF * (a + b);
             let x = Interval { lo: a, hi: b };
-            if self.is_clear(self.f.reach(x)) {
-                self.profile.mark(m, N::INFINITY);
-                continue;
-            }
             let small = b - a <= N::of(SMALL) * (whole.1 - whole.0);
-            let jet = self.narrowed(self.f.over(x), x - Interval::point(m), m, small);
-            let v = jet.v;
-            if self.is_clear(v) {
+            let Some(jet) = self.unclear(x, small) else {
                 self.profile.mark(m, N::INFINITY);
                 continue;
-            }
+            };
+            let v = jet.v;
             let misses = v.lo > self.band || v.hi < -self.band;
             // Beyond the reach, too: what is level at its edge would be halved without end.
             if misses && (v.magnitude() <= N::TWO * self.reach || b - a <= self.floor) {
                 self.beside(a, b);
                 continue;
             }
-            if v.magnitude() <= self.band {
+            if v.magnitude() <= N::of(FRINGE) * self.band {
                 let level = !jet.d.has_zero();
                 let kind = if level { Kind::Level } else { Kind::Loose };
                 self.cluster(a, b, m, kind, Some(N::ZERO));

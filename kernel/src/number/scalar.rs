@@ -37,8 +37,25 @@ pub trait Scalar:
     fn sinh_cosh(self) -> (Self, Self);
     /// sin x / x, for 0 <= x <= pi.
     fn sinc(self) -> Self;
+    /// The trigonometric polynomial of degree two of this angle, whose sine and cosine are `at`:
+    /// tighter than [`harmonic`] on intervals where its terms cancel.
+    fn harmonic(self, k: &[Self::Number; 5], at: (Self, Self)) -> Self {
+        harmonic(k, at)
+    }
     /// Whether it surely has the sign of another: their sum does not cancel.
     fn is_like(self, o: Self) -> bool;
+}
+
+/// A trigonometric polynomial of degree two: k0 + k1 cos + k2 sin + k3 cos 2u + k4 sin 2u.
+pub fn harmonic<S: Scalar>(k: &[S::Number; 5], (sin, cos): (S, S)) -> S {
+    let cos2 = cos.square().times(2.0) - S::plain(1.0);
+    let sin2 = (sin * cos).times(2.0);
+    S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])
+}
+
+/// The derivative of such a polynomial, which is another one.
+pub(crate) fn harmonic_slope<N: Number>([_, c1, s1, c2, s2]: &[N; 5]) -> [N; 5] {
+    [N::ZERO, *s1, -*c1, N::TWO * *s2, -N::TWO * *c2]
 }
 
 /// The scalar product of a constant vector and a vector of scalars.

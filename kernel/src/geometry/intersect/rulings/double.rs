@@ -7,14 +7,14 @@ use super::{Rulings, apart};
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place, positive_parts};
 use crate::geometry::quartic::{Along, Height, Quartic, Ruled, Sweep};
-use crate::geometry::trigonometric::{Trig1, between, derivative, divide, trig1, zeros_of};
+use crate::geometry::trigonometric::{Trig1, between, divide, trig1, zeros_of};
 use crate::geometry::vector::Length;
 use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::precision::Number;
 use crate::number::roots::Function;
-use crate::number::scalar::Scalar;
+use crate::number::scalar::{Scalar, harmonic_slope};
 use crate::number::sign::{Judge, Side};
 
 /// Where a curve passes the nodes: (the angle of the node, the parameter).
@@ -215,7 +215,7 @@ impl<N: Number> Rulings<'_, N> {
 
     /// The zeros of Δ by kind.
     fn structure(&self, judge: &Judge) -> Result<Structure<N>, IntersectionError> {
-        let slope = derivative(&self.radicand);
+        let slope = harmonic_slope(&self.radicand);
         let flat = slope.iter().map(|c| c.abs()).sum::<N>() <= N::ROUNDING * self.scale;
         let extrema = if flat { Vec::new() } else { zeros_of(&slope) };
         let mut out = Structure::default();

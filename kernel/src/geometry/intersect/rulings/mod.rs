@@ -16,9 +16,10 @@ use crate::geometry::frame::Frame;
 use crate::geometry::quartic::Ruled;
 use crate::geometry::relation::{Carrier, Pair};
 use crate::geometry::surface::{Plane, Surface};
-use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1, trig2};
+use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1};
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
+use crate::number::scalar::harmonic;
 use crate::number::sign::{Judge, Side};
 use nalgebra::{Point3, Vector3};
 
@@ -125,7 +126,7 @@ impl<'a, N: Number> Rulings<'a, N> {
     }
 
     fn delta(&self, u: N) -> N {
-        trig2(&self.radicand, u.sin_cos())
+        harmonic(&self.radicand, u.sin_cos())
     }
 
     /// Whether a height lies on the base and in the extent.

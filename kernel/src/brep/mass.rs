@@ -123,7 +123,7 @@ pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<N> {
 }
 
 /// A point amid some faces, relative to which sums do not cancel, and the errors of the moments that
-/// do not matter: rounding, in terms of their size and of where they lie.
+/// do not matter: rounding, in terms of their size.
 struct Amid<N: Number = f64> {
     reference: Point3<N>,
     size: N,
@@ -142,8 +142,7 @@ impl<N: Number> Amid<N> {
         } else {
             Point3::origin()
         };
-        let rounding = N::ROUNDING * (size + reference.coords.length());
-        let area = rounding * size;
+        let area = N::ROUNDING * size * size;
         let (volume, first) = (area * size, area * size * size);
         Self {
             reference,

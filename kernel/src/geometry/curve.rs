@@ -271,13 +271,17 @@ impl<N: Number> Curve<N> {
 
     /// Whether the curve turns back at t: whether a cusp is there.
     pub fn turns_back(&self, t: N) -> bool {
-        matches!(self, Self::Toric(c) if c.turns_back(t))
+        match self {
+            Self::Toric(c) => c.turns_back(t),
+            Self::Quartic(q) => q.turns_back(t),
+            _ => false,
+        }
     }
 
     /// The unit tangent at t; at a cusp, of what comes after.
     pub fn tangent(&self, t: N) -> Vector3<N> {
         let d = self.derivative(t);
-        if d != Vector3::zeros() {
+        if d != Vector3::zeros() && !self.turns_back(t) {
             return d.unit();
         }
         let j = self.jet(t);
@@ -348,7 +352,7 @@ impl<N: Number> Curve<N> {
         };
         let local = frame.coordinates(p);
         let u = turn(local.y.atan2(local.x));
-        let candidates: Vec<N> = match q.sweep {
+        let mut candidates: Vec<N> = match q.sweep {
             Sweep::Round { turns } => (0..turns.max(1))
                 .map(|k| u + N::TAU * N::whole(k))
                 .collect(),
@@ -358,6 +362,8 @@ impl<N: Number> Curve<N> {
                 vec![t, N::TAU - t]
             }
         };
+        // A cone's apex has no angle of its own.
+        candidates.extend(q.apex_parameters());
         let distance = |t: &N| (self.point(*t) - p).length();
         candidates
             .into_iter()
@@ -365,17 +371,19 @@ impl<N: Number> Curve<N> {
             .unwrap_or(u)
     }
 
-    /// Newton's steps on the distance to `p`.
+    /// Newton's steps on the distance to `p`, as long as they lead nearer: where the curve stands
+    /// still they lead anywhere.
     fn polish(&self, p: &Point3<N>, mut t: N) -> N {
         for _ in 0..3 {
             let j = self.jet(t);
             let d = Vector3::new(j[0].d, j[1].d, j[2].d);
             let away = p - Point3::new(j[0].v, j[1].v, j[2].v);
-            let step = away.dot(&d) / d.length_squared();
-            if !step.is_finite() {
+            let next = t + away.dot(&d) / d.length_squared();
+            let is_nearer = (self.point(next) - p).length_squared() < away.length_squared();
+            if !is_nearer {
                 break;
             }
-            t += step;
+            t = next;
         }
         match self.period() {
             Some(period) => t.rem_euclid(period),

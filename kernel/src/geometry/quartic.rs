@@ -156,6 +156,31 @@ impl<N: Number> Quartic<N> {
         }
     }
 
+    /// The parameters at which a curve of one point on each ruling passes the cone's apex: the zeros
+    /// of B.
+    pub(super) fn apex_parameters(&self) -> Vec<N> {
+        match (self.base, self.height) {
+            (Ruled::Cone(_), Height::Rational { linear, .. }) => {
+                let [mean, cos, sin] = linear;
+                let (middle, size) = (sin.atan2(cos), cos.hypot(sin));
+                let half = (-mean / size).clamp(-N::ONE, N::ONE).acos();
+                let zeros = [middle - half, middle + half];
+                zeros.map(|u| u.rem_euclid(N::TAU)).to_vec()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether the curve turns back at t, at the apex: where B has a double zero.
+    pub(super) fn turns_back(&self, t: N) -> bool {
+        let zeros = self.apex_parameters();
+        let near = |u: &N| {
+            let away = (t - *u).rem_euclid(N::TAU);
+            away.min(N::TAU - away) < N::of(DOUBLE)
+        };
+        !zeros.is_empty() && zeros.iter().all(near)
+    }
+
     /// The height as a quotient: (numerator, denominator) of w.
     fn quotient<S: Scalar<Number = N>>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
         match &self.height {
@@ -222,6 +247,9 @@ impl<N: Number> Quartic<N> {
         }
     }
 }
+
+/// Zeros within this part of a radian are one double zero.
+const DOUBLE: f64 = 1.0 / (1 << 20) as f64;
 
 /// √(sin((u-u0)/2) sin((u1-u)/2)) for u = mid - half cos t, analytic, with the sign of sin t.
 fn oval_factor<N: Number, S: Scalar<Number = N>>(t: S, half: N) -> S {

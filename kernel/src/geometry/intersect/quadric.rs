@@ -28,13 +28,13 @@ pub(super) fn quadric_quadric<N: Number>(
             if judge.coincide("axes side by side", pair.how(Relation::Drift), at) {
                 return Ok(parallel_cylinders(c, d, pair, judge));
             }
-            over_rulings(Ruled::Cylinder(*c), pair, judge)
+            over_rulings(pair, judge)
         }
-        (S::Cylinder(c), _) => over_rulings(Ruled::Cylinder(*c), pair, judge),
-        (_, S::Cylinder(c)) => over_rulings(Ruled::Cylinder(*c), &turned, judge),
-        (S::Cone(c), S::Cone(d)) => cones(c, d, pair, judge),
-        (S::Cone(c), _) => over_rulings(Ruled::Cone(*c), pair, judge),
-        (_, S::Cone(c)) => over_rulings(Ruled::Cone(*c), &turned, judge),
+        (S::Cylinder(_), _) => over_rulings(pair, judge),
+        (_, S::Cylinder(_)) => over_rulings(&turned, judge),
+        (S::Cone(c), S::Cone(_)) => cones(c, pair, judge),
+        (S::Cone(_), _) => over_rulings(pair, judge),
+        (_, S::Cone(_)) => over_rulings(&turned, judge),
         _ => Ok(Meeting::nothing()),
     }
 }
@@ -83,7 +83,6 @@ fn parallel_cylinders<N: Number>(
 
 fn cones<N: Number>(
     c: &Cone<N>,
-    d: &Cone<N>,
     pair: &Pair<'_, N>,
     judge: &Judge,
 ) -> Result<Meeting<N>, IntersectionError> {
@@ -92,14 +91,10 @@ fn cones<N: Number>(
         return Ok(common_apex(c, pair.b.surface, pair.extent, judge));
     }
     let turned = pair.turned();
-    let on_quadric = |pair: &Pair<'_, N>, apex: &Cone<N>| {
-        let at = place(&apex.frame.origin);
-        judge.contact("apex on quadric", pair.how(Relation::PointOnQuadric), at) == Side::On
-    };
-    if on_quadric(&turned, c) && !on_quadric(pair, d) {
-        return over_rulings(Ruled::Cone(*d), &turned, judge);
+    if holds_apex(&turned, judge) && !holds_apex(pair, judge) {
+        return over_rulings(&turned, judge);
     }
-    over_rulings(Ruled::Cone(*c), pair, judge)
+    over_rulings(pair, judge)
 }
 
 /// Two cones with one apex meet in common rulings.
@@ -158,26 +153,52 @@ fn common_apex<N: Number>(
     meeting
 }
 
-/// Over the rulings of the pair's first.
+/// Over the rulings of the pair's first; where the curve has a cusp over these, at the apex of the
+/// second, over the second's, each of which has one point of the curve but the apex.
 fn over_rulings<N: Number>(
-    base: Ruled<N>,
     pair: &Pair<'_, N>,
     judge: &Judge,
 ) -> Result<Meeting<N>, IntersectionError> {
+    match over_first(pair, judge) {
+        Err(IntersectionError::Cusp { .. }) if holds_apex(pair, judge) => {
+            over_first(&pair.turned(), judge)
+        }
+        known => known,
+    }
+}
+
+/// Whether the pair's second is a cone whose apex lies on the first.
+fn holds_apex<N: Number>(pair: &Pair<'_, N>, judge: &Judge) -> bool {
+    let Surface::Cone(cone) = pair.b.surface else {
+        return false;
+    };
+    let (away, at) = (
+        pair.how(Relation::PointOnQuadric),
+        place(&cone.frame.origin),
+    );
+    judge.contact("apex on quadric", away, at) == Side::On
+}
+
+fn over_first<N: Number>(
+    pair: &Pair<'_, N>,
+    judge: &Judge,
+) -> Result<Meeting<N>, IntersectionError> {
+    let base = match pair.a.surface {
+        Surface::Cylinder(c) => Ruled::Cylinder(*c),
+        Surface::Cone(c) => Ruled::Cone(*c),
+        Surface::Plane(_) | Surface::Sphere(_) | Surface::Torus(_) => return Ok(Meeting::nothing()),
+    };
     let rulings = Rulings::new(base, pair);
-    let flat = match &base {
+    let is_single = match base {
         // The other surface holds the direction of the rulings: a cone with a ruling along them. The
         // axis of a cylinder is not parallel to them, however little.
         Ruled::Cylinder(_) => {
             let along = judge.within(rulings.lead * pair.extent.radius);
             along && !matches!(pair.b.surface, Surface::Cylinder(_))
         }
-        Ruled::Cone(c) => {
-            let away = pair.turned().how(Relation::PointOnQuadric);
-            judge.contact("apex on quadric", away, place(&c.frame.origin)) == Side::On
-        }
+        Ruled::Cone(_) => holds_apex(&pair.turned(), judge),
     };
-    if flat {
+    if is_single {
         rulings.single(judge)
     } else {
         rulings.double(judge)

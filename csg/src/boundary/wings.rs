@@ -23,6 +23,7 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{Judge, Side};
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// A half sheet of a carrier at a point of a piece.
@@ -30,6 +31,8 @@ use std::collections::HashMap;
 struct Sheet<N: Number = f64> {
     /// The carrier, as its place among the piece's carriers.
     carrier: usize,
+    /// Away from the piece.
+    direction: Vector3<N>,
     /// Its angle about the tangent.
     angle: N,
     /// How fast it turns counterclockwise with the distance.
@@ -75,6 +78,9 @@ impl<N: Number> Look<N> {
         self.near.iter().any(|n| !n.open.is_empty())
     }
 }
+
+/// Sheets that touch are told apart from this power of one half of their reach on, outwards.
+const NEAREST: u32 = 20;
 
 struct Classifier<'a, N: Number = f64> {
     solids: &'a Solids<N>,
@@ -302,6 +308,7 @@ impl<N: Number> Classifier<'_, N> {
                 let up = normal.dot(&l);
                 sheets.push(Sheet {
                     carrier: at,
+                    direction: d,
                     angle: d.dot(&e2).atan2(d.dot(&e1)),
                     bend: rise(&d),
                     beyond: if up > N::ZERO {
@@ -313,14 +320,60 @@ impl<N: Number> Classifier<'_, N> {
             }
         }
         sheets.sort_by(|a, b| a.angle.total_cmp(&b.angle).then(a.bend.total_cmp(&b.bend)));
+        let reach = self.reach(piece);
         for pair in sheets.windows(2) {
+            let gap = (pair[1].bend - pair[0].bend).abs() * reach * reach;
             let tied = pair[0].angle == pair[1].angle;
-            let gap = (pair[1].bend - pair[0].bend).abs() * self.reach(piece) * self.reach(piece);
             if tied && self.judge.side("sheets that touch", gap, rounded(p)) == Side::On {
-                return Err(EvaluationError::Sheets { place: rounded(p) });
+                return self.told_apart(sheets, piece, p);
             }
         }
         Ok(sheets)
+    }
+
+    /// Sheets in order where neither angles nor bends tell all of them, within the resolution: by
+    /// where they go. Within the resolution any order will do, as long as it is the same all around
+    /// the faces: that of the surfaces as they are.
+    fn told_apart(
+        &self,
+        mut sheets: Vec<Sheet<N>>,
+        piece: &Piece<N>,
+        p: &Point3<N>,
+    ) -> Result<Vec<Sheet<N>>, EvaluationError> {
+        let reach = self.reach(piece);
+        let order = |a: &Sheet<N>, b: &Sheet<N>| {
+            let gap = (a.bend - b.bend) * reach * reach;
+            match a.angle.total_cmp(&b.angle) {
+                Ordering::Equal if self.judge.within(gap) => self.apart([a, b], piece, p),
+                Ordering::Equal => Some(gap.total_cmp(&N::ZERO)),
+                angles => Some(angles),
+            }
+        };
+        // By insertion: an order within the resolution need not be a total one.
+        for end in 1..sheets.len() {
+            for i in (0..end).rev() {
+                match order(&sheets[i], &sheets[i + 1]) {
+                    Some(Ordering::Greater) => sheets.swap(i, i + 1),
+                    Some(_) => break,
+                    None => return Err(EvaluationError::Sheets { place: rounded(p) }),
+                }
+            }
+        }
+        Ok(sheets)
+    }
+
+    /// On which side of another sheet one that starts in the same direction lies, next to the piece
+    /// as far as rounding does not hide it.
+    fn apart(&self, [a, b]: [&Sheet<N>; 2], piece: &Piece<N>, p: &Point3<N>) -> Option<Ordering> {
+        let [first, second] = [a, b].map(|s| self.surface(piece.carriers[s.carrier]));
+        let (reach, out) = (self.reach(piece), b.beyond.sign::<N>());
+        let offsets = (2..=NEAREST).rev().map(|k| {
+            let q = p + a.direction * (reach / N::whole(1 << k));
+            let q = q - first.normal(&q) * first.distance(&q);
+            -out * second.distance(&q)
+        });
+        let clear = offsets.filter(|away| away.abs() > N::ROUNDING * reach);
+        clear.map(|away| away.total_cmp(&N::ZERO)).next()
     }
 
     /// Whether a carrier that leaves a piece in a direction touches an earlier one: all along it, by

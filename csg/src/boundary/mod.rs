@@ -4,8 +4,9 @@
 //! `arrangement` the curves in which they meet; `contacts` puts the curves along which surfaces touch
 //! where other curves run next to them. `cuts` gives the common points of curves and surfaces, which
 //! `corners` makes one, and `pieces` what lies between. `membership` asks the tree whether a choice
-//! of sides is material; `wings` decides which pieces are edges, and where their faces lie; `concern`
-//! tells the close calls on which the boundary depends. The kernel assembles the rest.
+//! of sides is material; `sheets` puts the carriers around a piece in order, and `wings` decides
+//! which pieces are edges, and where their faces lie; `concern` tells the close calls on which the
+//! boundary depends. The kernel assembles the rest.
 
 mod arrangement;
 mod carriers;
@@ -17,6 +18,7 @@ mod exact;
 mod halfspaces;
 mod membership;
 mod pieces;
+mod sheets;
 mod wings;
 
 use crate::tree::Tree;

@@ -151,6 +151,11 @@ impl<N: Number> Arrangement<N> {
 }
 
 impl<N: Number> Piece<N> {
+    /// The length over which directions are compared: the extent of its curve.
+    pub(super) fn reach(&self, arrangement: &Arrangement<N>) -> N {
+        N::of(arrangement.meetings[self.meeting].bounds.diagonal())
+    }
+
     /// Whether two carriers at least hold another one, too.
     fn shares_two(&self, other: &Self) -> bool {
         let shared = self.carriers.iter().filter(|c| other.carriers.contains(c));

@@ -14,48 +14,16 @@ use super::corners::Corner;
 use super::halfspaces::Solids;
 use super::membership::Membership;
 use super::pieces::{Piece, pieces};
+use super::sheets::Spot;
 use crate::tree::NodeId;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use premio_kernel::brep::assemble::{RawBoundary, RawEdge, RawPoint, Wing};
 use premio_kernel::brep::topology::Sense;
-use premio_kernel::geometry::frame::perpendicular;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::{Judge, Side};
-use std::cmp::Ordering;
+use premio_kernel::number::sign::Judge;
 use std::collections::HashMap;
-
-/// A half sheet of a carrier at a point of a piece.
-#[derive(Clone, Copy, Debug)]
-struct Sheet<N: Number = f64> {
-    /// The carrier, as its place among the piece's carriers.
-    carrier: usize,
-    /// Away from the piece.
-    direction: Vector3<N>,
-    /// Its angle about the tangent.
-    angle: N,
-    /// How fast it turns counterclockwise with the distance.
-    bend: N,
-    /// The side of the carrier just counterclockwise of the sheet.
-    beyond: Sense,
-}
-
-/// How a carrier leaves a piece.
-struct Axis<N: Number = f64> {
-    carrier: usize,
-    /// Across the piece.
-    direction: Vector3<N>,
-    /// How it bends up, counterclockwise, in that direction.
-    rise: N,
-}
-
-impl<N: Number> Axis<N> {
-    /// Its direction, as near to another one as it can be.
-    fn aligned(&self, direction: &Vector3<N>) -> Vector3<N> {
-        self.direction * self.direction.dot(direction).signum()
-    }
-}
 
 /// A primitive near a piece: what is left to know whether it holds a sector.
 struct Near {
@@ -78,9 +46,6 @@ impl<N: Number> Look<N> {
         self.near.iter().any(|n| !n.open.is_empty())
     }
 }
-
-/// Sheets that touch are told apart from this power of one half of their reach on, outwards.
-const NEAREST: u32 = 20;
 
 struct Classifier<'a, N: Number = f64> {
     solids: &'a Solids<N>,
@@ -172,8 +137,14 @@ impl<N: Number> Classifier<'_, N> {
         };
         // A surface that stays close along the whole piece without holding it: its plain sign
         // decides. Where it comes nearest was asked when the curve was cut, and of its corners.
-        let p = curve.point(t);
-        self.wings_at(piece, &p, &curve.tangent(t), &look.near)
+        let spot = Spot {
+            arrangement: self.arrangement,
+            judge: self.judge,
+            piece,
+            point: curve.point(t),
+            tangent: curve.tangent(t),
+        };
+        self.wings_at(&spot, &look.near)
     }
 
     /// What is near `p` as far as the piece's own carriers leave it open.
@@ -208,14 +179,10 @@ impl<N: Number> Classifier<'_, N> {
         Look { near, margin }
     }
 
-    fn wings_at(
-        &self,
-        piece: &Piece<N>,
-        p: &Point3<N>,
-        tangent: &Vector3<N>,
-        near: &[Near],
-    ) -> Result<Vec<Wing>, EvaluationError> {
-        let sheets = self.sheets(piece, p, tangent, near)?;
+    fn wings_at(&self, spot: &Spot<'_, N>, near: &[Near]) -> Result<Vec<Wing>, EvaluationError> {
+        let piece = spot.piece;
+        let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
+        let sheets = spot.sheets(has_face)?;
         let n = sheets.len();
         // The sides before the first sheet: opposite to what lies beyond a carrier's first one.
         let mut sides = vec![Sense::Along; piece.carriers.len()];
@@ -266,140 +233,6 @@ impl<N: Number> Classifier<'_, N> {
         Ok(changes.iter().map(wing).collect())
     }
 
-    /// The half sheets around a piece, counterclockwise about its tangent, of the carriers on which
-    /// a primitive that is there has a face.
-    fn sheets(
-        &self,
-        piece: &Piece<N>,
-        p: &Point3<N>,
-        tangent: &Vector3<N>,
-        near: &[Near],
-    ) -> Result<Vec<Sheet<N>>, EvaluationError> {
-        let e1 = perpendicular(tangent);
-        let e2 = tangent.cross(&e1);
-        let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
-        // A carrier tangent to an earlier one takes its angle: only the bend tells them apart.
-        let mut axes: Vec<Axis<N>> = Vec::new();
-        let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
-        for (at, &c) in piece.carriers.iter().enumerate() {
-            if !has_face(at) {
-                continue;
-            }
-            let surface = self.surface(c);
-            let normal = surface.normal(p);
-            let mut direction = normal.cross(tangent).unit();
-            let rise = |direction: &Vector3<N>| {
-                let up = normal.dot(&tangent.cross(direction));
-                -surface.normal_curvature(p, direction) * up.signum()
-            };
-            match axes
-                .iter()
-                .find(|a| self.touches(piece, a, c, &direction, rise))
-            {
-                Some(a) => direction = a.aligned(&direction),
-                None => axes.push(Axis {
-                    carrier: c,
-                    direction,
-                    rise: rise(&direction),
-                }),
-            }
-            for d in [direction, -direction] {
-                let l = tangent.cross(&d);
-                let up = normal.dot(&l);
-                sheets.push(Sheet {
-                    carrier: at,
-                    direction: d,
-                    angle: d.dot(&e2).atan2(d.dot(&e1)),
-                    bend: rise(&d),
-                    beyond: if up > N::ZERO {
-                        Sense::Against
-                    } else {
-                        Sense::Along
-                    },
-                });
-            }
-        }
-        sheets.sort_by(|a, b| a.angle.total_cmp(&b.angle).then(a.bend.total_cmp(&b.bend)));
-        let reach = self.reach(piece);
-        for pair in sheets.windows(2) {
-            let gap = (pair[1].bend - pair[0].bend).abs() * reach * reach;
-            let tied = pair[0].angle == pair[1].angle;
-            if tied && self.judge.side("sheets that touch", gap, rounded(p)) == Side::On {
-                return self.told_apart(sheets, piece, p);
-            }
-        }
-        Ok(sheets)
-    }
-
-    /// Sheets in order where neither angles nor bends tell all of them, within the resolution: by
-    /// where they go. Within the resolution any order will do, as long as it is the same all around
-    /// the faces: that of the surfaces as they are.
-    fn told_apart(
-        &self,
-        mut sheets: Vec<Sheet<N>>,
-        piece: &Piece<N>,
-        p: &Point3<N>,
-    ) -> Result<Vec<Sheet<N>>, EvaluationError> {
-        let reach = self.reach(piece);
-        let order = |a: &Sheet<N>, b: &Sheet<N>| {
-            let gap = (a.bend - b.bend) * reach * reach;
-            match a.angle.total_cmp(&b.angle) {
-                Ordering::Equal if self.judge.within(gap) => self.apart([a, b], piece, p),
-                Ordering::Equal => Some(gap.total_cmp(&N::ZERO)),
-                angles => Some(angles),
-            }
-        };
-        // By insertion: an order within the resolution need not be a total one.
-        for end in 1..sheets.len() {
-            for i in (0..end).rev() {
-                match order(&sheets[i], &sheets[i + 1]) {
-                    Some(Ordering::Greater) => sheets.swap(i, i + 1),
-                    Some(_) => break,
-                    None => return Err(EvaluationError::Sheets { place: rounded(p) }),
-                }
-            }
-        }
-        Ok(sheets)
-    }
-
-    /// On which side of another sheet one that starts in the same direction lies, next to the piece
-    /// as far as rounding does not hide it.
-    fn apart(&self, [a, b]: [&Sheet<N>; 2], piece: &Piece<N>, p: &Point3<N>) -> Option<Ordering> {
-        let [first, second] = [a, b].map(|s| self.surface(piece.carriers[s.carrier]));
-        let (reach, out) = (self.reach(piece), b.beyond.sign::<N>());
-        let offsets = (2..=NEAREST).rev().map(|k| {
-            let q = p + a.direction * (reach / N::whole(1 << k));
-            let q = q - first.normal(&q) * first.distance(&q);
-            -out * second.distance(&q)
-        });
-        let clear = offsets.filter(|away| away.abs() > N::ROUNDING * reach);
-        clear.map(|away| away.total_cmp(&N::ZERO)).next()
-    }
-
-    /// Whether a carrier that leaves a piece in a direction touches an earlier one: all along it, by
-    /// their angle, or as near to it as they are apart.
-    fn touches(
-        &self,
-        piece: &Piece<N>,
-        axis: &Axis<N>,
-        carrier: usize,
-        direction: &Vector3<N>,
-        rise: impl Fn(&Vector3<N>) -> N,
-    ) -> bool {
-        let both = [axis.carrier, carrier];
-        let mut told = piece.tangent.iter();
-        let told = told.any(|t| *t == both || *t == [carrier, axis.carrier]);
-        let sine = axis.direction.cross(direction).length();
-        let bend = (rise(&axis.direction) - axis.rise).abs();
-        told || self.judge.within(sine * self.reach(piece))
-            || self.judge.within(sine * sine / (N::TWO * bend))
-    }
-
-    /// The length over which directions are compared: the extent of the piece's curve.
-    fn reach(&self, piece: &Piece<N>) -> N {
-        N::of(self.arrangement.meetings[piece.meeting].bounds.diagonal())
-    }
-
     /// Whether the two faces of an edge continue one another smoothly.
     fn is_smooth(&self, piece: &Piece<N>, wings: &[Wing]) -> bool {
         let [a, b] = *wings else { return false };
@@ -411,7 +244,10 @@ impl<N: Number> Classifier<'_, N> {
         let p = curve.point(N::HALF * (piece.range[0] + piece.range[1]));
         let normal = |w: &Wing| self.surface(w.surface).normal(&p) * w.outward.sign::<N>();
         let (m, n) = (normal(&a), normal(&b));
-        let tangent = told || self.judge.within(m.cross(&n).length() * self.reach(piece));
+        let tangent = told
+            || self
+                .judge
+                .within(m.cross(&n).length() * piece.reach(self.arrangement));
         tangent && m.dot(&n) > N::ZERO
     }
 

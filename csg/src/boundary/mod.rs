@@ -206,11 +206,28 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     match evaluated::<f64>(tree, options) {
         Ok(known) => Ok(known.into()),
         Err(error) if error.is_of_doubles() && tree.leaves().count() <= FEW => {
-            evaluated::<Wide>(tree, options).map(Evaluation::from)
+            widely(tree, options).map(Evaluation::from)
         }
         Err(error) => Err(error),
     }
 }
+
+/// By the resolution, and where what coincides by it contradicts itself, by one so fine that nothing
+/// coincides but what is one.
+fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<Wide>, EvaluationError> {
+    evaluated::<Wide>(tree, options).or_else(|error| {
+        let size = halfspaces::Solids::<Wide>::of(tree).bounds.diagonal();
+        let finest = EvaluationOptions {
+            resolution: Some(FINEST * size),
+            ..*options
+        };
+        evaluated::<Wide>(tree, &finest).map_err(|_| error)
+    })
+}
+
+/// The finest resolution, in terms of the part's size: what doubles give of a description as numbers
+/// of 237 bits is one or farther apart.
+const FINEST: f64 = 1e-45;
 
 fn evaluated<N: Number>(
     tree: &Tree,

@@ -29,7 +29,7 @@ pub struct Partials<S> {
 /// The five functions of an angle with two derivatives.
 fn basis<N: Number, S: Scalar<Number = N>>(angle: S) -> [[S; 5]; 3] {
     let (s, c) = angle.sin_cos();
-    let (s2, c2) = angle.times(2.0).sin_cos();
+    let (s2, c2) = angle.twice((s, c));
     let (one, zero) = (S::plain(1.0), S::plain(0.0));
     [
         [one, c, s, c2, s2],
@@ -41,7 +41,7 @@ fn basis<N: Number, S: Scalar<Number = N>>(angle: S) -> [[S; 5]; 3] {
 /// What is left of a polynomial in two angles where one of them is fixed: the coefficients of the
 /// functions of the other.
 #[derive(Clone, Copy, Debug)]
-pub struct Section<N: Number = f64>([N; 5]);
+pub struct Section<N: Number = f64>(pub [N; 5]);
 
 impl<N: Number> Section<N> {
     /// The sum of the absolute coefficients: what rounding is in proportion to.

@@ -48,12 +48,15 @@ impl Box3 {
         }
     }
 
-    /// The box grown by `by` on all sides.
+    /// The box grown by `by` on all sides, if by less than doubles tell, then by what they do.
     pub fn grown<N: Number>(&self, by: N) -> Self {
         let by = by.above();
+        if by == 0.0 {
+            return *self;
+        }
         Self {
-            min: self.min.map(|x| x - by),
-            max: self.max.map(|x| x + by),
+            min: self.min.map(|x| (x - by).next_down()),
+            max: self.max.map(|x| (x + by).next_up()),
         }
     }
 
@@ -89,6 +92,9 @@ pub fn bounds<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
 
 /// Consecutive pieces of a curve over `range`, each smooth and with a box that holds it.
 pub fn pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Box3)> {
+    if !N::IS_DOUBLE && !has_exact_bounds(curve) {
+        return rounded_pieces(curve, [lo, hi]);
+    }
     let breaks = curve.breaks(lo, hi);
     let smooth = breaks.windows(2).map(|p| [p[0], p[1]]);
     if has_exact_bounds(curve) {
@@ -99,6 +105,24 @@ pub fn pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Box
         enclosed(curve, &[p[0], p[1]], |piece, part| all.push((piece, part)));
     }
     all
+}
+
+/// The same of a curve of more digits: of the curve rounded to doubles, and grown by more than that
+/// moves it, next to a node by the root of rounding.
+fn rounded_pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Box3)> {
+    let mut rounded = pieces(&curve.in_doubles(), [lo, hi].map(N::rounded));
+    let whole = rounded.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.1));
+    let far = whole.min.iter().chain(&whole.max);
+    let far = far.fold(0.0_f64, |far, x| far.max(x.abs()));
+    let growth = f64::ROUNDING.sqrt() * (whole.diagonal() + far);
+    let last = rounded.len().saturating_sub(1);
+    let all = rounded.drain(..).enumerate();
+    all.map(|(i, ([a, b], part))| {
+        let from = if i == 0 { lo } else { N::of(a) };
+        let to = if i == last { hi } else { N::of(b) };
+        ([from, to], part.grown(growth))
+    })
+    .collect()
 }
 
 /// Whether the box of every arc is known in closed form.
@@ -169,6 +193,10 @@ fn extremes<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
 
 fn enclosure<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
     let mut all = Box3::EMPTY;
+    if !N::IS_DOUBLE {
+        let parts = rounded_pieces(curve, range);
+        return parts.iter().fold(all, |b, p| b.hull(&p.1));
+    }
     enclosed(curve, &curve.breaks(range[0], range[1]), |_, part| {
         all = all.hull(&part);
     });

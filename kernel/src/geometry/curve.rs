@@ -247,9 +247,12 @@ impl<N: Number> Curve<N> {
     }
 
     /// The certified range of the point over an interval of t, without derivatives; none for a
-    /// toric curve, which has them anyway.
+    /// toric curve, which has them anyway, but at a single parameter.
     pub fn box_over(&self, t: Interval<N>) -> Option<[Interval<N>; 3]> {
-        self.closed_form(t)
+        match self {
+            Self::Toric(c) => (t.lo == t.hi).then(|| c.box_at(t.lo)),
+            _ => self.closed_form(t),
+        }
     }
 
     /// The derivative of the point by t.

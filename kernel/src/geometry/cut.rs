@@ -3,6 +3,7 @@
 use super::bounds::Box3;
 use super::curve::Curve;
 use super::surface::Surface;
+use super::vector::Length;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::precision::Number;
@@ -48,14 +49,15 @@ pub fn cut<N: Number>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, ban
     }
 }
 
+/// Roots, and what is apart from zero by little: (parameter, value).
+pub type Met<N = f64> = (Vec<Root<N>>, Vec<(N, N)>);
+
 /// The same over a part of a curve that does not lie on the surface, however short: the roots, and
 /// all misses that are close calls.
-pub fn roots<N: Number>(
-    curve: &Curve<N>,
-    range: [N; 2],
-    surface: &Surface<N>,
-    band: N,
-) -> (Vec<Root<N>>, Vec<(N, N)>) {
+pub fn roots<N: Number>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, band: N) -> Met<N> {
+    if let Some(known) = rounded_roots(curve, range, surface, band) {
+        return known;
+    }
     let breaks = curve.breaks(range[0], range[1]);
     let zeros = match isolate_closely(&Height { curve, surface }, &breaks, band) {
         Zeros::Everywhere => touching(range),
@@ -66,6 +68,58 @@ pub fn roots<N: Number>(
         Zeros::Everywhere => (Vec::new(), Vec::new()),
     }
 }
+
+/// The same of a curve of more digits than doubles have: isolated in doubles, where these follow the
+/// curve far more closely than the band, and then with all digits.
+fn rounded_roots<N: Number>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surface: &Surface<N>,
+    band: N,
+) -> Option<Met<N>> {
+    if N::IS_DOUBLE {
+        return None;
+    }
+    let rounded = curve.in_doubles();
+    let follows = |part: N| {
+        let t = range[0] + (range[1] - range[0]) * part;
+        let p = curve.point(t);
+        let away = (rounded.point(t.rounded()).map(N::of) - p).length();
+        let rounding = N::of(f64::ROUNDING) * p.coords.length();
+        (away + rounding) * N::of(FOLLOWING) <= band
+    };
+    if !probes().step_by(4).all(follows) {
+        return None;
+    }
+    let height = Height { curve, surface };
+    let ends = range.map(N::rounded);
+    let (found, misses) = roots(&rounded, ends, &surface.in_doubles(), band.rounded());
+    let settled = |t: f64| {
+        let mut t = N::of(t);
+        for _ in 0..STEPS {
+            let at = height.at(t);
+            t -= at.v / at.d;
+        }
+        t
+    };
+    let root = |r: Root| Root {
+        t: match r.contact {
+            Contact::Simple => settled(r.t),
+            Contact::Touching | Contact::Inflected => N::of(r.t),
+        },
+        lo: N::of(r.lo),
+        hi: N::of(r.hi),
+        contact: r.contact,
+        margin: r.margin.map(N::of),
+    };
+    let misses = misses.into_iter().map(|(t, v)| (N::of(t), N::of(v)));
+    Some((found.into_iter().map(root).collect(), misses.collect()))
+}
+
+/// How many times nearer than the band doubles are to follow a curve.
+const FOLLOWING: f64 = 64.0;
+/// Newton's steps from the digits of a double to those of 237 bits.
+const STEPS: u32 = 3;
 
 /// One touching root over the whole range.
 fn touching<N: Number>([lo, hi]: [N; 2]) -> Zeros<N> {

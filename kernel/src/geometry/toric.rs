@@ -73,6 +73,9 @@ enum Fixed<N: Number = f64> {
     Chart([N; DEGREE + 1]),
 }
 
+/// So many steps in doubles come to their rounding.
+const BEGUN: u32 = 6;
+
 impl<N: Number> Fixed<N> {
     /// The sum of the absolute coefficients: what rounding is in proportion to.
     fn size(&self) -> N {
@@ -80,6 +83,23 @@ impl<N: Number> Fixed<N> {
             Self::Angle(section) => section.size(),
             Self::Chart(section) => section.iter().map(|c| c.abs()).sum(),
         }
+    }
+
+    /// The first digits of a root, by Newton's steps in doubles, where there are more.
+    fn begun(&self, start: N) -> N {
+        if N::IS_DOUBLE {
+            return start;
+        }
+        let section: Fixed = match self {
+            Self::Angle(section) => Fixed::Angle(Section(section.0.map(N::rounded))),
+            Self::Chart(section) => Fixed::Chart(section.map(N::rounded)),
+        };
+        let mut y = start.rounded();
+        for _ in 0..BEGUN {
+            let [value, slope] = section.at(y);
+            y -= value / slope;
+        }
+        N::of(y)
     }
 
     /// The value and the derivative.
@@ -166,7 +186,11 @@ impl<N: Number> Segment<N> {
         let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
         let section = form.fixed(x);
         let rounding = N::ROUNDING * section.size();
-        let mut y = start;
+        let begun = section.begun(start);
+        let mut y = match begun >= lo && begun <= hi {
+            true => begun,
+            false => start,
+        };
         let mut last = N::INFINITY;
         for _ in 0..12 {
             let [value, slope] = section.at(y);
@@ -199,10 +223,17 @@ impl<N: Number> Segment<N> {
         [y, d, -(p.xx + N::TWO * p.xy * d + p.yy * d * d) / p.y]
     }
 
+    /// A range of the other angle over x, by the bound of its slope.
+    fn solution(&self, form: Form<'_, N>, x: Interval<N>) -> Interval<N> {
+        let m = x.mid();
+        let y = self.solve(form, m);
+        let slop = Interval::around(y, N::of(4.0) * N::EPSILON * (N::ONE + y.abs()));
+        slop + Interval::new(-self.steep, self.steep) * (x - Interval::point(m))
+    }
+
     fn interval_jet(&self, form: Form<'_, N>, x: Interval<N>) -> [Interval<N>; 3] {
         let m = x.mid();
-        let ym = self.solve(form, m);
-        let slop = Interval::around(ym, N::of(4.0) * N::EPSILON * (N::ONE + ym.abs()));
+        let slop = self.solution(form, Interval::point(m));
         let run = x - Interval::point(m);
         let prior = Interval::new(-self.steep, self.steep);
         let mut y = slop + prior * run;
@@ -311,6 +342,20 @@ impl<N: Number> Toric<N> {
             dd: dd.scale(length * length),
         };
         self.unfolded(s, run, other)
+    }
+
+    /// A range of the point at t.
+    pub fn box_at(&self, t: N) -> [Interval<N>; 3] {
+        let (s, tau) = self.locate(t);
+        let run = Interval::point(s.from) + Interval::point(tau).scale(s.to - s.from);
+        let other = s.solution(self.form(s), run);
+        let constant = |v| Jet {
+            v,
+            d: Interval::point(N::ZERO),
+            dd: Interval::point(N::ZERO),
+        };
+        let angles = self.unfolded(s, constant(run), constant(other));
+        self.lift(angles.map(|angle| angle.v))
     }
 
     /// The point with the given angles.

@@ -55,10 +55,10 @@ pub(super) fn between<N: Number>(a: N, b: N) -> Trig1<N> {
 }
 
 /// A trigonometric polynomial of degree two with its derivatives, which are such, too.
-struct Trigonometric<N: Number = f64>([Trig2<N>; 3]);
+pub(super) struct Trigonometric<N: Number = f64>([Trig2<N>; 3]);
 
 impl<N: Number> Trigonometric<N> {
-    fn new(k: &Trig2<N>) -> Self {
+    pub(super) fn new(k: &Trig2<N>) -> Self {
         let slope = harmonic_slope(k);
         Self([*k, slope, harmonic_slope(&slope)])
     }

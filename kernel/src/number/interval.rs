@@ -140,12 +140,13 @@ impl<N: Number> Interval<N> {
         }
     }
 
-    fn cos(self) -> Self {
+    /// Sine and cosine: from those of the ends, and from which of their extrema are inside.
+    fn waves(self) -> [Self; 2] {
         if self.width() >= N::TAU || self.width().is_nan() {
-            return Self {
+            return [Self {
                 lo: -N::ONE,
                 hi: N::ONE,
-            };
+            }; 2];
         }
         // Turns are counted with a slack that only ever widens the answer.
         let slack = N::EPSILON * (self.magnitude() + N::TAU);
@@ -153,42 +154,32 @@ impl<N: Number> Interval<N> {
             let k = ((self.lo - slack - offset) / N::TAU).ceil();
             k * N::TAU + offset <= self.hi + slack
         };
-        let (a, b) = (self.lo.cos(), self.hi.cos());
-        let hi = if holds(N::ZERO) {
-            N::ONE
+        let between = |a: N, b: N, top: N, bottom: N| {
+            let hi = if holds(top) { N::ONE } else { up(up(a.max(b))) };
+            let lo = if holds(bottom) {
+                -N::ONE
+            } else {
+                down(down(a.min(b)))
+            };
+            Self { lo, hi }.clamp_unit()
+        };
+        let (lo, quarter) = (self.lo.sin_cos(), N::PI / N::TWO);
+        let hi = if self.lo == self.hi {
+            lo
         } else {
-            up(up(a.max(b)))
+            self.hi.sin_cos()
         };
-        let lo = if holds(N::PI) {
-            -N::ONE
-        } else {
-            down(down(a.min(b)))
-        };
-        Self { lo, hi }.clamp_unit()
-    }
-
-    fn sin(self) -> Self {
-        let shifted = Self {
-            lo: self.lo - N::PI / N::TWO,
-            hi: self.hi - N::PI / N::TWO,
-        };
-        let wide = shifted.cos();
-        let (a, b) = (self.lo.sin(), self.hi.sin());
-        let hi = if wide.hi == N::ONE {
-            N::ONE
-        } else {
-            up(up(a.max(b)))
-        };
-        let lo = if wide.lo == -N::ONE {
-            -N::ONE
-        } else {
-            down(down(a.min(b)))
-        };
-        Self { lo, hi }.clamp_unit()
+        [
+            between(lo.0, hi.0, quarter, -quarter),
+            between(lo.1, hi.1, N::ZERO, N::PI),
+        ]
     }
 
     /// sin x / x and two derivatives over the interval, for 0 <= x <= pi.
     pub(super) fn sinc_jet(self) -> [Self; 3] {
+        if let Some(jet) = self.coarsely(Interval::sinc_jet) {
+            return jet;
+        }
         // Bounds of the next derivative on the whole line: 0.4362, 1/3, 1/4.
         let centre = sinc_jet(self.mid());
         let radius = N::HALF * self.width();
@@ -204,6 +195,9 @@ impl<N: Number> Interval<N> {
 impl<N: Number> Add for Interval<N> {
     type Output = Self;
     fn add(self, o: Self) -> Self {
+        if let Some(sum) = self.coarse_sum(o, |x, y| x + y) {
+            return sum;
+        }
         Self {
             lo: down(self.lo + o.lo),
             hi: up(self.hi + o.hi),
@@ -214,6 +208,9 @@ impl<N: Number> Add for Interval<N> {
 impl<N: Number> Sub for Interval<N> {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
+        if let Some(difference) = self.coarse_sum(o, |x, y| x - y) {
+            return difference;
+        }
         Self {
             lo: down(self.lo - o.hi),
             hi: up(self.hi - o.lo),
@@ -243,6 +240,9 @@ fn times<N: Number>(a: N, b: N) -> N {
 impl<N: Number> Mul for Interval<N> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
+        if let Some(product) = self.coarse_product(o, |x, y| x * y) {
+            return product;
+        }
         let (mut a, mut b) = (self.lo * o.lo, self.lo * o.hi);
         let (mut c, mut d) = (self.hi * o.lo, self.hi * o.hi);
         if (a + b + c + d).is_nan() {
@@ -270,6 +270,9 @@ impl<N: Number> Scalar for Interval<N> {
         if k.abs() == N::ONE {
             return if k > N::ZERO { self } else { -self };
         }
+        if let Some(product) = self.coarse_product(Self::point(k), |x, y| x * y) {
+            return product;
+        }
         let (a, b) = if k >= N::ZERO {
             (self.lo * k, self.hi * k)
         } else {
@@ -287,6 +290,9 @@ impl<N: Number> Scalar for Interval<N> {
         }
     }
     fn square(self) -> Self {
+        if let Some(square) = self.coarse_product(self, |x, _| x.square()) {
+            return square;
+        }
         let (a, b) = (self.lo * self.lo, self.hi * self.hi);
         let lo = if self.has_zero() {
             N::ZERO
@@ -303,28 +309,40 @@ impl<N: Number> Scalar for Interval<N> {
         if o.has_zero() {
             return Self::ENTIRE;
         }
+        if let Some(quotient) = self.coarse_product(o, |x, y| x.over(y)) {
+            return quotient;
+        }
         self * Self {
             lo: down(N::ONE / o.hi),
             hi: up(N::ONE / o.lo),
         }
     }
     fn root(self) -> Self {
+        if let Some(root) = self.coarse_product(self, |x, _| x.root()) {
+            return root;
+        }
         Self {
             lo: down(self.lo.max(N::ZERO).sqrt()).max(N::ZERO),
             hi: up(self.hi.max(N::ZERO).sqrt()),
         }
     }
     fn sin_cos(self) -> (Self, Self) {
-        (self.sin(), self.cos())
+        if let Some([sin, cos]) = self.coarsely(Interval::waves) {
+            return (sin, cos);
+        }
+        let [sin, cos] = self.waves();
+        (sin, cos)
     }
     fn sinh_cosh(self) -> (Self, Self) {
-        let slop = |x: N| N::of(4.0) * N::EPSILON * x.abs();
-        let (sl, sh) = (self.lo.sinh(), self.hi.sinh());
+        if let Some([sinh, cosh]) = self.coarsely(|x| x.sinh_cosh().into()) {
+            return (sinh, cosh);
+        }
+        let slop = |x: N| N::ROUNDING * x.abs();
+        let ((sl, cl), (sh, ch)) = (self.lo.sinh_cosh(), self.hi.sinh_cosh());
         let sinh = Self {
             lo: down(sl - slop(sl)),
             hi: up(sh + slop(sh)),
         };
-        let (cl, ch) = (self.lo.cosh(), self.hi.cosh());
         let top = cl.max(ch);
         let low = if self.has_zero() {
             N::ONE

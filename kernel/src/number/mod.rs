@@ -2,6 +2,7 @@
 //! decides signs.
 
 pub mod bisection;
+mod coarse;
 pub mod enclosure;
 pub mod interval;
 pub mod jet;

@@ -44,6 +44,8 @@ pub trait Number:
     const SINC_TERMS: u32;
     /// The relative rounding error allowed to a short chain of operations.
     const ROUNDING: Self;
+    /// Whether it is a double.
+    const IS_DOUBLE: bool;
 
     /// The rules by which integrals are taken.
     fn rules() -> &'static Rules<Self>;
@@ -130,6 +132,7 @@ impl Number for f64 {
     const NAN: Self = f64::NAN;
     const SINC_TERMS: u32 = 9;
     const ROUNDING: Self = 16.0 * f64::EPSILON;
+    const IS_DOUBLE: bool = true;
 
     fn rules() -> &'static Rules<Self> {
         static RULES: LazyLock<Rules<f64>> = LazyLock::new(|| Rules::new(10, 64.0 * f64::ROUNDING));

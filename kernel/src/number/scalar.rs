@@ -33,6 +33,10 @@ pub trait Scalar:
     fn root(self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
+    /// Sine and cosine of twice the angle, whose own are `at`.
+    fn twice(self, _at: (Self, Self)) -> (Self, Self) {
+        self.times(2.0).sin_cos()
+    }
     /// Hyperbolic sine and cosine.
     fn sinh_cosh(self) -> (Self, Self);
     /// sin x / x, for 0 <= x <= pi.

@@ -13,8 +13,7 @@ use super::bitrig::{BiTrig, Partials};
 use super::singular::{Critical, singular_points};
 use super::surface::Torus;
 use super::toric::{Axis, Toric, wrap};
-use crate::number::interval::Interval;
-use crate::number::jet::Jet;
+use super::trigonometric::Trigonometric;
 use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros, isolate};
 use grid::{Cell, Layout};
@@ -158,24 +157,7 @@ impl<N: Number> Tracer<'_, N> {
 
     /// The roots of F on a side of a cell: the angle that is `fixed` on it, and its ends.
     fn roots_on(&self, fixed: usize, at: N, lo: N, hi: N) -> Option<Vec<N>> {
-        let f = |t: Interval<N>| {
-            let c = Interval::point(at);
-            if fixed == 0 {
-                let p = self.form.partials(c, t);
-                Jet {
-                    v: p.f,
-                    d: p.y,
-                    dd: p.yy,
-                }
-            } else {
-                let p = self.form.partials(t, c);
-                Jet {
-                    v: p.f,
-                    d: p.x,
-                    dd: p.xx,
-                }
-            }
-        };
+        let f = Trigonometric::new(&self.form.section(fixed == 0, at).0);
         match isolate(&f, &[lo, hi], self.slop) {
             Zeros::At { roots, .. } if roots.iter().all(|r| r.contact == Contact::Simple) => {
                 Some(roots.into_iter().map(|r| r.t).collect())

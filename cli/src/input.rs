@@ -35,7 +35,7 @@ pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
         resolution: options.resolution,
         noise: description.digits,
         zeros: if options.exact {
-            Zeros::Proven
+            Zeros::Exact
         } else {
             Zeros::ByResolution
         },

@@ -152,12 +152,18 @@ fn a_close_call_ends_with_3_under_strict() {
 }
 
 #[test]
-fn proofs_are_refused() {
+fn what_nearly_coincides_is_apart_by_exact() {
     let folder = folder();
-    let exact = premio(folder.path(), "info part.padl --exact");
-    assert_eq!(exact.status.code(), Some(3));
-    assert!(exact.stdout.is_empty());
-    assert!(String::from_utf8_lossy(&exact.stderr).contains("cannot be proven yet"));
+    let text = "A = BLO(X=1, Y=1, Z=1)\nB = A UN A AT (MOVX=1.00000000000000000001)\n";
+    fs::write(folder.path().join("close.padl"), text).unwrap();
+    let solids = |words: &str| {
+        let info = premio(folder.path(), &format!("info close.padl --json {words}"));
+        let info: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
+        info["solids"].as_u64()
+    };
+    assert_eq!((solids(""), solids("--exact")), (Some(1), Some(2)));
+    let both = premio(folder.path(), "info close.padl --exact --resolution 1");
+    assert_eq!(both.status.code(), Some(2));
 }
 
 #[test]

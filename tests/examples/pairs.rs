@@ -3,7 +3,7 @@
 //! `cargo run --release -p premio-tests --example pairs -- --from 10 --to 60`
 
 use clap::Parser;
-use premio_tests::pairs::{PAIRS, Pose, faults, gap};
+use premio_tests::pairs::{PAIRS, Pose, changes, faults, gap};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -19,6 +19,9 @@ struct Arguments {
     /// Turn the pairs about an odd axis.
     #[arg(long)]
     turned: bool,
+    /// Compare the exact boundaries on each side of a coincidence instead.
+    #[arg(long)]
+    exact: bool,
 }
 
 fn main() -> io::Result<ExitCode> {
@@ -29,6 +32,19 @@ fn main() -> io::Result<ExitCode> {
     };
     let (mut wrong, mut all) = (0, 0);
     let mut out = io::stdout().lock();
+    if arguments.exact {
+        let powers: Vec<i32> = (arguments.from..=arguments.to).step_by(10).collect();
+        for (pair, sign) in PAIRS.iter().flat_map(|pair| [(pair, ""), (pair, "-")]) {
+            let found = changes(pair, sign, &powers, pose);
+            for change in &found {
+                writeln!(out, "{}: {change}", pair.name)?;
+            }
+            all += 1;
+            wrong += usize::from(!found.is_empty());
+        }
+        writeln!(out, "{wrong} of {all} sides")?;
+        return Ok(ExitCode::from(u8::from(wrong > 0)));
+    }
     for pair in PAIRS {
         for power in arguments.from..=arguments.to {
             for sign in ["", "-"] {

@@ -86,7 +86,7 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     }
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(depth.rays);
-    let drawn = !evaluation.is_beyond_doubles();
+    let drawn = evaluation.resolution_of_views().is_some();
     if drawn && !depth.views.is_empty() && report.holds() {
         let all = views::around(&evaluation.bounds);
         let cast = Cast::of(&evaluation);

@@ -1,7 +1,9 @@
 //! Pairs of solids that coincide in some way, and lie next to that as far as a gap says.
 
-use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
+use premio_kernel::brep::topology::Census;
+use premio_kernel::number::sign::Zeros;
 
 /// Two solids in PADL, with `D` by how much they miss the coincidence.
 #[derive(Clone, Copy, Debug)]
@@ -103,24 +105,18 @@ const OFF: f64 = 1e-9;
 pub fn faults(pair: &Pair, gap: &str, pose: Pose) -> Vec<String> {
     let mut faults = Vec::new();
     let mut volume = |solid: String| {
-        let text = match pose {
-            Pose::Straight => solid.clone(),
-            Pose::Turned => format!("({solid}) AT (ROTX=17,ROTZ=31,MOVX=0.3,MOVY=0.7)"),
-        };
-        volume_of(&format!("D = {gap}\nP = {text}\n")).unwrap_or_else(|fault| {
+        let part = evaluated(&solid, gap, pose, Zeros::ByResolution);
+        let known = part.and_then(|part| match part.violations().first() {
+            Some(defect) => Err(format!("{defect:?}")),
+            None => Ok(part.mass().volume),
+        });
+        known.unwrap_or_else(|fault| {
             faults.push(format!("{solid}: {fault}"));
             f64::NAN
         })
     };
-    let Pair { a, b, .. } = pair;
-    let [of_a, of_b] = [a, b].map(|one| volume(format!("({one})")));
-    let [union, both, rest, other] = [
-        format!("({a}) UN ({b})"),
-        format!("({a}) INT ({b})"),
-        format!("({a}) DIF ({b})"),
-        format!("({b}) DIF ({a})"),
-    ]
-    .map(volume);
+    let [of_a, of_b] = [pair.a, pair.b].map(|one| volume(format!("({one})")));
+    let [union, both, rest, other] = pair.operations().map(volume);
     let off = [
         union + both - of_a - of_b,
         rest + both - of_a,
@@ -132,12 +128,54 @@ pub fn faults(pair: &Pair, gap: &str, pose: Pose) -> Vec<String> {
     faults
 }
 
-fn volume_of(text: &str) -> Result<f64, String> {
+/// Where the exact boundary of a pair that misses its coincidence by a power of two has not the same
+/// number of entities as by the first of the powers: on one side of a coincidence all are alike.
+pub fn changes(pair: &Pair, sign: &str, powers: &[i32], pose: Pose) -> Vec<String> {
+    let mut changes = Vec::new();
+    for solid in pair.operations() {
+        let mut first: Option<Census> = None;
+        for &power in powers {
+            match evaluated(&solid, &gap(sign, power), pose, Zeros::Exact) {
+                Err(fault) => changes.push(format!("{solid} at {sign}2^-{power}: {fault}")),
+                Ok(part) => {
+                    let found = part.brep.topology.census();
+                    let known = first.get_or_insert_with(|| found.clone());
+                    if *known != found {
+                        changes.push(format!(
+                            "{solid} at {sign}2^-{power}: {found:?} for {known:?}"
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    changes
+}
+
+impl Pair {
+    /// A or B, A and B, A less B, B less A.
+    fn operations(&self) -> [String; 4] {
+        let Self { a, b, .. } = self;
+        [
+            format!("({a}) UN ({b})"),
+            format!("({a}) INT ({b})"),
+            format!("({a}) DIF ({b})"),
+            format!("({b}) DIF ({a})"),
+        ]
+    }
+}
+
+fn evaluated(solid: &str, gap: &str, pose: Pose, zeros: Zeros) -> Result<Evaluation, String> {
+    let text = match pose {
+        Pose::Straight => solid.to_owned(),
+        Pose::Turned => format!("({solid}) AT (ROTX=17,ROTZ=31,MOVX=0.3,MOVY=0.7)"),
+    };
+    let text = format!("D = {gap}\nP = {text}\n");
     let tree = read("part", text.as_bytes(), Format::Padl, &Options::default());
     let tree = tree.map_err(|error| error.to_string())?.tree;
-    let part = evaluate(&tree, &EvaluationOptions::default()).map_err(|error| error.to_string())?;
-    match part.violations().first() {
-        Some(defect) => Err(format!("{defect:?}")),
-        None => Ok(part.mass().volume),
-    }
+    let options = EvaluationOptions {
+        zeros,
+        ..EvaluationOptions::default()
+    };
+    evaluate(&tree, &options).map_err(|error| error.to_string())
 }

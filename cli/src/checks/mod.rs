@@ -172,17 +172,14 @@ impl<'a> Checker<'a> {
     /// Counts the faces before every piece that a camera sees, and looks for missing contours.
     pub fn view(&self, name: &str, camera: &Camera) -> Vec<Check> {
         let subject = Subject::View(name.to_owned());
-        let Evaluation {
-            brep, resolution, ..
-        } = self.evaluation;
-        if self.evaluation.is_beyond_doubles() {
+        let Some(resolution) = self.evaluation.resolution_of_views() else {
             return vec![Check {
                 subject,
                 holds: true,
                 detail: "refused: surfaces lie closer together than doubles tell".to_owned(),
             }];
-        }
-        let seen = match contours(brep, camera, *resolution) {
+        };
+        let seen = match contours(&self.evaluation.brep, camera, resolution) {
             Ok(seen) => seen,
             Err(error) => {
                 return vec![Check {
@@ -211,7 +208,8 @@ impl<'a> Checker<'a> {
 
     fn clearance(&self) -> Clearance {
         let size = self.evaluation.bounds.diagonal();
-        let resolution = self.evaluation.resolution;
+        let known = self.evaluation;
+        let resolution = known.resolution_of_views().unwrap_or(known.resolution);
         Clearance {
             sliver: 100.0 * resolution,
             // Between the resolution and the size, nearer the former.

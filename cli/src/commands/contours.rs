@@ -15,10 +15,10 @@ pub fn run(options: &ContoursOptions) -> Result<(), Failure> {
     let camera = input::camera(&options.camera)?;
     let part = input::part(&options.description)?;
     let evaluation = &part.evaluation;
-    if evaluation.is_beyond_doubles() {
+    let Some(resolution) = evaluation.resolution_of_views() else {
         return Err(Failure::limit(format!("{}: {UNSEEN}", part.name)));
-    }
-    let mut seen = contours(&evaluation.brep, &camera, evaluation.resolution)
+    };
+    let mut seen = contours(&evaluation.brep, &camera, resolution)
         .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))?;
     let to = options.output.as_deref();
     match options.format {

@@ -30,7 +30,9 @@ use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::{Decisions, Judge, RELATIVE_RESOLUTION, Zeros};
+use premio_kernel::number::sign::{
+    Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, Zeros,
+};
 use premio_kernel::number::wide::Wide;
 
 /// How a tree is evaluated.
@@ -58,13 +60,15 @@ pub struct Evaluation {
     pub bounds: Box3,
     /// The boundary before it was rounded, where doubles did not tell it.
     wide: Option<Box<Brep<Wide>>>,
+    /// The resolution by which doubles tell the same boundary, where they do.
+    plain: Option<f64>,
 }
 
 impl Evaluation {
-    /// Whether doubles did not tell the boundary: rounded to them, surfaces may lie on one another
-    /// that do not, so that nothing can be seen of it.
-    pub fn is_beyond_doubles(&self) -> bool {
-        self.wide.is_some()
+    /// The resolution for views of the boundary, which are reckoned in doubles; none where doubles do
+    /// not tell the boundary: rounded to them, surfaces may lie on one another that do not.
+    pub fn resolution_of_views(&self) -> Option<f64> {
+        self.plain
     }
 
     /// The volume, the area and the centroid.
@@ -100,6 +104,7 @@ impl From<Evaluated<f64>> for Evaluation {
             resolution: known.resolution,
             bounds: known.bounds,
             wide: None,
+            plain: Some(known.resolution),
         }
     }
 }
@@ -115,6 +120,7 @@ impl From<Evaluated<Wide>> for Evaluation {
             resolution: known.resolution,
             bounds: known.bounds,
             wide: Some(Box::new(known.brep)),
+            plain: None,
         }
     }
 }
@@ -150,9 +156,6 @@ pub enum EvaluationError {
     /// The description's numbers are too large or too small for doubles.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
-    /// Coincidence cannot be proven yet.
-    #[error("coincidence cannot be proven yet, only decided by the resolution")]
-    Unproven,
     /// The part lies too far from the origin for doubles.
     #[error(
         "the part, of size {size:.3e}, lies up to {far:.3e} from the origin: its coordinates are rounded by more than a millionth of its size"
@@ -186,7 +189,7 @@ impl EvaluationError {
             | Self::Assembly(_)
             | Self::Vague { .. }
             | Self::Resolution { .. } => true,
-            Self::Size | Self::Unproven | Self::Far { .. } => false,
+            Self::Size | Self::Far { .. } => false,
         }
     }
 }
@@ -200,8 +203,8 @@ const FEW: usize = 64;
 /// In doubles, and where these do not tell what meets, in numbers of 237 bits by the same
 /// resolution.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
-    if options.zeros == Zeros::Proven {
-        return Err(EvaluationError::Unproven);
+    if options.zeros == Zeros::Exact {
+        return exactly(tree, options);
     }
     match evaluated::<f64>(tree, options) {
         Ok(known) => Ok(known.into()),
@@ -212,22 +215,36 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     }
 }
 
-/// By the resolution, and where what coincides by it contradicts itself, by one so fine that nothing
-/// coincides but what is one.
+/// By the resolution, and where what coincides by it contradicts itself, by the finest, unless one is
+/// asked for.
 fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<Wide>, EvaluationError> {
-    evaluated::<Wide>(tree, options).or_else(|error| {
-        let size = halfspaces::Solids::<Wide>::of(tree).bounds.diagonal();
-        let finest = EvaluationOptions {
-            resolution: Some(FINEST * size),
-            ..*options
-        };
-        evaluated::<Wide>(tree, &finest).map_err(|_| error)
+    match (evaluated::<Wide>(tree, options), options.resolution) {
+        (Err(error), None) => finely(tree, options).map_err(|_| error),
+        (known, _) => known,
+    }
+}
+
+/// By the finest resolution, in numbers of 237 bits throughout. Where doubles tell a boundary of the
+/// same kind, it can be seen in them.
+fn exactly(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
+    let known = finely(tree, options)?;
+    let plain = evaluated::<f64>(tree, options).ok();
+    let alike = plain.filter(|plain| plain.brep.topology.census() == known.brep.topology.census());
+    let resolution = alike.map(|plain| plain.resolution);
+    Ok(Evaluation {
+        plain: resolution,
+        ..Evaluation::from(known)
     })
 }
 
-/// The finest resolution, in terms of the part's size: what doubles give of a description as numbers
-/// of 237 bits is one or farther apart.
-const FINEST: f64 = 1e-45;
+fn finely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<Wide>, EvaluationError> {
+    let size = halfspaces::Solids::<Wide>::of(tree).bounds.diagonal();
+    let finest = EvaluationOptions {
+        resolution: Some(FINEST_RESOLUTION * size),
+        ..*options
+    };
+    evaluated::<Wide>(tree, &finest)
+}
 
 fn evaluated<N: Number>(
     tree: &Tree,

@@ -163,7 +163,38 @@ pub struct Topology {
     pub touches: Vec<Touch>,
 }
 
+/// How many there are of each entity: what boundaries of one kind share.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Census {
+    /// Vertices, edges, loops and faces.
+    pub cells: [usize; 4],
+    /// Of every shell the genus, in ascending order.
+    pub genus: Vec<i32>,
+    /// Solids.
+    pub solids: usize,
+    /// Points at which the boundary touches itself.
+    pub touches: usize,
+}
+
 impl Topology {
+    /// How many there are of each entity.
+    pub fn census(&self) -> Census {
+        let mut genus: Vec<i32> = self.shells.iter().map(|s| s.genus).collect();
+        genus.sort_unstable();
+        let vertices = self.vertices as usize;
+        Census {
+            cells: [
+                vertices,
+                self.edges.len(),
+                self.loops.len(),
+                self.faces.len(),
+            ],
+            genus,
+            solids: self.solids.len(),
+            touches: self.touches.len(),
+        }
+    }
+
     /// An edge.
     pub fn edge(&self, id: EdgeId) -> &Edge {
         &self.edges[id.index()]

@@ -21,6 +21,10 @@ pub(crate) const CLOSE: f64 = 100.0;
 /// The default resolution: this times the size of the part.
 pub const RELATIVE_RESOLUTION: f64 = 1e-11;
 
+/// The finest resolution of numbers of 237 bits, in terms of the part's size: of what a description
+/// says in numbers of a few dozen digits, what lies nearer is one.
+pub const FINEST_RESOLUTION: f64 = 1e-45;
+
 /// The relative rounding error allowed to a short chain of operations on doubles.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
@@ -52,8 +56,8 @@ pub enum Zeros {
     /// What lies within the resolution.
     #[default]
     ByResolution,
-    /// What is proven to be zero by exact arithmetic, and nothing else.
-    Proven,
+    /// What 237 bits do not tell from zero, and nothing else.
+    Exact,
 }
 
 /// A decision that was closer than a hundred to one.

@@ -8,7 +8,7 @@ use super::precision::Number;
 const BROAD: f64 = 1.0 / (1u64 << 32) as f64;
 
 impl<N: Number> Interval<N> {
-    /// An interval of doubles that holds this one; this one, where it is one of doubles.
+    /// An interval of doubles that holds this one.
     fn enclosed(self) -> Interval {
         let outside = |x: N, step: fn(f64) -> f64| match x == N::ZERO {
             true => 0.0,
@@ -46,12 +46,8 @@ impl<N: Number> Interval<N> {
         o: Self,
         f: impl FnOnce(Interval, Interval) -> Interval,
     ) -> Option<Self> {
-        if N::IS_DOUBLE {
-            return None;
-        }
-        let (x, y) = (self.enclosed(), o.enclosed());
         let is_broad = |x: Interval| x.width() > BROAD * x.magnitude();
-        (is_broad(x) || is_broad(y)).then(|| Self::back(f(x, y)))
+        self.coarse_pair(o, |x, y| is_broad(x) || is_broad(y), f)
     }
 
     /// A sum or a difference with another one, where doubles tell it as well.
@@ -60,11 +56,22 @@ impl<N: Number> Interval<N> {
         o: Self,
         f: impl FnOnce(Interval, Interval) -> Interval,
     ) -> Option<Self> {
+        let are_broad = |x: Interval, y: Interval| {
+            x.width() + y.width() > BROAD * (x.magnitude() + y.magnitude())
+        };
+        self.coarse_pair(o, are_broad, f)
+    }
+
+    fn coarse_pair(
+        self,
+        o: Self,
+        are_broad: impl FnOnce(Interval, Interval) -> bool,
+        f: impl FnOnce(Interval, Interval) -> Interval,
+    ) -> Option<Self> {
         if N::IS_DOUBLE {
             return None;
         }
         let (x, y) = (self.enclosed(), o.enclosed());
-        let is_broad = x.width() + y.width() > BROAD * (x.magnitude() + y.magnitude());
-        is_broad.then(|| Self::back(f(x, y)))
+        are_broad(x, y).then(|| Self::back(f(x, y)))
     }
 }

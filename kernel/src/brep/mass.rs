@@ -132,13 +132,17 @@ struct Amid<N: Number = f64> {
 
 impl<N: Number> Amid<N> {
     fn of(brep: &Brep<N>, faces: impl Iterator<Item = FaceId>) -> Self {
-        let mut b = Box3::EMPTY;
+        let (mut edges, mut all) = (Box3::EMPTY, Box3::EMPTY);
         for face in faces {
-            b = b.hull(&box_of(brep, face));
+            edges = edges.hull(&box_of(brep, face));
+            // What bulges beyond its edges is of the size of its surface.
+            if let Surface::Sphere(_) | Surface::Torus(_) = brep.surface(face) {
+                all = all.hull(&Box3::of(&brep.surface(face).frame().origin));
+            }
         }
-        let size = N::of(b.diagonal());
+        let size = N::of(all.hull(&edges).diagonal());
         let reference = if size.is_finite() {
-            b.centre().map(N::of)
+            edges.centre().map(N::of)
         } else {
             Point3::origin()
         };
@@ -152,7 +156,7 @@ impl<N: Number> Amid<N> {
     }
 }
 
-/// A box about a face: its edges' ends and middles, and what of it has no edges.
+/// A box amid a face: of its edges' ends and middles, or of the whole surface, where it has none.
 fn box_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
     let topology = &brep.topology;
     let mut b = Box3::EMPTY;
@@ -164,16 +168,14 @@ fn box_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
             b = b.hull(&Box3::of(&curve.point(N::HALF * (lo + hi))));
         }
     }
-    // What bulges beyond its edges, and a whole surface that has none.
     let surface = brep.surface(face);
     let radius = match surface {
+        _ if !topology.face(face).loops.is_empty() => return b,
         Surface::Sphere(s) => s.radius,
         Surface::Torus(t) => t.major + t.minor,
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => return b,
     };
-    let is_whole = topology.face(face).loops.is_empty();
-    let centre = Box3::of(&surface.frame().origin);
-    b.hull(&centre.grown(if is_whole { radius } else { N::ZERO }))
+    Box3::of(&surface.frame().origin).grown(radius)
 }
 
 /// A surface with what its integrals along v start from.

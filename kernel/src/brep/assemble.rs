@@ -101,6 +101,12 @@ pub enum AssemblyError {
         /// A point of it.
         place: [f64; 3],
     },
+    /// It is not told which solid a void lies in.
+    #[error("it cannot be told which solid holds the void at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
+    Homeless {
+        /// A point of the void's boundary.
+        place: [f64; 3],
+    },
 }
 
 /// A small sphere around a vertex on which the edges there are told apart.

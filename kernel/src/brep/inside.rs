@@ -1,4 +1,4 @@
-//! Whether a shell holds a point: the parity of a ray's crossings.
+//! Whether shells hold a point: the parity of a ray's crossings.
 
 use super::Brep;
 use super::locate::{FaceLocator, Place};
@@ -10,35 +10,38 @@ use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros};
 use nalgebra::{Point3, Vector3};
 
-/// Whether the faces of a closed shell hold a point that is not on them. Rays are tried until one
-/// crosses plainly.
-pub(super) fn shell_holds<N: Number>(
+/// How many rays are tried before it is left open.
+const RAYS: u32 = 16;
+
+/// Whether the solids hold a point that is not on the boundary; none where no ray from it crosses
+/// faces plainly, farther than `band` from their edges.
+pub fn holds<N: Number>(brep: &Brep<N>, p: &Point3<N>, band: N) -> Option<bool> {
+    let faces: Vec<FaceId> = brep.topology.face_ids().collect();
+    faces_hold(brep, &faces, p, band)
+}
+
+/// Whether the faces of closed shells hold a point. Rays are tried until one crosses plainly.
+pub(super) fn faces_hold<N: Number>(
     brep: &Brep<N>,
     faces: &[FaceId],
     p: &Point3<N>,
     band: N,
-) -> bool {
-    for k in 0..16 {
-        let a = N::of(0.61) + N::of(2.4) * N::whole(k);
-        let direction = Vector3::new(
-            a.cos(),
-            a.sin(),
-            N::of(0.37) - N::of(0.21) * N::whole(k % 5),
-        )
-        .unit();
-        if let Some(count) = crossings(
-            brep,
-            faces,
-            &Line {
-                origin: *p,
-                direction,
-            },
-            band,
-        ) {
-            return count % 2 == 1;
-        }
-    }
-    false
+) -> Option<bool> {
+    let crossings = (0..RAYS).find_map(|k| {
+        let line = Line {
+            origin: *p,
+            direction: towards(k),
+        };
+        crossings(brep, faces, &line, band)
+    });
+    crossings.map(|count| count % 2 == 1)
+}
+
+/// The direction of the k-th ray: none along an axis or a common diagonal.
+fn towards<N: Number>(k: u32) -> Vector3<N> {
+    let a = N::of(0.61) + N::of(2.4) * N::whole(k);
+    let rise = N::of(0.37) - N::of(0.21) * N::whole(k % 5);
+    Vector3::new(a.cos(), a.sin(), rise).unit()
 }
 
 /// How often the ray from the line's origin crosses the faces; none where that is unclear.

@@ -8,7 +8,7 @@
 mod arcs;
 pub mod assemble;
 pub mod check;
-mod inside;
+pub mod inside;
 pub mod locate;
 pub mod mass;
 mod region;

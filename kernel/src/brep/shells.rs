@@ -3,7 +3,7 @@
 
 use super::Brep;
 use super::assemble::AssemblyError;
-use super::inside::shell_holds;
+use super::inside::faces_hold;
 use super::mass::{shell_volume, size};
 use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
 use crate::geometry::vector::rounded;
@@ -144,7 +144,7 @@ pub(super) fn bind_shells<N: Number>(
     }
     for s in 0..shells {
         if brep.topology.shells[s].void {
-            let home = home_of(brep, s, &outer, judge);
+            let home = home_of(brep, s, &outer, judge)?;
             let solid = brep.topology.shells[home].solid;
             brep.topology.shells[s].solid = solid;
             brep.topology.solids[solid.index()]
@@ -156,20 +156,32 @@ pub(super) fn bind_shells<N: Number>(
 }
 
 /// The smallest outer shell around a void.
-fn home_of<N: Number>(brep: &Brep<N>, void: usize, outer: &[usize], judge: &Judge) -> usize {
+fn home_of<N: Number>(
+    brep: &Brep<N>,
+    void: usize,
+    outer: &[usize],
+    judge: &Judge,
+) -> Result<usize, AssemblyError> {
     if let [only] = outer {
-        return *only;
+        return Ok(*only);
     }
-    let faces = &brep.topology.shells[void].faces;
-    let p = point_of(brep, faces[0]);
-    let around = outer
-        .iter()
-        .copied()
-        .filter(|&s| shell_holds(brep, &brep.topology.shells[s].faces, &p, judge.band()));
+    let p = point_of(brep, brep.topology.shells[void].faces[0]);
+    let homeless = AssemblyError::Homeless { place: rounded(&p) };
     let size = size(brep);
-    let volume = |s: &usize| shell_volume(brep, &brep.topology.shells[*s].faces, size).volume;
-    let home = around.min_by(|a, b| volume(a).total_cmp(&volume(b)));
-    home.or(outer.first().copied()).unwrap_or(void)
+    let mut home: Option<(N, usize)> = None;
+    for &s in outer {
+        let faces = &brep.topology.shells[s].faces;
+        match faces_hold(brep, faces, &p, judge.band()) {
+            Some(true) => {}
+            Some(false) => continue,
+            None => return Err(homeless),
+        }
+        let volume = shell_volume(brep, faces, size).volume;
+        if home.is_none_or(|(least, _)| volume < least) {
+            home = Some((volume, s));
+        }
+    }
+    home.map(|(_, s)| s).ok_or(homeless)
 }
 
 /// A point of a face's boundary, or of the face where it has none.

@@ -1,0 +1,46 @@
+//! Two ways to every answer, on small parts: whether the boundary holds a point against whether the
+//! tree does, and the quantitative invisibility of every piece of a view, and the contours that are
+//! there, against rays in the tree.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use nalgebra::Vector3;
+use premio::checks::Checker;
+use premio_csg::rays::Material;
+use premio_fuzz::{Part, Recipe};
+use premio_kernel::brep::inside::holds;
+
+/// How many points are asked about.
+const POINTS: u32 = 32;
+
+fuzz_target!(|bytes: &[u8]| {
+    let mut recipe = Recipe::new(bytes);
+    let distance = [None, Some(0.8), Some(2.0), Some(20.0)][recipe.below(4)];
+    let direction = recipe.direction();
+    let Some(part) = Part::of(&recipe.model()) else {
+        return;
+    };
+    let known = &part.evaluation;
+    let material = Material::of(&part.tree);
+    // What is so near to the boundary tells nothing.
+    let near = 1000.0 * known.resolution;
+    let steps = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * near);
+    for p in (0..POINTS).map(|k| part.place(k)) {
+        let held = material.holds(&p);
+        let around = steps.iter().flat_map(|step| [p + step, p - step]);
+        if around.clone().all(|q| material.holds(&q) == held)
+            && let Some(told) = holds(&known.brep, &p, known.resolution)
+        {
+            assert_eq!(told, held, "at {p}\n{}", part.text);
+        }
+    }
+    if let Some(camera) = part.camera(direction.into(), distance) {
+        for check in Checker::new(&part.tree, known).view("of the fuzzer", &camera) {
+            assert!(
+                check.holds,
+                "{}: {}\n{}",
+                check.subject, check.detail, part.text
+            );
+        }
+    }
+});

@@ -1,0 +1,33 @@
+//! Views of small parts: no panic, pieces that follow one another, and a drawing.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use premio_fuzz::{Part, Recipe};
+use premio_visibility::contours;
+
+fuzz_target!(|bytes: &[u8]| {
+    let mut recipe = Recipe::new(bytes);
+    let distance = [None, Some(0.8), Some(2.0), Some(20.0)][recipe.below(4)];
+    let direction = recipe.direction();
+    let Some(part) = Part::of(&recipe.model()) else {
+        return;
+    };
+    let Some(camera) = part.camera(direction.into(), distance) else {
+        return;
+    };
+    let Some(resolution) = part.evaluation.resolution_of_views() else {
+        return;
+    };
+    let Ok(seen) = contours(&part.evaluation.brep, &camera, resolution) else {
+        return;
+    };
+    for contour in &seen.contours {
+        let ranges = contour.pieces.iter().map(|piece| piece.t);
+        let ordered = ranges.clone().all(|[lo, hi]| lo < hi)
+            && ranges
+                .clone()
+                .zip(ranges.skip(1))
+                .all(|(a, b)| a[1] <= b[0]);
+        assert!(ordered, "{:?}\n{}", contour.pieces, part.text);
+    }
+});

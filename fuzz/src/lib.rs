@@ -1,0 +1,86 @@
+//! Parts out of bytes: what the targets for the geometry share.
+//!
+//! A few bytes are a small tree whose lengths lie on a half-unit grid, next to it by any power of
+//! two, or anywhere; so that a change of one byte moves, turns or grows one thing, and coincidences
+//! abound.
+
+mod recipe;
+
+use nalgebra::{Point3, Vector3};
+use premio::fuzz::model::Model;
+use premio::fuzz::write::{Format, write};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Options, read};
+use premio_csg::tree::Tree;
+use premio_visibility::Camera;
+
+pub use recipe::Recipe;
+
+/// A part to be tried.
+#[derive(Debug)]
+pub struct Part {
+    /// The description, for whoever is told that it fails.
+    pub text: String,
+    /// What it describes.
+    pub tree: Tree,
+    /// Its boundary.
+    pub evaluation: Evaluation,
+}
+
+impl Part {
+    /// The part of a model; none where it is refused, which is no find.
+    pub fn of(model: &Model) -> Option<Self> {
+        let text = write(model, Format::Padl);
+        let json = write(model, Format::Json);
+        let format = premio_csg::reader::Format::Json;
+        let read = read("model", json.as_bytes(), format, &Options::default());
+        let tree = read.ok()?.tree;
+        let evaluation = evaluate(&tree, &EvaluationOptions::default()).ok()?;
+        Some(Self {
+            text,
+            tree,
+            evaluation,
+        })
+    }
+
+    /// A camera that looks at the part from a direction, from so many times its size away where it is
+    /// a perspective one.
+    pub fn camera(&self, direction: Vector3<f64>, distance: Option<f64>) -> Option<Camera> {
+        let bounds = &self.evaluation.bounds;
+        let size = bounds.diagonal();
+        let centre = bounds.centre();
+        let up = match direction.x == 0.0 && direction.y == 0.0 {
+            true => Vector3::y(),
+            false => Vector3::z(),
+        };
+        let towards = direction.try_normalize(0.0)?;
+        let eye = |distance: f64| centre + towards * (distance * size);
+        match distance {
+            Some(distance) => Camera::perspective(eye(distance), centre, up, 1.0).ok(),
+            None => Camera::orthographic(eye(1.0), centre, up).ok(),
+        }
+    }
+
+    /// The k-th of points spread evenly over a box that is a little larger than the part's (Halton's
+    /// sequence).
+    pub fn place(&self, k: u32) -> Point3<f64> {
+        let bounds = &self.evaluation.bounds;
+        let part = [2, 3, 5].map(|base| inverse(k + 1, base));
+        let at = |i: usize| {
+            let length = bounds.max[i] - bounds.min[i];
+            bounds.min[i] + length * (1.1 * part[i] - 0.05)
+        };
+        Point3::new(at(0), at(1), at(2))
+    }
+}
+
+/// The digits of a number to a base, behind the point and in reverse.
+fn inverse(mut n: u32, base: u32) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0);
+    while n > 0 {
+        digit /= f64::from(base);
+        value += digit * f64::from(n % base);
+        n /= base;
+    }
+    value
+}

@@ -1,0 +1,169 @@
+//! Bytes, taken one after the other, as choices.
+
+use premio::fuzz::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+
+/// Bytes that are taken as choices; where they end, each further one is the first.
+#[derive(Debug)]
+pub struct Recipe<'a> {
+    bytes: &'a [u8],
+}
+
+/// The most primitives of a model.
+const MOST: usize = 5;
+
+/// The turns of the grid, in degrees.
+const TURNS: [f64; 8] = [90.0, -90.0, 180.0, 45.0, 30.0, 17.0, 60.0, 36.875];
+
+impl<'a> Recipe<'a> {
+    /// The choices of these bytes.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes }
+    }
+
+    fn byte(&mut self) -> u8 {
+        match self.bytes.split_first() {
+            Some((&first, rest)) => {
+                self.bytes = rest;
+                first
+            }
+            None => 0,
+        }
+    }
+
+    /// A whole number from 0 to `n` - 1.
+    pub fn below(&mut self, n: usize) -> usize {
+        usize::from(self.byte()) % n
+    }
+
+    /// A model of up to five primitives.
+    pub fn model(&mut self) -> Model {
+        let mut model = Model::default();
+        let count = 1 + self.below(MOST);
+        let mut open: Vec<NodeId> = Vec::new();
+        for _ in 0..count {
+            let primitive = self.primitive();
+            let steps = self.steps();
+            open.push(model.leaf(primitive, steps));
+            // Operations on what is there already, or later on all.
+            while open.len() > 1 && self.below(2) == 1 {
+                let last = open.split_off(open.len() - 2);
+                let steps = self.rarely_steps();
+                open.push(model.operation(self.operation(), last, steps));
+            }
+        }
+        if open.len() > 1 {
+            let steps = self.rarely_steps();
+            model.operation(self.operation(), open, steps);
+        }
+        model
+    }
+
+    fn operation(&mut self) -> Operation {
+        Operation::ALL[self.below(Operation::ALL.len())]
+    }
+
+    fn primitive(&mut self) -> Primitive {
+        match self.below(7) {
+            0 => Primitive::Block([0; 3].map(|_| self.length())),
+            1 => Primitive::Wedge([0; 3].map(|_| self.length())),
+            2 => Primitive::Cylinder {
+                r: self.length(),
+                h: self.length(),
+            },
+            3 => Primitive::Frustum {
+                r1: self.length(),
+                r2: 0.0,
+                h: self.length(),
+            },
+            4 => {
+                let (r1, h) = (self.length(), self.length());
+                let r2 = match self.length() {
+                    same if same == r1 => 0.0,
+                    other => other,
+                };
+                Primitive::Frustum { r1, r2, h }
+            }
+            5 => Primitive::Sphere(self.length()),
+            _ => {
+                let minor = self.length();
+                let major = minor + self.length();
+                Primitive::Torus { major, minor }
+            }
+        }
+    }
+
+    /// A length of up to four units.
+    fn length(&mut self) -> f64 {
+        let half = |n: usize| (n + 1) as f64 / 2.0;
+        match self.below(8) {
+            0..=4 => half(self.below(8)),
+            5 => (1 + self.below(32)) as f64 / 8.0,
+            6 => half(self.below(8)) + self.little(),
+            _ => (1.0 + self.fraction()) * 4.0 * (0.5 + self.fraction() / 2.0),
+        }
+    }
+
+    /// A coordinate from -4 to 4.
+    fn coordinate(&mut self) -> f64 {
+        let half = |n: usize| n as f64 / 2.0 - 2.0;
+        match self.below(8) {
+            0..=5 => half(self.below(13)),
+            6 => half(self.below(9)) + self.little(),
+            _ => 8.0 * self.fraction() - 4.0,
+        }
+    }
+
+    /// A number from 0 to 1.
+    fn fraction(&mut self) -> f64 {
+        let [high, low] = [self.byte(), self.byte()];
+        f64::from(u16::from_be_bytes([high, low])) / 65536.0
+    }
+
+    /// A small number of any order of magnitude.
+    fn little(&mut self) -> f64 {
+        let size = 2f64.powi(-(10 + self.below(51) as i32));
+        match self.below(2) {
+            0 => size,
+            _ => -size,
+        }
+    }
+
+    fn rarely_steps(&mut self) -> Vec<Step> {
+        match self.below(4) {
+            3 => self.steps(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn steps(&mut self) -> Vec<Step> {
+        let mut steps = Vec::new();
+        if self.below(3) == 2 {
+            steps.push(self.turn());
+        }
+        if self.below(4) > 0 {
+            steps.push(Step::Shift([0; 3].map(|_| self.coordinate())));
+        }
+        if self.below(8) == 7 {
+            steps.push(self.turn());
+        }
+        steps
+    }
+
+    fn turn(&mut self) -> Step {
+        let axis = Axis::ALL[self.below(3)];
+        let degrees = match self.below(4) {
+            0 | 1 => TURNS[self.below(TURNS.len())],
+            2 => self.little(),
+            _ => 360.0 * self.fraction(),
+        };
+        Step::Turn(axis, degrees)
+    }
+
+    /// A direction: along an axis, a diagonal, or any.
+    pub fn direction(&mut self) -> [f64; 3] {
+        match self.below(2) {
+            0 => [0; 3].map(|_| self.below(3) as f64 - 1.0),
+            _ => [0; 3].map(|_| 2.0 * self.fraction() - 1.0),
+        }
+    }
+}

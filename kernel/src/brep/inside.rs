@@ -2,6 +2,7 @@
 
 use super::Brep;
 use super::locate::{FaceLocator, Place};
+use super::mass::bounds;
 use super::topology::FaceId;
 use crate::geometry::curve::{Curve, Line};
 use crate::geometry::cut::cut;
@@ -27,12 +28,16 @@ pub(super) fn faces_hold<N: Number>(
     p: &Point3<N>,
     band: N,
 ) -> Option<bool> {
+    // Beyond the box there is nothing to cross.
+    let around = bounds(brep);
+    let away = (around.centre().map(N::of) - p).length();
+    let length = N::TWO * (away + N::of(around.diagonal()));
     let crossings = (0..RAYS).find_map(|k| {
         let line = Line {
             origin: *p,
             direction: towards(k),
         };
-        crossings(brep, faces, &line, band)
+        crossings(brep, faces, (&line, length), band)
     });
     crossings.map(|count| count % 2 == 1)
 }
@@ -44,27 +49,18 @@ fn towards<N: Number>(k: u32) -> Vector3<N> {
     Vector3::new(a.cos(), a.sin(), rise).unit()
 }
 
-/// How often the ray from the line's origin crosses the faces; none where that is unclear.
-fn crossings<N: Number>(brep: &Brep<N>, faces: &[FaceId], line: &Line<N>, band: N) -> Option<u32> {
+/// How often a ray of this length crosses the faces; none where that is unclear.
+fn crossings<N: Number>(
+    brep: &Brep<N>,
+    faces: &[FaceId],
+    (line, length): (&Line<N>, N),
+    band: N,
+) -> Option<u32> {
     let mut count = 0;
     let curve = Curve::Line(*line);
-    let reach = brep
-        .geometry
-        .points
-        .iter()
-        .map(|q| (q - line.origin).length());
-    let arcs = brep
-        .topology
-        .edge_ids()
-        .map(|e| (brep.curve(e).point(brep.range(e)[0]) - line.origin).length());
-    let sizes = brep
-        .geometry
-        .surfaces
-        .iter()
-        .map(|s| (s.frame().origin - line.origin).length());
-    let far = N::of(4.0) * reach.chain(arcs).chain(sizes).fold(N::ONE, N::max);
     for &face in faces {
-        let Zeros::At { roots, .. } = cut(&curve, [N::ZERO, far], brep.surface(face), band) else {
+        let Zeros::At { roots, .. } = cut(&curve, [N::ZERO, length], brep.surface(face), band)
+        else {
             return None;
         };
         if roots.is_empty() {

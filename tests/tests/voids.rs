@@ -1,0 +1,50 @@
+//! Which solid a void is in, and which points the solids hold.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
+
+use nalgebra::Point3;
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_kernel::brep::inside::holds;
+use premio_kernel::geometry::surface::Surface;
+
+fn evaluated(text: &str) -> Evaluation {
+    let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    evaluate(&part.tree, &EvaluationOptions::default()).unwrap()
+}
+
+/// The radius of a shell that is one sphere.
+fn radius(known: &Evaluation, shell: usize) -> f64 {
+    let [face] = *known.brep.topology.shells[shell].faces else {
+        panic!("a sphere is one face");
+    };
+    let Surface::Sphere(sphere) = known.brep.surface(face) else {
+        panic!("no sphere");
+    };
+    sphere.radius
+}
+
+/// A ball has no edge that tells how far a ray from its hollow must go.
+#[test]
+fn a_hollow_ball_beside_a_ball() {
+    for balls in [
+        "SPH(R=1) AT (MOVX=-9) UN (SPH(R=4) DIF SPH(R=2))",
+        "(SPH(R=4) DIF SPH(R=2)) UN SPH(R=1) AT (MOVX=-9)",
+    ] {
+        let known = evaluated(&format!("P = {balls}"));
+        let solids = known.brep.topology.solids.iter();
+        let mut radii: Vec<Vec<f64>> = solids
+            .map(|s| s.shells.iter().map(|s| radius(&known, s.index())).collect())
+            .collect();
+        radii.sort_by_key(Vec::len);
+        assert_eq!(radii, [vec![1.0], vec![4.0, 2.0]], "{balls}");
+    }
+}
+
+#[test]
+fn points_of_a_hollow_ball_and_a_ball() {
+    let known = evaluated("P = SPH(R=1) AT (MOVX=-9) UN (SPH(R=4) DIF SPH(R=2))");
+    let held = |x: f64| holds(&known.brep, &Point3::new(x, 0.1, 0.2), known.resolution);
+    let places = [-20.0, -9.0, -6.0, -3.0, 0.0, 1.5, 3.0, 5.0].map(held);
+    let expected = [false, true, false, true, false, false, true, false];
+    assert_eq!(places, expected.map(Some));
+}

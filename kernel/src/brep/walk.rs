@@ -325,14 +325,13 @@ impl<N: Number> Walk<N> {
         if (0..3).any(|i| lo[i] - reach > max[i] || hi[i] + reach < min[i]) {
             return false;
         }
+        let half = |i: usize| N::of(0.5 * (hi[i] - lo[i]));
+        let middle = |i: usize| N::of(0.5 * (lo[i] + hi[i]));
+        let sides = Vector3::new(half(0), half(1), half(2));
+        let centre = Point3::new(middle(0), middle(1), middle(2));
         let above = |o: &Point3<N>, n: &Vector3<N>| {
-            let mid: N = (0..3)
-                .map(|i| n[i] * (N::of(0.5 * (lo[i] + hi[i])) - o[i]))
-                .sum();
-            let half: N = (0..3)
-                .map(|i| n[i].abs() * N::of(0.5 * (hi[i] - lo[i])))
-                .sum();
-            (mid, half + band)
+            let half = n.x.abs() * sides.x + n.y.abs() * sides.y + n.z.abs() * sides.z;
+            (n.dot(&(centre - o)), half + band)
         };
         let (mid, half) = above(&self.start, &self.normal);
         if mid.abs() > half {

@@ -111,7 +111,8 @@ pub trait Number:
 /// The functions of a number that it has itself.
 macro_rules! own {
     ($number:ty: $($name:ident($($argument:ident),*)),* $(,)?) => {
-        $(fn $name(self $(, $argument: Self)*) -> Self {
+        $(#[inline]
+        fn $name(self $(, $argument: Self)*) -> Self {
             <$number>::$name(self $(, $argument)*)
         })*
     };
@@ -138,39 +139,50 @@ impl Number for f64 {
         static RULES: LazyLock<Rules<f64>> = LazyLock::new(|| Rules::new(10, 64.0 * f64::ROUNDING));
         &RULES
     }
+    #[inline]
     fn of(x: f64) -> Self {
         x
     }
+    #[inline]
     fn below(self) -> f64 {
         self
     }
+    #[inline]
     fn nearest(x: &Rational) -> Self {
         to_f64(x)
     }
+    #[inline]
     fn exact(self) -> Option<Rational> {
         from_f64(self)
     }
+    #[inline]
     fn rounded(self) -> f64 {
         self
     }
+    #[inline]
     fn bits(self) -> [u64; 4] {
         [self.to_bits(), 0, 0, 0]
     }
+    #[inline]
     fn index(self) -> usize {
         self as usize
     }
     own!(f64: abs(), signum(), copysign(sign), max(o), min(o), clamp(lo, hi), floor(), ceil(),
         round(), fract(), rem_euclid(divisor), sqrt(), hypot(o), sin(), cos(), sinh(), cosh(),
         acos(), atan(), atan2(x), asinh(), acosh());
+    #[inline]
     fn total_cmp(&self, o: &Self) -> Ordering {
         f64::total_cmp(self, o)
     }
+    #[inline]
     fn is_nan(self) -> bool {
         f64::is_nan(self)
     }
+    #[inline]
     fn is_finite(self) -> bool {
         f64::is_finite(self)
     }
+    #[inline]
     fn powi(self, n: i32) -> Self {
         f64::powi(self, n)
     }

@@ -19,6 +19,9 @@ struct Arguments {
     /// Turn the pairs about an odd axis.
     #[arg(long)]
     turned: bool,
+    /// Only pairs with this in their names.
+    #[arg(long, default_value = "")]
+    pair: String,
     /// Compare the exact boundaries on each side of a coincidence instead.
     #[arg(long)]
     exact: bool,
@@ -32,9 +35,10 @@ fn main() -> io::Result<ExitCode> {
     };
     let (mut wrong, mut all) = (0, 0);
     let mut out = io::stdout().lock();
+    let pairs = || PAIRS.iter().filter(|p| p.name.contains(&arguments.pair));
     if arguments.exact {
         let powers: Vec<i32> = (arguments.from..=arguments.to).step_by(10).collect();
-        for (pair, sign) in PAIRS.iter().flat_map(|pair| [(pair, ""), (pair, "-")]) {
+        for (pair, sign) in pairs().flat_map(|pair| [(pair, ""), (pair, "-")]) {
             let found = changes(pair, sign, &powers, pose);
             for change in &found {
                 writeln!(out, "{}: {change}", pair.name)?;
@@ -45,7 +49,7 @@ fn main() -> io::Result<ExitCode> {
         writeln!(out, "{wrong} of {all} sides")?;
         return Ok(ExitCode::from(u8::from(wrong > 0)));
     }
-    for pair in PAIRS {
+    for pair in pairs() {
         for power in arguments.from..=arguments.to {
             for sign in ["", "-"] {
                 let found = faults(pair, &gap(sign, power), pose);

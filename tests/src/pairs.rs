@@ -40,7 +40,7 @@ pub const PAIRS: &[Pair] = &[
     pair("tori side by side", "TOR(RMAJ=2,RMIN=1)", "TOR(RMAJ=2,RMIN=1) AT (MOVX=6+D)"),
     pair("edge on ball", "BLO(X=4,Y=2,Z=2) AT (MOVX=-2)", "SPH(R=1) AT (MOVY=-0.6-D*0.6,MOVZ=2.8+D*0.8)"),
     pair("vertex on face", "BLO(X=4,Y=4,Z=4) AT (MOVX=-2,MOVY=-2,MOVZ=-4)", "WED(X=1,Y=1,Z=1) AT (ROTY=-45,ROTX=35,MOVZ=D)"),
-    pair("edge across edge", "BLO(X=4,Y=1,Z=1) AT (MOVX=-2,MOVY=-0.5,MOVZ=-0.5,ROTX=45)", "BLO(X=4,Y=1,Z=1) AT (MOVX=-2,MOVY=-0.5,MOVZ=-0.5,ROTX=45,ROTZ=90,MOVZ=1.4142135623730951+D)"),
+    pair("edge across edge", "WED(X=2,Y=4,Z=1)", "WED(X=2,Y=4,Z=1) AT (ROTX=180,ROTZ=90,MOVX=-2,MOVY=2,MOVZ=2+D)"),
     pair("ball in bore", "CYL(R=2,H=4)", "SPH(R=1) AT (MOVX=1-D,MOVZ=2)"),
     pair("void at wall", "BLO(X=4,Y=4,Z=4)", "SPH(R=1) AT (MOVX=2,MOVY=2,MOVZ=3-D)"),
     pair("vertex on cylinder", "CYL(R=1,H=4)", "WED(X=1,Y=1,Z=1) AT (ROTZ=30,ROTY=20,MOVX=1+D,MOVZ=2)"),

@@ -137,9 +137,11 @@ fn touching<N: Number>([lo, hi]: [N; 2]) -> Zeros<N> {
 
 /// Whether a point of a box can be within `margin` of a surface, by its distance and by its level.
 pub fn comes_near<N: Number>(surface: &Surface<N>, b: &Box3, margin: N) -> bool {
-    // The distance of a surface changes by no more than the way.
-    let centre = b.centre().map(N::of);
-    if surface.distance(&centre).abs() > N::of(0.5 * b.diagonal()) + margin {
+    // The distance of a surface changes by no more than the way, which doubles tell to rounding.
+    let centre = b.centre();
+    let rounding = f64::ROUNDING * (centre.coords.norm() + b.diagonal());
+    let away = surface.distance(&centre.map(N::of)).abs();
+    if away > N::of(0.5 * b.diagonal() + rounding) + margin {
         return false;
     }
     let level = surface.level([0, 1, 2].map(|i| Interval::new(N::of(b.min[i]), N::of(b.max[i]))));

@@ -8,7 +8,7 @@ mod leading;
 use super::bitrig::Partials;
 use super::chart::Chart;
 use super::trace::grid::{Cell, plain_grid};
-use super::trace::{Bounds, DEPTH, Tracer, Unresolved, near};
+use super::trace::{Bounds, Tracer, Unresolved, deepest, near};
 use crate::number::precision::Number;
 use crate::number::sign::CLOSE;
 
@@ -97,7 +97,7 @@ pub(super) fn singular_points<N: Number>(
                 degenerate.push((point, reach));
             }
         }
-        if depth >= DEPTH {
+        if depth >= deepest::<N>() {
             return Err(Unresolved::at(cell.centre()));
         }
         let Bounds { wide, .. } = b;

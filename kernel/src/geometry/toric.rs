@@ -195,14 +195,17 @@ impl<N: Number> Segment<N> {
         for _ in 0..12 {
             let [value, slope] = section.at(y);
             let step = value / slope;
-            if !(y - step >= lo && y - step <= hi) {
+            let short = step.abs() <= N::TWO * N::EPSILON * (N::ONE + y.abs());
+            // A graph that leaves its cell by a side ends on it, or beyond it by rounding.
+            let next = (y - step).max(lo).min(hi);
+            if !step.is_finite() || (next == y && !short) {
                 break;
             }
-            y -= step;
+            y = next;
             // Next to a singular point only rounding is left of the value, and steps no longer
             // get shorter.
             let noise = value.abs() <= rounding && step.abs() >= N::HALF * last;
-            if noise || step.abs() <= N::TWO * N::EPSILON * (N::ONE + y.abs()) {
+            if noise || short {
                 return y;
             }
             last = step.abs();

@@ -18,7 +18,7 @@ use super::{Pass, SingularPoint, ZONE};
 use crate::geometry::bitrig::{BiTrig, Partials};
 use crate::geometry::chart::{Chart, DEGREE, Taylor, Weights, sheared, taylor};
 use crate::geometry::toric::Axis;
-use crate::geometry::trace::{DEPTH, Tracer, near};
+use crate::geometry::trace::{Tracer, deepest, near};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::precision::Number;
@@ -186,7 +186,7 @@ fn fold<N: Number>(
 
 /// The greatest zone of which something holds.
 fn zone<N: Number>(holds: impl Fn(N) -> bool) -> Option<N> {
-    let zones = (0..DEPTH as i32).map(|n| N::of(ZONE) * N::HALF.powi(n));
+    let zones = (0..deepest::<N>() as i32).map(|n| N::of(ZONE) * N::HALF.powi(n));
     zones.into_iter().find(|&z| holds(z))
 }
 

@@ -85,8 +85,15 @@ pub(super) struct Tracer<'a, N: Number = f64> {
     pub band: N,
 }
 
-/// The depth at which a cell that is still undecided is given up: sides of 1e-7 radians.
-pub(super) const DEPTH: u32 = 48;
+/// The depth at which a cell that is still undecided is given up: where its sides are next to the
+/// root of the numbers' precision, in doubles 1e-7 radians.
+pub(super) fn deepest<N: Number>() -> u32 {
+    let bits = -N::EPSILON.rounded().log2();
+    bits as u32 - SPARED
+}
+
+/// How many bits stay beyond the deepest cells.
+const SPARED: u32 = 4;
 
 /// A graph's slope is at most this in an accepted cell.
 const STEEP: f64 = 2.0;
@@ -146,7 +153,7 @@ impl<N: Number> Tracer<'_, N> {
                 leaves.push((cell, Axis::Around));
             } else if b.x[0] > N::ZERO && b.y[1] <= N::of(STEEP) * b.x[0] {
                 leaves.push((cell, Axis::Tube));
-            } else if depth >= DEPTH {
+            } else if depth >= deepest::<N>() {
                 return Err(Unresolved::at(cell.centre()));
             } else {
                 stack.extend(cell.halves(b.wide).map(|c| (c, depth + 1)));

@@ -285,15 +285,17 @@ fn holds_far<N: Number>(
     if brep.topology.face(face).loops.is_empty() {
         return true;
     }
-    if part.abs() > N::of(FEW) {
+    if part.abs() > N::of(FEW) * N::ROUNDING {
         return part < N::ZERO;
     }
-    let locator = FaceLocator::of(brep, face, amid.size * N::of(RELATIVE_RESOLUTION));
+    let locator = FaceLocator::of(brep, face, amid.size * N::of(BAND) * N::ROUNDING);
     locator.place(far) != Place::Outside
 }
 
-/// Of areas below this part of the whole surface the sign may be rounding.
-const FEW: f64 = 1.0 / (1u64 << 40) as f64;
+/// Of areas below this part of the whole surface, in terms of rounding, the sign may be rounding.
+const FEW: f64 = 256.0;
+/// How far edges are off, in terms of the part's size and of rounding.
+const BAND: f64 = 4096.0;
 /// The angle about the tube at which a torus is cut open.
 const BASE: f64 = 2.0;
 

@@ -5,4 +5,5 @@ pub mod brep;
 pub mod geometry;
 pub mod motion;
 pub mod number;
+pub mod proof;
 pub mod tessellation;

@@ -72,12 +72,13 @@ pub(super) struct Arrangement<N: Number = f64> {
     pub tree: SolidTree,
 }
 
-pub(super) fn arrange<N: Number>(
-    tree: &Tree,
+/// The arrangement, and where its carriers come from.
+pub(super) fn arrange<'t, N: Number>(
+    tree: &'t Tree,
     solids: &Solids<N>,
     extent: &Extent<N>,
     judge: &Judge,
-) -> Result<Arrangement<N>, EvaluationError> {
+) -> Result<(Arrangement<N>, Vec<Source<'t>>), EvaluationError> {
     let Merged {
         carriers,
         sources,
@@ -121,7 +122,7 @@ pub(super) fn arrange<N: Number>(
         m.cuts
             .dedup_by(|a, b| a.vertex == b.vertex && (a.t - b.t).abs() < N::of(CLOSE_PASS));
     }
-    Ok(found)
+    Ok((found, sources))
 }
 
 type Pairs = BTreeMap<(usize, usize), Vec<Box3>>;

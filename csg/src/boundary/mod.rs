@@ -5,7 +5,8 @@
 //! where other curves run next to them. `cuts` gives the common points of curves and surfaces, which
 //! `corners` makes one, and `pieces` what lies between. `membership` asks the tree whether a choice
 //! of sides is material; `sheets` puts the carriers around a piece in order, and `wings` decides
-//! which pieces are edges, and where their faces lie; `concern` tells the close calls on which the
+//! which pieces are edges, and where their faces lie; for exact evaluation `proof` proves what lies
+//! on what; `concern` tells the close calls on which the
 //! boundary depends. The kernel assembles the rest.
 
 mod arrangement;
@@ -18,6 +19,7 @@ mod exact;
 mod halfspaces;
 mod membership;
 mod pieces;
+mod proof;
 mod sheets;
 mod wings;
 
@@ -153,6 +155,17 @@ pub enum EvaluationError {
         /// The resolution.
         resolution: f64,
     },
+    /// Under exact evaluation: 237 bits take something for zero that is proven not to be.
+    #[error(
+        "{question} near ({:.6}, {:.6}, {:.6}): they are apart, by less than 237 bits tell",
+        place[0], place[1], place[2]
+    )]
+    Doubt {
+        /// What was asked.
+        question: &'static str,
+        /// Near where.
+        place: [f64; 3],
+    },
     /// The description's numbers are too large or too small for doubles.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
@@ -189,7 +202,7 @@ impl EvaluationError {
             | Self::Assembly(_)
             | Self::Vague { .. }
             | Self::Resolution { .. } => true,
-            Self::Size | Self::Far { .. } => false,
+            Self::Size | Self::Far { .. } | Self::Doubt { .. } => false,
         }
     }
 }
@@ -228,7 +241,11 @@ fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<Wide>, E
 /// same kind, it can be seen in them.
 fn exactly(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     let known = finely(tree, options)?;
-    let plain = evaluated::<f64>(tree, options).ok();
+    let by_resolution = EvaluationOptions {
+        zeros: Zeros::ByResolution,
+        ..*options
+    };
+    let plain = evaluated::<f64>(tree, &by_resolution).ok();
     let alike = plain.filter(|plain| plain.brep.topology.census() == known.brep.topology.census());
     let resolution = alike.map(|plain| plain.resolution);
     Ok(Evaluation {
@@ -266,12 +283,22 @@ fn evaluated<N: Number>(
         return Err(EvaluationError::Size);
     }
     let resolution = resolution_of::<N>(&solids.bounds, options)?;
-    let judge = Judge::new(resolution);
+    let judge = match options.zeros {
+        Zeros::Exact => Judge::exact(resolution),
+        Zeros::ByResolution => Judge::new(resolution),
+    };
     let extent = Extent {
         centre: solids.bounds.centre().map(N::of),
         radius: N::of(0.75 * size),
     };
-    let arrangement = arrangement::arrange(tree, &solids, &extent, &judge)?;
+    let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &judge)?;
+    if judge.proves() {
+        proof::prove(&arrangement, &sources, &judge)?;
+        if let Some(doubt) = judge.first_doubt() {
+            let (question, place) = (doubt.question, doubt.place);
+            return Err(EvaluationError::Doubt { question, place });
+        }
+    }
     let concern = concern::Concern {
         solids: &solids,
         arrangement: &arrangement,

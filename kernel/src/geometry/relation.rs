@@ -11,6 +11,7 @@ use crate::number::interval::Interval;
 use crate::number::precision::Number;
 use crate::number::rational::Rational;
 use crate::number::real::Real;
+use crate::number::separation::Separation;
 use crate::number::sign::Distance;
 
 /// What defines a surface, over some number type.
@@ -512,4 +513,14 @@ impl<N: Number> Distance for How<'_, N> {
         let exact = |x: N| Enclosure::exact(x.exact().unwrap_or_default(), bits);
         Some(self.over(a, b, exact))
     }
+
+    fn separation(&self) -> Option<usize> {
+        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.exact().map(exact_separation));
+        let exact = |x: N| Separation::exact(x.exact().unwrap_or_default());
+        self.over(a, b, exact).bits()
+    }
+}
+
+fn exact_separation(x: &Rational) -> Separation {
+    Separation::exact(x.clone())
 }

@@ -13,5 +13,6 @@ pub mod rational;
 pub mod real;
 pub mod roots;
 pub mod scalar;
+pub mod separation;
 pub mod sign;
 pub mod wide;

@@ -12,7 +12,8 @@
 use super::enclosure::Enclosure;
 use super::interval::Interval;
 use super::precision::Number;
-use super::rational::from_f64;
+use super::rational::{Rational, from_f64};
+use dashu::base::BitTest;
 use std::cell::RefCell;
 
 /// The factor on either side of the band within which a decision is a close call.
@@ -56,7 +57,7 @@ pub enum Zeros {
     /// What lies within the resolution.
     #[default]
     ByResolution,
-    /// What 237 bits do not tell from zero, and nothing else.
+    /// What is zero, and nothing else.
     Exact,
 }
 
@@ -95,6 +96,12 @@ pub trait Distance {
 
     /// A certified range reckoned to so many bits; none where no more is known.
     fn refined(&self, bits: usize) -> Option<Enclosure>;
+
+    /// The number of bits after the point from which on a distance that is still zero is zero; none
+    /// where no such bound is known.
+    fn separation(&self) -> Option<usize> {
+        None
+    }
 }
 
 /// A distance that is a construction's: taken at its word.
@@ -111,11 +118,20 @@ impl<N: Number> Distance for N {
 /// The precisions that are tried, in bits.
 const PRECISIONS: [usize; 4] = [128, 256, 512, 1024];
 
+/// Zeros that would take more bits are not proven.
+const PROVABLE: usize = 1 << 17;
+
 /// How a decision was reached.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Effort {
     Filter,
     MoreBits,
+    /// By the bits from which on it can be nothing but zero.
+    Proof,
+    /// A construction says so, which is proven where it is used.
+    Construction,
+    /// No more than that is known.
+    Assumption,
 }
 
 /// The side of a distance in [lo, hi], where the range tells: `band` and `below` are the two edges of
@@ -132,11 +148,38 @@ fn side_of<N: PartialOrd>(lo: N, hi: N, band: N, below: N) -> Option<Side> {
     }
 }
 
+/// The side of a distance within the band: on it only if it is zero, where that can be told.
+fn proven_side(distance: &impl Distance) -> (Side, Effort) {
+    let Some(bits) = distance.separation() else {
+        return (Side::On, Effort::Construction);
+    };
+    if bits > PROVABLE {
+        return (Side::On, Effort::Assumption);
+    }
+    let bounds = distance.refined(bits + GUARD);
+    match bounds.as_ref().and_then(Enclosure::ends) {
+        Some([lo, _]) if *lo > Rational::ZERO => (Side::Outside, Effort::MoreBits),
+        Some([_, hi]) if *hi < Rational::ZERO => (Side::Inside, Effort::MoreBits),
+        Some([lo, hi]) if is_below(&(hi - lo), bits) => (Side::On, Effort::Proof),
+        _ => (Side::On, Effort::Assumption),
+    }
+}
+
+/// Whether a number that is not negative is less than 2 to the power of -`bits`.
+fn is_below(x: &Rational, bits: usize) -> bool {
+    x.is_zero() || x.numerator().bit_len() + bits < x.denominator().bit_len()
+}
+
+/// The bits beyond a bound that rounding may take.
+const GUARD: usize = 128;
+
 /// Decides by the part's one resolution, and keeps count.
 #[derive(Debug)]
 pub struct Judge {
     band: f64,
+    zeros: Zeros,
     decisions: RefCell<Decisions>,
+    doubts: RefCell<Vec<CloseCall>>,
 }
 
 impl Judge {
@@ -144,8 +187,23 @@ impl Judge {
     pub fn new(band: f64) -> Self {
         Self {
             band,
+            zeros: Zeros::ByResolution,
             decisions: RefCell::default(),
+            doubts: RefCell::default(),
         }
+    }
+
+    /// A judge who has what lies within `band` proven to be zero.
+    pub fn exact(band: f64) -> Self {
+        Self {
+            zeros: Zeros::Exact,
+            ..Self::new(band)
+        }
+    }
+
+    /// Whether zeros are proven.
+    pub fn proves(&self) -> bool {
+        self.zeros == Zeros::Exact
     }
 
     /// The resolution, a distance in the part's unit.
@@ -191,10 +249,16 @@ impl Judge {
         place: [f64; 3],
     ) -> (Side, Option<CloseCall>) {
         let range = distance.range();
-        let (side, effort) = match side_of(range.lo, range.hi, self.band, -self.band) {
+        let (mut side, mut effort) = match side_of(range.lo, range.hi, self.band, -self.band) {
             Some(side) => (side, Effort::Filter),
             None => (self.refined_side(&distance), Effort::MoreBits),
         };
+        if side == Side::On && self.proves() {
+            (side, effort) = proven_side(&distance);
+            if side != Side::On {
+                self.doubt(question, place, range.mid());
+            }
+        }
         self.count(side, effort);
         let distance = range.mid();
         let size = distance.abs();
@@ -215,11 +279,40 @@ impl Judge {
 
     /// Another judge of the same resolution, who has decided nothing yet.
     pub fn another(&self) -> Self {
-        Self::new(self.band)
+        Self {
+            zeros: self.zeros,
+            ..Self::new(self.band)
+        }
+    }
+
+    /// Notes what lies within the resolution and is proven to be apart.
+    pub fn doubt(&self, question: &'static str, place: [f64; 3], distance: f64) {
+        self.doubts.borrow_mut().push(CloseCall {
+            question,
+            place,
+            distance,
+            local: false,
+        });
+    }
+
+    /// The first of what lies within the resolution and is proven to be apart.
+    pub fn first_doubt(&self) -> Option<CloseCall> {
+        self.doubts.borrow().first().cloned()
+    }
+
+    /// Counts zeros that were proven.
+    pub fn count_proven(&self, zeros: u64) {
+        self.decisions.borrow_mut().exact += zeros;
+    }
+
+    /// Counts zeros of which no more is known than the resolution.
+    pub fn count_assumed(&self, zeros: u64) {
+        self.decisions.borrow_mut().coincident += zeros;
     }
 
     /// Takes over what another judge has counted, and gives the close calls, not yet listed.
     pub fn take(&self, other: Self) -> Vec<CloseCall> {
+        self.doubts.borrow_mut().extend(other.doubts.into_inner());
         let other = other.decisions.into_inner();
         let mut decisions = self.decisions.borrow_mut();
         decisions.filtered += other.filtered;
@@ -273,9 +366,11 @@ impl Judge {
     fn count(&self, side: Side, effort: Effort) {
         let mut decisions = self.decisions.borrow_mut();
         match (side, effort) {
+            (_, Effort::Construction) => {}
+            (_, Effort::Proof) => decisions.exact += 1,
             (_, Effort::MoreBits) => decisions.refined += 1,
-            (Side::On, _) => decisions.coincident += 1,
-            _ => decisions.filtered += 1,
+            (Side::On, _) | (_, Effort::Assumption) => decisions.coincident += 1,
+            (_, Effort::Filter) => decisions.filtered += 1,
         }
     }
 

@@ -1,0 +1,279 @@
+//! The exact common zero of three polynomials next to a place.
+//!
+//! That there is one, and how far from the place, is Kantorovich's theorem (1948); its digits are
+//! Newton's. Whether a further polynomial h is zero there is told by a separation bound: let R(s, Z)
+//! be the resultant of the three, disturbed by s xᵈ, s yᵈ and s zᵈ, and of h - Z. Its lowest power
+//! of s has a coefficient that is a polynomial in Z with whole coefficients, not zero, and zero at
+//! the value of h at every isolated zero of the three (Canny 1990, on generalised characteristic
+//! polynomials). So that value is zero, or no less than one over that polynomial's greatest
+//! coefficient, which the heights and the degrees bound (Sombra 2004).
+
+use super::fixed::Place;
+use super::polynomial::Polynomial;
+use crate::number::precision::Number;
+use crate::number::rational::{Rational, to_f64};
+use dashu::base::{Abs, BitTest};
+use dashu::integer::IBig;
+use nalgebra::{Point3, Vector3};
+
+/// Whether a polynomial is zero at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// It is, which is proven.
+    Zero,
+    /// It is not, which is proven.
+    Apart,
+    /// It would take too many bits to tell.
+    Open,
+}
+
+/// An exact point: the zero of three polynomials next to a place.
+#[derive(Clone, Debug)]
+pub struct Point {
+    base: [Form; 3],
+    place: Place,
+    /// log₂ of a bound of how far the place is off.
+    off: f64,
+}
+
+/// The bits after the point with which a point is looked for first.
+pub(super) const FIRST: usize = 256;
+/// Newton's steps from a place that is known to some thirty digits to all of the first bits.
+const STEPS: usize = 5;
+/// More bits than this are not reckoned with.
+const MOST: usize = 1 << 17;
+/// How far gradients must reach out of one another's span: plainly, or at all.
+const INDEPENDENT: [f64; 3] = [
+    1.0 / (1 << 6) as f64,
+    1.0 / (1 << 20) as f64,
+    1.0 / (1u64 << 45) as f64,
+];
+/// The bits by which a gradient must be longer than its rounding.
+const CLEAR: usize = 100;
+/// The bits by which bounds are generous.
+const SPARE: usize = 64;
+
+/// log₂ of a number's absolute value, rounded up; of zero that of one.
+fn log2(x: &IBig) -> f64 {
+    x.bit_len() as f64
+}
+
+/// The determinant of three rows.
+fn determinant(m: &[[IBig; 3]; 3]) -> IBig {
+    let minor = |i: usize, j: usize| &m[1][i] * &m[2][j] - &m[1][j] * &m[2][i];
+    &m[0][0] * minor(1, 2) - &m[0][1] * minor(0, 2) + &m[0][2] * minor(0, 1)
+}
+
+/// A polynomial with its gradient.
+#[derive(Clone, Debug)]
+pub(super) struct Form {
+    pub level: Polynomial,
+    gradient: [Polynomial; 3],
+}
+
+impl Form {
+    pub fn of(level: &Polynomial) -> Self {
+        Self {
+            level: level.clone(),
+            gradient: level.gradient(),
+        }
+    }
+
+    fn slope(&self, place: &Place) -> [IBig; 3] {
+        self.gradient.each_ref().map(|d| place.value(d))
+    }
+
+    /// The direction of the gradient at a place; none where it is not `clear` bits longer than its
+    /// rounding.
+    pub fn direction(&self, place: &Place, clear: usize) -> Option<Vector3<f64>> {
+        let slope = self.slope(place);
+        let most = slope.iter().map(|x| x.clone().abs()).max()?;
+        let rounding = self.gradient.iter().map(|d| place.rounding(d)).max()?;
+        if most.bit_len() < rounding + clear {
+            return None;
+        }
+        let part = |x: &IBig| Rational::from(x.clone()) / Rational::from(most.clone());
+        let [x, y, z] = slope.each_ref().map(|x| to_f64(&part(x)));
+        Some(Vector3::new(x, y, z).normalize())
+    }
+}
+
+impl Point {
+    /// The point next to a place that is the zero of three of some polynomials, the first ones whose
+    /// gradients are independent; none where it is not proven that there is one, and one only.
+    pub fn next_to<'p, N: Number>(
+        polynomials: impl IntoIterator<Item = &'p Polynomial>,
+        p: &Point3<N>,
+    ) -> Option<Self> {
+        let place = Place::of(p, FIRST)?;
+        let forms = polynomials.into_iter().map(Form::of);
+        let known: Vec<(Form, Vector3<f64>)> = forms
+            .filter_map(|form| form.direction(&place, CLEAR).map(|d| (form, d)))
+            .collect();
+        let base = INDEPENDENT
+            .iter()
+            .find_map(|&least| independent(&known, least))?;
+        Self::of(base, place)
+    }
+
+    fn of(base: [Form; 3], mut place: Place) -> Option<Self> {
+        for _ in 0..STEPS {
+            place = stepped(&base, &place)?;
+        }
+        let mut point = Self {
+            base,
+            place,
+            off: f64::INFINITY,
+        };
+        point.off = point.kantorovich()?;
+        Some(point)
+    }
+
+    /// The way to it from another point, as far as numbers of a kind tell.
+    pub fn from<N: Number>(&self, p: &Point3<N>) -> Vector3<N> {
+        let one = Rational::from(IBig::ONE << self.place.bits);
+        let at = |i: usize| N::nearest(&(Rational::from(self.place.at[i].clone()) / &one));
+        Vector3::new(at(0), at(1), at(2)) - p.coords
+    }
+
+    /// log₂ of how far the zero is from the place; none where the theorem does not hold.
+    fn kantorovich(&self) -> Option<f64> {
+        let (place, bits) = (&self.place, self.place.bits as f64);
+        let slopes = self.base.each_ref().map(|form| form.slope(place));
+        // log₂ of the greatest component of each gradient, rounded down.
+        let sizes = slopes.each_ref().map(|slope| {
+            let most = slope.iter().map(log2).fold(0.0, f64::max);
+            most - 1.0 - bits
+        });
+        // Of directions of length one no minor is greater than one, and a gradient is no longer than
+        // four times what its size is rounded down to.
+        let total: f64 = sizes.iter().map(|size| size + 2.0).sum();
+        let inverse = 2.0 + total + 3.0 * bits - (log2(&determinant(&slopes)) - 1.0);
+        if inverse > bits / 4.0 {
+            return None;
+        }
+        let (mut value, mut bend) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        for (Form { level, gradient }, size) in self.base.iter().zip(sizes) {
+            let off = place.value(level).bit_len().max(place.rounding(level)) + 1;
+            value = value.max(off as f64 - bits - size);
+            // Of the second derivatives within one unit.
+            let around = level.degree().saturating_sub(2) as usize * (place.magnitude() + 1);
+            let second = gradient.iter().flat_map(|d| d.gradient());
+            let second = second.map(|d| d.length()).max().unwrap_or(0);
+            bend = bend.max((second + around) as f64 + 4.0 - size);
+        }
+        let step = inverse + value + 1.0;
+        // h = β K η, less than a half; the zero lies within twice the step.
+        (step < -1.0 && inverse + bend + step < -2.0).then_some(step + 1.0)
+    }
+
+    /// The bits after the point from which on a value of h that is still zero is zero.
+    fn separation(&self, h: &Polynomial) -> f64 {
+        let [a, b, c] = self.base.each_ref().map(|form| &form.level);
+        let all = [a, b, c, h];
+        let degrees = all.map(|p| f64::from(p.degree()));
+        let product: f64 = degrees.iter().product();
+        let sum = |(p, d): (&&Polynomial, &f64)| {
+            let terms = (d + 1.0) * (d + 2.0) * (d + 3.0) / 6.0;
+            product / d * (2.0 * terms.log2() + p.height() as f64 + 1.0)
+        };
+        all.iter().zip(&degrees).map(sum).sum::<f64>() + 1.0
+    }
+
+    /// Whether a polynomial is zero there.
+    pub fn is_zero_of(&mut self, h: &Polynomial) -> Answer {
+        if self.base.iter().any(|form| form.level == *h) {
+            return Answer::Zero;
+        }
+        if h.degree() == 0 {
+            return match h.height() {
+                0 => Answer::Zero,
+                _ => Answer::Apart,
+            };
+        }
+        let slopes = h.gradient();
+        let steep = slopes.iter().map(Polynomial::length).max().unwrap_or(0) as f64 + 2.0;
+        let steep = steep + (h.degree() as usize * (self.place.magnitude() + 1)) as f64;
+        let bound = self.separation(h);
+        loop {
+            let bits = self.place.bits as f64;
+            let rounding = self.place.rounding(h) as f64 - bits;
+            let off = rounding.max(steep + self.off) + 1.0;
+            let value = self.place.value(h);
+            // Of a number of n bits the least is two to the power of n - 1.
+            if !value.is_zero() && log2(&value) - 1.0 - bits > off {
+                return Answer::Apart;
+            }
+            if off.max(log2(&value) - bits) + 1.0 < -bound {
+                return Answer::Zero;
+            }
+            let wanted = bound + steep + self.place.rounding(h) as f64;
+            let wanted = wanted as usize + SPARE;
+            if wanted > MOST || self.place.bits >= 2 * wanted || self.refine(wanted).is_none() {
+                return Answer::Open;
+            }
+        }
+    }
+
+    /// Finds so many bits, and more where the point is not well conditioned.
+    fn refine(&mut self, wanted: usize) -> Option<()> {
+        let loss = (self.off + self.place.bits as f64).max(0.0) as usize;
+        let last = wanted.max(self.place.bits + 1) + 2 * loss;
+        let mut goals = vec![last];
+        while let Some(&goal) = goals.last() {
+            if goal <= self.place.bits + loss + SPARE {
+                break;
+            }
+            goals.push(goal / 2 + loss + SPARE);
+            if goals.len() > STEPS * STEPS {
+                return None;
+            }
+        }
+        for goal in goals.into_iter().rev() {
+            let place = self.place.with_bits(goal.max(self.place.bits));
+            self.place = stepped(&self.base, &place)?;
+        }
+        self.off = self.kantorovich()?;
+        Some(())
+    }
+}
+
+/// The first three polynomials whose gradients' directions enclose a volume: each reaches out of the
+/// span of those before by `least`.
+fn independent(known: &[(Form, Vector3<f64>)], least: f64) -> Option<[Form; 3]> {
+    let mut chosen: Vec<Form> = Vec::new();
+    let mut span: Vec<Vector3<f64>> = Vec::new();
+    for (form, direction) in known {
+        let rest = span.iter().fold(*direction, |d, e| d - e * e.dot(&d));
+        if rest.norm() > least {
+            span.push(rest.normalize());
+            chosen.push(form.clone());
+        }
+        if chosen.len() == 3 {
+            break;
+        }
+    }
+    chosen.try_into().ok()
+}
+
+/// Newton's step from a place; none where the gradients are dependent.
+fn stepped(base: &[Form; 3], place: &Place) -> Option<Place> {
+    let values = base.each_ref().map(|form| place.value(&form.level));
+    let slopes = base.each_ref().map(|form| form.slope(place));
+    let divisor = determinant(&slopes);
+    if divisor.is_zero() {
+        return None;
+    }
+    let mut at = place.at.clone();
+    for (axis, x) in at.iter_mut().enumerate() {
+        let mut replaced = slopes.clone();
+        for (row, value) in replaced.iter_mut().zip(&values) {
+            row[axis] = value.clone();
+        }
+        *x -= (determinant(&replaced) << place.bits) / &divisor;
+    }
+    Some(Place {
+        bits: place.bits,
+        at,
+    })
+}

@@ -1,0 +1,219 @@
+//! Polynomials in x, y and z with whole coefficients: surfaces without rounding.
+
+use crate::geometry::relation::Coefficients;
+use crate::geometry::surface::Surface;
+use crate::number::precision::Number;
+use crate::number::rational::Rational;
+use dashu::base::{BitTest, Gcd};
+use dashu::integer::{IBig, UBig};
+use std::collections::BTreeMap;
+
+/// The exponents of x, y and z.
+pub(super) type Exponents = [u8; 3];
+
+/// A polynomial in x, y and z; zero where it has no term.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Polynomial {
+    terms: BTreeMap<Exponents, IBig>,
+}
+
+/// Three polynomials, the components of a vector.
+type Vector = [Polynomial; 3];
+
+impl Polynomial {
+    fn constant(value: IBig) -> Self {
+        let mut all = Self::default();
+        all.add_term([0; 3], value);
+        all
+    }
+
+    /// The terms by their exponents.
+    pub(super) fn terms(&self) -> impl Iterator<Item = (&Exponents, &IBig)> {
+        self.terms.iter()
+    }
+
+    /// The degree; 0 of zero, too.
+    pub fn degree(&self) -> u32 {
+        let of = |e: &Exponents| e.iter().map(|&n| u32::from(n)).sum();
+        self.terms.keys().map(of).max().unwrap_or(0)
+    }
+
+    /// log₂ of the greatest coefficient, rounded up.
+    pub fn height(&self) -> usize {
+        let bits = self.terms.values().map(BitTest::bit_len);
+        bits.max().unwrap_or(0)
+    }
+
+    /// log₂ of the sum of all coefficients' absolute values, rounded up.
+    pub(super) fn length(&self) -> usize {
+        let count = self.terms.len().max(1);
+        self.height() + count.next_power_of_two().bit_len() - 1
+    }
+
+    fn add_term(&mut self, exponents: Exponents, value: IBig) {
+        let known = self.terms.entry(exponents).or_default();
+        *known += value;
+        if known.is_zero() {
+            self.terms.remove(&exponents);
+        }
+    }
+
+    fn plus(&self, o: &Self) -> Self {
+        let mut sum = self.clone();
+        for (e, c) in &o.terms {
+            sum.add_term(*e, c.clone());
+        }
+        sum
+    }
+
+    fn minus(&self, o: &Self) -> Self {
+        self.plus(&o.scaled(&-IBig::ONE))
+    }
+
+    fn times(&self, o: &Self) -> Self {
+        let mut product = Self::default();
+        for (a, c) in &self.terms {
+            for (b, d) in &o.terms {
+                product.add_term([0, 1, 2].map(|i| a[i] + b[i]), c * d);
+            }
+        }
+        product
+    }
+
+    fn scaled(&self, by: &IBig) -> Self {
+        let mut all = Self::default();
+        for (e, c) in &self.terms {
+            all.add_term(*e, c * by);
+        }
+        all
+    }
+
+    /// The same zeros with coefficients that have no factor in common.
+    fn reduced(&self) -> Self {
+        let common = |known: UBig, c: &IBig| {
+            let size = UBig::try_from(if *c < IBig::ZERO { -c } else { c.clone() });
+            known.gcd(size.unwrap_or(UBig::ONE))
+        };
+        let Some(first) = self.terms.values().next() else {
+            return Self::default();
+        };
+        let start = common(UBig::ZERO, first);
+        let factor = IBig::from(self.terms.values().fold(start, common));
+        let terms = self.terms.iter().map(|(e, c)| (*e, c / &factor));
+        Self {
+            terms: terms.collect(),
+        }
+    }
+
+    /// The derivative along an axis.
+    pub(super) fn derivative(&self, axis: usize) -> Self {
+        let mut all = Self::default();
+        for (e, c) in &self.terms {
+            if e[axis] > 0 {
+                let mut lower = *e;
+                lower[axis] -= 1;
+                all.add_term(lower, c * IBig::from(e[axis]));
+            }
+        }
+        all
+    }
+
+    /// The derivatives along the three axes.
+    pub fn gradient(&self) -> Vector {
+        [0, 1, 2].map(|axis| self.derivative(axis))
+    }
+
+    /// The components of the cross product of two gradients: zero where surfaces touch.
+    pub fn touching(&self, o: &Self) -> Vector {
+        cross(&self.gradient(), &o.gradient()).map(|p| p.reduced())
+    }
+
+    /// The determinant of three gradients: zero where two surfaces' curve touches a third.
+    pub fn dependence(&self, o: &Self, third: &Self) -> Self {
+        dot(&cross(&self.gradient(), &o.gradient()), &third.gradient()).reduced()
+    }
+
+    /// The plane through a point across a direction.
+    pub fn plane(point: &[Rational; 3], direction: &[Rational; 3]) -> Self {
+        let (away, _) = away(point);
+        dot(&whole_vector(direction), &away).reduced()
+    }
+
+    /// A surface, both nappes of a cone.
+    pub fn of<N: Number>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
+        let (v, q) = away(&exact.point);
+        let d = whole_vector(&exact.direction);
+        let square = |p: &Self| p.times(p);
+        let (vv, dd) = (dot(&v, &v), dot(&d, &d));
+        let up = dot(&d, &v);
+        let (a, b) = parts(&exact.size);
+        let across = dd.times(&vv).minus(&square(&up));
+        let all = match kind {
+            Surface::Plane(_) => up,
+            Surface::Sphere(_) => vv
+                .scaled(&(&b * &b))
+                .minus(&Self::constant(&a * &a * &q * &q)),
+            Surface::Cylinder(_) => across
+                .scaled(&(&b * &b))
+                .minus(&dd.scaled(&(&a * &a * &q * &q))),
+            Surface::Cone(_) => {
+                let along = square(&up).scaled(&(&a * &a + &b * &b));
+                along.minus(&dd.times(&vv).scaled(&(&b * &b)))
+            }
+            Surface::Torus(_) => {
+                let (c, e) = parts(&exact.tube);
+                // Both radii over one denominator.
+                let (major, minor, m) = (&a * &e, &c * &b, &b * &e);
+                let squares = (&major * &major - &minor * &minor) * &q * &q;
+                let sum = vv.scaled(&(&m * &m)).plus(&Self::constant(squares));
+                let round = across.scaled(&(IBig::from(4) * &major * &major * &q * &q * &m * &m));
+                dd.times(&square(&sum)).minus(&round)
+            }
+        };
+        all.reduced()
+    }
+}
+
+/// The numerator and the denominator.
+fn parts(x: &Rational) -> (IBig, IBig) {
+    (x.numerator().clone(), IBig::from(x.denominator().clone()))
+}
+
+/// Three numbers times the least that makes them whole, and that.
+fn whole(numbers: &[Rational; 3]) -> ([IBig; 3], IBig) {
+    let [a, b, c] = numbers.each_ref().map(|x| x.denominator().clone());
+    let least = |a: UBig, b: UBig| {
+        let common = (&a).gcd(&b);
+        a / common * b
+    };
+    let all = IBig::from(least(least(a, b), c));
+    let times = |x: &Rational| x.numerator() * (&all / IBig::from(x.denominator().clone()));
+    (numbers.each_ref().map(times), all)
+}
+
+fn whole_vector(direction: &[Rational; 3]) -> Vector {
+    let (numbers, _) = whole(direction);
+    numbers.map(Polynomial::constant)
+}
+
+/// q (x - p) with the least q that makes it whole, and q.
+fn away(point: &[Rational; 3]) -> (Vector, IBig) {
+    let (p, q) = whole(point);
+    let component = |axis: usize| {
+        let mut all = Polynomial::constant(-p[axis].clone());
+        let mut exponents = [0; 3];
+        exponents[axis] = 1;
+        all.add_term(exponents, q.clone());
+        all
+    };
+    ([0, 1, 2].map(component), q)
+}
+
+fn dot(a: &Vector, b: &Vector) -> Polynomial {
+    let [x, y, z] = [0, 1, 2].map(|i| a[i].times(&b[i]));
+    x.plus(&y).plus(&z)
+}
+
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i].times(&b[j]).minus(&a[j].times(&b[i])))
+}

@@ -91,6 +91,23 @@ impl Tree {
             Node::Operation { .. } => None,
         })
     }
+
+    /// The same tree with other primitives at the same places, where `other` gives any; none where it
+    /// gives none.
+    pub(crate) fn with_primitives(
+        &self,
+        other: impl Fn(&Placed) -> Option<Primitive>,
+    ) -> Option<Self> {
+        let mut changed: Option<Self> = None;
+        for (id, placed) in self.leaves() {
+            if let Some(primitive) = other(placed) {
+                let motion = placed.motion.clone();
+                let tree = changed.get_or_insert_with(|| self.clone());
+                tree.nodes[id.0] = Node::Leaf(Placed { primitive, motion });
+            }
+        }
+        changed
+    }
 }
 
 impl Index<NodeId> for Tree {

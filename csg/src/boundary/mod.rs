@@ -1,6 +1,7 @@
 //! The boundary of a tree: generate and classify (Requicha and Voelcker 1985).
 //!
-//! `halfspaces` gives every primitive as half spaces, `carriers` the distinct surfaces of these,
+//! `tapers` looks for frustums that are nearly cylinders. `halfspaces` gives every primitive as half
+//! spaces, `carriers` the distinct surfaces of these,
 //! `arrangement` the curves in which they meet; `contacts` puts the curves along which surfaces touch
 //! where other curves run next to them. `cuts` gives the common points of curves and surfaces, which
 //! `corners` makes one, and `pieces` what lies between. `membership` asks the tree whether a choice
@@ -21,6 +22,7 @@ mod membership;
 mod pieces;
 mod proof;
 mod sheets;
+mod tapers;
 mod wings;
 
 use crate::tree::Tree;
@@ -155,6 +157,17 @@ pub enum EvaluationError {
         /// The resolution.
         resolution: f64,
     },
+    /// The walls of a frustum are nearly those of a cylinder.
+    #[error(
+        "the apex of the frustum near ({:.6}, {:.6}, {:.6}) is {away:.1e} away: rounding moves its walls by more than the resolution",
+        place[0], place[1], place[2]
+    )]
+    Taper {
+        /// Near where.
+        place: [f64; 3],
+        /// How far away the apex is, in the part's unit.
+        away: f64,
+    },
     /// Under exact evaluation: 237 bits take something for zero that is proven not to be.
     #[error(
         "{question} near ({:.6}, {:.6}, {:.6}): they are apart, by less than 237 bits tell",
@@ -201,6 +214,7 @@ impl EvaluationError {
             | Self::Sheets { .. }
             | Self::Assembly(_)
             | Self::Vague { .. }
+            | Self::Taper { .. }
             | Self::Resolution { .. } => true,
             Self::Size | Self::Far { .. } | Self::Doubt { .. } => false,
         }
@@ -287,10 +301,16 @@ fn evaluated<N: Number>(
         Zeros::Exact => Judge::exact(resolution),
         Zeros::ByResolution => Judge::new(resolution),
     };
+    let straight = tapers::without(tree, &judge);
+    let (tree, solids) = match &straight {
+        Some(tree) => (tree, halfspaces::Solids::of(tree)),
+        None => (tree, solids),
+    };
     let extent = Extent {
         centre: solids.bounds.centre().map(N::of),
         radius: N::of(0.75 * size),
     };
+    tapers::check(&solids, &extent, &judge)?;
     let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &judge)?;
     if judge.proves() {
         proof::prove(&arrangement, &sources, &judge)?;

@@ -516,12 +516,14 @@ fn bulge<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
     if points.is_empty() {
         return Box3::EMPTY;
     }
-    // A band of nothing would miss boundaries by rounding.
-    let size = points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)));
+    // A band of nothing would miss boundaries by rounding. An apex may be far from the face.
     let arcs = FaceLocator::of(brep, face, N::ZERO);
-    let size = arcs.boxes().iter().fold(size, |a, b| a.hull(b));
-    let band = N::of(RELATIVE_RESOLUTION * size.diagonal());
-    let locator = FaceLocator::of(brep, face, band);
+    let around = match surface {
+        Surface::Cone(_) => Box3::EMPTY,
+        _ => points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p))),
+    };
+    let around = arcs.boxes().iter().fold(around, |a, b| a.hull(b));
+    let locator = FaceLocator::of(brep, face, N::of(RELATIVE_RESOLUTION * around.diagonal()));
     points.retain(|p| locator.place(p) != Place::Outside);
     points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)))
 }

@@ -12,7 +12,8 @@
 use super::enclosure::Enclosure;
 use super::interval::Interval;
 use super::precision::Number;
-use super::rational::{Rational, from_f64};
+use super::rational::{Rational, from_f64, to_f64};
+use super::separation::Separation;
 use dashu::base::BitTest;
 use std::cell::RefCell;
 
@@ -112,6 +113,22 @@ impl<N: Number> Distance for N {
 
     fn refined(&self, _bits: usize) -> Option<Enclosure> {
         None
+    }
+}
+
+/// A distance that is known without rounding.
+impl Distance for &Rational {
+    fn range(&self) -> Interval {
+        let nearest = to_f64(self);
+        Interval::around(nearest, nearest.abs() * f64::EPSILON)
+    }
+
+    fn refined(&self, bits: usize) -> Option<Enclosure> {
+        Some(Enclosure::exact((*self).clone(), bits))
+    }
+
+    fn separation(&self) -> Option<usize> {
+        Separation::exact((*self).clone()).bits()
     }
 }
 

@@ -1,0 +1,56 @@
+//! Frustums that are nearly cylinders: their apex is far away, or nowhere within the resolution.
+
+use super::EvaluationError;
+use super::halfspaces::Solids;
+use crate::primitive::Primitive;
+use crate::tree::{Placed, Tree};
+use premio_kernel::geometry::intersect::Extent;
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::precision::Number;
+use premio_kernel::number::rational::{Rational, to_f64};
+use premio_kernel::number::sign::Judge;
+
+/// The tree with cylinders for the frustums whose radii are equal within the resolution; none where
+/// there is none.
+pub(super) fn without(tree: &Tree, judge: &Judge) -> Option<Tree> {
+    tree.with_primitives(|placed| straight(placed, judge))
+}
+
+fn straight(placed: &Placed, judge: &Judge) -> Option<Primitive> {
+    let Primitive::Frustum { base, top, height } = &placed.primitive else {
+        return None;
+    };
+    let origin = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
+    let place = placed.motion.apply_point(&origin).each_ref().map(to_f64);
+    let taper = base - top;
+    let equal = judge.coincide("radii of a frustum", &taper, place);
+    equal.then(|| Primitive::Cylinder {
+        radius: (base + top) / Rational::from(2),
+        height: height.clone(),
+    })
+}
+
+/// Refuses cones whose apex is so far away that the rounding of their axes moves their walls by more
+/// than the resolution.
+pub(super) fn check<N: Number>(
+    solids: &Solids<N>,
+    extent: &Extent<N>,
+    judge: &Judge,
+) -> Result<(), EvaluationError> {
+    for side in solids.all.iter().flat_map(|solid| &solid.sides) {
+        if let Surface::Cone(cone) = &side.surface {
+            let away = (cone.frame.origin - extent.centre).length();
+            if N::of(ROUNDINGS) * N::EPSILON * away > judge.band() {
+                return Err(EvaluationError::Taper {
+                    place: side.bounds.centre().into(),
+                    away: away.rounded(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How many roundings of the axis move the wall.
+const ROUNDINGS: f64 = 4.0;

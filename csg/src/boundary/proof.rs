@@ -102,7 +102,7 @@ impl<'f> Incidence<'f> {
                 }
                 for &(k, c) in &normals[m + 1..] {
                     let parallel = [a, b].iter().any(|n| is_flat(n.cross(&c).length()));
-                    if !parallel && is_flat(across.dot(&c)) {
+                    if !parallel && is_flat(across.unit().dot(&c)) {
                         dependences.push(levels[i].dependence(levels[j], levels[k]));
                     }
                 }

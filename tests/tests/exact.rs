@@ -1,0 +1,108 @@
+//! Exact evaluation of the named cases: every zero is proven, and the boundary is the one that the
+//! resolution tells, but where a description means more than it says.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_csg::tree::Tree;
+use premio_kernel::number::sign::Zeros;
+use std::fs;
+use std::path::Path;
+
+/// Cases that coincide as they are meant, but not as they are written.
+const MEANT: &[(&str, &str)] = &[
+    (
+        "ball-notched-by-cone-along-tangent",
+        "turned by 45 degrees, to rational numbers",
+    ),
+    (
+        "cone-tip-on-cone-along-tangent",
+        "turned by an angle in decimals",
+    ),
+    ("roof-ridges-crossing", "a ridge's height in decimals"),
+    ("steinmetz-with-noise", "noise"),
+    ("three-equal-cylinders-with-noise", "noise"),
+    ("villarceau-plane", "an angle in decimals"),
+];
+
+/// Cases that take 237 bits longer than a test may: seconds to minutes.
+const LONG: &[&str] = &[
+    "cone-apex-1e-7-beside-a-cone",
+    "cone-resting-on-top-of-torus",
+    "cones-and-torus-tangent-at-apex",
+    "lattice-of-tangent-spheres",
+    "three-tori-at-right-angles",
+    "tori-whose-top-circles-touch",
+    "torus-touched-by-cylinder-in-a-cusp",
+];
+
+fn evaluated(tree: &Tree, zeros: Zeros) -> Evaluation {
+    let options = EvaluationOptions {
+        zeros,
+        ..EvaluationOptions::default()
+    };
+    evaluate(tree, &options).unwrap()
+}
+
+/// What is not as it should be about the exact boundary of a case.
+fn faults(name: &str, tree: &Tree) -> Vec<String> {
+    let exact = evaluated(tree, Zeros::Exact);
+    let known = &exact.decisions;
+    let mut faults = Vec::new();
+    if known.coincident > 0 {
+        let assumed = known.coincident;
+        faults.push(format!("{name}: {assumed} zeros are assumed"));
+    }
+    if known.filtered > 0 {
+        let doubles = known.filtered;
+        faults.push(format!("{name}: {doubles} decisions in doubles"));
+    }
+    let plain = evaluated(tree, Zeros::ByResolution);
+    let [told, proven] = [&plain, &exact].map(|e| e.brep.topology.census());
+    let meant = MEANT.iter().any(|(case, _)| *case == name);
+    if (told == proven) == meant {
+        faults.push(format!("{name}: {proven:?} for {told:?}"));
+    }
+    faults
+}
+
+#[test]
+fn named_cases() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let mut faulty = Vec::new();
+    let mut proven = 0;
+    for folder in fs::read_dir(root).unwrap() {
+        let folder = folder.unwrap();
+        let name = folder.file_name().into_string().unwrap();
+        let text = fs::read(folder.path().join("model.padl")).unwrap();
+        let Ok(part) = read(&name, &text, Format::Padl, &Options::default()) else {
+            continue;
+        };
+        if !LONG.contains(&name.as_str()) {
+            proven += 1;
+            faulty.extend(faults(&name, &part.tree));
+        }
+    }
+    assert!(proven > 90, "{proven}");
+    assert!(faulty.is_empty(), "{}", faulty.join("\n"));
+}
+
+#[test]
+fn a_tangent_ball_is_proven_to_touch() {
+    // The ball's radius is that of 3, 4 and 5, so that it touches the wedge's slope exactly.
+    let touching = |gap: &str| {
+        let text = format!(
+            "P = WED(X=4, Y=4, Z=3) UN SPH(R=1) AT (MOVX=2+0.6, MOVY=2, MOVZ=1.5+0.8+{gap})"
+        );
+        let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+        evaluated(&part.tree, Zeros::Exact)
+    };
+    let exact = touching("0");
+    assert_eq!(exact.brep.topology.touches.len(), 1);
+    assert!(exact.decisions.exact > 0 && exact.decisions.coincident == 0);
+    for (gap, solids) in [("1e-40", 2), ("-1e-40", 1)] {
+        let near = touching(gap);
+        assert_eq!(near.brep.topology.touches.len(), 0, "{gap}");
+        assert_eq!(near.brep.topology.solids.len(), solids, "{gap}");
+    }
+}

@@ -59,7 +59,7 @@ pub struct DescriptionOptions {
     /// Refuse the part where a decision was closer than a hundred to one
     #[arg(long)]
     pub strict: bool,
-    /// Let coincide only what 237 bits do not tell apart, some hundred times slower
+    /// Let coincide only what is proven to, some hundred times slower
     #[arg(long, conflicts_with = "resolution")]
     pub exact: bool,
     /// The part of a .padl file to take [default: the last solid assigned]

@@ -3,6 +3,7 @@
 use super::bounds::Box3;
 use super::curve::Curve;
 use super::surface::Surface;
+use super::turn::Turn;
 use super::vector::Length;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
@@ -13,6 +14,23 @@ use crate::number::roots::{Contact, Function, Root, Zeros, isolate, isolate_clos
 struct Height<'a, N: Number = f64> {
     curve: &'a Curve<N>,
     surface: &'a Surface<N>,
+    /// The same of a circle, where coordinates may cancel by more than halving makes up for.
+    turn: Option<Turn<N>>,
+}
+
+impl<'a, N: Number> Height<'a, N> {
+    fn of(curve: &'a Curve<N>, surface: &'a Surface<N>) -> Self {
+        let turn = match (curve, surface) {
+            (Curve::Circle(circle), Surface::Torus(_)) => Some(Turn::of(circle, surface)),
+            (Curve::Circle(circle), _) if !N::IS_DOUBLE => Some(Turn::of(circle, surface)),
+            _ => None,
+        };
+        Self {
+            curve,
+            surface,
+            turn,
+        }
+    }
 }
 
 impl<N: Number> Function<N> for Height<'_, N> {
@@ -22,7 +40,13 @@ impl<N: Number> Function<N> for Height<'_, N> {
 
     fn reach(&self, t: Interval<N>) -> Interval<N> {
         match self.curve.box_over(t) {
-            Some(p) => self.surface.level(p),
+            Some(p) => {
+                let level = self.surface.level(p);
+                match &self.turn {
+                    Some(turn) => level.meet(turn.level(t, self.surface, p)),
+                    None => level,
+                }
+            }
             None => Interval::ENTIRE,
         }
     }
@@ -43,7 +67,7 @@ pub fn cut<N: Number>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, ban
         return Zeros::Everywhere;
     }
     let breaks = curve.breaks(range[0], range[1]);
-    match isolate(&Height { curve, surface }, &breaks, band) {
+    match isolate(&Height::of(curve, surface), &breaks, band) {
         Zeros::Everywhere => touching(range),
         zeros => zeros,
     }
@@ -59,7 +83,7 @@ pub fn roots<N: Number>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, b
         return known;
     }
     let breaks = curve.breaks(range[0], range[1]);
-    let zeros = match isolate_closely(&Height { curve, surface }, &breaks, band) {
+    let zeros = match isolate_closely(&Height::of(curve, surface), &breaks, band) {
         Zeros::Everywhere => touching(range),
         zeros => zeros,
     };
@@ -91,7 +115,7 @@ fn rounded_roots<N: Number>(
     if !probes().step_by(4).all(follows) {
         return None;
     }
-    let height = Height { curve, surface };
+    let height = Height::of(curve, surface);
     let ends = range.map(N::rounded);
     let (found, misses) = roots(&rounded, ends, &surface.in_doubles(), band.rounded());
     let settled = |t: f64| {

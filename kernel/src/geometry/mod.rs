@@ -17,4 +17,5 @@ pub mod surface;
 pub mod toric;
 pub mod trace;
 pub mod trigonometric;
+mod turn;
 pub mod vector;

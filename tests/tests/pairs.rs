@@ -1,7 +1,7 @@
 //! Coincidences, and the same missed by powers of two either way: what the operations give has the
 //! volumes that add up.
 
-use premio_tests::pairs::{PAIRS, Pose, faults, gap};
+use premio_tests::pairs::{PAIRS, Pose, changes, faults, gap};
 
 /// By which powers of two a coincidence is missed; more by the example of this name.
 const POWERS: [i32; 6] = [10, 18, 22, 26, 36, 50];
@@ -27,4 +27,26 @@ fn coincidences_and_what_is_next_to_them() {
 #[test]
 fn coincidences_turned() {
     holds(Pose::Turned);
+}
+
+/// By which powers of two a coincidence is missed under exact evaluation.
+const EXACT_POWERS: [i32; 2] = [20, 60];
+
+/// On one side of a coincidence the exact boundaries are alike, however near they are to it.
+fn alike(sign: &str) {
+    let changed: Vec<String> = PAIRS
+        .iter()
+        .flat_map(|pair| changes(pair, sign, &EXACT_POWERS, Pose::Straight))
+        .collect();
+    assert!(changed.is_empty(), "{}", changed.join("\n"));
+}
+
+#[test]
+fn exactly_alike_on_one_side() {
+    alike("");
+}
+
+#[test]
+fn exactly_alike_on_the_other_side() {
+    alike("-");
 }

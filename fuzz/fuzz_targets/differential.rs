@@ -15,8 +15,7 @@ const POINTS: u32 = 32;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut recipe = Recipe::new(bytes);
-    let distance = [None, Some(0.8), Some(2.0), Some(20.0)][recipe.below(4)];
-    let direction = recipe.direction();
+    let sight = recipe.sight();
     let Some(part) = Part::of(&recipe.model()) else {
         return;
     };
@@ -34,7 +33,7 @@ fuzz_target!(|bytes: &[u8]| {
             assert_eq!(told, held, "at {p}\n{}", part.text);
         }
     }
-    if let Some(camera) = part.camera(direction.into(), distance) {
+    if let Some(camera) = part.camera(&sight) {
         for check in Checker::new(&part.tree, known).view("of the fuzzer", &camera) {
             assert!(
                 check.holds,

@@ -7,12 +7,11 @@ use premio_visibility::contours;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut recipe = Recipe::new(bytes);
-    let distance = [None, Some(0.8), Some(2.0), Some(20.0)][recipe.below(4)];
-    let direction = recipe.direction();
+    let sight = recipe.sight();
     let Some(part) = Part::of(&recipe.model()) else {
         return;
     };
-    let Some(camera) = part.camera(direction.into(), distance) else {
+    let Some(camera) = part.camera(&sight) else {
         return;
     };
     let Some(resolution) = part.evaluation.resolution_of_views() else {

@@ -14,7 +14,7 @@ use premio_csg::reader::{Options, read};
 use premio_csg::tree::Tree;
 use premio_visibility::Camera;
 
-pub use recipe::Recipe;
+pub use recipe::{Recipe, Sight};
 
 /// A part to be tried.
 #[derive(Debug)]
@@ -43,9 +43,9 @@ impl Part {
         })
     }
 
-    /// A camera that looks at the part from a direction, from so many times its size away where it is
-    /// a perspective one.
-    pub fn camera(&self, direction: Vector3<f64>, distance: Option<f64>) -> Option<Camera> {
+    /// A camera that looks at the part; none along no direction.
+    pub fn camera(&self, sight: &Sight) -> Option<Camera> {
+        let direction = Vector3::from(sight.direction);
         let bounds = &self.evaluation.bounds;
         let size = bounds.diagonal();
         let centre = bounds.centre();
@@ -55,7 +55,7 @@ impl Part {
         };
         let towards = direction.try_normalize(0.0)?;
         let eye = |distance: f64| centre + towards * (distance * size);
-        match distance {
+        match sight.distance {
             Some(distance) => Camera::perspective(eye(distance), centre, up, 1.0).ok(),
             None => Camera::orthographic(eye(1.0), centre, up).ok(),
         }

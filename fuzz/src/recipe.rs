@@ -8,6 +8,15 @@ pub struct Recipe<'a> {
     bytes: &'a [u8],
 }
 
+/// Where a part is seen from.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight {
+    /// From the part towards the eye.
+    pub direction: [f64; 3],
+    /// How far away a perspective camera is, in terms of the part's size; else it is orthographic.
+    pub distance: Option<f64>,
+}
+
 /// The most primitives of a model.
 const MOST: usize = 5;
 
@@ -31,7 +40,7 @@ impl<'a> Recipe<'a> {
     }
 
     /// A whole number from 0 to `n` - 1.
-    pub fn below(&mut self, n: usize) -> usize {
+    fn below(&mut self, n: usize) -> usize {
         usize::from(self.byte()) % n
     }
 
@@ -159,8 +168,18 @@ impl<'a> Recipe<'a> {
         Step::Turn(axis, degrees)
     }
 
-    /// A direction: along an axis, a diagonal, or any.
-    pub fn direction(&mut self) -> [f64; 3] {
+    /// How to look at the part.
+    pub fn sight(&mut self) -> Sight {
+        let distance = [None, Some(0.8), Some(2.0), Some(20.0)][self.below(4)];
+        let direction = self.direction();
+        Sight {
+            direction,
+            distance,
+        }
+    }
+
+    /// Along an axis, a diagonal, or any.
+    fn direction(&mut self) -> [f64; 3] {
         match self.below(2) {
             0 => [0; 3].map(|_| self.below(3) as f64 - 1.0),
             _ => [0; 3].map(|_| 2.0 * self.fraction() - 1.0),

@@ -312,8 +312,9 @@ fn evaluated<N: Number>(
     };
     tapers::check(&solids, &extent, &judge)?;
     let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &judge)?;
+    let pieces = pieces::pieces(&arrangement, &judge);
     if judge.proves() {
-        proof::prove(&arrangement, &sources, &judge)?;
+        proof::prove(&arrangement, &pieces, &sources, &judge)?;
         if let Some(doubt) = judge.first_doubt() {
             let (question, place) = (doubt.question, doubt.place);
             return Err(EvaluationError::Doubt { question, place });
@@ -326,7 +327,7 @@ fn evaluated<N: Number>(
         judge: &judge,
     };
     concern.list();
-    let raw = wings::boundary(&concern)?;
+    let raw = wings::boundary(&concern, pieces)?;
     let brep = assemble(raw, &judge)?;
     if let Some((place, distance)) = worst_gap(&brep, N::of(resolution)) {
         return Err(EvaluationError::Vague {

@@ -7,9 +7,11 @@
 //! points of it than it could otherwise (Bézout).
 
 use super::EvaluationError;
-use super::arrangement::{Arrangement, Meeting};
+use super::arrangement::Arrangement;
 use super::carriers::Source;
+use super::pieces::Piece;
 use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::precision::Number;
@@ -44,6 +46,7 @@ impl<'a, N: Number> Forms<'a, N> {
 /// Proves what lies on what in an arrangement, and counts it.
 pub(super) fn prove<N: Number>(
     arrangement: &Arrangement<N>,
+    pieces: &[Piece<N>],
     sources: &[Source<'_>],
     judge: &Judge,
 ) -> Result<(), EvaluationError> {
@@ -56,10 +59,10 @@ pub(super) fn prove<N: Number>(
             incidence.settle("point on surfaces", None, (&point, reach), judge)?;
         }
     }
-    for m in &arrangement.meetings {
-        if m.carriers.len() > 2 || !m.tangent.is_empty() {
-            let holding = Holding::of(&forms, m);
-            holding.settle(judge)?;
+    for piece in pieces {
+        if piece.carriers.len() > 2 || !piece.tangent.is_empty() {
+            let curve = &arrangement.meetings[piece.meeting].curve;
+            Holding::of(&forms, curve, piece).settle(judge)?;
         }
     }
     Ok(())
@@ -145,7 +148,10 @@ impl<'f> Incidence<'f> {
             judge.count_assumed(vanishing().count() as u64);
             return Ok(());
         };
-        for p in vanishing() {
+        for p in vanishing()
+            .filter(|&p| !point.is_defined_by(p))
+            .collect::<Vec<_>>()
+        {
             match point.is_zero_of(p) {
                 Answer::Zero => judge.count_proven(1),
                 Answer::Open => judge.count_assumed(1),
@@ -161,6 +167,7 @@ impl<'f> Incidence<'f> {
 
 /// How often a point is looked for, with more said of it each time.
 const DEFLATIONS: usize = 3;
+
 /// Whether an angle is nothing as far as 237 bits tell of points where surfaces touch: by the root of
 /// the resolution.
 fn is_flat<N: Number>(angle: N) -> bool {
@@ -172,44 +179,46 @@ fn is_there<N: Number>(way: &Vector3<N>, judge: &Judge) -> bool {
     way.length() * N::of(FINEST_RESOLUTION.sqrt()) <= judge.band()
 }
 
-/// The carriers of a curve are to hold it.
+/// The carriers of a piece of a curve are to hold it.
 struct Holding<'f, N: Number> {
     forms: &'f Forms<'f, N>,
-    meeting: &'f Meeting<N>,
+    curve: &'f Curve<N>,
+    piece: &'f Piece<N>,
     /// As many points of a curve do not lie on a surface that does not hold it.
     points: u32,
 }
 
 impl<'f, N: Number> Holding<'f, N> {
-    fn of(forms: &'f Forms<'f, N>, meeting: &'f Meeting<N>) -> Self {
-        let degrees = meeting.carriers.iter().map(|&c| forms.level(c).degree());
+    fn of(forms: &'f Forms<'f, N>, curve: &'f Curve<N>, piece: &'f Piece<N>) -> Self {
+        let degrees = piece.carriers.iter().map(|&c| forms.level(c).degree());
         let mut degrees: Vec<u32> = degrees.collect();
         degrees.sort_unstable();
         // The curve is a part of what two of them have in common, and touching surfaces have
         // gradients whose cross product vanishes.
         let least: u32 = degrees.iter().take(2).product();
         let most = degrees.last().copied().unwrap_or(1);
-        let most = match meeting.tangent.is_empty() {
+        let most = match piece.tangent.is_empty() {
             true => most,
             false => most.max(2 * most - 2),
         };
         Self {
             forms,
-            meeting,
+            curve,
+            piece,
             points: least * most + 1,
         }
     }
 
     fn settle(&self, judge: &Judge) -> Result<(), EvaluationError> {
-        let [lo, hi] = self.meeting.range;
-        let curve = &self.meeting.curve;
+        let [lo, hi] = self.piece.range;
+        let curve = self.curve;
         let step = (hi - lo) / N::whole(self.points + 1);
         for k in 1..=self.points {
             // Not at even parts, where a symmetric curve may be singular.
             let t = lo + step * (N::whole(k) + N::of(ASIDE));
             let place = curve.point(t);
             let next = curve.point(t + step);
-            let incidence = Incidence::of(self.forms, &self.meeting.carriers, &place, judge);
+            let incidence = Incidence::of(self.forms, &self.piece.carriers, &place, judge);
             let way = (next - place).length();
             let Some(cut) = across(&place, &curve.tangent(t), way) else {
                 judge.count_assumed(incidence.levels.len() as u64);

@@ -13,7 +13,7 @@ use super::concern::Concern;
 use super::corners::Corner;
 use super::halfspaces::Solids;
 use super::membership::Membership;
-use super::pieces::{Piece, pieces};
+use super::pieces::Piece;
 use super::sheets::Spot;
 use crate::tree::NodeId;
 use nalgebra::Point3;
@@ -60,6 +60,7 @@ const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
 
 pub(super) fn boundary<N: Number>(
     concern: &Concern<'_, N>,
+    pieces: Vec<Piece<N>>,
 ) -> Result<RawBoundary<N>, EvaluationError> {
     let Concern {
         solids,
@@ -74,7 +75,7 @@ pub(super) fn boundary<N: Number>(
         judge,
     };
     let mut edges: Vec<(Piece<N>, Vec<Wing>)> = Vec::new();
-    for piece in pieces(arrangement, judge) {
+    for piece in pieces {
         let wings = classifier.wings(&piece)?;
         if !wings.is_empty() {
             edges.push((piece, wings));

@@ -158,6 +158,22 @@ impl<N: Number> Surface<N> {
         }
     }
 
+    /// The value of a polynomial that vanishes on the surface, of a cone on both nappes.
+    pub fn polynomial(&self, p: &Point3<N>) -> N {
+        let q = self.frame().coordinates(p);
+        let across = q.x * q.x + q.y * q.y;
+        match self {
+            Self::Plane(_) => q.z,
+            Self::Cylinder(s) => across - s.radius * s.radius,
+            Self::Sphere(s) => across + q.z * q.z - s.radius * s.radius,
+            Self::Cone(s) => across * s.cos * s.cos - q.z * q.z * s.sin * s.sin,
+            Self::Torus(s) => {
+                let sum = across + q.z * q.z + s.major * s.major - s.minor * s.minor;
+                sum * sum - N::of(4.0) * s.major * s.major * across
+            }
+        }
+    }
+
     /// The signed distance of a point, negative inside; exact for all five but behind the apex of
     /// a cone, where it is a lower bound of the distance with the right sign.
     pub fn distance(&self, p: &Point3<N>) -> N {

@@ -7,12 +7,13 @@
 use super::curve::Circle;
 use super::surface::Surface;
 use super::trigonometric::Trig2;
+use super::vector::Length;
 use crate::number::interval::Interval;
 use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
 use nalgebra::Point3;
 
-/// A polynomial that vanishes on a surface, along a circle: the level times what [`conjugate`] gives.
+/// A surface's polynomial along a circle: the level times what [`conjugate`] gives.
 #[derive(Debug)]
 pub(super) struct Turn<N: Number> {
     coefficients: Trig2<N>,
@@ -28,13 +29,14 @@ const ROUNDINGS: f64 = 64.0;
 impl<N: Number> Turn<N> {
     pub(super) fn of(circle: &Circle<N>, surface: &Surface<N>) -> Self {
         let mut coefficients = [N::ZERO; 5];
-        let mut size = N::ZERO;
+        let mut most = N::ZERO;
         for n in 0..POINTS {
             let u = N::TAU * N::whole(n) / N::whole(POINTS);
             let (sin, cos) = u.sin_cos();
             let (x, y) = (circle.radius * cos, circle.radius * sin);
-            let (value, terms) = polynomial(surface, &circle.frame.point(x, y, N::ZERO));
-            size = size.max(terms);
+            let p = circle.frame.point(x, y, N::ZERO);
+            let value = surface.polynomial(&p);
+            most = most.max(size(surface, &p));
             let (sin2, cos2) = (N::TWO * sin * cos, N::TWO * cos * cos - N::ONE);
             let rates = [N::HALF, cos, sin, cos2, sin2];
             for (k, rate) in coefficients.iter_mut().zip(rates) {
@@ -43,7 +45,7 @@ impl<N: Number> Turn<N> {
         }
         Self {
             coefficients,
-            slop: N::of(ROUNDINGS) * N::EPSILON * size,
+            slop: N::of(ROUNDINGS) * N::EPSILON * most,
         }
     }
 
@@ -61,39 +63,26 @@ impl<N: Number> Turn<N> {
     }
 }
 
-/// The polynomial's value at a point, and the sum of its terms' absolute values.
-fn polynomial<N: Number>(surface: &Surface<N>, p: &Point3<N>) -> (N, N) {
-    let q = surface.frame().coordinates(p);
-    let (across, up) = (q.x * q.x + q.y * q.y, q.z * q.z);
-    let from = q.x.abs() + q.y.abs() + q.z.abs();
-    match surface {
-        Surface::Plane(_) => (q.z, from),
-        Surface::Cylinder(s) => {
-            let (rate, square) = (N::HALF / s.radius, s.radius * s.radius);
-            ((across - square) * rate, (across + square) * rate)
-        }
-        Surface::Sphere(s) => {
-            let (rate, square) = (N::HALF / s.radius, s.radius * s.radius);
-            ((across + up - square) * rate, (across + up + square) * rate)
-        }
-        Surface::Cone(s) => {
-            let (a, b) = (across * s.cos * s.cos, up * s.sin * s.sin);
-            (a - b, a + b)
-        }
-        Surface::Torus(s) => {
-            let (major, minor) = (s.major * s.major, s.minor * s.minor);
-            let sum = across + up + major - minor;
-            let round = N::of(4.0) * major * across;
-            (sum * sum - round, sum * sum + round)
-        }
-    }
+/// What the terms of a surface's polynomial come to at a point, that its value is rounded by.
+fn size<N: Number>(surface: &Surface<N>, p: &Point3<N>) -> N {
+    let away = (p - surface.frame().origin).length();
+    let (lengths, degree) = match surface {
+        Surface::Plane(_) => (away, 1),
+        Surface::Cylinder(s) => (away + s.radius, 2),
+        Surface::Sphere(s) => (away + s.radius, 2),
+        Surface::Cone(_) => (away, 2),
+        Surface::Torus(s) => (away + s.major + s.minor, 4),
+    };
+    lengths.powi(degree)
 }
 
 /// What the polynomial is of the level, over a box in the surface's frame.
 fn conjugate<N: Number>(surface: &Surface<N>, [x, y, z]: [Interval<N>; 3]) -> Interval<N> {
     let across = (x.square() + y.square()).root();
     match surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Sphere(_) => Interval::point(N::ONE),
+        Surface::Plane(_) => Interval::point(N::ONE),
+        Surface::Cylinder(s) => Interval::point(N::TWO * s.radius),
+        Surface::Sphere(s) => Interval::point(N::TWO * s.radius),
         Surface::Cone(s) => across.scale(s.cos) + z.scale(s.sin),
         Surface::Torus(s) => {
             let far = (across + Interval::point(s.major)).square();

@@ -180,9 +180,14 @@ impl Point {
         all.iter().zip(&degrees).map(sum).sum::<f64>() + 1.0
     }
 
+    /// Whether a polynomial is one of the three that it is the zero of.
+    pub fn is_defined_by(&self, p: &Polynomial) -> bool {
+        self.base.iter().any(|form| form.level == *p)
+    }
+
     /// Whether a polynomial is zero there.
     pub fn is_zero_of(&mut self, h: &Polynomial) -> Answer {
-        if self.base.iter().any(|form| form.level == *h) {
+        if self.is_defined_by(h) {
             return Answer::Zero;
         }
         if h.degree() == 0 {

@@ -72,22 +72,17 @@ pub(super) fn form<N: Number>(t: &Torus<N>, other: &Surface<N>) -> BiTrig<N> {
 
 /// The polynomial that vanishes on a surface, scaled to be the distance near to it.
 fn polynomial_level<N: Number>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N {
-    let q = s.frame().coordinates(p);
-    let rho2 = q.x * q.x + q.y * q.y;
-    match s {
-        Surface::Plane(_) => q.z,
-        Surface::Cylinder(c) => (rho2 - c.radius * c.radius) / (N::TWO * c.radius),
-        Surface::Sphere(c) => (rho2 + q.z * q.z - c.radius * c.radius) / (N::TWO * c.radius),
+    let slope = match s {
+        Surface::Plane(_) => N::ONE,
+        Surface::Cylinder(c) => N::TWO * c.radius,
+        Surface::Sphere(c) => N::TWO * c.radius,
         Surface::Cone(c) => {
             let away = (t.frame.origin - c.frame.origin).length().max(t.minor);
-            (rho2 * c.cos * c.cos - q.z * q.z * c.sin * c.sin) / (N::TWO * c.sin * away)
+            N::TWO * c.sin * away
         }
-        Surface::Torus(c) => {
-            let sum = rho2 + q.z * q.z + c.major * c.major - c.minor * c.minor;
-            (sum * sum - N::of(4.0) * c.major * c.major * rho2)
-                / (N::of(8.0) * c.major * c.major * c.minor)
-        }
-    }
+        Surface::Torus(c) => N::of(8.0) * c.major * c.major * c.minor,
+    };
+    s.polynomial(p) / slope
 }
 
 fn traced<N: Number>(

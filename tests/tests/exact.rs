@@ -2,7 +2,7 @@
 //! resolution tells, but where a description means more than it says.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::boundary::{Evaluation, EvaluationError, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_csg::tree::Tree;
 use premio_kernel::number::sign::Zeros;
@@ -104,5 +104,36 @@ fn a_tangent_ball_is_proven_to_touch() {
         let near = touching(gap);
         assert_eq!(near.brep.topology.touches.len(), 0, "{gap}");
         assert_eq!(near.brep.topology.solids.len(), solids, "{gap}");
+    }
+}
+
+/// What lies closer than 237 bits tell, and is not zero, is refused: of a relation, of planes through
+/// a point, of surfaces that hold a curve.
+#[test]
+fn what_is_nearly_zero_is_refused() {
+    let pairs = [
+        "BLO(X=4,Y=4,Z=2) UN SPH(R=1) AT (MOVX=2,MOVY=2,MOVZ=3+D)",
+        "BLO(X=2,Y=2,Z=2) UN WED(X=4,Y=2,Z=4) AT (MOVX=-1,MOVZ=-1+D)",
+        "CYL(R=3,H=4) UN SPH(R=5+D) UN CON(R=6,H=8)",
+    ];
+    for pair in pairs {
+        for (gap, told) in [
+            ("0", true),
+            ("1e-40", true),
+            ("1e-60", false),
+            ("-1e-60", false),
+        ] {
+            let text = format!("D = {gap}\nP = {pair}\n");
+            let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+            let options = EvaluationOptions {
+                zeros: Zeros::Exact,
+                ..EvaluationOptions::default()
+            };
+            match evaluate(&part.tree, &options) {
+                Ok(known) => assert!(told && known.decisions.coincident == 0, "{pair} {gap}"),
+                Err(EvaluationError::Doubt { .. }) => assert!(!told, "{pair} {gap}"),
+                Err(error) => panic!("{pair} {gap}: {error}"),
+            }
+        }
     }
 }

@@ -141,6 +141,15 @@ pub enum EvaluationError {
         /// Near where.
         place: [f64; 3],
     },
+    /// Nothing tells whether a closed surface without an edge is a face.
+    #[error(
+        "whether the sphere or torus near ({:.6}, {:.6}, {:.6}) is a face cannot be told: all over it other surfaces are within the resolution",
+        place[0], place[1], place[2]
+    )]
+    Closed {
+        /// A point of it.
+        place: [f64; 3],
+    },
     /// The pieces do not form a boundary.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
@@ -212,6 +221,7 @@ impl EvaluationError {
         match self {
             Self::Intersection(_)
             | Self::Sheets { .. }
+            | Self::Closed { .. }
             | Self::Assembly(_)
             | Self::Vague { .. }
             | Self::Taper { .. }

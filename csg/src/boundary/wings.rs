@@ -82,7 +82,7 @@ pub(super) fn boundary<N: Number>(
         }
     }
     let joined = join(edges, arrangement);
-    let whole = classifier.whole_surfaces(&joined);
+    let whole = classifier.whole_surfaces(&joined)?;
     let raw = |e: Joined<N>| RawEdge {
         curve: e.piece.meeting,
         range: e.piece.range,
@@ -253,7 +253,7 @@ impl<N: Number> Classifier<'_, N> {
     }
 
     /// The closed carriers without any edge that are faces as a whole.
-    fn whole_surfaces(&self, edges: &[Joined<N>]) -> Vec<(usize, Sense)> {
+    fn whole_surfaces(&self, edges: &[Joined<N>]) -> Result<Vec<(usize, Sense)>, EvaluationError> {
         let mut bounded = vec![false; self.arrangement.carriers.len()];
         for wing in edges.iter().flat_map(|e| &e.wings) {
             bounded[wing.surface] = true;
@@ -263,42 +263,56 @@ impl<N: Number> Classifier<'_, N> {
             if bounded[c] || !matches!(surface, Surface::Sphere(_) | Surface::Torus(_)) {
                 continue;
             }
-            if let Some(sense) = self.whole(c, surface) {
+            if let Some(sense) = self.whole(c, surface)? {
                 whole.push((c, sense));
             }
         }
-        whole
+        Ok(whole)
     }
 
-    /// Whether material changes across a closed surface at a point of it where nothing else is.
-    fn whole(&self, carrier: usize, surface: &Surface<N>) -> Option<Sense> {
+    /// Whether material changes across a closed surface, at the point of it that is farthest from
+    /// anything else: without an edge it does everywhere or nowhere.
+    fn whole(
+        &self,
+        carrier: usize,
+        surface: &Surface<N>,
+    ) -> Result<Option<Sense>, EvaluationError> {
+        let mut best: Option<(Point3<N>, Look<N>)> = None;
         for i in 1..40 {
             // Steps of the golden section spread over the surface.
             let u = N::whole(i) * N::of(2.399_963_229_728_653);
             let v = N::of(1.3) * (N::whole(i) * N::of(0.7)).sin();
-            let look = self.look(&surface.point(u, v), &[carrier]);
+            let p = surface.point(u, v);
+            let look = self.look(&p, &[carrier]);
             if !look.may_have_faces() {
-                return None;
+                return Ok(None);
             }
-            if self.judge.is_close(look.margin) {
-                continue;
+            let clear = !self.judge.is_close(look.margin);
+            if best.as_ref().is_none_or(|(_, b)| look.margin > b.margin) {
+                best = Some((p, look));
             }
-            let held = |side: Sense| {
-                let held: Vec<NodeId> = look
-                    .near
-                    .iter()
-                    .filter(|s| s.open.iter().all(|o| o.1 == side))
-                    .map(|s| s.leaf)
-                    .collect();
-                !held.is_empty() && self.membership.holds(&held)
-            };
-            return match (held(Sense::Along), held(Sense::Against)) {
-                (true, false) => Some(Sense::Along),
-                (false, true) => Some(Sense::Against),
-                _ => None,
-            };
+            if clear {
+                break;
+            }
         }
-        None
+        let Some((p, look)) = best else {
+            return Ok(None);
+        };
+        if self.judge.within(look.margin) {
+            let place = rounded(&p);
+            return Err(EvaluationError::Closed { place });
+        }
+        let held = |side: Sense| {
+            let near = look.near.iter();
+            let within = near.filter(|s| s.open.iter().all(|o| o.1 == side));
+            let held: Vec<NodeId> = within.map(|s| s.leaf).collect();
+            !held.is_empty() && self.membership.holds(&held)
+        };
+        Ok(match (held(Sense::Along), held(Sense::Against)) {
+            (true, false) => Some(Sense::Along),
+            (false, true) => Some(Sense::Against),
+            _ => None,
+        })
     }
 }
 

@@ -209,7 +209,9 @@ impl<'a> Checker<'a> {
     fn clearance(&self) -> Clearance {
         let size = self.evaluation.bounds.diagonal();
         let known = self.evaluation;
+        // Rays are doubles, however finely the boundary was evaluated.
         let resolution = known.resolution_of_views().unwrap_or(known.resolution);
+        let resolution = resolution.max(ROUNDING * size);
         Clearance {
             sliver: 100.0 * resolution,
             // Between the resolution and the size, nearer the former.

@@ -250,27 +250,7 @@ pub(super) fn common(a: &Box3, b: &Box3) -> Option<Box3> {
 
 /// The parts of a line within the boxes, overlapping ones joined.
 fn clipped<N: Number>(line: &Line<N>, range: [N; 2], boxes: &[Box3]) -> Vec<[N; 2]> {
-    let mut parts: Vec<[N; 2]> = Vec::new();
-    for b in boxes {
-        let [mut lo, mut hi] = range;
-        for i in 0..3 {
-            let (o, d) = (line.origin[i], line.direction[i]);
-            // Steep enough to cross the slab within the extent, or else it lies along it.
-            let (min, max) = (N::of(b.min[i]), N::of(b.max[i]));
-            let (x, y) = ((min - o) / d, (max - o) / d);
-            if d == N::ZERO || !x.is_finite() || !y.is_finite() {
-                if o < min || o > max {
-                    hi = N::NEG_INFINITY;
-                }
-                continue;
-            }
-            lo = lo.max(x.min(y));
-            hi = hi.min(x.max(y));
-        }
-        if lo < hi {
-            parts.push([lo, hi]);
-        }
-    }
+    let mut parts: Vec<[N; 2]> = boxes.iter().filter_map(|b| b.along(line, range)).collect();
     parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut joined: Vec<[N; 2]> = Vec::new();
     for p in parts {

@@ -1,7 +1,7 @@
 //! The checker: one named violation for each rule that a boundary must keep.
 
 use super::Brep;
-use super::mass::{face_areas, shell_volume, size};
+use super::mass::{Covered, face_areas, shell_volume, size};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use super::welch;
 use crate::geometry::vector::Length;
@@ -68,7 +68,7 @@ pub enum Violation {
         /// Vertices less edges plus the faces' characteristics: must be even, and at most two.
         euler: i32,
     },
-    /// A face has no area, or more than its surface.
+    /// A face has an area that is no area.
     #[error("face {} has the area {area:e}", face.0)]
     Area {
         /// The face.
@@ -142,8 +142,9 @@ pub fn check<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
     check_edges(brep, band, &mut found);
     check_touches(brep, band, &mut found);
     check_shells(brep, &mut found);
-    for (i, area) in face_areas(brep).into_iter().enumerate() {
-        if area.is_nan() || area <= N::ZERO {
+    for (i, Covered { area, noise }) in face_areas(brep).into_iter().enumerate() {
+        // A sliver's may be rounding.
+        if area.is_nan() || area <= -noise {
             found.push(Violation::Area {
                 face: FaceId(i as u32),
                 area: area.rounded(),

@@ -110,24 +110,39 @@ fn shell_moments<N: Number>(brep: &Brep<N>, faces: &[FaceId], amid: &Amid<N>) ->
     total
 }
 
+/// The area of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Covered<N: Number = f64> {
+    /// The area, in square units.
+    pub area: N,
+    /// What rounding may make of it.
+    pub noise: N,
+}
+
 /// The areas of all faces, by id.
-pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<N> {
-    let mut areas = vec![N::ZERO; brep.topology.faces.len()];
+pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<Covered<N>> {
+    let nothing = Covered {
+        area: N::ZERO,
+        noise: N::ZERO,
+    };
+    let mut areas = vec![nothing; brep.topology.faces.len()];
     for shell in &brep.topology.shells {
         let amid = Amid::of(brep, shell.faces.iter().copied());
         for &face in &shell.faces {
-            areas[face.index()] = moments(brep, face, &amid)[0];
+            let [floor, ..] = amid.floor(brep, face);
+            areas[face.index()] = Covered {
+                area: moments(brep, face, &amid)[0],
+                noise: N::of(NOISE) * floor,
+            };
         }
     }
     areas
 }
 
-/// A point amid some faces, relative to which sums do not cancel, and the errors of the moments that
-/// do not matter: rounding, in terms of their size.
+/// A point amid some faces, relative to which sums do not cancel, and their size.
 struct Amid<N: Number = f64> {
     reference: Point3<N>,
     size: N,
-    floor: Moments<N>,
 }
 
 impl<N: Number> Amid<N> {
@@ -146,13 +161,15 @@ impl<N: Number> Amid<N> {
         } else {
             Point3::origin()
         };
-        let area = N::ROUNDING * size * size;
-        let (volume, first) = (area * size, area * size * size);
-        Self {
-            reference,
-            size,
-            floor: [area, volume, first, first, first],
-        }
+        Self { reference, size }
+    }
+
+    /// The errors of a face's moments that do not matter: what the rounding of its edges makes.
+    fn floor(&self, brep: &Brep<N>, face: FaceId) -> Moments<N> {
+        let along = N::of(box_of(brep, face).diagonal()).min(self.size);
+        let area = N::ROUNDING * self.size * along;
+        let (volume, first) = (area * self.size, area * self.size * self.size);
+        [area, volume, first, first, first]
     }
 }
 
@@ -182,6 +199,8 @@ fn box_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
 struct Density<'a, N: Number = f64> {
     surface: Surface<N>,
     amid: &'a Amid<N>,
+    /// The errors that do not matter.
+    floor: Moments<N>,
     /// The v at which the surface is cut open, or has a pole.
     base: N,
     /// Where the integral along v starts: a v amid the edges, so that what is the same on all of
@@ -203,7 +222,7 @@ impl<N: Number> Density<'_, N> {
     /// The integral over a range of u and of v.
     fn over(&self, [a, b]: [N; 2], [from, to]: [N; 2]) -> Moments<N> {
         let of = |u: N| strip(&self.surface, &self.amid.reference, u, [from, to]);
-        adaptive(a, b, &self.amid.floor, &mut { of })
+        adaptive(a, b, &self.floor, &mut { of })
     }
 }
 
@@ -227,13 +246,14 @@ fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N
         Surface::Torus(_) => N::of(BASE),
     };
     let start = match &surface {
-        // Edges may pass through the apex, where nothing is between.
-        Surface::Cone(_) => base,
+        // At the apex u leaps, where nothing may be between.
+        Surface::Cone(c) if reaches(brep, &coedges, &c.frame.origin) => base,
         _ => amid_edges(brep, &surface, base, &coedges),
     };
     let d = Density {
         surface,
         amid,
+        floor: amid.floor(brep, face),
         base,
         start,
     };
@@ -253,6 +273,15 @@ fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N
         }
         Surface::Torus(t) => torus_moments(brep, face, &coedges, t, &d),
     }
+}
+
+/// Whether edges may pass through a point.
+fn reaches<N: Number>(brep: &Brep<N>, coedges: &[CoedgeId], p: &Point3<N>) -> bool {
+    coedges.iter().any(|&c| {
+        let e = brep.topology.coedge(c).edge;
+        let around = bounds::bounds(brep.curve(e), brep.range(e));
+        around.grown(around.diagonal()).holds(p)
+    })
 }
 
 /// A v amid the edges of a face, where a torus or a sphere is cut open at `base`.
@@ -313,7 +342,7 @@ fn boundary_sum<N: Number>(
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> Moments<N> {
     let side = brep.sense(face).sign::<N>();
-    let [a, v, x, y, z] = density.amid.floor;
+    let [a, v, x, y, z] = density.floor;
     let floor = [a, v, x, y, z, N::ROUNDING];
     let mut total = [N::ZERO; 6];
     for &c in coedges {
@@ -480,6 +509,16 @@ pub fn bounds<N: Number>(brep: &Brep<N>) -> Box3 {
         all = all.hull(&bulge(brep, face));
     }
     all
+}
+
+/// The box of a face: of its edges, and of the face where it bulges beyond them.
+pub(super) fn face_bounds<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
+    let topology = &brep.topology;
+    let rings = topology.face(face).loops.iter().map(|&l| topology.ring(l));
+    let edges = rings.flat_map(|r| r.coedges.iter().map(|&c| topology.coedge(c).edge));
+    edges.fold(bulge(brep, face), |all, e| {
+        all.hull(&bounds::tight_bounds(brep.curve(e), brep.range(e)))
+    })
 }
 
 /// The box of the points of a face whose normal is along an axis, where it bulges, and of a cone's

@@ -3,7 +3,7 @@
 
 use super::Brep;
 use super::assemble::AssemblyError;
-use super::inside::faces_hold;
+use super::inside::Closed;
 use super::mass::{shell_volume, size};
 use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
 use crate::geometry::vector::rounded;
@@ -111,7 +111,40 @@ pub(super) fn bind_shells<N: Number>(
     for (f, &s) in fans.shell_of.iter().enumerate() {
         members[s].push(FaceId(f as u32));
     }
+    let volumes = name_shells(brep, fans, &members)?;
+    let of_kind = |void: bool| -> Vec<usize> {
+        let shells = brep.topology.shells.iter().enumerate();
+        shells
+            .filter(|(_, s)| s.void == void)
+            .map(|(s, _)| s)
+            .collect()
+    };
+    let (mut outer, voids) = (of_kind(false), of_kind(true));
+    for &s in &outer {
+        let id = SolidId(brep.topology.solids.len() as u32);
+        brep.topology.solids.push(Solid {
+            shells: vec![ShellId(s as u32)],
+        });
+        brep.topology.shells[s].solid = id;
+    }
+    outer.sort_by(|&a, &b| volumes[a].total_cmp(&volumes[b]));
+    for (void, home) in homes(brep, &voids, &outer, judge)? {
+        let solid = brep.topology.shells[home].solid;
+        brep.topology.shells[void].solid = solid;
+        let shells = &mut brep.topology.solids[solid.index()].shells;
+        shells.push(ShellId(void as u32));
+    }
+    Ok(())
+}
+
+/// Enters the shells, by which side of them is material, and gives the volumes they enclose.
+fn name_shells<N: Number>(
+    brep: &mut Brep<N>,
+    fans: &Fans,
+    members: &[Vec<FaceId>],
+) -> Result<Vec<N>, AssemblyError> {
     let size = size(brep);
+    let mut volumes = Vec::new();
     for (s, faces) in members.iter().enumerate() {
         // One shell alone is an outer one.
         let void = members.len() > 1 && {
@@ -121,6 +154,7 @@ pub(super) fn bind_shells<N: Number>(
                     place: rounded(&point_of(brep, faces[0])),
                 });
             }
+            volumes.push(enclosed.volume);
             enclosed.volume < N::ZERO
         };
         brep.topology.shells.push(Shell {
@@ -131,57 +165,48 @@ pub(super) fn bind_shells<N: Number>(
             odd: fans.euler[s].rem_euclid(2) == 1,
         });
     }
-    let shells = brep.topology.shells.len();
-    let outer: Vec<usize> = (0..shells)
-        .filter(|&s| !brep.topology.shells[s].void)
-        .collect();
-    for &s in &outer {
-        let id = SolidId(brep.topology.solids.len() as u32);
-        brep.topology.solids.push(Solid {
-            shells: vec![ShellId(s as u32)],
-        });
-        brep.topology.shells[s].solid = id;
-    }
-    for s in 0..shells {
-        if brep.topology.shells[s].void {
-            let home = home_of(brep, s, &outer, judge)?;
-            let solid = brep.topology.shells[home].solid;
-            brep.topology.shells[s].solid = solid;
-            brep.topology.solids[solid.index()]
-                .shells
-                .push(ShellId(s as u32));
-        }
-    }
-    Ok(())
+    Ok(volumes)
 }
 
-/// The smallest outer shell around a void.
-fn home_of<N: Number>(
+/// The outer shell of each void: the smallest that holds it, `outer` being in order of volume.
+fn homes<N: Number>(
     brep: &Brep<N>,
-    void: usize,
+    voids: &[usize],
     outer: &[usize],
     judge: &Judge,
-) -> Result<usize, AssemblyError> {
+) -> Result<Vec<(usize, usize)>, AssemblyError> {
     if let [only] = outer {
-        return Ok(*only);
+        return Ok(voids.iter().map(|&void| (void, *only)).collect());
     }
-    let p = point_of(brep, brep.topology.shells[void].faces[0]);
-    let homeless = AssemblyError::Homeless { place: rounded(&p) };
-    let size = size(brep);
-    let mut home: Option<(N, usize)> = None;
-    for &s in outer {
-        let faces = &brep.topology.shells[s].faces;
-        match faces_hold(brep, faces, &p, judge.band()) {
-            Some(true) => {}
-            Some(false) => continue,
-            None => return Err(homeless),
-        }
-        let volume = shell_volume(brep, faces, size).volume;
-        if home.is_none_or(|(least, _)| volume < least) {
-            home = Some((volume, s));
-        }
+    if voids.is_empty() {
+        return Ok(Vec::new());
     }
-    home.map(|(_, s)| s).ok_or(homeless)
+    let closed = |shell: usize| {
+        let faces = &brep.topology.shells[shell].faces;
+        Closed::of(brep, faces, judge.band())
+    };
+    let around: Vec<Closed<'_, N>> = outer.iter().map(|&s| closed(s)).collect();
+    let home_of = |void: usize| {
+        let place = || rounded(&point_of(brep, brep.topology.shells[void].faces[0]));
+        let hollow = closed(void);
+        let fits = |k: &usize| {
+            let b = around[*k].bounds.grown(judge.band::<N>());
+            b.encloses(&hollow.bounds)
+        };
+        let mut may: Vec<usize> = (0..outer.len()).filter(fits).collect();
+        // What no other can hold is held by the last.
+        let last = may.pop();
+        for k in may {
+            match around[k].hold(&hollow) {
+                Some(true) => return Ok((void, outer[k])),
+                Some(false) => {}
+                None => return Err(AssemblyError::Homeless { place: place() }),
+            }
+        }
+        let last = last.ok_or_else(|| AssemblyError::Homeless { place: place() });
+        Ok((void, outer[last?]))
+    };
+    voids.iter().map(|&void| home_of(void)).collect()
 }
 
 /// A point of a face's boundary, or of the face where it has none.

@@ -1,6 +1,6 @@
 //! Boxes around curves.
 
-use super::curve::Curve;
+use super::curve::{Curve, Line};
 use super::frame::Frame;
 use crate::number::bisection::bisect;
 use crate::number::interval::Interval;
@@ -63,6 +63,31 @@ impl Box3 {
     /// Whether a point lies in it.
     pub fn holds<N: Number>(&self, p: &Point3<N>) -> bool {
         (0..3).all(|i| N::of(self.min[i]) <= p[i] && p[i] <= N::of(self.max[i]))
+    }
+
+    /// Whether another box lies in it.
+    pub fn encloses(&self, o: &Self) -> bool {
+        (0..3).all(|i| self.min[i] <= o.min[i] && o.max[i] <= self.max[i])
+    }
+
+    /// The part of a line over `range` that runs in it.
+    pub fn along<N: Number>(&self, line: &Line<N>, range: [N; 2]) -> Option<[N; 2]> {
+        let [mut lo, mut hi] = range;
+        for i in 0..3 {
+            let (o, d) = (line.origin[i], line.direction[i]);
+            // Steep enough to cross the slab within the extent, or else it lies along it.
+            let (min, max) = (N::of(self.min[i]), N::of(self.max[i]));
+            let (x, y) = ((min - o) / d, (max - o) / d);
+            if d == N::ZERO || !x.is_finite() || !y.is_finite() {
+                if o < min || o > max {
+                    return None;
+                }
+                continue;
+            }
+            lo = lo.max(x.min(y));
+            hi = hi.min(x.max(y));
+        }
+        (lo < hi).then_some([lo, hi])
     }
 
     /// Its middle.

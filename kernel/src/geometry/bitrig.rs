@@ -1,6 +1,10 @@
 //! Trigonometric polynomials of degree two in each of two angles: what any of the five surfaces,
 //! and the limb of a torus, is on the parameter torus of a torus.
 
+mod thirds;
+
+pub use thirds::{Reaches, Thirds};
+
 use crate::number::precision::Number;
 use crate::number::scalar::Scalar;
 

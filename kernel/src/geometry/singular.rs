@@ -89,7 +89,7 @@ pub(super) fn singular_points<N: Number>(
             }
             continue;
         }
-        if depth >= DEEP
+        if is_milestone(depth)
             && let Some((point, reach)) = leading::degenerate(tracer, cell.centre())
         {
             let known = |q: &(SingularPoint<N>, N)| near(&q.0.angles, &point.angles, reach);
@@ -123,21 +123,40 @@ pub(super) fn singular_points<N: Number>(
     })
 }
 
-/// Where the Hessian cannot vanish over the cell's surroundings: the one critical point there, if
-/// it lies in the cell. None where that is not known.
+/// Whether a degenerate point is looked for at a depth of cells: each search reaches far, and one for
+/// cells of every depth would find the same.
+fn is_milestone(depth: u32) -> bool {
+    let next = |m: &u32| Some(m + m / 2);
+    std::iter::successors(Some(DEEP), next)
+        .take_while(|m| *m <= depth)
+        .any(|m| m == depth)
+}
+
+/// Where the Hessian is regular over the cell's surroundings: the one critical point there, if it
+/// lies in the cell. None where that is not known.
 fn only_critical<N: Number>(
     tracer: &Tracer<'_, N>,
     cell: &Cell<N>,
     at: &Partials<N>,
 ) -> Option<Option<[N; 2]>> {
-    let det = at.xx * at.yy - at.xy * at.xy;
-    let norm = at.xx.abs().max(at.yy.abs()) + at.xy.abs();
-    let [hx, hy] = cell.half();
-    let reach = N::TWO * hx.max(hy);
+    let half = cell.half();
+    let around = half.map(|h| N::TWO * h);
+    let (_, thirds) = (tracer.form).partials_about(cell.centre(), around, &tracer.reaches);
+    // In terms of the cell's sides, so that a long one is as good as a square one.
+    let scaled = |xx: N, xy: N, yy: N| {
+        let [hx, hy] = half;
+        [xx * hx * hx, xy * hx * hy, yy * hy * hy].map(N::abs)
+    };
+    let rows = |[xx, xy, yy]: [N; 3]| xx.max(yy) + xy;
+    let [hx, hy] = half.map(|h| h * h);
+    let det = (at.xx * at.yy - at.xy * at.xy).abs() * hx * hy;
+    let [xx, xy, yy] = thirds.seconds(around);
     // ‖H⁻¹‖ times the change of H over the surroundings stays below one.
-    if norm * tracer.third * reach >= N::of(0.25) * det.abs() {
+    let change = rows(scaled(xx, xy, yy));
+    if rows(scaled(at.xx, at.xy, at.yy)) * change >= N::of(0.25) * det {
         return None;
     }
+    let [hx, hy] = half;
     let mut p = cell.centre();
     for _ in 0..30 {
         let g = tracer.form.partials(p[0], p[1]);

@@ -190,9 +190,6 @@ fn zone<N: Number>(holds: impl Fn(N) -> bool) -> Option<N> {
     zones.into_iter().find(|&z| holds(z))
 }
 
-/// How often the range of κ is halved to find G and G_κ apart from zero.
-const HALVINGS: u32 = 24;
-
 /// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
 fn is_plain<N: Number>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
     let run = Interval::new(-sigma, sigma);
@@ -202,7 +199,8 @@ fn is_plain<N: Number>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
         if !(g.f.has_zero() && g.y.has_zero()) {
             continue;
         }
-        if depth >= HALVINGS {
+        // Branches may be as close in κ as the digits tell.
+        if depth >= deepest::<N>() / 2 {
             return false;
         }
         let middle = k.mid();

@@ -2,7 +2,7 @@
 //! of the cells and through the singular points.
 
 use super::grid::{Cell, Layout, grid, lines};
-use super::{STEEP, Singular, Traced, Tracer, Unresolved};
+use super::{Leaf, Singular, Traced, Tracer, Unresolved};
 use crate::geometry::bitrig::BiTrig;
 use crate::geometry::chart::Chart;
 use crate::geometry::singular::{Pass, SingularPoint};
@@ -86,12 +86,12 @@ impl<N: Number> Tracer<'_, N> {
         }
         let leaves = self.leaves(free)?;
         let mut sides = Sides::default();
-        let corners = corners(leaves.iter().map(|l| &l.0).chain(&own), xs[0], ys[0]);
+        let corners = corners(leaves.iter().map(|l| &l.cell).chain(&own), xs[0], ys[0]);
         let mut pieces = Vec::new();
         let origin = [xs[0], ys[0]];
-        for (cell, axis) in &leaves {
-            let roots = self.around(cell, &corners, origin, &mut sides)?;
-            self.join(cell, *axis, roots, &mut pieces)?;
+        for leaf in &leaves {
+            let roots = self.around(&leaf.cell, &corners, origin, &mut sides)?;
+            self.join(leaf, roots, &mut pieces)?;
         }
         for cell in &own {
             let Some(i) = home(cell) else { continue };
@@ -142,8 +142,7 @@ impl<N: Number> Tracer<'_, N> {
     /// Joins the roots around a cell in which the curve is a graph.
     fn join(
         &self,
-        cell: &Cell<N>,
-        axis: Axis,
+        &Leaf { cell, axis, steep }: &Leaf<N>,
         mut roots: Vec<(RootId, [N; 2])>,
         pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
@@ -164,7 +163,7 @@ impl<N: Number> Tracer<'_, N> {
                 to: q[k],
                 ends: [p[1 - k], q[1 - k]],
                 slopes: [slope(p), slope(q)],
-                steep: N::of(STEEP),
+                steep,
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
                 chart: None,
             };

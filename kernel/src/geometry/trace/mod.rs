@@ -2,14 +2,14 @@
 //!
 //! The square of both angles is divided until in every cell F has no zero, or one of its partial
 //! derivatives dominates the other, so that the curve in the cell is a graph of bounded slope
-//! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor's with a global bound of the
-//! third derivatives. Cells are joined through the roots on their sides. Singular points, where F
+//! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor's with bounds of the third
+//! derivatives over the cell. Cells are joined through the roots on their sides. Singular points, where F
 //! and its gradient vanish within the band, are found first and stand in cells of their own.
 
 pub(super) mod grid;
 mod join;
 
-use super::bitrig::{BiTrig, Partials};
+use super::bitrig::{BiTrig, Partials, Reaches};
 use super::singular::{Critical, singular_points};
 use super::surface::Torus;
 use super::toric::{Axis, Toric, wrap};
@@ -64,22 +64,23 @@ pub(super) struct Bounds<N: Number = f64> {
     pub y: [N; 2],
     /// At the centre.
     pub at: Partials<N>,
-    /// The angle along which the form varies more over the cell.
+    /// The angle along which the form bends more over the cell.
     pub wide: usize,
 }
 
-#[derive(Default)]
-struct Remainders<N: Number = f64> {
-    third: N,
-    x: N,
-    y: N,
-    across: [N; 2],
+/// A cell in which the curve is a graph.
+struct Leaf<N: Number = f64> {
+    cell: Cell<N>,
+    /// The angle that the graph runs over.
+    axis: Axis,
+    /// A bound of its slope.
+    steep: N,
 }
 
 pub(super) struct Tracer<'a, N: Number = f64> {
     pub form: &'a BiTrig<N>,
-    /// A bound of the third derivatives.
-    pub third: N,
+    /// Bounds of the form's rows.
+    pub reaches: Reaches<N>,
     /// A bound of the rounding error of the form.
     pub slop: N,
     pub band: N,
@@ -100,48 +101,28 @@ const STEEP: f64 = 2.0;
 
 impl<N: Number> Tracer<'_, N> {
     pub(super) fn bounds(&self, cell: &Cell<N>) -> Bounds<N> {
-        let [cx, cy] = cell.centre();
         let [hx, hy] = cell.half();
-        let p = self.form.partials(cx, cy);
-        let r = self.remainders(hx, hy);
-        let spread = p.x.abs() * hx
-            + p.y.abs() * hy
-            + N::HALF
-                * (p.xx.abs() * hx * hx + N::TWO * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy)
-            + r.third / N::of(6.0)
-            + self.slop;
-        let rx = p.xx.abs() * hx + p.xy.abs() * hy + N::HALF * r.x + self.slop;
-        let ry = p.xy.abs() * hx + p.yy.abs() * hy + N::HALF * r.y + self.slop;
+        let (p, thirds) = (self.form).partials_about(cell.centre(), cell.half(), &self.reaches);
+        // What the third derivatives add to the second ones over the cell.
+        let [xx, xy, yy] = thirds.seconds([hx, hy]);
+        let third = xx * hx * hx + N::TWO * xy * hx * hy + yy * hy * hy;
+        let bent = p.xx.abs() * hx * hx + N::TWO * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy;
+        let spread =
+            p.x.abs() * hx + p.y.abs() * hy + N::HALF * bent + third / N::of(6.0) + self.slop;
+        let rx = p.xx.abs() * hx + p.xy.abs() * hy + N::HALF * (xx * hx + xy * hy) + self.slop;
+        let ry = p.xy.abs() * hx + p.yy.abs() * hy + N::HALF * (xy * hx + yy * hy) + self.slop;
+        let across = [(p.xx.abs() + xx) * hx * hx, (p.yy.abs() + yy) * hy * hy];
         Bounds {
             least: p.f.abs() - spread,
             x: [p.x.abs() - rx, p.x.abs() + rx],
             y: [p.y.abs() - ry, p.y.abs() + ry],
             at: p,
-            wide: usize::from(r.across[1] > r.across[0]),
+            wide: usize::from(across[1] > across[0]),
         }
     }
 
-    /// Bounds of the third derivatives in the direction (hx, hy), of those of both first partial
-    /// derivatives, and how much the form varies along each angle.
-    fn remainders(&self, hx: N, hy: N) -> Remainders<N> {
-        let degree = [N::ZERO, N::ONE, N::ONE, N::TWO, N::TWO];
-        let mut r = Remainders::default();
-        for (row, dx) in self.form.0.iter().zip(degree) {
-            for (c, dy) in row.iter().zip(degree) {
-                let d: N = dx * hx + dy * hy;
-                let c = c.abs() * d * d;
-                r.third += c * d;
-                r.x += c * dx;
-                r.y += c * dy;
-                r.across[0] += c * dx * hx;
-                r.across[1] += c * dy * hy;
-            }
-        }
-        r
-    }
-
-    /// The cells that hold a piece of the curve, each with the angle its graph runs over.
-    fn leaves(&self, cells: Vec<Cell<N>>) -> Result<Vec<(Cell<N>, Axis)>, Unresolved> {
+    /// The cells that hold a piece of the curve, as graphs.
+    fn leaves(&self, cells: Vec<Cell<N>>) -> Result<Vec<Leaf<N>>, Unresolved> {
         let mut leaves = Vec::new();
         let mut stack: Vec<(Cell<N>, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
         while let Some((cell, depth)) = stack.pop() {
@@ -150,9 +131,17 @@ impl<N: Number> Tracer<'_, N> {
                 continue;
             }
             if b.y[0] > N::ZERO && b.x[1] <= N::of(STEEP) * b.y[0] {
-                leaves.push((cell, Axis::Around));
+                leaves.push(Leaf {
+                    cell,
+                    axis: Axis::Around,
+                    steep: b.x[1] / b.y[0],
+                });
             } else if b.x[0] > N::ZERO && b.y[1] <= N::of(STEEP) * b.x[0] {
-                leaves.push((cell, Axis::Tube));
+                leaves.push(Leaf {
+                    cell,
+                    axis: Axis::Tube,
+                    steep: b.y[1] / b.x[0],
+                });
             } else if depth >= deepest::<N>() {
                 return Err(Unresolved::at(cell.centre()));
             } else {
@@ -188,7 +177,7 @@ pub fn trace<N: Number>(
     let slop = form.bound() * N::EPSILON * N::of(64.0);
     let tracer = Tracer {
         form,
-        third: N::of(6.0) * form.variation(3),
+        reaches: form.reaches(),
         slop,
         band: band.max(slop),
     };

@@ -78,6 +78,12 @@ impl<N: Number> Enclosed<N> {
     }
 }
 
+/// What sums are known to, relative to their terms: rounding in doubles, and with more digits as far
+/// as integrals are followed.
+fn summed<N: Number>() -> N {
+    N::rules().settled / N::of(NOISE)
+}
+
 /// How many times the rounding of its area times the part's size a volume may be off.
 const NOISE: f64 = 64.0;
 
@@ -92,7 +98,7 @@ pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId], size: N) -> Enc
     let [area, volume, ..] = shell_moments(brep, faces, &amid);
     Enclosed {
         volume: volume / N::of(3.0),
-        noise: N::of(NOISE) * N::ROUNDING * area * size,
+        noise: N::of(NOISE) * summed::<N>() * area * size,
     }
 }
 
@@ -167,7 +173,7 @@ impl<N: Number> Amid<N> {
     /// The errors of a face's moments that do not matter: what the rounding of its edges makes.
     fn floor(&self, brep: &Brep<N>, face: FaceId) -> Moments<N> {
         let along = N::of(box_of(brep, face).diagonal()).min(self.size);
-        let area = N::ROUNDING * self.size * along;
+        let area = summed::<N>() * self.size * along;
         let (volume, first) = (area * self.size, area * self.size * self.size);
         [area, volume, first, first, first]
     }
@@ -203,15 +209,22 @@ struct Density<'a, N: Number = f64> {
     floor: Moments<N>,
     /// The v at which the surface is cut open, or has a pole.
     base: N,
-    /// Where the integral along v starts: a v amid the edges, so that what is the same on all of
-    /// them does not have to cancel.
-    start: N,
 }
 
 impl<N: Number> Density<'_, N> {
-    /// G(u, v).
-    fn along(&self, u: N, v: N) -> Moments<N> {
-        strip(&self.surface, &self.amid.reference, u, [self.start, v])
+    /// G(u, v), from a v on.
+    fn along(&self, u: N, range: [N; 2]) -> Moments<N> {
+        strip(&self.surface, &self.amid.reference, u, range)
+    }
+
+    /// Where the integral along v starts for a loop: amid its edges, so that what is the same on all
+    /// of them does not have to cancel.
+    fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
+        match &self.surface {
+            // At the apex u leaps, where nothing may be between.
+            Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => self.base,
+            _ => amid_edges(brep, &self.surface, self.base, coedges),
+        }
     }
 
     /// The integral over all that lies between two v.
@@ -245,24 +258,18 @@ fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N
         Surface::Sphere(_) => -N::PI / N::TWO,
         Surface::Torus(_) => N::of(BASE),
     };
-    let start = match &surface {
-        // At the apex u leaps, where nothing may be between.
-        Surface::Cone(c) if reaches(brep, &coedges, &c.frame.origin) => base,
-        _ => amid_edges(brep, &surface, base, &coedges),
-    };
     let d = Density {
         surface,
         amid,
         floor: amid.floor(brep, face),
         base,
-        start,
     };
     match &surface {
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
-            boundary_sum(brep, face, &coedges, &d, &|_| Vec::new())
+            boundary_sum(brep, face, &d, &|_| Vec::new())
         }
         Surface::Sphere(s) => {
-            let sum = boundary_sum(brep, face, &coedges, &d, &|_| Vec::new());
+            let sum = boundary_sum(brep, face, &d, &|_| Vec::new());
             let whole = d.between(base, N::PI / N::TWO);
             let opposite = s.frame.point(N::ZERO, N::ZERO, s.radius);
             if holds_far(brep, face, amid, sum[0] / whole[0], &opposite) {
@@ -314,7 +321,7 @@ fn holds_far<N: Number>(
     if brep.topology.face(face).loops.is_empty() {
         return true;
     }
-    if part.abs() > N::of(FEW) * N::ROUNDING {
+    if part.abs() > N::of(FEW) * summed::<N>() {
         return part < N::ZERO;
     }
     let locator = FaceLocator::of(brep, face, amid.size * N::of(BAND) * N::ROUNDING);
@@ -333,17 +340,31 @@ fn add<N: Number>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
 }
 
 /// −∮ G du over the boundary of a face, each edge broken where `marks` says, and G counted from the
-/// base: what lies between that and where it starts counts as often as the edges go round.
+/// base.
 fn boundary_sum<N: Number>(
     brep: &Brep<N>,
     face: FaceId,
+    density: &Density<'_, N>,
+    marks: &dyn Fn(CoedgeId) -> Vec<N>,
+) -> Moments<N> {
+    let loops = brep.topology.face(face).loops.iter();
+    let rings = loops.map(|&l| &brep.topology.ring(l).coedges);
+    let side = brep.sense(face).sign::<N>();
+    let sums = rings.map(|ring| loop_sum(brep, ring, density, marks).map(|m| -side * m));
+    sums.fold([N::ZERO; 5], add)
+}
+
+/// ∮ G du over a loop, G counted from the base: what lies between that and where it starts counts as
+/// often as the loop goes round.
+fn loop_sum<N: Number>(
+    brep: &Brep<N>,
     coedges: &[CoedgeId],
     density: &Density<'_, N>,
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> Moments<N> {
-    let side = brep.sense(face).sign::<N>();
     let [a, v, x, y, z] = density.floor;
-    let floor = [a, v, x, y, z, N::ROUNDING];
+    let floor = [a, v, x, y, z, summed::<N>()];
+    let start = density.start(brep, coedges);
     let mut total = [N::ZERO; 6];
     for &c in coedges {
         let coedge = brep.topology.coedge(c);
@@ -352,14 +373,14 @@ fn boundary_sum<N: Number>(
         let mut breaks = curve.breaks(lo, hi);
         breaks.extend(marks(c));
         breaks.sort_by(N::total_cmp);
-        let sign = -side * coedge.sense.sign::<N>();
+        let sign = coedge.sense.sign::<N>();
         for pair in breaks.windows(2) {
             // The middle tells on which side of a cut the piece lies.
             let [_, near] = density
                 .surface
                 .parameters(&curve.point(N::HALF * (pair[0] + pair[1])));
             let part = adaptive(pair[0], pair[1], &floor, &mut |t| {
-                edge_density(curve, t, density, near)
+                edge_density(curve, t, density, [start, near])
             });
             for (s, v) in total.iter_mut().zip(part) {
                 *s += sign * v;
@@ -372,16 +393,16 @@ fn boundary_sum<N: Number>(
     if turns == N::ZERO || matches!(density.surface, Surface::Plane(_)) {
         return sum;
     }
-    add(
-        sum,
-        density
-            .between(density.base, density.start)
-            .map(|k| k * turns),
-    )
+    add(sum, density.between(density.base, start).map(|k| k * turns))
 }
 
-/// G du/dt and du/dt on an edge.
-fn edge_density<N: Number>(curve: &Curve<N>, t: N, density: &Density<'_, N>, near: N) -> [N; 6] {
+/// G du/dt and du/dt on an edge; G starts at `start`, and v is that next to `near`.
+fn edge_density<N: Number>(
+    curve: &Curve<N>,
+    t: N,
+    density: &Density<'_, N>,
+    [start, near]: [N; 2],
+) -> [N; 6] {
     let j = curve.jet(t);
     let p = Point3::new(j[0].v, j[1].v, j[2].v);
     let f = density.surface.frame();
@@ -399,7 +420,7 @@ fn edge_density<N: Number>(curve: &Curve<N>, t: N, density: &Density<'_, N>, nea
     if rate == N::ZERO || !rate.is_finite() {
         return [N::ZERO; 6];
     }
-    let [a, h, x, y, z] = density.along(u, v).map(|g| g * rate);
+    let [a, h, x, y, z] = density.along(u, [start, v]).map(|g| g * rate);
     [a, h, x, y, z, rate]
 }
 
@@ -476,7 +497,7 @@ fn torus_moments<N: Number>(
             passes.push((u, up));
         }
     }
-    let mut sum = boundary_sum(brep, face, coedges, d, &roots_of);
+    let mut sum = boundary_sum(brep, face, d, &roots_of);
     passes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let top = N::of(BASE) + N::TAU;
     for (i, &(u, up)) in passes.iter().enumerate() {

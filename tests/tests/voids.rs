@@ -48,3 +48,20 @@ fn points_of_a_hollow_ball_and_a_ball() {
     let expected = [false, true, false, true, false, false, true, false];
     assert_eq!(places, expected.map(Some));
 }
+
+/// The frame's box holds the hollow of the block in its hole, the frame does not, and it is less.
+#[test]
+fn a_hollow_block_in_a_frame_in_a_hollow_block() {
+    let known = evaluated(
+        "P = (BLO(X=20, Y=20, Z=20) AT (MOVX=-10, MOVY=-10, MOVZ=-10)
+             DIF BLO(X=16, Y=16, Z=16) AT (MOVX=-8, MOVY=-8, MOVZ=-8)
+             UN (BLO(X=14, Y=14, Z=3) AT (MOVX=-7, MOVY=-7, MOVZ=-1.5)
+                 DIF BLO(X=13, Y=13, Z=4) AT (MOVX=-6.5, MOVY=-6.5, MOVZ=-2))
+             UN (BLO(X=12, Y=12, Z=12) AT (MOVX=-6, MOVY=-6, MOVZ=-6)
+                 DIF BLO(X=1, Y=1, Z=1)))",
+    );
+    let solids = known.brep.topology.solids.iter();
+    let mut shells: Vec<usize> = solids.map(|s| s.shells.len()).collect();
+    shells.sort_unstable();
+    assert_eq!(shells, [1, 2, 2]);
+}

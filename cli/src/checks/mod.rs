@@ -13,6 +13,7 @@ pub use recount::{Recount, WrongPiece};
 use premio_csg::boundary::Evaluation;
 use premio_csg::rays::{Clearance, Estimate, Material};
 use premio_csg::tree::Tree;
+use premio_kernel::brep::mass::bounds;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::{Camera, contours};
@@ -65,6 +66,8 @@ pub struct Report {
 pub struct Checker<'a> {
     material: Material,
     evaluation: &'a Evaluation,
+    /// The box of the boundary, as it is told.
+    told: Box3,
 }
 
 impl Report {
@@ -85,6 +88,7 @@ impl<'a> Checker<'a> {
         Self {
             material: Material::of(tree),
             evaluation,
+            told: bounds(&evaluation.brep),
         }
     }
 
@@ -127,8 +131,8 @@ impl<'a> Checker<'a> {
         let mut off = self.deviation(&estimate, volume);
         // Chance alone exceeds the bound now and then, or misses a small part: fresh rays decide.
         if off > DEVIATIONS {
-            let (part, more) = (&self.evaluation.bounds, rays.saturating_mul(AGAIN));
-            estimate = self.material.volume_about(part, more, 2);
+            let more = rays.saturating_mul(AGAIN);
+            estimate = self.material.volume_about(&self.told, more, 2);
             off = self.deviation(&estimate, volume);
         }
         let Estimate {
@@ -145,7 +149,7 @@ impl<'a> Checker<'a> {
     }
 
     fn bounds(&self) -> Check {
-        let (given, met) = (&self.evaluation.bounds, self.material.extent(AROUND));
+        let (given, met) = (&self.told, self.material.extent(AROUND));
         let slack = self.clearance().sliver;
         let beyond = |i: usize| (given.min[i] - met.min[i]).max(met.max[i] - given.max[i]);
         // Of nothing met by rays the box is empty, and no difference a number or positive.

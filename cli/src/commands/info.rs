@@ -143,6 +143,24 @@ impl Counts {
     }
 }
 
+/// Shells are named one by one up to so many.
+const NAMED: usize = 24;
+
+impl Info {
+    /// The genus of each shell, or how many there are of each.
+    fn genera(&self) -> String {
+        if self.genus.len() <= NAMED {
+            return format!("{:?}", self.genus);
+        }
+        let mut counts: BTreeMap<i32, usize> = BTreeMap::new();
+        for g in &self.genus {
+            *counts.entry(*g).or_default() += 1;
+        }
+        let counts: Vec<String> = counts.iter().map(|(g, n)| format!("{g} of {n}")).collect();
+        counts.join(", ")
+    }
+}
+
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let three = |v: &[f64; 3]| {
@@ -155,7 +173,7 @@ impl fmt::Display for Info {
         let Bounds { min, max } = &self.bounds;
         writeln!(f, "bounds      {} to {}", three(min), three(max))?;
         writeln!(f, "solids      {}", self.solids)?;
-        writeln!(f, "shells      {}, genus {:?}", self.shells, self.genus)?;
+        writeln!(f, "shells      {}, genus {}", self.shells, self.genera())?;
         let kinds: Vec<String> = self
             .faces_by_surface
             .iter()

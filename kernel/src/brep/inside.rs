@@ -100,10 +100,10 @@ impl<'a, N: Number> Closed<'a, N> {
         let mut crossed = Vec::new();
         let curve = Curve::Line(*line);
         for (face, around) in &self.faces {
-            let Some(within) = around.along(line, range) else {
+            if around.along(line, range).is_none() {
                 continue;
-            };
-            let Zeros::At { roots, .. } = cut(&curve, within, self.brep.surface(*face), self.band)
+            }
+            let Zeros::At { roots, .. } = cut(&curve, range, self.brep.surface(*face), self.band)
             else {
                 return None;
             };

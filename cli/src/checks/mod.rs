@@ -149,8 +149,8 @@ impl<'a> Checker<'a> {
     }
 
     fn bounds(&self) -> Check {
-        let (given, met) = (&self.told, self.material.extent(AROUND));
         let slack = self.clearance().sliver;
+        let (given, met) = (&self.told, self.material.extent(AROUND, slack));
         let beyond = |i: usize| (given.min[i] - met.min[i]).max(met.max[i] - given.max[i]);
         // Of nothing met by rays the box is empty, and no difference a number or positive.
         let off = (0..3).map(beyond).fold(f64::NEG_INFINITY, f64::max);

@@ -100,8 +100,9 @@ impl Material {
 
 impl Material {
     /// The box around all places where about `rays` parallel rays enter or leave material: no
-    /// larger than the part's own.
-    pub fn extent(&self, rays: usize) -> Box3 {
+    /// larger than the part's own. Spans up to `least` long are none: where faces of primitives
+    /// coincide, they are rounding.
+    pub fn extent(&self, rays: usize, least: f64) -> Box3 {
         let mut extent = Box3::EMPTY;
         if self.bounds.min[0] > self.bounds.max[0] {
             return extent;
@@ -112,7 +113,7 @@ impl Material {
             let [u, v] = STEPS.map(|step| ((k as f64 + 0.5) * step).fract());
             let ray = window.ray(u, v);
             self.cross(&ray, &mut scratch, |span| {
-                for at in span {
+                for at in span.into_iter().filter(|_| span[1] - span[0] > least) {
                     extent = extent.hull(&Box3::of(&(ray.origin + ray.direction * at)));
                 }
             });

@@ -78,8 +78,8 @@ impl<N: Number> Enclosed<N> {
     }
 }
 
-/// What sums are known to, relative to their terms: rounding in doubles, and with more digits as far
-/// as integrals are followed.
+/// What sums are known to, relative to their terms: rounding in doubles, and with more digits far
+/// more than is told.
 fn summed<N: Number>() -> N {
     N::rules().settled / N::of(NOISE)
 }
@@ -94,11 +94,23 @@ pub fn size<N: Number>(brep: &Brep<N>) -> N {
 
 /// The signed volume that a shell encloses; `size` is that of the part.
 pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId], size: N) -> Enclosed<N> {
-    let amid = Amid::of(brep, faces.iter().copied());
+    let rough = enclosed(brep, faces, size, summed());
+    if rough.is_clear() || N::IS_DOUBLE {
+        return rough;
+    }
+    enclosed(brep, faces, size, N::ROUNDING)
+}
+
+/// The same, integrals being followed to a part of their size.
+fn enclosed<N: Number>(brep: &Brep<N>, faces: &[FaceId], size: N, part: N) -> Enclosed<N> {
+    let amid = Amid {
+        part,
+        ..Amid::of(brep, faces.iter().copied())
+    };
     let [area, volume, ..] = shell_moments(brep, faces, &amid);
     Enclosed {
         volume: volume / N::of(3.0),
-        noise: N::of(NOISE) * summed::<N>() * area * size,
+        noise: N::of(NOISE) * part * area * size,
     }
 }
 
@@ -149,6 +161,8 @@ pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<Covered<N>> {
 struct Amid<N: Number = f64> {
     reference: Point3<N>,
     size: N,
+    /// The part of their size to which integrals are followed.
+    part: N,
 }
 
 impl<N: Number> Amid<N> {
@@ -167,13 +181,17 @@ impl<N: Number> Amid<N> {
         } else {
             Point3::origin()
         };
-        Self { reference, size }
+        Self {
+            reference,
+            size,
+            part: summed(),
+        }
     }
 
     /// The errors of a face's moments that do not matter: what the rounding of its edges makes.
     fn floor(&self, brep: &Brep<N>, face: FaceId) -> Moments<N> {
         let along = N::of(box_of(brep, face).diagonal()).min(self.size);
-        let area = summed::<N>() * self.size * along;
+        let area = self.part * self.size * along;
         let (volume, first) = (area * self.size, area * self.size * self.size);
         [area, volume, first, first, first]
     }
@@ -321,7 +339,7 @@ fn holds_far<N: Number>(
     if brep.topology.face(face).loops.is_empty() {
         return true;
     }
-    if part.abs() > N::of(FEW) * summed::<N>() {
+    if part.abs() > N::of(FEW) * amid.part {
         return part < N::ZERO;
     }
     let locator = FaceLocator::of(brep, face, amid.size * N::of(BAND) * N::ROUNDING);
@@ -363,7 +381,7 @@ fn loop_sum<N: Number>(
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> Moments<N> {
     let [a, v, x, y, z] = density.floor;
-    let floor = [a, v, x, y, z, summed::<N>()];
+    let floor = [a, v, x, y, z, density.amid.part];
     let start = density.start(brep, coedges);
     let mut total = [N::ZERO; 6];
     for &c in coedges {

@@ -50,6 +50,8 @@ struct Answer {
     /// The volume by rays and five times its standard error, where no closed form is known.
     measured: Option<[f64; 2]>,
     area: Option<String>,
+    /// The corners of the box.
+    corners: Option<[[String; 3]; 2]>,
     solids: Option<usize>,
     shells: Option<usize>,
     faces: Option<usize>,
@@ -154,6 +156,17 @@ fn measures(case: &Case, answer: &Answer, evaluation: &Evaluation) -> Vec<String
         near("volume", found.volume, expected, slack);
     }
     let size = bounds(&evaluation.brep);
+    let corners = answer.corners.iter().flatten();
+    for (formulas, found) in corners.zip([size.min, size.max]) {
+        for (formula, found) in formulas.iter().zip(found) {
+            near(
+                "box",
+                found,
+                known.value(formula).unwrap(),
+                evaluation.resolution,
+            );
+        }
+    }
     let room: f64 = (0..3)
         .map(|i| (size.max[i] - size.min[i]).max(0.0))
         .product();

@@ -52,6 +52,24 @@ pub(super) struct Meeting<N: Number = f64> {
     pub cuts: Vec<Cut<N>>,
 }
 
+impl<N: Number> Meeting<N> {
+    /// Puts the cuts in order, each once: a closed curve's first may stand at its end, too.
+    fn order_cuts(&mut self) {
+        let one = |a: &Cut<N>, b: &Cut<N>, turn: N| {
+            a.vertex == b.vertex && (a.t - turn - b.t).abs() < N::of(CLOSE_PASS)
+        };
+        self.cuts.sort_by(|a, b| a.t.total_cmp(&b.t));
+        self.cuts.dedup_by(|a, b| one(a, b, N::ZERO));
+        let period = self.range[1] - self.range[0];
+        if self.closed
+            && let [first, .., last] = self.cuts[..]
+            && one(&last, &first, period)
+        {
+            self.cuts.pop();
+        }
+    }
+}
+
 /// The solids' boxes, to be asked for what lies near.
 pub(super) type SolidTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
 
@@ -118,9 +136,7 @@ pub(super) fn arrange<'t, N: Number>(
     found.corners = corners.all;
     found.share_corners(judge);
     for m in &mut found.meetings {
-        m.cuts.sort_by(|a, b| a.t.total_cmp(&b.t));
-        m.cuts
-            .dedup_by(|a, b| a.vertex == b.vertex && (a.t - b.t).abs() < N::of(CLOSE_PASS));
+        m.order_cuts();
     }
     Ok((found, sources))
 }

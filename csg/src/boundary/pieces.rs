@@ -2,7 +2,6 @@
 //! gave its curve.
 
 use super::arrangement::{Arrangement, Meeting};
-use super::cuts::CLOSE_PASS;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::cut::lies_on;
@@ -214,11 +213,9 @@ fn spans<N: Number>(m: &Meeting<N>) -> Vec<([N; 2], Option<[usize; 2]>)> {
             Some([last.vertex, first.vertex]),
         ));
     }
-    // Past the end of a closed curve its last and first cut may be one.
     let length = |r: &[N; 2]| r[1] - r[0];
     let short = length(&m.range) * N::ROUNDING;
-    let one = |ends: &Option<[usize; 2]>| ends.is_some_and(|[a, b]| a == b);
-    spans.retain(|(r, ends)| length(r) > if one(ends) { N::of(CLOSE_PASS) } else { short });
+    spans.retain(|(r, _)| length(r) > short);
     spans
 }
 

@@ -377,7 +377,8 @@ fn join<N: Number>(
                 break;
             }
             done[j] = true;
-            piece.range[1] += edges[j].0.range[1] - edges[j].0.range[0];
+            let curve = &arrangement.meetings[piece.meeting].curve;
+            piece.range[1] = run_on(curve.period(), piece.range[1], edges[j].0.range);
             if let (Some(ends), Some(e)) = (piece.ends.as_mut(), edges[j].0.ends) {
                 ends[1] = e[1];
             }
@@ -395,6 +396,12 @@ fn join<N: Number>(
         });
     }
     joined
+}
+
+/// Where a piece ends that begins where the one before it does, counted on over the turns: a sum of
+/// lengths would leave a gap of its rounding in a closed curve.
+fn run_on<N: Number>(period: Option<N>, before: N, [from, to]: [N; 2]) -> N {
+    period.map_or(to, |p| to + p * ((before - from) / p).round())
 }
 
 /// Whether two parameters are the same point of a curve.

@@ -6,7 +6,7 @@
 
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, Options, read};
-use premio_kernel::brep::mass::bounds;
+use premio_kernel::brep::extent::bounds;
 use premio_tests::examine::within;
 use premio_tests::formula::Definitions;
 use serde::Deserialize;

@@ -13,7 +13,7 @@ pub use recount::{Recount, WrongPiece};
 use premio_csg::boundary::Evaluation;
 use premio_csg::rays::{Clearance, Estimate, Material};
 use premio_csg::tree::Tree;
-use premio_kernel::brep::mass::bounds;
+use premio_kernel::brep::extent::bounds;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::{Camera, contours};

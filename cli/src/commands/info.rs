@@ -4,7 +4,7 @@ use crate::arguments::InfoOptions;
 use crate::diagnostics::Failure;
 use crate::input::{self, Part};
 use crate::output;
-use premio_kernel::brep::mass::bounds;
+use premio_kernel::brep::extent::bounds;
 use premio_kernel::number::sign::{CloseCall, Decisions};
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -7,7 +7,7 @@ use super::write::{Format, read, write};
 use crate::checks::{Checker, Report, Subject, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
-use premio_kernel::brep::mass::bounds;
+use premio_kernel::brep::extent::bounds;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};

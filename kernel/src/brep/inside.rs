@@ -1,8 +1,8 @@
 //! Whether shells hold a point: the parity of a line's crossings.
 
 use super::Brep;
+use super::extent::face_bounds;
 use super::locate::{FaceLocator, Place};
-use super::mass::face_bounds;
 use super::topology::FaceId;
 use crate::geometry::bounds::Box3;
 use crate::geometry::curve::{Curve, Line};

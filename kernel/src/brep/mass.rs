@@ -1,4 +1,4 @@
-//! Volume, area, centroid and bounds of the exact boundary.
+//! Volume, area and centroid of the exact boundary.
 //!
 //! By the divergence theorem each is a sum over faces of ∫ g dA, and by Green's in the surface's
 //! parameters (u, v) a sum over edges: with G(u, v) = ∫ g |P_u × P_v| dv from a fixed v, the face
@@ -15,10 +15,9 @@ use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::section::plane_roots;
 use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
-use crate::geometry::vector::{Length, direction, rounded};
+use crate::geometry::vector::{Length, rounded};
 use crate::number::precision::Number;
 use crate::number::quadrature::adaptive;
-use crate::number::sign::RELATIVE_RESOLUTION;
 use nalgebra::{Point3, Vector3};
 use strip::strip;
 
@@ -536,72 +535,4 @@ fn torus_moments<N: Number>(
     } else {
         sum
     }
-}
-
-/// The box of a boundary: of its edges, and of its faces where they bulge beyond them.
-pub fn bounds<N: Number>(brep: &Brep<N>) -> Box3 {
-    let mut all = Box3::EMPTY;
-    for e in brep.topology.edge_ids() {
-        all = all.hull(&bounds::tight_bounds(brep.curve(e), brep.range(e)));
-    }
-    for face in brep.topology.face_ids() {
-        all = all.hull(&bulge(brep, face));
-    }
-    all
-}
-
-/// The box of a face: of its edges, and of the face where it bulges beyond them.
-pub(super) fn face_bounds<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
-    let topology = &brep.topology;
-    let rings = topology.face(face).loops.iter().map(|&l| topology.ring(l));
-    let edges = rings.flat_map(|r| r.coedges.iter().map(|&c| topology.coedge(c).edge));
-    edges.fold(bulge(brep, face), |all, e| {
-        all.hull(&bounds::tight_bounds(brep.curve(e), brep.range(e)))
-    })
-}
-
-/// The box of the points of a face whose normal is along an axis, where it bulges, and of a cone's
-/// apex.
-fn bulge<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
-    let surface = brep.surface(face);
-    let f = surface.frame();
-    let mut points = Vec::new();
-    for i in 0..3 {
-        let mut axis = Vector3::zeros();
-        axis[i] = N::ONE;
-        match surface {
-            Surface::Sphere(s) => {
-                points.extend([-N::ONE, N::ONE].map(|k| f.origin + axis * (k * s.radius)));
-            }
-            Surface::Torus(t) => {
-                let across = axis - f.z * f.z.dot(&axis);
-                let out = direction(&across).unwrap_or(f.x);
-                for (k, l) in [
-                    (-N::ONE, -N::ONE),
-                    (-N::ONE, N::ONE),
-                    (N::ONE, -N::ONE),
-                    (N::ONE, N::ONE),
-                ] {
-                    points.push(f.origin + out * (k * t.major) + axis * (l * t.minor));
-                }
-            }
-            Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {}
-        }
-    }
-    if let Surface::Cone(c) = surface {
-        points.push(c.frame.origin);
-    }
-    if points.is_empty() {
-        return Box3::EMPTY;
-    }
-    // A band of nothing would miss boundaries by rounding. An apex may be far from the face.
-    let arcs = FaceLocator::of(brep, face, N::ZERO);
-    let around = match surface {
-        Surface::Cone(_) => Box3::EMPTY,
-        _ => points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p))),
-    };
-    let around = arcs.boxes().iter().fold(around, |a, b| a.hull(b));
-    let locator = FaceLocator::of(brep, face, N::of(RELATIVE_RESOLUTION * around.diagonal()));
-    points.retain(|p| locator.place(p) != Place::Outside);
-    points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)))
 }

@@ -8,6 +8,7 @@
 mod arcs;
 pub mod assemble;
 pub mod check;
+pub mod extent;
 pub mod inside;
 pub mod locate;
 pub mod mass;

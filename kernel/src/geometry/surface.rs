@@ -309,3 +309,20 @@ pub fn turn<N: Number>(angle: N) -> N {
     let a = angle.rem_euclid(N::TAU);
     if a >= N::TAU { N::ZERO } else { a }
 }
+
+/// One surface of each kind about a frame, for tests.
+#[cfg(test)]
+pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2]) -> [Surface; 5] {
+    let (sin, cos) = (0.6, 0.8);
+    [
+        Surface::Plane(Plane { frame }),
+        Surface::Cylinder(Cylinder { frame, radius }),
+        Surface::Cone(Cone { frame, sin, cos }),
+        Surface::Sphere(Sphere { frame, radius }),
+        Surface::Torus(Torus {
+            frame,
+            major,
+            minor,
+        }),
+    ]
+}

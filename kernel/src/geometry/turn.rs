@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use crate::geometry::curve::Curve;
     use crate::geometry::frame::Frame;
-    use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere, Torus};
+    use crate::geometry::surface::{Torus, of_every_kind};
     use nalgebra::Vector3;
 
     #[test]
@@ -106,19 +106,7 @@ mod tests {
             Point3::new(0.3, -0.2, 0.1),
             Vector3::new(0.2, 0.3, 0.9).normalize(),
         );
-        let (radius, sin, cos) = (1.2, 0.6, 0.8);
-        let (major, minor) = (1.1, 0.4);
-        let surfaces = [
-            Surface::Plane(Plane { frame }),
-            Surface::Cylinder(Cylinder { frame, radius }),
-            Surface::Cone(Cone { frame, sin, cos }),
-            Surface::Sphere(Sphere { frame, radius }),
-            Surface::Torus(Torus {
-                frame,
-                major,
-                minor,
-            }),
-        ];
+        let surfaces = of_every_kind(frame, 1.2, [1.1, 0.4]);
         let circle = Circle {
             frame: Frame::about(Point3::new(0.0, 0.1, 1.3), Vector3::z()),
             radius: 0.9,

@@ -4,7 +4,7 @@
 use super::{Answer, Point, Polynomial};
 use crate::geometry::frame::Frame;
 use crate::geometry::relation::Coefficients;
-use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
+use crate::geometry::surface::of_every_kind;
 use crate::number::rational::Rational;
 use nalgebra::Point3;
 use proptest::prelude::*;
@@ -17,23 +17,6 @@ fn whole(v: [i64; 3]) -> [Rational; 3] {
     v.map(|n| ratio(n, 1))
 }
 
-fn kinds() -> [Surface; 5] {
-    let frame = Frame::world();
-    let (radius, sin, cos) = (1.0, 0.6, 0.8);
-    let (major, minor) = (2.0, 1.0);
-    [
-        Surface::Plane(Plane { frame }),
-        Surface::Cylinder(Cylinder { frame, radius }),
-        Surface::Cone(Cone { frame, sin, cos }),
-        Surface::Sphere(Sphere { frame, radius }),
-        Surface::Torus(Torus {
-            frame,
-            major,
-            minor,
-        }),
-    ]
-}
-
 fn surface(kind: usize, point: [Rational; 3], direction: [i64; 3], size: Rational) -> Polynomial {
     let exact = Coefficients {
         point,
@@ -41,7 +24,8 @@ fn surface(kind: usize, point: [Rational; 3], direction: [i64; 3], size: Rationa
         size,
         tube: ratio(1, 1),
     };
-    Polynomial::of(&kinds()[kind], &exact)
+    let kinds = of_every_kind(Frame::world(), 1.0, [2.0, 1.0]);
+    Polynomial::of(&kinds[kind], &exact)
 }
 
 /// A plane, a cylinder, a cone, a sphere or a torus with a tube of radius one.

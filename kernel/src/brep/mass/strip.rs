@@ -100,7 +100,7 @@ fn waves<N: Number>(m: N, d: N) -> (N, [[N; 2]; 3]) {
 mod tests {
     use super::*;
     use crate::geometry::frame::Frame;
-    use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere, Torus};
+    use crate::geometry::surface::of_every_kind;
     use crate::number::quadrature::adaptive;
     use approx::assert_relative_eq;
 
@@ -110,21 +110,7 @@ mod tests {
             Point3::new(1.0, -2.0, 0.5),
             Vector3::new(0.3, -0.4, 0.7).normalize(),
         );
-        let surfaces = [
-            Surface::Plane(Plane { frame }),
-            Surface::Cylinder(Cylinder { frame, radius: 1.5 }),
-            Surface::Cone(Cone {
-                frame,
-                sin: 0.6,
-                cos: 0.8,
-            }),
-            Surface::Sphere(Sphere { frame, radius: 2.0 }),
-            Surface::Torus(Torus {
-                frame,
-                major: 3.0,
-                minor: 1.25,
-            }),
-        ];
+        let surfaces = of_every_kind(frame, 1.5, [3.0, 1.25]);
         let reference = Point3::new(0.2, 0.1, -0.7);
         for (surface, u) in surfaces.iter().zip([0.3, 1.1, 2.0, 4.0, 5.5]) {
             let density = |v: f64| {

@@ -1,8 +1,9 @@
 //! The projection of a camera, ready to be used.
 //!
 //! Notation: a point's image in homogeneous coordinates is h = (x, y, z) in the camera's frame for
-//! perspective, and (x, y, 1) for orthographic; the image point is A (h/h_z) with A affine. The
-//! camera's frame is x right, y up (or down, for pixels), z into the scene.
+//! perspective, and (x, y, u) for orthographic, u a length of the part's size, so that a part twice
+//! as large has twice the coordinates; the image point is A (h/h_z) with A affine. The camera's
+//! frame is x right, y up (or down, for pixels), z into the scene.
 
 use crate::camera::{Camera, Model};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
@@ -28,6 +29,8 @@ pub struct Projection {
     pub near: f64,
     origin: Point3<f64>,
     axes: [Vector3<f64>; 3],
+    /// u, where the projection is orthographic.
+    unit: f64,
     affine: Matrix3<f64>,
     /// Whether y points down in the image.
     pub y_down: bool,
@@ -47,11 +50,20 @@ fn look(eye: &Point3<f64>, target: &Point3<f64>, up: &Vector3<f64>) -> [Vector3<
     [x, x.cross(&z), z]
 }
 
+/// A power of two of a part's size: by it nothing is rounded.
+fn unit_of(size: f64) -> f64 {
+    match size.is_normal() {
+        true => size.log2().floor().exp2(),
+        false => 1.0,
+    }
+}
+
 impl Projection {
     /// The projection of `camera` for a part of the given size (the diagonal of its box).
     pub fn new(camera: &Camera, size: f64) -> Self {
         // A positive distance, so that no contour reaches the eye's own plane.
         let least = size * ROUNDING.sqrt();
+        let unit = unit_of(size);
         match &camera.model {
             Model::Perspective {
                 eye,
@@ -63,6 +75,7 @@ impl Projection {
                 near: camera.near.unwrap_or(least),
                 origin: *eye,
                 axes: look(eye, target, up),
+                unit,
                 affine: Matrix3::from_diagonal(&Vector3::new(*focal, *focal, 1.0)),
                 y_down: false,
                 size: None,
@@ -74,7 +87,8 @@ impl Projection {
                     near: camera.near.unwrap_or(f64::NEG_INFINITY),
                     origin: *eye,
                     axes,
-                    affine: Matrix3::identity(),
+                    unit,
+                    affine: Matrix3::from_diagonal(&Vector3::new(unit, unit, 1.0)),
                     y_down: false,
                     size: None,
                 }
@@ -88,6 +102,7 @@ impl Projection {
                     near: camera.near.unwrap_or(least),
                     origin: eye,
                     axes: [axis(0), axis(1), axis(2)],
+                    unit,
                     affine: *k,
                     y_down: true,
                     size: *size,
@@ -104,7 +119,7 @@ impl Projection {
             self.axes[1].dot(&d),
             match self.sight {
                 Sight::Eye(_) => self.axes[2].dot(&d),
-                Sight::Direction(_) => 1.0,
+                Sight::Direction(_) => self.unit,
             },
         )
     }
@@ -129,7 +144,7 @@ impl Projection {
             dot(&self.axes[1], d),
             match self.sight {
                 Sight::Eye(_) => dot(&self.axes[2], d),
-                Sight::Direction(_) => S::constant(1.0),
+                Sight::Direction(_) => S::constant(self.unit),
             },
         ]
     }
@@ -143,7 +158,7 @@ impl Projection {
     pub fn scale(&self, p: &Point3<f64>) -> f64 {
         match self.sight {
             Sight::Eye(_) => self.depth(p),
-            Sight::Direction(_) => 1.0,
+            Sight::Direction(_) => self.unit,
         }
     }
 

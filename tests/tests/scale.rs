@@ -1,0 +1,57 @@
+//! A part and its camera a power of two larger or smaller: nothing is rounded otherwise, so every
+//! number is that power of two times what it was, and every answer the same.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
+
+use nalgebra::{Point3, Vector3};
+use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_visibility::{Camera, contours};
+
+/// Lengths in S.
+const PARTS: [&str; 2] = [
+    "BLO(X=2*S, Y=2*S, Z=S) DIF CYL(R=S/2, H=3*S) AT (MOVX=S, MOVY=S, MOVZ=-S) UN TOR(RMAJ=3*S/2, RMIN=S/4) AT (MOVZ=S/2)",
+    "CON(R=S, H=2*S) UN SPH(R=S) AT (MOVX=S, MOVZ=S) DIF CYL(R=S/2, H=4*S) AT (ROTX=30, MOVX=S/4, MOVZ=-S)",
+];
+
+/// The volume in terms of the unit's, and the invisibility of every piece in two views.
+type Told = (f64, Vec<u32>);
+
+fn told(part: &str, exponent: i32) -> Told {
+    let size = 2.0_f64.powi(exponent);
+    let power = 1_u128 << exponent.unsigned_abs();
+    let scale = match exponent < 0 {
+        true => format!("1/{power}"),
+        false => power.to_string(),
+    };
+    let text = format!("S = {scale}\nP = {part}");
+    let read = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let known = evaluate(&read.tree, &EvaluationOptions::default()).unwrap();
+    let at = |x: f64, y: f64, z: f64| Point3::new(size * x, size * y, size * z);
+    let (eye, target) = (at(2.5, 5.5, -0.75), at(0.125, 0.125, 0.5));
+    let cameras = [
+        Camera::orthographic(eye, target, Vector3::z()).unwrap(),
+        Camera::perspective(eye, target, Vector3::z(), 1.0).unwrap(),
+    ];
+    let pieces = cameras.iter().flat_map(|camera| {
+        let seen = contours(&known.brep, camera, known.resolution).unwrap();
+        let pieces = seen.contours.into_iter().flat_map(|c| c.pieces);
+        pieces.map(|p| p.qi).collect::<Vec<_>>()
+    });
+    (known.mass().volume / size.powi(3), pieces.collect())
+}
+
+fn alike((volume, pieces): &Told, (other, others): &Told) -> bool {
+    (volume - other).abs() <= volume / f64::from(1 << 30) && pieces == others
+}
+
+#[test]
+fn views_do_not_depend_on_the_unit() {
+    for part in PARTS {
+        let plain = told(part, 0);
+        assert!(plain.1.iter().any(|&qi| qi > 0), "{part}");
+        for exponent in [-100, -41, -20, 20, 41, 100] {
+            let scaled = told(part, exponent);
+            assert!(alike(&plain, &scaled), "{part} by 2^{exponent}");
+        }
+    }
+}

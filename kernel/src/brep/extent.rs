@@ -46,7 +46,8 @@ fn bulge<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
                 points.extend([-N::ONE, N::ONE].map(|k| f.origin + axis * (k * s.radius)));
             }
             Surface::Torus(t) => {
-                let across = axis - f.z * f.z.dot(&axis);
+                // Of products, which keep their digits where the axis is nearly this one.
+                let across = f.z.cross(&axis.cross(&f.z));
                 let out = direction(&across).unwrap_or(f.x);
                 for (k, l) in [
                     (-N::ONE, -N::ONE),

@@ -301,6 +301,12 @@ impl<N: Number> Chart<N> {
         [0, 1, 2].map(|d| value * factor.powi(d) * sigma.powi(power - d))
     }
 
+    /// A bound of what Taylor leaves of F.
+    pub fn left(&self, sigma: N, kappa: N) -> N {
+        let [value, ..] = self.remainder(sigma, kappa);
+        value * sigma.powi(self.weights.form as i32)
+    }
+
     /// The ranges of G and its partial derivatives.
     pub fn partials_over(&self, sigma: Interval<N>, kappa: Interval<N>) -> Partials<Interval<N>> {
         let p = self.partials(sigma, kappa);

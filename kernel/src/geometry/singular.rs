@@ -78,7 +78,7 @@ pub(super) fn singular_points<N: Number>(
                     misses.push(point);
                 }
             } else if !found.iter().any(same) {
-                let plain = leading::plain(tracer.form, point);
+                let plain = leading::plain(tracer, point);
                 found.push(plain.ok_or(Unresolved::at(point))?);
             }
             continue;

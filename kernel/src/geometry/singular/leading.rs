@@ -31,19 +31,21 @@ const FORMS: [usize; 2] = [3, 4];
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
 /// How far the leading terms lie above what is neglected where they leave the band.
 const LEAD: f64 = 4.0;
+/// How far the band lies above what Taylor's polynomials neglect.
+const WHOLE: f64 = 16.0;
 /// Newton's steps towards a degenerate point.
 const STEPS: usize = 12;
 
 /// A critical point with a Hessian of rank two; none where no zone is plain.
-pub(super) fn plain<N: Number>(form: &BiTrig<N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
-    let at = form.partials(angles[0], angles[1]);
+pub(super) fn plain<N: Number>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
+    let at = tracer.form.partials(angles[0], angles[1]);
     let crosses = at.xx * at.yy < at.xy * at.xy;
     let directions = if crosses {
         tangents(&at).into()
     } else {
         Vec::new()
     };
-    fold(form, angles, 2, directions)
+    fold(tracer, angles, 2, directions)
 }
 
 /// The degenerate point next to `start`, and how far from it F is within the band.
@@ -95,7 +97,7 @@ fn multiple<N: Number>(
         return None;
     }
     let directions = roots_of_form(&k, n)?;
-    let point = fold(tracer.form, p, n, directions)?;
+    let point = fold(tracer, p, n, directions)?;
     Some((point, reach))
 }
 
@@ -157,7 +159,7 @@ fn roots_of_form<N: Number>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
 
 /// A point at which branches of different directions cross; none where no zone is plain.
 fn fold<N: Number>(
-    form: &BiTrig<N>,
+    tracer: &Tracer<'_, N>,
     angles: [N; 2],
     n: usize,
     directions: Vec<[N; 2]>,
@@ -167,9 +169,11 @@ fn fold<N: Number>(
         rise: 1,
         form: n,
     };
-    let chart = |axis| Chart::new(form, angles, axis, &[], N::ONE, weights);
+    let chart = |axis| Chart::new(tracer.form, angles, axis, &[], N::ONE, weights);
     let charts = [Axis::Around, Axis::Tube].map(chart);
-    let zone = zone(|zone| charts.iter().all(|c| is_plain(c, zone, N::ONE)))?;
+    let holds =
+        |c: &Chart<N>, zone: N| is_whole(c, tracer.band, zone, N::ONE) && is_plain(c, zone, N::ONE);
+    let zone = zone(|zone| charts.iter().all(|c| holds(c, zone)))?;
     let pass = |[x, y]: [N; 2]| {
         let steep = y.abs() > x.abs();
         Pass {
@@ -188,6 +192,11 @@ fn fold<N: Number>(
 fn zone<N: Number>(holds: impl Fn(N) -> bool) -> Option<N> {
     let zones = (0..deepest::<N>() as i32).map(|n| N::of(ZONE) * N::HALF.powi(n));
     zones.into_iter().find(|&z| holds(z))
+}
+
+/// Whether Taylor's polynomial is F well within the band, for |σ| and |κ| up to the given ones.
+fn is_whole<N: Number>(chart: &Chart<N>, band: N, sigma: N, kappa: N) -> bool {
+    N::of(WHOLE) * chart.left(sigma, kappa) <= band
 }
 
 /// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
@@ -285,16 +294,17 @@ fn rank_one<N: Number>(
     if !(vanishes && leads) {
         return None;
     }
-    Some((rank_one_branches(form, p, &sheet, k)?, reach))
+    Some((rank_one_branches(tracer, p, &sheet, k)?, reach))
 }
 
 /// The branches through a point of rank one; none where no zone is plain.
 fn rank_one_branches<N: Number>(
-    form: &BiTrig<N>,
+    tracer: &Tracer<'_, N>,
     angles: [N; 2],
     sheet: &Sheet<N>,
     k: usize,
 ) -> Option<SingularPoint<N>> {
+    let form = tracer.form;
     let odd = k % 2 == 1;
     let weights = match odd {
         true => Weights {
@@ -322,7 +332,9 @@ fn rank_one_branches<N: Number>(
     let zone = zone(|zone| {
         let [x, y] = angles.map(|c| Interval::around(c, zone));
         let sigma = if odd { zone.sqrt() } else { zone };
-        let holds = |c: &Chart<N>| holds_both(c, sigma, N::TWO * kappa);
+        let kappa = N::TWO * kappa;
+        let holds =
+            |c: &Chart<N>| is_whole(c, tracer.band, sigma, kappa) && holds_both(c, sigma, kappa);
         !bend.value(x, y).has_zero() && holds(&own) && other.iter().all(holds)
     })?;
     let kappas = match (odd, ratio < N::ZERO) {

@@ -1,9 +1,9 @@
 //! Where a curve meets a surface.
 
+use super::along::Along;
 use super::bounds::Box3;
 use super::curve::Curve;
 use super::surface::Surface;
-use super::turn::Turn;
 use super::vector::Length;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
@@ -14,21 +14,16 @@ use crate::number::roots::{Contact, Function, Root, Zeros, isolate, isolate_clos
 struct Height<'a, N: Number = f64> {
     curve: &'a Curve<N>,
     surface: &'a Surface<N>,
-    /// The same of a circle, where coordinates may cancel by more than halving makes up for.
-    turn: Option<Turn<N>>,
+    /// The same of a line or circle, where coordinates may cancel by more than halving makes up for.
+    along: Option<Along<N>>,
 }
 
 impl<'a, N: Number> Height<'a, N> {
     fn of(curve: &'a Curve<N>, surface: &'a Surface<N>) -> Self {
-        let turn = match (curve, surface) {
-            (Curve::Circle(circle), Surface::Torus(_)) => Some(Turn::of(circle, surface)),
-            (Curve::Circle(circle), _) if !N::IS_DOUBLE => Some(Turn::of(circle, surface)),
-            _ => None,
-        };
         Self {
             curve,
             surface,
-            turn,
+            along: Along::of(curve, surface),
         }
     }
 }
@@ -42,8 +37,8 @@ impl<N: Number> Function<N> for Height<'_, N> {
         match self.curve.box_over(t) {
             Some(p) => {
                 let level = self.surface.level(p);
-                match &self.turn {
-                    Some(turn) => level.meet(turn.level(t, self.surface, p)),
+                match &self.along {
+                    Some(along) => level.meet(along.level(t, self.surface, p)),
                     None => level,
                 }
             }

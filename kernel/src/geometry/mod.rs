@@ -1,5 +1,6 @@
 //! Surfaces and curves: what hangs on the entities of a boundary.
 
+mod along;
 pub mod bitrig;
 pub mod bounds;
 pub mod chart;
@@ -17,5 +18,4 @@ pub mod surface;
 pub mod toric;
 pub mod trace;
 pub mod trigonometric;
-mod turn;
 pub mod vector;

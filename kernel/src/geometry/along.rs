@@ -222,7 +222,10 @@ mod tests {
             let p = curve.point(t.mid());
             let level = surface.level([p.x, p.y, p.z]);
             assert!(told.lo <= level && level <= told.hi, "{told:?} {level}");
-            assert!(told.width() < 0.02 * (1.0 + level.abs()), "{told:?}");
+            assert!(
+                told.width() < 0.02 || level.abs() > 0.5,
+                "{told:?} {level} {surface:?}"
+            );
         }
     }
 

@@ -1,8 +1,8 @@
 //! Where a curve meets a surface.
 
-use super::along::Along;
 use super::bounds::Box3;
 use super::curve::Curve;
+use super::restriction::Restriction;
 use super::surface::Surface;
 use super::vector::Length;
 use crate::number::interval::Interval;
@@ -15,7 +15,7 @@ struct Height<'a, N: Number = f64> {
     curve: &'a Curve<N>,
     surface: &'a Surface<N>,
     /// The same of a line or circle, where coordinates may cancel by more than halving makes up for.
-    along: Option<Along<N>>,
+    restriction: Option<Restriction<N>>,
 }
 
 impl<'a, N: Number> Height<'a, N> {
@@ -23,7 +23,7 @@ impl<'a, N: Number> Height<'a, N> {
         Self {
             curve,
             surface,
-            along: Along::of(curve, surface),
+            restriction: Restriction::of(curve, surface),
         }
     }
 }
@@ -37,8 +37,8 @@ impl<N: Number> Function<N> for Height<'_, N> {
         match self.curve.box_over(t) {
             Some(p) => {
                 let level = self.surface.level(p);
-                match &self.along {
-                    Some(along) => level.meet(along.level(t, self.surface, p)),
+                match &self.restriction {
+                    Some(own) => level.meet(own.level(t, self.surface, p)),
                     None => level,
                 }
             }

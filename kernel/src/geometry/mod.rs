@@ -1,6 +1,5 @@
 //! Surfaces and curves: what hangs on the entities of a boundary.
 
-mod along;
 pub mod bitrig;
 pub mod bounds;
 pub mod chart;
@@ -11,6 +10,7 @@ pub mod frame;
 pub mod intersect;
 pub mod quartic;
 pub mod relation;
+mod restriction;
 pub mod section;
 pub mod serial;
 mod singular;

@@ -22,13 +22,14 @@ fuzz_target!(|bytes: &[u8]| {
     let known = &part.evaluation;
     let material = Material::of(&part.tree);
     // What is so near to the boundary tells nothing.
-    let near = 1000.0 * known.resolution;
+    let resolution = known.resolution_of_doubles();
+    let near = 1000.0 * resolution;
     let steps = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * near);
     for p in (0..POINTS).map(|k| part.place(k)) {
         let held = material.holds(&p);
         let around = steps.iter().flat_map(|step| [p + step, p - step]);
         if around.clone().all(|q| material.holds(&q) == held)
-            && let Some(told) = holds(&known.brep, &p, known.resolution)
+            && let Some(told) = holds(&known.brep, &p, resolution)
         {
             assert_eq!(told, held, "at {p}\n{}", part.text);
         }

@@ -4,8 +4,10 @@
 //! the same description at several values of its parameters.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+use premio::checks::{Checker, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, Options, read};
+use premio_csg::tree::Tree;
 use premio_kernel::brep::extent::bounds;
 use premio_tests::examine::within;
 use premio_tests::formula::Definitions;
@@ -69,6 +71,9 @@ struct Answer {
     /// Whether a decision is closer than a hundred to one.
     #[serde(default)]
     close_calls: bool,
+    /// Whether the views of `premio check` are put to its checks.
+    #[serde(default)]
+    views: bool,
 }
 
 fn folders() -> Vec<PathBuf> {
@@ -124,7 +129,19 @@ fn compare(case: &Case, answer: &Answer, description: &Description) -> Vec<Strin
     if calls.is_empty() == answer.close_calls {
         wrong.push(format!("close calls: {calls:?}"));
     }
+    if answer.views {
+        wrong.extend(unlike_rays(&description.tree, &evaluation));
+    }
     wrong
+}
+
+/// What rays tell otherwise than the views of `premio check`.
+fn unlike_rays(tree: &Tree, evaluation: &Evaluation) -> Vec<String> {
+    let checker = Checker::new(tree, evaluation);
+    let seen = views::around(&evaluation.bounds);
+    let checks = seen.iter().flat_map(|v| checker.view(&v.name, &v.camera));
+    let failed = checks.filter(|c| !c.holds);
+    failed.map(|c| c.to_string()).collect()
 }
 
 fn measures(case: &Case, answer: &Answer, evaluation: &Evaluation) -> Vec<String> {
@@ -163,7 +180,7 @@ fn measures(case: &Case, answer: &Answer, evaluation: &Evaluation) -> Vec<String
                 "box",
                 found,
                 known.value(formula).unwrap(),
-                evaluation.resolution,
+                evaluation.resolution_of_doubles(),
             );
         }
     }

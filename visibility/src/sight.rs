@@ -198,13 +198,15 @@ fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, band: f64) -> Box3
     let hull = match brep.surface(face) {
         Surface::Sphere(s) => whole(&s.frame.origin, &s.frame.z, s.radius, 0.0),
         Surface::Torus(s) => whole(&s.frame.origin, &s.frame.z, s.minor, s.major),
-        // Every point of these lies on a segment between two points of the boundary; of a cone
-        // perhaps one of them is the apex.
+        // Every point of these lies on a segment between two points of the boundary; of a cone that
+        // holds its apex perhaps one of them is that.
         surface => {
-            let arcs = locator.face(face).boxes().iter();
-            let hull = arcs.fold(Box3::EMPTY, |a, b| a.hull(b));
+            let own = locator.face(face);
+            let hull = own.boxes().iter().fold(Box3::EMPTY, |a, b| a.hull(b));
             match surface {
-                Surface::Cone(s) => hull.hull(&Box3::of(&s.frame.origin)),
+                Surface::Cone(s) if own.place(&s.frame.origin) != Place::Outside => {
+                    hull.hull(&Box3::of(&s.frame.origin))
+                }
                 _ => hull,
             }
         }

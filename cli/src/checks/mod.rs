@@ -214,12 +214,13 @@ impl<'a> Checker<'a> {
         let size = self.evaluation.bounds.diagonal();
         let known = self.evaluation;
         // Rays are doubles, however finely the boundary was evaluated.
-        let resolution = known.resolution_of_views().unwrap_or(known.resolution);
-        let resolution = resolution.max(ROUNDING * size);
+        let resolution = known.resolution_of_doubles();
         Clearance {
             sliver: 100.0 * resolution,
             // Between the resolution and the size, nearer the former.
             aside: (size * ROUNDING.sqrt()).max(1000.0 * resolution),
+            // What rises by the coincidence over a radius of half the size.
+            shift: (size * known.greatest_coincidence()).sqrt(),
             size,
         }
     }

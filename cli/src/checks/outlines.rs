@@ -226,10 +226,9 @@ impl Search<'_> {
     fn lack(&self, change: &Change, images: &Images<'_>) -> Option<Missing> {
         let [a, b] = change.at;
         let width = (b[0] - a[0]).hypot(b[1] - a[1]);
-        let near = NEAR * width;
         // A round surface lies this much deeper than its limb.
         let deep = |depth: f64| {
-            let beside = near * self.window.scale(depth);
+            let beside = NEAR * width * self.window.scale(depth);
             DEEP * (beside * self.clearance.size).sqrt()
         };
         let [first, second] = &change.met;
@@ -244,6 +243,7 @@ impl Search<'_> {
             .filter_map(|met| met.get(index))
             .fold(f64::INFINITY, |least, c| c.at.min(least));
         let deep = deep(depth);
+        let near = NEAR * width + self.clearance.shift / self.window.scale(depth);
         let until = self.steep_until(change, index, deep).unwrap_or(depth);
         let there = |p: &Passing| p.depth[0] - deep <= until && depth <= p.depth[1] + deep;
         // What begins there nearer to the eye may be narrower than the interval.

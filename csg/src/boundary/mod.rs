@@ -35,7 +35,7 @@ use premio_kernel::geometry::intersect::{Extent, IntersectionError};
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{
-    Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, Zeros,
+    Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, ROUNDING, Zeros,
 };
 use premio_kernel::number::wide::Wide;
 
@@ -73,6 +73,20 @@ impl Evaluation {
     /// not tell the boundary: rounded to them, surfaces may lie on one another that do not.
     pub fn resolution_of_views(&self) -> Option<f64> {
         self.plain
+    }
+
+    /// What doubles tell of the boundary, however finely it was evaluated.
+    pub fn resolution_of_doubles(&self) -> f64 {
+        let known = self.plain.unwrap_or(self.resolution);
+        known.max(ROUNDING * self.bounds.diagonal())
+    }
+
+    /// How far apart what coincides by the resolution was seen to be at most; nought where nothing
+    /// of it was a close call.
+    pub fn greatest_coincidence(&self) -> f64 {
+        let distances = self.decisions.close_calls.iter().map(|c| c.distance.abs());
+        let coincident = distances.filter(|d| *d <= self.resolution);
+        coincident.fold(0.0, f64::max)
     }
 
     /// The volume, the area and the centroid.

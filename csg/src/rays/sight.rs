@@ -26,6 +26,9 @@ pub struct Clearance {
     pub sliver: f64,
     /// A count holds where it is the same on the lines of sight this far aside.
     pub aside: f64,
+    /// How far a curve along which round surfaces meet may lie from where it is told: they touch by
+    /// the resolution, and cross beside that.
+    pub shift: f64,
     /// The part's size.
     pub size: f64,
 }

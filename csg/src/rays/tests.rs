@@ -162,6 +162,7 @@ fn from_above(part: &Material, size: f64, point: [f64; 3]) -> Evidence {
     let clearance = Clearance {
         sliver: 1e-9,
         aside: 1e-6,
+        shift: 0.0,
         size,
     };
     part.invisibility(&point.into(), up, &clearance)

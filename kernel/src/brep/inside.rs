@@ -16,7 +16,8 @@ use nalgebra::{Point3, Vector3};
 const LINES: u32 = 64;
 
 /// Whether the solids hold a point that is not on the boundary; none where no ray from it crosses
-/// faces plainly, farther than `band` from their edges.
+/// faces plainly, farther than `band` from their edges. That is no less than their places are rounded
+/// by.
 pub fn holds<N: Number>(brep: &Brep<N>, p: &Point3<N>, band: N) -> Option<bool> {
     let faces: Vec<FaceId> = brep.topology.face_ids().collect();
     Closed::of(brep, &faces, band).holds(p)

@@ -174,11 +174,13 @@ fn conic_image(
     ]);
     let (towards, away) = projection.towards_eye(&frame.origin);
     let tilt = towards.dot(&frame.z).abs();
-    let edge_on = if away.is_finite() {
-        tilt * away <= band
-    } else {
-        tilt <= ROUNDING
+    // Thinner than the resolution, or of a plane so near to the eye.
+    let reach = match basis {
+        Basis::Circular => a.max(b),
+        _ if away.is_finite() => away,
+        _ => band / ROUNDING,
     };
+    let edge_on = tilt * reach <= band;
     match map.try_inverse() {
         Some(inverse) if !edge_on => {
             let conic = inverse.transpose() * basis.conic() * inverse;

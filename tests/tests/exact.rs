@@ -19,6 +19,10 @@ const MEANT: &[(&str, &str)] = &[
         "cone-tip-on-cone-along-tangent",
         "turned by an angle in decimals",
     ),
+    (
+        "ring-under-a-block-turned-within-the-resolution",
+        "a turn within the resolution, by which the ring stands a little into the block",
+    ),
     ("roof-ridges-crossing", "a ridge's height in decimals"),
     ("steinmetz-with-noise", "noise"),
     ("three-equal-cylinders-with-noise", "noise"),

@@ -46,6 +46,8 @@ pub fn laws(a: &Value, b: &Value, c: &Value) -> Vec<Law> {
     let all = &json!({"prim": "block", "size": [64, 64, 64],
         "transform": [{"translate": [-32.25, -32.25, -32.25]}]});
     let not = |x: &Value| less(all, x);
+    let block = |at: f64| json!({"prim": "block", "size": [1, 1, 1], "transform": [{"translate": [at, 0, 0]}]});
+    let nothing = and(&block(0.0), &block(2.0));
     let law = |name, sides| Law {
         name,
         sides,
@@ -54,6 +56,7 @@ pub fn laws(a: &Value, b: &Value, c: &Value) -> Vec<Law> {
     vec![
         law("A or A = A", [or(a, a), a.clone()]),
         law("A and A = A", [and(a, a), a.clone()]),
+        law("A less A = nothing", [less(a, a), nothing]),
         law("A or B = B or A", [or(a, b), or(b, a)]),
         law("A and B = B and A", [and(a, b), and(b, a)]),
         law(

@@ -4,6 +4,7 @@ pub mod cast;
 pub mod examine;
 pub mod formula;
 pub mod identities;
+pub mod mirror;
 pub mod pairs;
 pub mod parts;
 pub mod random;

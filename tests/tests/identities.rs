@@ -1,6 +1,7 @@
 //! The laws of sets hold for boundaries, and motions change nothing of theirs but the place.
 
 use premio_tests::identities::broken_by;
+use premio_tests::mirror;
 
 /// Three random trees each that once broke a law, with what is hard about them.
 const MENDED: [(u64, &str); 6] = [
@@ -45,4 +46,10 @@ fn laws_hold_for_random_trees() {
 #[test]
 fn laws_hold_for_trees_that_broke_them() {
     holds(MENDED.into_iter());
+}
+
+#[test]
+fn views_of_mirrored_trees_are_mirrored() {
+    let broken: Vec<String> = (0..40).flat_map(mirror::broken_by).collect();
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
 }

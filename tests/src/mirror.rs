@@ -1,0 +1,157 @@
+//! Trees and views in the mirror y = 0: what is seen of the one is the mirror image of the other.
+
+use crate::random::tree;
+use nalgebra::{Point3, Vector3};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_visibility::contour::{Contour, ImageCurve, Kind};
+use premio_visibility::{Camera, Contours, contours};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How many chords a piece is measured by.
+const CHORDS: usize = 256;
+
+/// How far measures by chords may be off, as a part of the part's size.
+const OFF: f64 = 1e-3;
+
+/// The tree in the mirror. Every primitive is its own mirror image, blocks and wedges after they were
+/// moved along y; a turn's axis is a pseudovector.
+pub fn mirrored(tree: &Value) -> Value {
+    let Value::Object(members) = tree else {
+        return tree.clone();
+    };
+    let mut image = members.clone();
+    if let Some(Value::Array(children)) = image.get_mut("children") {
+        *children = children.iter().map(mirrored).collect();
+    }
+    let moved = members.get("size").map(|size| {
+        let width = size[1].as_f64().unwrap_or(f64::NAN);
+        json!({"translate": [0.0, -width, 0.0]})
+    });
+    let steps = members.get("transform").and_then(Value::as_array);
+    let steps: Vec<Value> = moved
+        .into_iter()
+        .chain(steps.into_iter().flatten().map(mirrored_step))
+        .collect();
+    image.insert("transform".to_owned(), Value::Array(steps));
+    Value::Object(image)
+}
+
+fn mirrored_step(step: &Value) -> Value {
+    let with_signs = |v: &Value, signs: [f64; 3]| {
+        let number = |k: usize| signs[k] * v[k].as_f64().unwrap_or(f64::NAN);
+        json!([number(0), number(1), number(2)])
+    };
+    match (step.get("translate"), step.get("rotate")) {
+        (Some(by), None) => json!({"translate": with_signs(by, [1.0, -1.0, 1.0])}),
+        (None, Some(turn)) => {
+            json!({"rotate": [with_signs(&turn[0], [-1.0, 1.0, -1.0]), turn[1]]})
+        }
+        _ => Value::Null,
+    }
+}
+
+/// What is seen of one kind with one quantitative invisibility.
+#[derive(Clone, Copy, Debug, Default)]
+struct Share {
+    length: f64,
+    /// The integral of the place over the length.
+    moment: Vector3<f64>,
+}
+
+/// The shares by kind, whether it is smooth, and quantitative invisibility.
+type Shares = BTreeMap<(bool, bool, u32), Share>;
+
+/// Pieces are not counted: where contours fall on one another in the image they may be cut though
+/// nothing changes. What is seen end-on has no length, and lies on whatever passes there.
+fn shares(seen: &Contours) -> Shares {
+    let mut shares = Shares::new();
+    let is_seen = |c: &&Contour| !matches!(c.curve2, ImageCurve::Point { .. });
+    for contour in seen.contours.iter().filter(is_seen) {
+        let limb = contour.kind == Kind::Limb;
+        for piece in &contour.pieces {
+            let share = shares.entry((limb, contour.smooth, piece.qi)).or_default();
+            let [lo, hi] = piece.t;
+            let at = |k: usize| {
+                let part = k as f64 / CHORDS as f64;
+                contour.curve3.point(lo + (hi - lo) * part)
+            };
+            for k in 0..CHORDS {
+                let (a, b) = (at(k), at(k + 1));
+                let chord = (b - a).norm();
+                share.length += chord;
+                share.moment += nalgebra::center(&a, &b).coords * chord;
+            }
+        }
+    }
+    shares
+}
+
+fn evaluated(tree: &Value) -> Result<Evaluation, String> {
+    let text = tree.to_string();
+    let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+    let tree = read.map_err(|error| error.to_string())?.tree;
+    evaluate(&tree, &EvaluationOptions::default()).map_err(|error| error.to_string())
+}
+
+/// The cameras of a part and those of its mirror image: from an odd place near by and far off, and
+/// along x and z.
+fn cameras(part: &Evaluation) -> Vec<[Camera; 2]> {
+    let [min, max] = [part.bounds.min, part.bounds.max].map(Point3::from);
+    let (centre, size) = (nalgebra::center(&min, &max), part.bounds.diagonal());
+    let glass = |p: Point3<f64>| Point3::new(p.x, -p.y, p.z);
+    let ways = [
+        (Vector3::new(1.3, -1.9, 1.1), true),
+        (Vector3::new(-1.7, 0.9, 0.6), false),
+        (Vector3::x() * 3.0, false),
+        (Vector3::z() * 3.0, true),
+    ];
+    let both = ways.iter().filter_map(|&(way, central)| {
+        let eye = centre + way * size;
+        let up = match way.x == 0.0 && way.y == 0.0 {
+            true => Vector3::x(),
+            false => Vector3::z(),
+        };
+        let camera = |eye, target| match central {
+            true => Camera::perspective(eye, target, up, 1.0).ok(),
+            false => Camera::orthographic(eye, target, up).ok(),
+        };
+        Some([camera(eye, centre)?, camera(glass(eye), glass(centre))?])
+    });
+    both.collect()
+}
+
+/// Where two views are not mirror images of each other.
+fn difference(a: &Shares, b: &Shares, size: f64) -> Option<String> {
+    let known: BTreeSet<_> = a.keys().chain(b.keys()).collect();
+    known.into_iter().find_map(|known| {
+        let [x, y] = [a, b].map(|of| of.get(known).copied().unwrap_or_default());
+        let glass = Vector3::new(y.moment.x, -y.moment.y, y.moment.z);
+        let alike = (x.length - y.length).abs() <= OFF * size
+            && (x.moment - glass).norm() <= OFF * size * size;
+        (!alike).then(|| format!("{known:?}: {x:?} for {y:?}"))
+    })
+}
+
+/// The views of a random tree that its mirror image does not show in the mirror, or why there are
+/// none.
+pub fn broken_by(seed: u64) -> Vec<String> {
+    let tree = tree(seed);
+    let [part, image] = match [evaluated(&tree), evaluated(&mirrored(&tree))] {
+        [Ok(part), Ok(image)] => [part, image],
+        [Err(error), _] | [_, Err(error)] => return vec![format!("{seed}: {error}")],
+    };
+    let size = part.bounds.diagonal();
+    let mut broken = Vec::new();
+    for (k, [camera, other]) in cameras(&part).into_iter().enumerate() {
+        let seen = [(&part, camera), (&image, other)]
+            .map(|(of, camera)| contours(&of.brep, &camera, of.resolution));
+        let fault = match seen {
+            [Ok(a), Ok(b)] => difference(&shares(&a), &shares(&b), size),
+            [Err(error), _] | [_, Err(error)] => Some(error.to_string()),
+        };
+        broken.extend(fault.map(|fault| format!("{seed} in view {k}: {fault}")));
+    }
+    broken
+}

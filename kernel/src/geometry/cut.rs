@@ -9,21 +9,39 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::precision::Number;
 use crate::number::roots::{Contact, Function, Root, Zeros, isolate, isolate_closely, probes};
+use crate::number::rough::Rough;
+use nalgebra::Point3;
+use std::borrow::Cow;
 
 /// How far above a surface a curve runs.
 struct Height<'a, N: Number = f64> {
-    curve: &'a Curve<N>,
-    surface: &'a Surface<N>,
+    curve: Cow<'a, Curve<N>>,
+    surface: Cow<'a, Surface<N>>,
     /// The same of a line or circle, where coordinates may cancel by more than halving makes up for.
     restriction: Option<Restriction<N>>,
+    /// The same in doubles, of one of more digits.
+    doubles: Option<Box<Height<'static>>>,
 }
 
 impl<'a, N: Number> Height<'a, N> {
     fn of(curve: &'a Curve<N>, surface: &'a Surface<N>) -> Self {
+        let doubles = || Height::over(curve.in_doubles(), surface.in_doubles());
         Self {
-            curve,
-            surface,
+            curve: Cow::Borrowed(curve),
+            surface: Cow::Borrowed(surface),
             restriction: Restriction::of(curve, surface),
+            doubles: (!N::IS_DOUBLE).then(|| Box::new(doubles())),
+        }
+    }
+}
+
+impl Height<'static> {
+    fn over(curve: Curve, surface: Surface) -> Self {
+        Self {
+            restriction: Restriction::of(&curve, &surface),
+            curve: Cow::Owned(curve),
+            surface: Cow::Owned(surface),
+            doubles: None,
         }
     }
 }
@@ -38,12 +56,19 @@ impl<N: Number> Function<N> for Height<'_, N> {
             Some(p) => {
                 let level = self.surface.level(p);
                 match &self.restriction {
-                    Some(own) => level.meet(own.level(t, self.surface, p)),
+                    Some(own) => level.meet(own.level(t, &self.surface, p)),
                     None => level,
                 }
             }
             None => Interval::ENTIRE,
         }
+    }
+
+    fn roughly(&self, piece: [N; 2]) -> Option<Rough<'_>> {
+        let doubles = self.doubles.as_deref()?;
+        let away = |p: &Point3<N>| p.coords.length().rounded();
+        let size = away(&self.surface.frame().origin) + away(&self.curve.point(piece[0]));
+        Some(Rough::of(self, doubles, piece, f64::ROUNDING * size))
     }
 
     fn at(&self, t: N) -> Jet<N> {

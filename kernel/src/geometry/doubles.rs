@@ -67,6 +67,12 @@ impl<N: Number> Surface<N> {
     }
 }
 
+impl<N: Number> BiTrig<N> {
+    pub(super) fn in_doubles(&self) -> BiTrig {
+        BiTrig(self.0.map(|row| row.map(N::rounded)))
+    }
+}
+
 impl<N: Number> Curve<N> {
     /// The same in doubles.
     pub fn in_doubles(&self) -> Curve {
@@ -171,7 +177,7 @@ impl<N: Number> Toric<N> {
     fn in_doubles(&self) -> Toric {
         Toric {
             torus: self.torus.in_doubles(),
-            form: BiTrig(self.form.0.map(|row| row.map(N::rounded))),
+            form: self.form.in_doubles(),
             charts: self.charts.iter().map(|c| c.in_doubles()).collect(),
             segments: self.segments.iter().map(Segment::in_doubles).collect(),
             closed: self.closed,

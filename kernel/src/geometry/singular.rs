@@ -8,7 +8,7 @@ mod leading;
 use super::bitrig::Partials;
 use super::chart::Chart;
 use super::trace::grid::{Cell, plain_grid};
-use super::trace::{Bounds, Tracer, Unresolved, deepest, near};
+use super::trace::{Tracer, Unresolved, deepest, near};
 use crate::number::precision::Number;
 use crate::number::sign::CLOSE;
 
@@ -56,9 +56,18 @@ pub(super) fn singular_points<N: Number>(
     // Degenerate points, with how far from them F is within the band.
     let mut degenerate: Vec<(SingularPoint<N>, N)> = Vec::new();
     let mut stack: Vec<(Cell<N>, u32)> = plain_grid().into_iter().map(|c| (c, 0)).collect();
+    let doubles = tracer.in_doubles();
     while let Some((cell, depth)) = stack.pop() {
-        let b = tracer.bounds(&cell);
-        if b.least > reach || b.x[0] > N::ZERO || b.y[0] > N::ZERO {
+        let rough = doubles
+            .as_ref()
+            .map(|f| Look::at(f, &cell.in_doubles(), reach.above()));
+        let look = match rough {
+            Some(look) if cell.is_coarse() || !matches!(look, Look::Unclear { .. }) => {
+                look.of_more()
+            }
+            _ => Look::at(tracer, &cell, reach),
+        };
+        if look == Look::Bare {
             continue;
         }
         let [hx, hy] = cell.half();
@@ -68,8 +77,10 @@ pub(super) fn singular_points<N: Number>(
         if degenerate.iter().any(inside) {
             continue;
         }
-        if let Some(point) = only_critical(tracer, &cell, &b.at) {
-            let Some(point) = point else { continue };
+        let Look::Unclear { least, value, wide } = look else {
+            let Some(point) = only_critical(tracer, &cell) else {
+                continue;
+            };
             let same =
                 |q: &SingularPoint<N>| near(&q.angles, &point, N::of(1e3) * tracer.slop.sqrt());
             let value = tracer.form.value(point[0], point[1]).abs();
@@ -82,9 +93,9 @@ pub(super) fn singular_points<N: Number>(
                 found.push(plain.ok_or(Unresolved::at(point))?);
             }
             continue;
-        }
-        if depth >= DEEP && b.least > N::ZERO {
-            if b.at.f.abs() < reach {
+        };
+        if depth >= DEEP && least > N::ZERO {
+            if value < reach {
                 misses.push(cell.centre());
             }
             continue;
@@ -100,7 +111,6 @@ pub(super) fn singular_points<N: Number>(
         if depth >= deepest::<N>() {
             return Err(Unresolved::at(cell.centre()));
         }
-        let Bounds { wide, .. } = b;
         stack.extend(cell.halves(wide).map(|c| (c, depth + 1)));
     }
     for (point, reach) in degenerate {
@@ -132,13 +142,51 @@ fn is_milestone(depth: u32) -> bool {
         .any(|m| m == depth)
 }
 
-/// Where the Hessian is regular over the cell's surroundings: the one critical point there, if it
-/// lies in the cell. None where that is not known.
-fn only_critical<N: Number>(
-    tracer: &Tracer<'_, N>,
-    cell: &Cell<N>,
-    at: &Partials<N>,
-) -> Option<Option<[N; 2]>> {
+/// What a cell shows of critical points at which F is small.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Look<N: Number = f64> {
+    /// It has none.
+    Bare,
+    /// The Hessian is regular over the cell's surroundings: there is one at most.
+    Regular,
+    /// No more is known than the least |F|, below zero where F may vanish, |F| at the centre, and the
+    /// angle along which F bends more.
+    Unclear { least: N, value: N, wide: usize },
+}
+
+impl<N: Number> Look<N> {
+    fn at(tracer: &Tracer<'_, N>, cell: &Cell<N>, reach: N) -> Self {
+        let b = tracer.bounds(cell);
+        if b.least > reach || b.x[0] > N::ZERO || b.y[0] > N::ZERO {
+            Self::Bare
+        } else if is_regular(tracer, cell, &b.at) {
+            Self::Regular
+        } else {
+            Self::Unclear {
+                least: b.least,
+                value: b.at.f.abs(),
+                wide: b.wide,
+            }
+        }
+    }
+}
+
+impl Look {
+    fn of_more<N: Number>(self) -> Look<N> {
+        match self {
+            Self::Bare => Look::Bare,
+            Self::Regular => Look::Regular,
+            Self::Unclear { least, value, wide } => Look::Unclear {
+                least: N::of(least),
+                value: N::of(value),
+                wide,
+            },
+        }
+    }
+}
+
+/// Whether the Hessian is regular over a cell's surroundings; `at` is what F is at the centre.
+fn is_regular<N: Number>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>) -> bool {
     let half = cell.half();
     let around = half.map(|h| N::TWO * h);
     let (_, thirds) = (tracer.form).partials_about(cell.centre(), around, &tracer.reaches);
@@ -153,10 +201,12 @@ fn only_critical<N: Number>(
     let [xx, xy, yy] = thirds.seconds(around);
     // ‖H⁻¹‖ times the change of H over the surroundings stays below one.
     let change = rows(scaled(xx, xy, yy));
-    if rows(scaled(at.xx, at.xy, at.yy)) * change >= N::of(0.25) * det {
-        return None;
-    }
-    let [hx, hy] = half;
+    rows(scaled(at.xx, at.xy, at.yy)) * change < N::of(0.25) * det
+}
+
+/// The one critical point of a cell over whose surroundings the Hessian is regular, if it lies in it.
+fn only_critical<N: Number>(tracer: &Tracer<'_, N>, cell: &Cell<N>) -> Option<[N; 2]> {
+    let [hx, hy] = cell.half();
     let mut p = cell.centre();
     for _ in 0..30 {
         let g = tracer.form.partials(p[0], p[1]);
@@ -172,7 +222,7 @@ fn only_critical<N: Number>(
     }
     let c = cell.centre();
     let inside = (p[0] - c[0]).abs() <= N::of(1.01) * hx && (p[1] - c[1]).abs() <= N::of(1.01) * hy;
-    Some(inside.then_some(p))
+    inside.then_some(p)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::precision::Number;
 use crate::number::roots::{Contact, Function, Zeros, isolate};
+use crate::number::rough::Rough;
 use crate::number::scalar::{Scalar, harmonic, harmonic_slope};
 use nalgebra::{SMatrix, SVector};
 
@@ -55,17 +56,25 @@ pub(super) fn between<N: Number>(a: N, b: N) -> Trig1<N> {
 }
 
 /// A trigonometric polynomial of degree two with its derivatives, which are such, too.
-pub(super) struct Trigonometric<N: Number = f64>([Trig2<N>; 3]);
+pub(super) struct Trigonometric<N: Number = f64> {
+    derivatives: [Trig2<N>; 3],
+    /// The same in doubles, of one of more digits.
+    doubles: Option<Box<Trigonometric>>,
+}
 
 impl<N: Number> Trigonometric<N> {
     pub(super) fn new(k: &Trig2<N>) -> Self {
         let slope = harmonic_slope(k);
-        Self([*k, slope, harmonic_slope(&slope)])
+        let doubles = || Trigonometric::new(&k.map(N::rounded));
+        Self {
+            derivatives: [*k, slope, harmonic_slope(&slope)],
+            doubles: (!N::IS_DOUBLE).then(|| Box::new(doubles())),
+        }
     }
 
     fn jet<S: Scalar<Number = N>>(&self, u: S) -> Jet<S> {
         let at = u.sin_cos();
-        let [v, d, dd] = [0, 1, 2].map(|i| harmonic(&self.0[i], at));
+        let [v, d, dd] = [0, 1, 2].map(|i| harmonic(&self.derivatives[i], at));
         Jet { v, d, dd }
     }
 }
@@ -75,12 +84,18 @@ impl<N: Number> Function<N> for Trigonometric<N> {
         self.jet(u)
     }
 
+    fn roughly(&self, piece: [N; 2]) -> Option<Rough<'_>> {
+        let doubles = self.doubles.as_deref()?;
+        let size: f64 = doubles.derivatives[0].iter().map(|c| c.abs()).sum();
+        Some(Rough::of(self, doubles, piece, f64::ROUNDING * size))
+    }
+
     fn at(&self, u: N) -> Jet<N> {
         self.jet(u)
     }
 
     fn value(&self, u: N) -> N {
-        harmonic(&self.0[0], u.sin_cos())
+        harmonic(&self.derivatives[0], u.sin_cos())
     }
 }
 

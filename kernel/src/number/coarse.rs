@@ -9,7 +9,7 @@ const BROAD: f64 = 1.0 / (1u64 << 32) as f64;
 
 impl<N: Number> Interval<N> {
     /// An interval of doubles that holds this one.
-    fn enclosed(self) -> Interval {
+    pub(super) fn enclosed(self) -> Interval {
         let outside = |x: N, step: fn(f64) -> f64| match x == N::ZERO {
             true => 0.0,
             false => step(x.rounded()),

@@ -4,6 +4,7 @@
 pub mod bisection;
 mod coarse;
 pub mod enclosure;
+mod interpolant;
 pub mod interval;
 pub mod jet;
 pub mod precision;
@@ -12,6 +13,7 @@ pub mod quadrature;
 pub mod rational;
 pub mod real;
 pub mod roots;
+pub mod rough;
 pub mod scalar;
 pub mod separation;
 pub mod sign;

@@ -7,10 +7,12 @@
 //! the band is the part's resolution.
 
 use super::bisection::{bisect, bisect_newton};
+use super::interpolant::Interpolant;
 use super::interval::Interval;
 use super::jet::Jet;
 use super::precision::Number;
 use super::profile::Profile;
+use super::rough::Rough;
 use super::scalar::Scalar;
 use super::sign::CLOSE;
 
@@ -94,6 +96,11 @@ pub trait Function<N: Number = f64> {
         Interval::ENTIRE
     }
 
+    /// The same in doubles over a piece, where it is one of more digits that doubles follow.
+    fn roughly(&self, _piece: [N; 2]) -> Option<Rough<'_>> {
+        None
+    }
+
     /// The value and two derivatives at a point, in doubles.
     fn at(&self, t: N) -> Jet<N> {
         let j = self.over(Interval::point(t));
@@ -128,6 +135,13 @@ const PROBES: u32 = 67;
 pub fn probes<N: Number>() -> impl Iterator<Item = N> {
     (1..=PROBES).map(|k| (N::whole(k) * N::of(0.618_033_988_749_895)).fract())
 }
+
+/// From so many halvings of a piece on a polynomial is tried.
+const MANY: u32 = 64;
+
+/// How far a polynomial may be off, as a part of the band: less than half of the fringe, so that
+/// something is always told of what is level.
+const FINE: f64 = 1.0 / 256.0;
 
 struct Search<'a, F, N: Number> {
     f: &'a F,
@@ -230,39 +244,78 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
     /// Works through [a, b] in order, by halving with a stack of its own.
     fn piece(&mut self, a: N, b: N) {
         let whole = (a, b);
+        let rough = self.f.roughly([a, b]);
         let mut stack = vec![whole];
+        let mut halved = 0;
         while let Some((a, b)) = stack.pop() {
-            let m = N::HALF * (a + b);
             let x = Interval { lo: a, hi: b };
             let small = b - a <= N::of(SMALL) * (whole.1 - whole.0);
-            let Some(jet) = self.unclear(x, small) else {
-                self.profile.mark(m, N::INFINITY);
-                continue;
+            let is_clear = rough.as_ref().is_some_and(|f| f.is_clear(x, self.reach));
+            let jet = match is_clear {
+                true => None,
+                false => self.unclear(x, small),
             };
-            let v = jet.v;
-            let misses = v.lo > self.band || v.hi < -self.band;
-            // Beyond the reach, too: what is level at its edge would be halved without end.
-            if misses && (v.magnitude() <= N::TWO * self.reach || b - a <= self.floor) {
-                self.beside(a, b);
+            if self.settles(x, jet) {
                 continue;
             }
-            if v.magnitude() <= N::of(FRINGE) * self.band {
-                let level = !jet.d.has_zero();
-                let kind = if level { Kind::Level } else { Kind::Loose };
-                self.cluster(a, b, m, kind, Some(N::ZERO));
-            } else if !jet.d.has_zero() {
-                self.monotone(a, b);
-            } else if !jet.dd.has_zero() {
-                self.convex(a, b);
-            } else if b - a <= self.floor {
-                self.cluster(a, b, m, Kind::Loose, Some(v.magnitude()));
-            } else if (a, b) == whole && self.vanishes(a, b) {
-                self.cluster(a, b, m, Kind::Loose, Some(N::ZERO));
-            } else {
-                stack.push((m, b));
-                stack.push((a, m));
+            if (a, b) == whole && self.vanishes(a, b) {
+                self.cluster(a, b, x.mid(), Kind::Loose, Some(N::ZERO));
+                continue;
+            }
+            halved += 1;
+            if halved > MANY && !N::IS_DOUBLE && self.interpolated(a, b) {
+                continue;
+            }
+            stack.push((x.mid(), b));
+            stack.push((a, x.mid()));
+        }
+    }
+
+    /// The same of a function that is a polynomial there within a small part of the band; false where
+    /// it is none.
+    fn interpolated(&mut self, a: N, b: N) -> bool {
+        let Some(polynomial) = Interpolant::of(self.f, [a, b], N::of(FINE) * self.band) else {
+            return false;
+        };
+        let mut stack = vec![(a, b)];
+        while let Some((a, b)) = stack.pop() {
+            let x = Interval { lo: a, hi: b };
+            let jet = Some(polynomial.over(x)).filter(|jet| !self.is_clear(jet.v));
+            if !self.settles(x, jet) {
+                stack.push((x.mid(), b));
+                stack.push((a, x.mid()));
             }
         }
+        true
+    }
+
+    /// Whether the ranges over an interval tell what is there, which is noted; there are none where
+    /// nothing is.
+    fn settles(&mut self, x: Interval<N>, jet: Option<Jet<Interval<N>>>) -> bool {
+        let (a, b, m) = (x.lo, x.hi, x.mid());
+        let Some(jet) = jet else {
+            self.profile.mark(m, N::INFINITY);
+            return true;
+        };
+        let v = jet.v;
+        let misses = v.lo > self.band || v.hi < -self.band;
+        // Beyond the reach, too: what is level at its edge would be halved without end.
+        if misses && (v.magnitude() <= N::TWO * self.reach || b - a <= self.floor) {
+            self.beside(a, b);
+        } else if v.magnitude() <= N::of(FRINGE) * self.band {
+            let level = !jet.d.has_zero();
+            let kind = if level { Kind::Level } else { Kind::Loose };
+            self.cluster(a, b, m, kind, Some(N::ZERO));
+        } else if !jet.d.has_zero() {
+            self.monotone(a, b);
+        } else if !jet.dd.has_zero() {
+            self.convex(a, b);
+        } else if b - a <= self.floor {
+            self.cluster(a, b, m, Kind::Loose, Some(v.magnitude()));
+        } else {
+            return false;
+        }
+        true
     }
 
     /// Whether the function is within the band throughout, by its values at enough places. Halving

@@ -72,6 +72,13 @@ impl<N: Number> BiTrig<N> {
     }
 }
 
+impl<N: Number> Reaches<N> {
+    /// The same in doubles.
+    pub fn in_doubles(&self) -> Reaches {
+        Reaches(self.0.map(|row| row.map(N::rounded)))
+    }
+}
+
 impl<N: Number> Thirds<N> {
     /// Bounds of |f_xx|, |f_xy| and |f_yy|'s changes over offsets of up to (hx, hy).
     pub fn seconds(&self, [hx, hy]: [N; 2]) -> [N; 3] {

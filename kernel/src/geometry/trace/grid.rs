@@ -29,6 +29,18 @@ impl<N: Number> Cell<N> {
         ]
     }
 
+    /// Whether doubles tell of it as much as more digits do: what a form's terms differ by over it is
+    /// far more than they are rounded by.
+    pub fn is_coarse(&self) -> bool {
+        self.half().into_iter().all(|h| h.rounded() > COARSE)
+    }
+
+    /// The same in doubles.
+    pub fn in_doubles(&self) -> Cell {
+        let [lo, hi] = [self.lo, self.hi].map(|angles| angles.map(N::rounded));
+        Cell { lo, hi }
+    }
+
     /// Both halves across one angle.
     pub fn halves(&self, across: usize) -> [Cell<N>; 2] {
         let c = self.centre()[across];
@@ -38,6 +50,9 @@ impl<N: Number> Cell<N> {
         [low, high]
     }
 }
+
+/// Half the side of the least cell that is coarse: its square is far more than doubles are rounded by.
+const COARSE: f64 = 1.0 / (1 << 16) as f64;
 
 /// The cells of the first grid along each angle.
 const GRID: usize = 10;

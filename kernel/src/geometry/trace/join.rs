@@ -163,7 +163,7 @@ impl<N: Number> Tracer<'_, N> {
                 to: q[k],
                 ends: [p[1 - k], q[1 - k]],
                 slopes: [slope(p), slope(q)],
-                steep,
+                steep: N::of(steep),
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
                 chart: None,
             };

@@ -68,13 +68,43 @@ pub(super) struct Bounds<N: Number = f64> {
     pub wide: usize,
 }
 
+/// What a cell holds of the curve.
+enum Holds {
+    Nothing,
+    /// A graph over an angle, and a bound of its slope.
+    Graph {
+        axis: Axis,
+        steep: f64,
+    },
+    Unknown,
+}
+
+impl<N: Number> Bounds<N> {
+    fn holds(&self) -> Holds {
+        let graph = |axis, along: N, across: N| {
+            let steep = (along / across).above();
+            Holds::Graph { axis, steep }
+        };
+        let [x, y] = [self.x, self.y];
+        if self.least > N::ZERO {
+            Holds::Nothing
+        } else if y[0] > N::ZERO && x[1] <= N::of(STEEP) * y[0] {
+            graph(Axis::Around, x[1], y[0])
+        } else if x[0] > N::ZERO && y[1] <= N::of(STEEP) * x[0] {
+            graph(Axis::Tube, y[1], x[0])
+        } else {
+            Holds::Unknown
+        }
+    }
+}
+
 /// A cell in which the curve is a graph.
 struct Leaf<N: Number = f64> {
     cell: Cell<N>,
     /// The angle that the graph runs over.
     axis: Axis,
     /// A bound of its slope.
-    steep: N,
+    steep: f64,
 }
 
 pub(super) struct Tracer<'a, N: Number = f64> {
@@ -84,6 +114,13 @@ pub(super) struct Tracer<'a, N: Number = f64> {
     /// A bound of the rounding error of the form.
     pub slop: N,
     pub band: N,
+    /// The form in doubles, of one of more digits.
+    rough: Option<Box<BiTrig>>,
+}
+
+/// A bound of the rounding error of a form.
+fn slop<N: Number>(form: &BiTrig<N>) -> N {
+    form.bound() * N::EPSILON * N::of(64.0)
 }
 
 /// The depth at which a cell that is still undecided is given up: where its sides are next to the
@@ -99,7 +136,30 @@ const SPARED: u32 = 4;
 /// A graph's slope is at most this in an accepted cell.
 const STEEP: f64 = 2.0;
 
-impl<N: Number> Tracer<'_, N> {
+impl<'a, N: Number> Tracer<'a, N> {
+    fn new(form: &'a BiTrig<N>, band: N) -> Self {
+        let slop = slop(form);
+        Self {
+            form,
+            reaches: form.reaches(),
+            slop,
+            band: band.max(slop),
+            rough: (!N::IS_DOUBLE).then(|| Box::new(form.in_doubles())),
+        }
+    }
+
+    /// The same in doubles, of a form of more digits: what it bounds holds, but may tell less.
+    pub(super) fn in_doubles(&self) -> Option<Tracer<'_>> {
+        let form = self.rough.as_deref()?;
+        Some(Tracer {
+            form,
+            reaches: self.reaches.in_doubles(),
+            slop: slop(form),
+            band: self.band.rounded(),
+            rough: None,
+        })
+    }
+
     pub(super) fn bounds(&self, cell: &Cell<N>) -> Bounds<N> {
         let [hx, hy] = cell.half();
         let (p, thirds) = (self.form).partials_about(cell.centre(), cell.half(), &self.reaches);
@@ -125,27 +185,23 @@ impl<N: Number> Tracer<'_, N> {
     fn leaves(&self, cells: Vec<Cell<N>>) -> Result<Vec<Leaf<N>>, Unresolved> {
         let mut leaves = Vec::new();
         let mut stack: Vec<(Cell<N>, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
+        let doubles = self.in_doubles();
         while let Some((cell, depth)) = stack.pop() {
-            let b = self.bounds(&cell);
-            if b.least > N::ZERO {
-                continue;
-            }
-            if b.y[0] > N::ZERO && b.x[1] <= N::of(STEEP) * b.y[0] {
-                leaves.push(Leaf {
-                    cell,
-                    axis: Axis::Around,
-                    steep: b.x[1] / b.y[0],
-                });
-            } else if b.x[0] > N::ZERO && b.y[1] <= N::of(STEEP) * b.x[0] {
-                leaves.push(Leaf {
-                    cell,
-                    axis: Axis::Tube,
-                    steep: b.y[1] / b.x[0],
-                });
-            } else if depth >= deepest::<N>() {
-                return Err(Unresolved::at(cell.centre()));
-            } else {
-                stack.extend(cell.halves(b.wide).map(|c| (c, depth + 1)));
+            let rough = doubles.as_ref().map(|f| f.bounds(&cell.in_doubles()));
+            let (holds, wide) = match rough.map(|b| (b.holds(), b.wide)) {
+                Some(told) if cell.is_coarse() || !matches!(told.0, Holds::Unknown) => told,
+                _ => {
+                    let b = self.bounds(&cell);
+                    (b.holds(), b.wide)
+                }
+            };
+            match holds {
+                Holds::Nothing => {}
+                Holds::Graph { axis, steep } => leaves.push(Leaf { cell, axis, steep }),
+                Holds::Unknown if depth >= deepest::<N>() => {
+                    return Err(Unresolved::at(cell.centre()));
+                }
+                Holds::Unknown => stack.extend(cell.halves(wide).map(|c| (c, depth + 1))),
             }
         }
         Ok(leaves)
@@ -174,13 +230,7 @@ pub fn trace<N: Number>(
     form: &BiTrig<N>,
     band: N,
 ) -> Result<Traced<N>, Unresolved> {
-    let slop = form.bound() * N::EPSILON * N::of(64.0);
-    let tracer = Tracer {
-        form,
-        reaches: form.reaches(),
-        slop,
-        band: band.max(slop),
-    };
+    let tracer = Tracer::new(form, band);
     let Critical {
         singular: points,
         close,

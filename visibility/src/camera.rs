@@ -4,7 +4,7 @@
 //! image = K (R x + t), in pixels, y down.
 
 use nalgebra::{Matrix3, Point3, Vector3};
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 use serde::{Deserialize, Serialize};
 
 /// Why a camera cannot be used.
@@ -282,17 +282,17 @@ impl Camera {
                 up,
                 focal,
             } => {
-                if !(focal.is_finite() && *focal > 0.0) {
+                if !(focal.is_finite() && focal.is_above_zero()) {
                     return Err(CameraError::Value("focal", "is not a positive number"));
                 }
-                if self.near.is_some_and(|n| n <= 0.0) {
+                if self.near.is_some_and(|near| near.is_at_most(0.0)) {
                     return Err(CameraError::Value("near", "is not positive"));
                 }
                 validate_sight(eye, target, up)
             }
             Model::Orthographic { eye, target, up } => validate_sight(eye, target, up),
             Model::Matrices { k, r, t, size } => {
-                if self.near.is_some_and(|n| n <= 0.0) {
+                if self.near.is_some_and(|near| near.is_at_most(0.0)) {
                     return Err(CameraError::Value("near", "is not positive"));
                 }
                 finite("t", t.iter().all(|x| x.is_finite()))?;
@@ -311,11 +311,11 @@ fn validate_sight(
     if !all.into_iter().all(|x| x.is_finite()) {
         return Err(CameraError::Value("eye", "target or up is not finite"));
     }
-    if up.iter().all(|&x| x == 0.0) {
+    if up.iter().all(|x| x.is_exactly(0.0)) {
         return Err(CameraError::Value("up", "is zero"));
     }
     let size = eye.coords.norm().max(target.coords.norm());
-    if (target - eye).norm() <= size * ROUNDING || eye == target {
+    if (target - eye).norm().is_within(size * ROUNDING) || eye == target {
         return Err(CameraError::Value("target", "is the eye"));
     }
     Ok(())
@@ -326,24 +326,26 @@ fn validate_matrices(
     r: &Matrix3<f64>,
     size: &Option<[f64; 2]>,
 ) -> Result<(), CameraError> {
-    let shape = k[(1, 0)] == 0.0 && k.row(2) == nalgebra::RowVector3::new(0.0, 0.0, 1.0);
-    if !shape || !k.iter().all(|x| x.is_finite()) {
+    let below = [k[(1, 0)], k[(2, 0)], k[(2, 1)], k[(2, 2)]];
+    let mut shape = below.iter().zip([0.0, 0.0, 0.0, 1.0]);
+    let is_shaped = shape.all(|(x, known)| x.is_exactly(known));
+    if !is_shaped || !k.iter().all(|x| x.is_finite()) {
         return Err(CameraError::Value(
             "K",
             "is not upper triangular with a last row of 0, 0, 1",
         ));
     }
-    if k[(0, 0)] * k[(1, 1)] == 0.0 {
+    if (k[(0, 0)] * k[(1, 1)]).is_exactly(0.0) {
         return Err(CameraError::Value("K", "has a focal length of zero"));
     }
     // Files carry few digits: a turn to four digits passes.
     let off = (r * r.transpose() - Matrix3::identity()).amax();
     let slack = ROUNDING.sqrt().sqrt();
-    if !(off <= slack && r.determinant() > 0.0) {
+    if !(off.is_within(slack) && r.determinant().is_above_zero()) {
         return Err(CameraError::Value("R", "is not a rotation"));
     }
     match size {
-        Some([w, h]) if !(*w > 0.0 && *h > 0.0) => {
+        Some([w, h]) if !(w.is_above_zero() && h.is_above_zero()) => {
             Err(CameraError::Value("width", "or height is not positive"))
         }
         _ => Ok(()),

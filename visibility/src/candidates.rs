@@ -5,6 +5,7 @@ use crate::image::{Basis, Image, flat_of};
 use crate::image_box::ImageBox;
 use crate::projection::Projection;
 use crate::strand::Strand;
+use premio_kernel::number::sign::Sign;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 use std::f64::consts::TAU;
@@ -51,10 +52,10 @@ fn links(strand: &Strand<'_>, projection: &Projection, step: f64, push: &mut imp
     let point = |t: f64| flat_of(projection, &strand.curve.point(t));
     let chain = |[from, to]: [f64; 2], ends: [[f64; 2]; 2]| {
         let mut b = ImageBox::EMPTY.with(ends[0]).with(ends[1]);
-        for &t in turns[..count].iter().filter(|t| **t > from && **t < to) {
+        for &t in turns[..count].iter().filter(|t| t.lies_between([from, to])) {
             b = b.with(point(t));
         }
-        for &t in strand.turns.iter().filter(|t| **t > from && **t < to) {
+        for &t in strand.turns.iter().filter(|t| t.lies_between([from, to])) {
             b = b.with(point(t));
         }
         b
@@ -66,7 +67,7 @@ fn links(strand: &Strand<'_>, projection: &Projection, step: f64, push: &mut imp
         _ => w.max(h),
     };
     let n = (thick / step).ceil().clamp(1.0, 4.0 * LINKS);
-    if n <= 1.0 {
+    if n.is_at_most(1.0) {
         return push(whole);
     }
     let mut from = (lo, point(lo));
@@ -129,7 +130,7 @@ fn few_meeting(links: &mut [Link]) -> Vec<(u32, u32)> {
     let mut pairs = Vec::new();
     for (k, (a, i)) in links.iter().enumerate() {
         let beside = links[k + 1..].iter();
-        for (b, j) in beside.take_while(|(b, _)| b.min[0] <= a.max[0]) {
+        for (b, j) in beside.take_while(|(b, _)| b.min[0].is_at_most(a.max[0])) {
             if i != j && a.meets(b) {
                 pairs.push((*i.min(j), *i.max(j)));
             }

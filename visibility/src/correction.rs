@@ -13,7 +13,7 @@ use crate::strand::{Junctions, Site, Strand};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
@@ -33,7 +33,8 @@ impl End<'_, '_> {
     fn direction(&self) -> Option<Vector3<f64>> {
         let slope = self.strand.curve.derivative(self.t);
         let away = self.middle - self.t;
-        let plain = slope.norm() * away.abs() > ROUNDING.sqrt() * self.chord();
+        let moved = slope.norm() * away.abs();
+        let plain = moved.is_beyond(ROUNDING.sqrt() * self.chord());
         plain.then(|| slope.normalize() * away.signum())
     }
 
@@ -49,7 +50,7 @@ const LOOSE: f64 = 16.0;
 const PLAIN: f64 = 1.0 / 64.0;
 
 fn is_plain(x: f64) -> bool {
-    x.abs() > PLAIN
+    x.abs().is_beyond(PLAIN)
 }
 
 /// What a face does to a contour next to a junction.
@@ -194,7 +195,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
                 _ => Some(unclear),
             };
         }
-        if facing < 0.0 {
+        if facing.is_below_zero() {
             return None;
         }
         let Some([out, back]) = directions() else {
@@ -221,8 +222,8 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let (t, length) = (if first { lo } else { hi }, hi - lo);
         let curve = brep.curve(use_.edge);
         let slope = curve.derivative(t);
-        let middle = curve.point(lo + 0.5 * length);
-        let plain = slope.norm() * length > ROUNDING.sqrt() * (middle - curve.point(t)).norm();
+        let chord = (curve.point(lo + 0.5 * length) - curve.point(t)).norm();
+        let plain = (slope.norm() * length).is_beyond(ROUNDING.sqrt() * chord);
         plain.then(|| slope.normalize() * use_.sense.sign::<f64>())
     }
 
@@ -263,13 +264,14 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let middle = end.strand.curve.point(end.middle);
         let (w, _) = scene.projection.towards_eye(&middle);
         let facing = scene.brep.outward(face, &middle).dot(&w);
-        if into < -PLAIN {
+        if into.is_short_of(-PLAIN) {
             return Effect::Clear;
         }
-        if into <= PLAIN || facing.abs() <= ROUNDING.sqrt() || bend == 0.0 {
+        let is_grazed = facing.is_within(ROUNDING.sqrt());
+        if into.is_at_most(PLAIN) || is_grazed || bend.is_exactly(0.0) {
             return Effect::Unclear;
         }
-        match bend > 0.0 && facing < 0.0 {
+        match bend.is_above_zero() && facing.is_below_zero() {
             true => Effect::Hides(0.0),
             false => Effect::Clear,
         }
@@ -299,10 +301,10 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let middle = end.strand.curve.point(end.middle);
         let (v, _) = self.scene.projection.towards_eye(&middle);
         let bend = self.bend(face, &middle, &v);
-        let leaves = self.scene.along(face) == (rise > 0.0);
+        let leaves = self.scene.along(face) == rise.is_above_zero();
         match bend {
-            bend if bend < 0.0 && leaves => Some(vec![face]),
-            bend if bend != 0.0 => Some(Vec::new()),
+            bend if bend.is_below_zero() && leaves => Some(vec![face]),
+            bend if !bend.is_exactly(0.0) => Some(Vec::new()),
             _ => None,
         }
     }
@@ -310,7 +312,10 @@ impl<'s, 'a> Corrections<'s, 'a> {
     /// Whether a point is the apex of a face's cone, which has no normal there.
     fn is_apex(&self, face: FaceId, p: &Point3<f64>) -> bool {
         match self.scene.brep.surface(face) {
-            Surface::Cone(s) => (p - s.frame.origin).norm() <= LOOSE * self.scene.band,
+            Surface::Cone(s) => {
+                let away = (p - s.frame.origin).norm();
+                away.is_within(LOOSE * self.scene.band)
+            }
             _ => false,
         }
     }
@@ -333,11 +338,11 @@ impl Corner {
             return Effect::Unclear;
         };
         let below = -d.dot(&self.normal);
-        if below < -PLAIN {
+        if below.is_short_of(-PLAIN) {
             return Effect::Clear;
         }
         let over = d + towards * (below / facing);
-        match (self.holds(&over), below > PLAIN) {
+        match (self.holds(&over), below.is_beyond(PLAIN)) {
             (Some(false), _) => Effect::Clear,
             (Some(true), true) => Effect::Hides(below / facing),
             _ => Effect::Unclear,
@@ -353,12 +358,12 @@ impl Corner {
         let turn = turn.rem_euclid(TAU);
         let next_to = |side: f64| {
             let away = (turn - side).rem_euclid(TAU);
-            away.min(TAU - away) <= PLAIN
+            away.min(TAU - away).is_at_most(PLAIN)
         };
         // A sector of no angle or of all angles is not told from the other.
         let plain = !next_to(0.0) && !next_to(self.angle);
-        let sharp = self.angle.min(TAU - self.angle) <= PLAIN;
-        (plain && !sharp).then_some(turn < self.angle)
+        let sharp = self.angle.min(TAU - self.angle).is_at_most(PLAIN);
+        (plain && !sharp).then_some(turn.is_short_of(self.angle))
     }
 }
 
@@ -373,6 +378,7 @@ fn hiding_of(effects: impl Iterator<Item = (FaceId, Effect)>) -> Option<Vec<Face
         }
     }
     hiding.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let apart = hiding.windows(2).all(|w| w[0].0 - w[1].0 > PLAIN * w[0].0);
+    let mut pairs = hiding.windows(2).map(|w| (w[0].0, w[1].0));
+    let apart = pairs.all(|(near, far)| (near - far).is_beyond(PLAIN * near));
     apart.then(|| hiding.into_iter().map(|h| h.1).collect())
 }

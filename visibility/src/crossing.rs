@@ -18,7 +18,7 @@ use premio_kernel::number::bisection::bisect;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::roots::{Contact, Root, Zeros, isolate};
 use premio_kernel::number::scalar::{Scalar, dot};
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 use std::f64::consts::TAU;
 
 /// How two contours meet in the image.
@@ -87,7 +87,7 @@ fn lines(a: &Strand<'_>, b: &Strand<'_>, near: f64, found: &mut impl FnMut(f64, 
         let most = near * l.x.hypot(l.y);
         [lo, hi, 0.5 * (lo + hi)]
             .iter()
-            .all(|t| l.dot(&at(s, *t)).abs() <= most)
+            .all(|t| l.dot(&at(s, *t)).is_within(most))
     };
     if on(a, lb) && on(b, la) {
         return Overlap::Yes;
@@ -106,7 +106,7 @@ fn line_parameters(a: &Strand<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)
             origin, direction, ..
         } => {
             let slope = l.dot(direction);
-            if slope != 0.0 {
+            if !slope.is_exactly(0.0) {
                 found(-l.dot(origin) / slope);
             }
         }
@@ -122,7 +122,8 @@ fn line_parameters(a: &Strand<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)
 fn on_conic(conic: &Matrix3<f64>, h: &Vector3<f64>, near: f64) -> bool {
     let polar = conic * h;
     let rounding = ROUNDING * h.abs().dot(&(conic.abs() * h.abs()));
-    h.dot(&polar).abs() <= near * 2.0 * polar.x.hypot(polar.y) + rounding
+    let reach = near * 2.0 * polar.x.hypot(polar.y) + rounding;
+    h.dot(&polar).is_within(reach)
 }
 
 fn line_and_conic(
@@ -149,7 +150,7 @@ fn line_and_conic(
             // at infinity only.
             let touch = -0.5 * k1 / k2;
             let [lo, hi] = a.range;
-            let close = touch >= 2.0 * lo - hi && touch <= 2.0 * hi - lo;
+            let close = touch.lies_in([2.0 * lo - hi, 2.0 * hi - lo]);
             let tangent = close && on_conic(conic, &(origin + direction * touch), near);
             if !tangent {
                 quadratic([k0, k1, k2], &mut both);
@@ -321,7 +322,7 @@ pub fn place_of(
     [a, b]: [&Strand<'_>; 2],
     ahead: impl Fn(f64) -> Option<f64>,
 ) -> Option<f64> {
-    let within = |t: &f64| (root.lo..=root.hi).contains(t);
+    let within = |t: &f64| t.lies_in([root.lo, root.hi]);
     let shared = |id: u32| b.junctions().any(|other| other.0 == id);
     let mut known = a.junctions().filter(|(id, t)| within(t) && shared(*id));
     if let Some((_, t)) = known.next() {
@@ -332,7 +333,8 @@ pub fn place_of(
     }
     let (from, to) = (ahead(root.lo)?, ahead(root.hi)?);
     let nearer = |t: f64| ahead(t).unwrap_or(from);
-    ((from < 0.0) != (to < 0.0)).then(|| bisect(root.lo, root.hi, from, nearer))
+    let changes = from.is_below_zero() != to.is_below_zero();
+    changes.then(|| bisect(root.lo, root.hi, from, nearer))
 }
 
 /// Where a line or conic `b` passes points of another curve `a` in the image, next to a parameter:
@@ -355,7 +357,7 @@ impl Branch<'_> {
         let h = self.projection.homogeneous(&self.a.curve.point(t));
         let mut nearest: Option<f64> = None;
         self.b.image.parameters(&h, self.b.range, &mut |s| {
-            if nearest.is_none_or(|n| away(s) < away(n)) {
+            if nearest.is_none_or(|n| away(s).is_short_of(away(n))) {
                 nearest = Some(s);
             }
         });
@@ -380,7 +382,7 @@ fn falls_on(a: &Strand<'_>, b: &Strand<'_>, projection: &Projection, near: f64) 
         let h = projection.homogeneous(&a.curve.point(at(k)));
         match (&b.image, b.image.line()) {
             (Image::Conic { conic, .. }, _) => on_conic(conic, &h, near),
-            (_, Some(line)) => line.dot(&h).abs() <= near * line.x.hypot(line.y),
+            (_, Some(line)) => line.dot(&h).is_within(near * line.x.hypot(line.y)),
             _ => false,
         }
     })
@@ -388,7 +390,7 @@ fn falls_on(a: &Strand<'_>, b: &Strand<'_>, projection: &Projection, near: f64) 
 
 /// What being together over so much of the image of `a` means: next to a touch it is little.
 pub fn overlap_of(together: f64, a: &Strand<'_>) -> Overlap {
-    if together * MOST > a.length_between(&a.range) {
+    if (together * MOST).is_beyond(a.length_between(&a.range)) {
         Overlap::Yes
     } else {
         Overlap::No

@@ -16,7 +16,7 @@ use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::roots::{Zeros, isolate};
 use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 
 /// The cylinder that an image lies on, and where it turns back on itself.
 #[derive(Clone, Debug)]
@@ -44,7 +44,7 @@ impl Edgewise {
             return None;
         };
         let carrier = surfaces.into_iter().find_map(|surface| match surface {
-            Surface::Cylinder(s) if s.frame.z.cross(&sight).norm() <= ROUNDING => Some(*s),
+            Surface::Cylinder(s) if s.frame.z.cross(&sight).norm().is_within(ROUNDING) => Some(*s),
             _ => None,
         })?;
         // x y' - y x' vanishes; it is the square of the radius times the angle's derivative.
@@ -67,7 +67,7 @@ impl Edgewise {
     pub fn holds(&self, curve: &Curve, [lo, hi]: [f64; 2], near: f64) -> bool {
         let carrier = Surface::Cylinder(self.carrier);
         let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
-        (0..PLACES).all(|k| carrier.distance(&curve.point(at(k))).abs() <= near)
+        (0..PLACES).all(|k| carrier.distance(&curve.point(at(k))).is_within(near))
     }
 
     /// Where another curve passes the carrier.
@@ -90,7 +90,7 @@ impl Edgewise {
         let q = self.carrier.frame.coordinates(&p);
         let size = q.x.hypot(q.y);
         // The image of the axis is no point of the circle's.
-        if size == 0.0 {
+        if size.is_exactly(0.0) {
             return;
         }
         let (cos, sin) = (q.x / size, q.y / size);
@@ -108,7 +108,7 @@ impl Edgewise {
         plane_roots(curve, range, &plane, band, &mut |t, _| {
             // On the ray from the axis through the point, not the one opposite.
             let at = frame.coordinates(&curve.point(t));
-            if at.x * cos + at.y * sin > 0.0 {
+            if (at.x * cos + at.y * sin).is_above_zero() {
                 found(t);
             }
         });

@@ -19,7 +19,7 @@ use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::roots::{Function, Root, Zeros, isolate};
 use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 
 /// Distances in space within which two roots are one, in multiples of the resolution.
 const SAME: f64 = 16.0;
@@ -72,7 +72,7 @@ pub fn general_pair<'x>(
     if overlaps {
         runs.leave_out([a.curve, b.curve], &mut roots);
     }
-    let apart = |c: &Curve, u: f64, v: f64| (c.point(u) - c.point(v)).norm() > SAME * band;
+    let apart = |c: &Curve, u: f64, v: f64| (c.point(u) - c.point(v)).norm().is_beyond(SAME * band);
     let mut known: Vec<(f64, f64)> = Vec::with_capacity(roots.len());
     for (t, s) in roots {
         let mut all = known.iter();
@@ -142,7 +142,8 @@ impl<'x> Graphs<'x> {
     ) -> Option<Self> {
         let courses = [x.course?, y.course?];
         let [p, q] = courses.map(|c| c.direction);
-        let sign = if dot2(p, q) < 0.0 { -1.0 } else { 1.0 };
+        let is_opposed = dot2(p, q).is_below_zero();
+        let sign = if is_opposed { -1.0 } else { 1.0 };
         let sum = [p[0] + sign * q[0], p[1] + sign * q[1]];
         let size = sum[0].hypot(sum[1]);
         let e = [sum[0] / size, sum[1] / size];
@@ -165,7 +166,8 @@ impl<'x> Graphs<'x> {
         let [p, q] = self.courses;
         let cos = dot2(p.direction, q.direction).abs();
         let sin = dot2([-p.direction[1], p.direction[0]], q.direction).abs();
-        sin * (1.0 - p.spread * q.spread) > cos * (p.spread + q.spread)
+        let across = sin * (1.0 - p.spread * q.spread);
+        across.is_beyond(cos * (p.spread + q.spread))
     }
 
     /// Whether the stretches, each a chord with a thickness, are apart across one of the chords.
@@ -181,7 +183,7 @@ impl<'x> Graphs<'x> {
                 let by = thickness[k] + near;
                 [from.min(to) - by, from.max(to) + by]
             });
-            x[1] < y[0] || y[1] < x[0]
+            x[1].is_short_of(y[0]) || y[1].is_short_of(x[0])
         })
     }
 
@@ -203,14 +205,15 @@ impl<'x> Graphs<'x> {
     fn parameter(&self, k: usize, curve: &Curve, x: f64) -> f64 {
         let [lo, hi] = self.of[k].range;
         let [from, to] = self.of[k].ends.map(|p| dot2(self.axes[0], p) - x);
-        if from * to > 0.0 {
-            let end = if from.abs() < to.abs() { lo } else { hi };
+        if (from * to).is_above_zero() {
+            let is_before = from.abs().is_short_of(to.abs());
+            let end = if is_before { lo } else { hi };
             let step = |t: f64| {
                 let [at, _] = self.jet(curve, t);
                 t - (at.v - x) / at.d
             };
             let beyond = (0..BEYOND).fold(end, |t, _| step(t));
-            let close = (beyond - end).abs() <= hi - lo;
+            let close = (beyond - end).is_within(hi - lo);
             return if close { beyond } else { end };
         }
         bisect_newton(lo, hi, from, |t| {
@@ -242,8 +245,11 @@ impl<'x> Graphs<'x> {
 
     /// Whether one of the curves ends at a parameter.
     pub fn ends(&self, t: f64, s: f64) -> bool {
-        let ends = |k: usize, t: f64| !self.strands[k].closed && self.strands[k].range.contains(&t);
-        ends(0, t) || ends(1, s)
+        let ends = |strand: &Strand<'_>, t: f64| {
+            !strand.closed && strand.range.iter().any(|end| end.is_exactly(t))
+        };
+        let [a, b] = self.strands;
+        ends(a, t) || ends(b, s)
     }
 
     /// The gap over a point of the second curve.
@@ -273,7 +279,7 @@ impl<'x> Graphs<'x> {
         };
         let (x, y) = (along(0), along(1));
         let (lo, hi) = (x[0].max(y[0]), x[1].min(y[1]));
-        if lo > hi {
+        if lo.is_beyond(hi) {
             // Ends that meet within rounding.
             return None;
         }
@@ -307,7 +313,7 @@ impl<'x> Graphs<'x> {
     /// The crossing of stretches that cross once or not at all.
     fn once(&self, [lo, hi]: [f64; 2], band: f64) -> Option<(f64, f64)> {
         let (a, b) = (self.gap(lo), self.gap(hi));
-        if a.v * b.v <= 0.0 {
+        if (a.v * b.v).is_at_most(0.0) {
             return Some(self.crossing([lo, hi], a.v));
         }
         // Next to an end that is none of the curve's the neighbour decides, but for rounding.
@@ -315,7 +321,7 @@ impl<'x> Graphs<'x> {
         ends.find(|(s, gap)| {
             let last = self.ends(gap.t, *s);
             let within = if last { band } else { ROUNDING * self.scale };
-            gap.v.abs() <= within
+            gap.v.is_within(within)
         })
         .map(|(s, gap)| (gap.t, s))
     }

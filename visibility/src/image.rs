@@ -12,7 +12,7 @@ use premio_kernel::geometry::curve::{Conic, Curve};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 use std::f64::consts::TAU;
 
 /// The functions that a conic's parameter enters through.
@@ -70,9 +70,10 @@ impl Basis {
             Self::Circular => Some((b.y * b.z.signum()).atan2(b.x * b.z.signum())),
             Self::Graph(c) => {
                 let (x, y) = (b.x / b.z, b.y / b.z);
-                (c.shear * y + c.flatness * x < 1.0).then_some(y)
+                let is_on_graph = (c.shear * y + c.flatness * x).is_short_of(1.0);
+                is_on_graph.then_some(y)
             }
-            Self::Hyperbolic => (b.x / b.z > 0.0).then(|| (b.y / b.z).asinh()),
+            Self::Hyperbolic => (b.x / b.z).is_above_zero().then(|| (b.y / b.z).asinh()),
         }
     }
 }
@@ -138,7 +139,8 @@ pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, band: f64)
             let direction = projection.homogeneous_vector(&c.direction);
             let middle = c.origin + c.direction * (0.5 * (range[0] + range[1]));
             let (towards, _) = projection.towards_eye(&middle);
-            if towards.cross(&c.direction).norm() * (range[1] - range[0]) <= band {
+            let width = towards.cross(&c.direction).norm() * (range[1] - range[0]);
+            if width.is_at_most(band) {
                 return Image::Point;
             }
             let line = unit_line(projection.homogeneous(&middle).cross(&direction));
@@ -152,7 +154,7 @@ pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, band: f64)
         Curve::Ellipse(c) => conic(&c.frame, c.a, c.b, Basis::Circular),
         Curve::Conic(c) => conic(&c.frame, 1.0, 1.0, Basis::Graph(*c)),
         Curve::Hyperbola(c) => match conic(&c.frame, c.a, c.b, Basis::Hyperbolic) {
-            Image::Conic { .. } if range[0].abs().max(range[1].abs()) > SHARP => Image::General,
+            Image::Conic { .. } if range.iter().any(|t| t.abs().is_beyond(SHARP)) => Image::General,
             image => image,
         },
         Curve::Quartic(_) | Curve::Toric(_) => Image::General,
@@ -180,7 +182,7 @@ fn conic_image(
         _ if away.is_finite() => away,
         _ => band / ROUNDING,
     };
-    let edge_on = tilt * reach <= band;
+    let edge_on = (tilt * reach).is_at_most(band);
     match map.try_inverse() {
         Some(inverse) if !edge_on => {
             let conic = inverse.transpose() * basis.conic() * inverse;
@@ -230,7 +232,7 @@ impl Image {
             _ => t,
         };
         turns.iter_mut().for_each(|t| *t = within(*t));
-        turns.retain(|t| (lo..=hi).contains(t));
+        turns.retain(|t| t.lies_in([lo, hi]));
         turns
     }
 
@@ -310,7 +312,7 @@ pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mu
     match basis {
         Basis::Circular => {
             let size = k.x.hypot(k.y);
-            if k.z.abs() > size {
+            if k.z.abs().is_beyond(size) {
                 return;
             }
             let middle = k.y.atan2(k.x);
@@ -326,7 +328,7 @@ pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mu
         }
         Basis::Hyperbolic => {
             let mut keep = |e: f64| {
-                if e > 0.0 {
+                if e.is_above_zero() {
                     found(e.ln());
                 }
             };
@@ -340,17 +342,17 @@ pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mu
 pub fn quadratic(k: [f64; 3], found: &mut impl FnMut(f64)) {
     let half = 0.5 * k[1];
     let radicand = half * half - k[0] * k[2];
-    if radicand < 0.0 {
+    if radicand.is_below_zero() {
         return;
     }
     let q = -(half + radicand.sqrt().copysign(half));
-    if q == 0.0 {
-        if k[2] != 0.0 {
+    if q.is_exactly(0.0) {
+        if !k[2].is_exactly(0.0) {
             found(0.0);
         }
         return;
     }
-    if k[2].abs() * f64::MAX.sqrt() > q.abs() {
+    if (k[2].abs() * f64::MAX.sqrt()).is_beyond(q.abs()) {
         found(q / k[2]);
     }
     found(k[0] / q);

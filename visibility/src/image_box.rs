@@ -1,5 +1,7 @@
 //! Boxes in the image, at depth one.
 
+use premio_kernel::number::sign::Sign;
+
 /// An axis-parallel box: its least and its greatest corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageBox {
@@ -44,11 +46,11 @@ impl ImageBox {
 
     /// Whether the two share a point.
     pub fn meets(&self, other: &Self) -> bool {
-        (0..2).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
+        (0..2).all(|i| self.min[i].is_at_most(other.max[i]) && other.min[i].is_at_most(self.max[i]))
     }
 
     /// Whether a point lies in it.
     pub fn holds(&self, p: [f64; 2]) -> bool {
-        (0..2).all(|i| self.min[i] <= p[i] && p[i] <= self.max[i])
+        (0..2).all(|i| p[i].lies_in([self.min[i], self.max[i]]))
     }
 }

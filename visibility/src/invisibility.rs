@@ -8,7 +8,7 @@ use crate::strand::{Change, Junctions, Passing, Split, Strand};
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 
 /// How the quantitative invisibility of the pieces is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -53,7 +53,7 @@ fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
         // over this length the normal turns with the surface's bend.
         let bend = surface.normal_curvature(p, &v).abs();
         let turned = LOOSE * (scene.band * bend + ROUNDING);
-        let grazing = surface.normal(p).dot(&v).abs() <= turned;
+        let grazing = surface.normal(p).dot(&v).is_within(turned);
         if strand.limb || grazing {
             Own::Tangent
         } else {
@@ -82,7 +82,8 @@ impl Chain {
         strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
         let strand = &*strand;
         let [lo, hi] = strand.range;
-        let one = |s: f64, t: f64| s == t || (t - s).abs() * strand.curve.speed(t) <= near;
+        let apart = |s: f64, t: f64| (t - s).abs() * strand.curve.speed(t);
+        let one = |s: f64, t: f64| s.is_exactly(t) || apart(s, t).is_at_most(near);
         let mut splits: Vec<Split> = Vec::with_capacity(strand.splits.len());
         for &split in &strand.splits {
             let end = [0, 1].map(|k| one(strand.range[k], split.t) && !strand.closed);
@@ -136,7 +137,7 @@ impl Chain {
             let [before, at] = around[0].range;
             let after = around[1].range[1];
             let way = (at - before).min(after - at) * strand.curve.speed(at);
-            if matches!(change, Change::Pass(passing) if way * passing.aside <= near) {
+            if matches!(change, Change::Pass(passing) if (way * passing.aside).is_at_most(near)) {
                 *change = Change::Correct;
             }
         }
@@ -416,8 +417,8 @@ fn slot(scene: &Scene<'_>, p: &Point3<f64>, order: &[FaceId], ahead: f64) -> Slo
     for (k, &face) in order.iter().enumerate() {
         let (mut before, mut behind) = (false, false);
         scene.depths(p, face, &mut |s| {
-            before |= s > ahead - margin;
-            behind |= s < ahead + margin;
+            before |= s.is_beyond(ahead - margin);
+            behind |= s.is_short_of(ahead + margin);
         });
         match (before, behind) {
             (true, false) => {}

@@ -17,7 +17,7 @@ use crate::touches::{Settled, nearest_turn, settle, split_at_touches};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 8.0;
@@ -113,7 +113,7 @@ impl Behind {
     fn cut(self, strand: &mut Strand<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
         let near = 2.0 * LOOSE * scene.band;
         let p = strand.curve.point(self.t);
-        let here = |t: f64| (strand.curve.point(t) - p).norm() <= near;
+        let here = |t: f64| (strand.curve.point(t) - p).norm().is_within(near);
         if strand.junctions().any(|(_, t)| here(t)) {
             return;
         }
@@ -154,7 +154,8 @@ impl Search<'_, '_, '_, '_> {
             .copied()
             .chain(ends.into_iter().flatten());
         stops.find(|&stop| {
-            self.apart(q, &strand.curve.point(stop)) <= near && self.straight(strand, stop, t)
+            let apart = self.apart(q, &strand.curve.point(stop));
+            apart.is_at_most(near) && self.straight(strand, stop, t)
         })
     }
 
@@ -172,7 +173,7 @@ impl Search<'_, '_, '_, '_> {
         }
         let [p, m, q] = [from, 0.5 * (from + to), to].map(|t| strand.curve.point(t));
         let chord = Point3::from((p.coords + q.coords) * 0.5);
-        self.apart(&m, &chord) <= LOOSE * self.scene.band
+        self.apart(&m, &chord).is_at_most(LOOSE * self.scene.band)
     }
 
     /// Whether a crossing is that at a junction of both strands: their images may touch there, as
@@ -205,7 +206,7 @@ impl Search<'_, '_, '_, '_> {
         let (p, q) = (a.curve.point(t.t), b.curve.point(s.t));
         let (v, _) = self.scene.projection.towards_eye(&p);
         let ahead = (q - p).dot(&v);
-        if ahead.abs() <= 2.0 * near {
+        if ahead.is_within(2.0 * near) {
             self.crowd(a, t);
             self.crowd(b, s);
             if !t.at_end && !s.at_end {
@@ -213,7 +214,7 @@ impl Search<'_, '_, '_, '_> {
             }
             return;
         }
-        if ahead > 0.0 {
+        if ahead.is_above_zero() {
             self.junction((j, b, s, q), (i, a, t, p), &v);
         } else {
             self.junction((i, a, t, p), (j, b, s, q), &v);
@@ -246,7 +247,7 @@ impl Search<'_, '_, '_, '_> {
             let mut met = Vec::new();
             parameters_at(b, &p, self.scene, &mut |s| met.push(s));
             for s in met {
-                if self.apart(&p, &b.curve.point(s)) <= near {
+                if self.apart(&p, &b.curve.point(s)).is_at_most(near) {
                     self.crossing((i, a, t), (j, b, s));
                 }
             }
@@ -260,10 +261,10 @@ impl Search<'_, '_, '_, '_> {
         }
         let [lo, hi] = strand.range;
         let p = strand.curve.point(at.t);
-        let nearest = usize::from(at.t - lo > hi - at.t);
+        let nearest = usize::from((at.t - lo).is_beyond(hi - at.t));
         for (k, (id, t)) in strand.ends.iter().zip(strand.range).enumerate() {
             let near = 2.0 * LOOSE * self.scene.band;
-            let passed = k == nearest || self.apart(&p, &strand.curve.point(t)) <= near;
+            let passed = k == nearest || self.apart(&p, &strand.curve.point(t)).is_at_most(near);
             if let (true, &Some(id)) = (passed, id) {
                 self.junctions.crowd(id);
             }
@@ -284,7 +285,8 @@ impl Search<'_, '_, '_, '_> {
             let mut passed = false;
             parameters_at(near, &p, self.scene, &mut |s| {
                 let q = near.curve.point(s);
-                passed |= (q - p).dot(&v) > margin && self.apart(&p, &q) <= margin;
+                let ahead = (q - p).dot(&v);
+                passed |= ahead.is_beyond(margin) && self.apart(&p, &q).is_at_most(margin);
             });
             if passed {
                 self.junctions.crowd(id);
@@ -321,7 +323,8 @@ impl Search<'_, '_, '_, '_> {
         };
         let p = far.curve.point(t);
         let (v, _) = self.scene.projection.towards_eye(&p);
-        if (q - p).dot(&v) <= margin || self.apart(&p, q) > margin {
+        let ahead = (q - p).dot(&v);
+        if ahead.is_at_most(margin) || self.apart(&p, q).is_beyond(margin) {
             return None;
         }
         // A cusp's own contour falls on it in the image a long way.
@@ -343,7 +346,8 @@ impl Search<'_, '_, '_, '_> {
     fn is_turned_away(&self, strand: &Strand<'_>, q: &Point3<f64>, v: &Vector3<f64>) -> bool {
         let t = strand.curve.tangent(strand.curve.parameter(q));
         let hides = |&(face, sense): &(FaceId, Sense)| {
-            self.image_side(strand, face, sense, &t, q, v) != Some(0.0)
+            let side = self.image_side(strand, face, sense, &t, q, v);
+            !side.is_some_and(|side| side.is_exactly(0.0))
         };
         !strand.faces.iter().any(hides)
     }
@@ -413,15 +417,15 @@ impl Search<'_, '_, '_, '_> {
         let flat = ROUNDING.sqrt();
         let t = near.curve.tangent(s);
         let turn = t.cross(u).dot(v);
-        if turn.abs() <= flat {
+        if turn.is_within(flat) {
             return None;
         }
         let (mut entered, mut left) = (None, None);
         for &(face, sense) in &near.faces {
             let side = self.image_side(near, face, sense, &t, q, v)?;
             let slot = match side * turn {
-                x if x > 0.0 => &mut entered,
-                x if x < 0.0 => &mut left,
+                x if x.is_above_zero() => &mut entered,
+                x if x.is_below_zero() => &mut left,
                 _ => continue,
             };
             if slot.replace(face).is_some() {
@@ -454,14 +458,16 @@ impl Search<'_, '_, '_, '_> {
             let sign = if self.scene.along(face) { 1.0 } else { -1.0 };
             let bend = sign * surface.normal_curvature(q, v);
             let side = -t.cross(&n).dot(v) * bend.signum();
-            return (side.abs() > flat && bend != 0.0).then_some(side.signum());
+            let is_clear = side.abs().is_beyond(flat) && !bend.is_exactly(0.0);
+            return is_clear.then_some(side.signum());
         }
         let facing = n.dot(v);
-        if facing.abs() <= flat {
+        if facing.is_within(flat) {
             // Edge-on planes hide nothing; a limb that runs along the edge is not clear.
             return self.edge_on_plane(face).then_some(0.0);
         }
-        Some(if facing > 0.0 { sense.sign() } else { 0.0 })
+        let hides = facing.is_above_zero();
+        Some(if hides { sense.sign() } else { 0.0 })
     }
 
     fn edge_on_plane(&self, face: FaceId) -> bool {
@@ -485,7 +491,7 @@ impl Search<'_, '_, '_, '_> {
             let near = self.scene.band * h.z.recip();
             if asked
                 .iter()
-                .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]) <= near)
+                .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]).is_within(near))
             {
                 continue;
             }
@@ -497,7 +503,7 @@ impl Search<'_, '_, '_, '_> {
                 let p = a.curve.point(t.t);
                 // Where a curve without a closed form is not met, its nearest point is no end.
                 let apart = self.apart(&p, &q);
-                if t.at_end || apart > 4.0 * LOOSE * self.scene.band {
+                if t.at_end || apart.is_beyond(4.0 * LOOSE * self.scene.band) {
                     continue;
                 }
                 // Next to a turn or an end, where no stretch has a direction, that is meant.

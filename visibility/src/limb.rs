@@ -18,7 +18,7 @@ use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::roots::{Zeros, isolate};
 use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 use std::f64::consts::TAU;
 
 /// A limb of a whole surface, not yet cut by a face's boundary.
@@ -69,7 +69,8 @@ pub fn limbs(surface: &Surface, sight: &Sight, band: f64) -> Result<Vec<Limb>, U
 
 /// Half the angle between two directions a cos(u - u0) = c, or none where they do not exist.
 fn half_angle(a: f64, c: f64) -> Option<f64> {
-    (c.abs() < a).then(|| ((a - c) * (a + c)).sqrt().atan2(c))
+    let exists = c.abs().is_short_of(a);
+    exists.then(|| ((a - c) * (a + c)).sqrt().atan2(c))
 }
 
 fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64) -> Vec<Limb> {
@@ -79,7 +80,7 @@ fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64) -> Vec<Limb> {
         LocalSight::Direction(d) => (d, 0.0, ROUNDING.sqrt()),
     };
     let reach = across.x.hypot(across.y);
-    if reach - level <= least {
+    if (reach - level).is_at_most(least) {
         return Vec::new();
     }
     let Some(half) = half_angle(reach, level) else {
@@ -105,7 +106,7 @@ fn cone_limbs(s: &Cone, sight: &Sight, band: f64) -> Vec<Limb> {
     };
     let reach = s.cos * e.x.hypot(e.y);
     let level = s.sin * e.z;
-    if reach - level.abs() <= least {
+    if (reach - level.abs()).is_at_most(least) {
         return Vec::new();
     }
     let Some(half) = half_angle(reach, level) else {
@@ -138,7 +139,7 @@ fn sphere_limb(s: &Sphere, sight: &Sight, band: f64) -> Option<Limb> {
         Sight::Eye(e) => {
             let arm = e - s.frame.origin;
             let away = arm.norm();
-            if away - s.radius <= band {
+            if (away - s.radius).is_at_most(band) {
                 return None;
             }
             let sin = s.radius / away;
@@ -172,9 +173,12 @@ fn torus_limbs(s: &Torus, sight: &Sight, band: f64) -> Result<Vec<Limb>, Unresol
 /// Seen from its axis, a torus has two parallel circles as limbs.
 fn axial_limbs(s: &Torus, sight: &LocalSight, band: f64) -> Option<Vec<Limb>> {
     let angles = match sight {
-        LocalSight::Direction(d) => (d.x.hypot(d.y) <= ROUNDING).then_some([0.0, TAU / 2.0])?,
+        LocalSight::Direction(d) => {
+            let is_axial = d.x.hypot(d.y).is_within(ROUNDING);
+            is_axial.then_some([0.0, TAU / 2.0])?
+        }
         LocalSight::Eye(e) => {
-            (e.x.hypot(e.y) <= band).then_some(())?;
+            e.x.hypot(e.y).is_within(band).then_some(())?;
             // R cos φ - e_z sin φ = -r
             let half = half_angle(s.major.hypot(e.z), -s.minor)?;
             let middle = (-e.z).atan2(s.major);
@@ -295,7 +299,7 @@ fn side_cutters(s: &Torus, sight: &Sight) -> Vec<Surface> {
 
 /// Whether a direction of sight, in a torus's frame, is across its axis.
 fn is_across(direction: &Vector3<f64>) -> bool {
-    direction.z.abs() <= ROUNDING
+    direction.z.is_within(ROUNDING)
 }
 
 /// The polar plane of the eye with respect to a quadric: it cuts the limb out of the surface.
@@ -304,7 +308,7 @@ fn polar_plane(surface: &Surface, sight: &Sight) -> Option<Plane> {
     let f = surface.frame();
     let plane = |normal: Vector3<f64>, level: f64| {
         let size = normal.norm();
-        (size > 0.0).then(|| {
+        size.is_above_zero().then(|| {
             let n = f.vector(&(normal / size));
             Plane {
                 frame: Frame::about(f.origin + n * (level / size), n),

@@ -8,7 +8,7 @@ use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::roots::{Contact, Zeros, isolate};
 use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 
 /// Up to four meetings of a line and a surface: distance, and whether it only touches.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,7 +64,7 @@ impl Scene<'_> {
                 let mut both = Meetings::default();
                 self.quadric([a, b, c], own, gradient, &mut both);
                 for &(t, touch) in &both.at[..both.count] {
-                    if q.z + t * w.z >= 0.0 {
+                    if (q.z + t * w.z).reaches(0.0) {
                         found.push(t, touch);
                     }
                 }
@@ -76,7 +76,7 @@ impl Scene<'_> {
 
     /// Whether a line passes the origin of its frame.
     fn through_apex(&self, q: &Vector3<f64>, w: &Vector3<f64>) -> bool {
-        (q - w * q.dot(w)).norm() <= 4.0 * self.band
+        (q - w * q.dot(w)).norm().is_within(4.0 * self.band)
     }
 
     /// The roots of a s² + 2 b s + c; `gradient` is what turns the value into a distance.
@@ -88,24 +88,24 @@ impl Scene<'_> {
         found: &mut Meetings,
     ) {
         // Along a ruling the line stays on the surface, or never meets it.
-        let flat = a.abs() <= ROUNDING;
+        let flat = a.is_within(ROUNDING);
         match own {
             Own::Tangent => {}
             Own::Through if flat => {}
             Own::Through => found.push(-2.0 * b / a, false),
             Own::No if flat => {
-                if b.abs() > ROUNDING * c.abs().sqrt() {
+                if b.abs().is_beyond(ROUNDING * c.abs().sqrt()) {
                     found.push(-0.5 * c / b, false);
                 }
             }
             Own::No => {
                 let at = -b / a;
                 let extremum = c - b * b / a;
-                if extremum.abs() <= 4.0 * self.band * gradient(at) {
+                if extremum.is_within(4.0 * self.band * gradient(at)) {
                     return found.push(at, true);
                 }
                 let radicand = b * b - a * c;
-                if radicand < 0.0 {
+                if radicand.is_below_zero() {
                     return;
                 }
                 let k = -(b + radicand.sqrt().copysign(b));
@@ -130,12 +130,12 @@ impl Scene<'_> {
         let reach = s.major + s.minor + 4.0 * self.band;
         let nearest = -q.dot(w);
         let half2 = reach * reach - (q + w * nearest).norm_squared();
-        if half2 <= 0.0 {
+        if half2.is_at_most(0.0) {
             return;
         }
         let (lo, hi) = (nearest - half2.sqrt(), nearest + half2.sqrt());
         let (lo, hi) = (lo.max(0.0), hi.min(length));
-        if lo >= hi {
+        if lo.reaches(hi) {
             return;
         }
         let (major, minor) = (s.major, s.minor);

@@ -5,6 +5,7 @@
 //! root, however rounding would split it.
 
 use premio_kernel::number::bisection::bisect_newton;
+use premio_kernel::number::sign::Sign;
 
 /// A polynomial, `k[i]` the coefficient of the i-th power.
 pub type Quartic = [f64; 5];
@@ -73,7 +74,7 @@ pub fn crossings(
             continue;
         }
         if let Some((a, va)) = last
-            && (va < 0.0) != (v < 0.0)
+            && va.is_below_zero() != v.is_below_zero()
         {
             match touched {
                 Some(t) => found(t),
@@ -91,7 +92,7 @@ fn simple_roots(k: &Quartic, degree: usize, lo: f64, hi: f64, splits: &Few) -> F
     let mut a = (lo, value(k, degree, lo).0);
     for &x in splits.at[..splits.count].iter().chain([&hi]) {
         let v = value(k, degree, x).0;
-        if (a.1 < 0.0) != (v < 0.0) {
+        if a.1.is_below_zero() != v.is_below_zero() {
             roots.push(bisect_newton(a.0, x, a.1, |t| value(k, degree, t)));
         }
         a = (x, v);

@@ -9,7 +9,7 @@ use crate::camera::{Camera, Model};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use premio_kernel::geometry::frame::perpendicular;
 use premio_kernel::number::scalar::{Scalar, dot};
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 
 /// Where the lines of sight come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ fn look(eye: &Point3<f64>, target: &Point3<f64>, up: &Vector3<f64>) -> [Vector3<
     let z = (target - eye).normalize();
     let across = z.cross(up);
     // Along the line of sight, or as good as: another axis takes its place.
-    let x = if across.norm() > up.norm() * ROUNDING.sqrt() {
+    let x = if across.norm().is_beyond(up.norm() * ROUNDING.sqrt()) {
         across.normalize()
     } else {
         z.cross(&perpendicular(&z)).normalize()

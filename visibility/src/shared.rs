@@ -9,6 +9,7 @@ use crate::stretch::dot2;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::bisection::bisect;
+use premio_kernel::number::sign::Sign;
 
 /// A stretch of two curves over which their images fall on one another.
 pub struct Shared<'x> {
@@ -40,8 +41,8 @@ impl<'x> Shared<'x> {
     /// Whether both curves go on, the same way, where another stretch ends.
     fn follows(&self, before: &Self, near: f64) -> bool {
         let [e, f] = [self, before].map(|x| x.graphs.direction());
-        let meets = |k: usize| (self.ends[k][0] - before.ends[k][1]).norm() <= near;
-        meets(0) && meets(1) && dot2(e, f) > 0.0
+        let meets = |k: usize| (self.ends[k][0] - before.ends[k][1]).norm().is_within(near);
+        meets(0) && meets(1) && dot2(e, f).is_above_zero()
     }
 
     /// Whether a point of either curve, with its parameter, is in the range.
@@ -51,8 +52,9 @@ impl<'x> Shared<'x> {
             self.on,
         ];
         (0..2).all(|k| {
-            let ([lo, hi], (t, p)) = (ranges[k], at[k]);
-            (lo..=hi).contains(&t) || self.ends[k].iter().any(|q| (p - q).norm() <= near)
+            let (t, p) = at[k];
+            let mut ends = self.ends[k].iter();
+            t.lies_in(ranges[k]) || ends.any(|q| (p - q).norm().is_within(near))
         })
     }
 
@@ -61,7 +63,7 @@ impl<'x> Shared<'x> {
         (0..2).all(|k| {
             let (these, those) = (self.ends[k], other.ends[k]);
             let all = these.iter().flat_map(|p| those.map(|q| (p - q).norm()));
-            all.fold(f64::INFINITY, f64::min) <= near
+            all.fold(f64::INFINITY, f64::min).is_within(near)
         })
     }
 }
@@ -82,27 +84,27 @@ impl<'x> Run<'x> {
     /// Whether it is no longer than `short`, a distance in space.
     fn is_short(&self, short: f64) -> bool {
         let scaled = self.0.iter().map(|x| x.length * x.graphs.scale());
-        scaled.sum::<f64>() <= short
+        scaled.sum::<f64>().is_at_most(short)
     }
 
     /// Where the two curves meet in the image: their parameters there.
     fn contact(&self, band: f64) -> Option<(f64, f64)> {
         let [(first, lo), (last, hi)] = self.ends()?;
         let (a, b) = (first.graphs.gap(lo), last.graphs.gap(hi));
-        if a.v * b.v <= 0.0 {
+        if (a.v * b.v).is_at_most(0.0) {
             let of = self.change(a.v, |x, s| Some(x.graphs.gap(s).v))?;
             return Some(of.graphs.crossing(of.on, a.v));
         }
         // Where one of the curves ends nothing is beside the other any more.
         for (of, s, gap) in [(first, lo, &a), (last, hi, &b)] {
-            if of.graphs.ends(gap.t, s) && gap.v.abs() <= band {
+            if of.graphs.ends(gap.t, s) && gap.v.is_within(band) {
                 return Some((gap.t, s));
             }
         }
         // They only touch, but change places in space.
         let ahead = |x: &Shared<'_>, s: f64| x.graphs.ahead(s);
         let (from, to) = (ahead(first, lo)?, ahead(last, hi)?);
-        if (from < 0.0) == (to < 0.0) {
+        if from.is_below_zero() == to.is_below_zero() {
             return None;
         }
         let of = self.change(from, ahead)?;
@@ -116,7 +118,7 @@ impl<'x> Run<'x> {
         from: f64,
         value: impl Fn(&Shared<'x>, f64) -> Option<f64>,
     ) -> Option<&Shared<'x>> {
-        let changed = |v: f64| from * v <= 0.0;
+        let changed = |v: f64| (from * v).is_at_most(0.0);
         let mut all = self.0.iter();
         all.find(|x| value(x, x.on[1]).is_some_and(changed))
     }

@@ -12,7 +12,7 @@ use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 use std::f64::consts::TAU;
@@ -129,7 +129,7 @@ const TOUCHING: f64 = 4.0;
 fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
     let across = along.cross(towards);
     let size = across.norm();
-    if size > ROUNDING.sqrt() {
+    if size.is_beyond(ROUNDING.sqrt()) {
         return vec![across / size, -across / size];
     }
     let frame = Frame::about(Point3::origin(), *towards);
@@ -172,7 +172,7 @@ impl Pierced {
             from = from.max(a.min(b));
             to = to.min(a.max(b));
         }
-        from <= to
+        from.is_at_most(to)
     }
 }
 
@@ -297,7 +297,7 @@ impl<'a> Scene<'a> {
         };
         for &(s, touch) in &meetings.at[..meetings.count] {
             let p = ray.origin + ray.towards * s;
-            if asked == Asked::Hiding && s.abs() < least {
+            if asked == Asked::Hiding && s.abs().is_short_of(least) {
                 // Touched by another face, it may be this one that hides what is next to it.
                 if self.locator.place(face, &p) != Place::Outside {
                     report(Hit {
@@ -309,10 +309,10 @@ impl<'a> Scene<'a> {
                 }
                 continue;
             }
-            if s <= least || s >= ray.length {
+            if s.is_at_most(least) || s.reaches(ray.length) {
                 continue;
             }
-            let front = touch || self.brep.outward(face, &p).dot(&ray.towards) > 0.0;
+            let front = touch || self.is_turned(face, &p, &ray.towards);
             let locator = self.locator.face(face);
             let place = match asked {
                 Asked::Hiding if !front && !locator.on_boundary(&p) => continue,
@@ -331,12 +331,18 @@ impl<'a> Scene<'a> {
         }
     }
 
+    /// Whether a face is turned towards the eye at a point of it.
+    fn is_turned(&self, face: FaceId, p: &Point3<f64>, towards: &Vector3<f64>) -> bool {
+        let facing = self.brep.outward(face, p).dot(towards);
+        facing.is_above_zero()
+    }
+
     /// Where the line of sight from `p` meets the whole surface of a face, before it.
     pub fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
         let ray = self.ray(p);
         let meetings = self.meetings(&ray, self.brep.surface(face), Own::No);
         for &(s, _) in &meetings.at[..meetings.count] {
-            if s > 0.0 {
+            if s.is_above_zero() {
                 report(s);
             }
         }
@@ -345,8 +351,8 @@ impl<'a> Scene<'a> {
     /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
     pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
         match self.projection.sight {
-            Sight::Eye(e) => (e - origin).dot(normal).abs() <= self.band,
-            Sight::Direction(d) => d.dot(normal).abs() <= ROUNDING,
+            Sight::Eye(e) => (e - origin).dot(normal).is_within(self.band),
+            Sight::Direction(d) => d.dot(normal).is_within(ROUNDING),
         }
     }
 
@@ -434,7 +440,7 @@ impl<'a> Scene<'a> {
         // A wedge of material, or of nothing, next to an edge is as thick here as the way aside.
         let touched = |hit: &&Hit| {
             let reach = 2.0 * ASIDE * self.band;
-            layers.iter().any(|(l, _)| (l.at - hit.at).abs() <= reach)
+            layers.iter().any(|(l, _)| (l.at - hit.at).is_within(reach))
         };
         for hit in unclear.iter().filter(|hit| !hit.front).filter(touched) {
             self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
@@ -446,7 +452,7 @@ impl<'a> Scene<'a> {
         // Faces that touch are no further apart here than the resolution: there is no gap to see.
         for (back, behind) in backs {
             let touches = |(l, hit): &(Layer, &Hit)| {
-                let near = (l.at - back).abs() <= TOUCHING * self.band;
+                let near = (l.at - back).is_within(TOUCHING * self.band);
                 near && !self.meet_at_an_angle(ray, [hit, behind])
             };
             if let Some(i) = layers.iter().position(touches) {
@@ -465,7 +471,7 @@ impl<'a> Scene<'a> {
             self.brep.outward(hit.face, &p)
         };
         let [m, n] = hits.map(normal);
-        m.cross(&n).norm() > ROUNDING.sqrt().sqrt()
+        m.cross(&n).norm().is_beyond(ROUNDING.sqrt().sqrt())
     }
 
     /// Where the line of sight just aside of a hit passes the same face, and whether from its
@@ -494,18 +500,18 @@ impl<'a> Scene<'a> {
             let away = (s - hit.at).abs();
             others
                 .chain(through)
-                .all(|other| other == hit.at || (s - other).abs() > away)
+                .all(|other| other.is_exactly(hit.at) || (s - other).abs().is_beyond(away))
         };
         let found = self.meetings(&parallel, surface, Own::No);
         for &(s, touch) in &found.at[..found.count] {
             let at = s - back + hit.at;
             // Behind the point nothing hides it.
-            if at <= 0.0 || !known(at) {
+            if at.is_at_most(0.0) || !known(at) {
                 continue;
             }
             let p = parallel.origin + towards * s;
             if self.locator.place(hit.face, &p) != Place::Outside {
-                let front = touch || self.brep.outward(hit.face, &p).dot(&towards) > 0.0;
+                let front = touch || self.is_turned(hit.face, &p, &towards);
                 report(at, front);
             }
         }
@@ -534,7 +540,7 @@ impl<'a> Scene<'a> {
             let (mut plain, mut nearest) = (true, (f64::INFINITY, true));
             self.hits(&ray, Asked::All, &|_| Own::No, &mut |hit| {
                 plain &= hit.plain;
-                if hit.at < nearest.0 {
+                if hit.at.is_short_of(nearest.0) {
                     // A face turned towards where the line runs is left from inside.
                     nearest = (hit.at, hit.front);
                 }

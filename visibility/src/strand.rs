@@ -16,6 +16,7 @@ use premio_kernel::geometry::section::plane_roots;
 use premio_kernel::geometry::surface::{Surface, Torus};
 use premio_kernel::geometry::trace::Unresolved;
 use premio_kernel::number::roots::{Root, Zeros};
+use premio_kernel::number::sign::Sign;
 
 /// A clean passage behind another contour.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +111,7 @@ impl Strand<'_> {
         };
         let within = self.stretches.iter();
         within
-            .filter(|s| s.range[1] > lo && s.range[0] < hi)
+            .filter(|s| s.range[1].is_beyond(lo) && s.range[0].is_short_of(hi))
             .map(|s| {
                 let [p, q] = s.ends;
                 (q[0] - p[0]).hypot(q[1] - p[1])
@@ -124,7 +125,7 @@ impl Strand<'_> {
         for stretch in self.stretches.iter().filter(|s| s.bounds.meets(hull)) {
             let [lo, hi] = stretch.range;
             match runs.last_mut() {
-                Some(run) if run.last() == Some(&lo) => run.push(hi),
+                Some(run) if run.last().is_some_and(|end| end.is_exactly(lo)) => run.push(hi),
                 _ => runs.push(vec![lo, hi]),
             }
         }
@@ -324,7 +325,7 @@ impl Trim<'_, '_, '_, '_> {
             if let Some(from) = limb.from {
                 let p = limb.curve.point(from);
                 let near = LOOSE * self.scene.band;
-                if ends.iter().all(|e| (e.0 - from).abs() > near) {
+                if ends.iter().all(|e| (e.0 - from).abs().is_beyond(near)) {
                     let add = || self.junctions.add(JunctionKind::Vertex, Site::Alone, &p);
                     let id = *apex.get_or_insert_with(add);
                     ends.push((from, id));
@@ -369,7 +370,7 @@ impl Trim<'_, '_, '_, '_> {
             }
         }
         // A root at a vertex may be just beyond the ends of all its edges.
-        let met = |t: &f64| cutter.distance(&curve.point(*t)).abs() <= band;
+        let met = |t: &f64| cutter.distance(&curve.point(*t)).is_within(band);
         let open = brep.topology.edge(edge).ends.is_some();
         found.extend(range.into_iter().filter(|t| open && met(t)));
     }
@@ -392,7 +393,7 @@ impl Trim<'_, '_, '_, '_> {
             Zeros::At { roots, .. } => {
                 let nodes: Vec<f64> = nodes.collect();
                 let place = |r: &Root| {
-                    let node = nodes.iter().find(|&&t| r.lo <= t && t <= r.hi);
+                    let node = nodes.iter().find(|t| t.lies_in([r.lo, r.hi]));
                     node.copied().unwrap_or(r.t)
                 };
                 found.extend(roots.iter().map(place));
@@ -407,7 +408,7 @@ impl Trim<'_, '_, '_, '_> {
         if let Some(ends) = brep.topology.edge(edge).ends {
             for v in ends {
                 let q = brep.point(v);
-                if (q - p).norm() <= near {
+                if (q - p).norm().is_within(near) {
                     return self.junctions.vertex(v, &q);
                 }
             }
@@ -415,7 +416,7 @@ impl Trim<'_, '_, '_, '_> {
         let curve = brep.curve(edge);
         let known = self.found.on_edges[edge.index()]
             .iter()
-            .find(|m| (curve.point(m.0) - p).norm() <= near);
+            .find(|m| (curve.point(m.0) - p).norm().is_within(near));
         if let Some(&(_, id)) = known {
             return id;
         }
@@ -429,7 +430,8 @@ impl Trim<'_, '_, '_, '_> {
         let curve = &limb.curve;
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
         let near = LOOSE * self.scene.band;
-        ends.dedup_by(|b, a| a.1 == b.1 || (curve.point(a.0) - curve.point(b.0)).norm() <= near);
+        let apart = |t: f64, s: f64| (curve.point(t) - curve.point(s)).norm();
+        ends.dedup_by(|b, a| a.1 == b.1 || apart(a.0, b.0).is_within(near));
         let Some(period) = curve.period() else {
             for pair in ends.windows(2) {
                 self.stretch(
@@ -487,7 +489,7 @@ impl Trim<'_, '_, '_, '_> {
                     .curve
                     .period()
                     .map_or(t, |p| lo + (t - lo).rem_euclid(p));
-                if t > lo && t < hi {
+                if t.lies_between(range) {
                     let p = arc.curve.point(t);
                     let id = self.junctions.add(JunctionKind::Node, Site::Alone, &p);
                     arc.marks.push((t, id));
@@ -503,14 +505,14 @@ impl Trim<'_, '_, '_, '_> {
 fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
     [0.0, 0.23, 0.51, 0.77, 1.0].iter().all(|part| {
         let p = curve.point(lo + (hi - lo) * part);
-        surface.distance(&p).abs() <= band
+        surface.distance(&p).is_within(band)
     })
 }
 
 /// The parameter of a point on an arc, within its range.
 fn on_arc(curve: &Curve, [lo, hi]: [f64; 2], p: &Point3<f64>, near: f64) -> Option<f64> {
     let t = curve.in_cycle(curve.parameter(p), lo);
-    (t <= hi && (curve.point(t) - p).norm() <= near).then_some(t)
+    (t.is_at_most(hi) && (curve.point(t) - p).norm().is_within(near)).then_some(t)
 }
 
 /// The limbs through a point of one of them; the nearest where rounding has moved the point.
@@ -521,7 +523,7 @@ fn limbs_through(limbs: &[Limb], p: &Point3<f64>, near: f64) -> Vec<usize> {
     let away = |limb: &Limb| (limb.curve.point(limb.curve.parameter(p)) - p).norm();
     let far: Vec<f64> = limbs.iter().map(away).collect();
     let least = far.iter().copied().fold(f64::INFINITY, f64::min);
-    let close = |i: &usize| far[*i] <= near.max(least);
+    let close = |i: &usize| far[*i].is_within(near.max(least));
     (0..limbs.len()).filter(close).collect()
 }
 

@@ -14,7 +14,7 @@ use premio_kernel::number::bisection::bisect;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 
 /// The tangent of the greatest angle between a stretch's direction and its cone's sides.
 const NARROW: f64 = 0.5;
@@ -87,14 +87,14 @@ fn image_over(curve: &Curve, projection: &Projection, t: Interval) -> [Jet<Inter
 fn course([x, y]: &[Jet<Interval>; 2]) -> Option<Course> {
     let (mx, my) = (x.d.mid(), y.d.mid());
     let size = mx.hypot(my);
-    if size == 0.0 || !size.is_finite() {
+    if size.is_exactly(0.0) || !size.is_finite() {
         return None;
     }
     let direction = [mx / size, my / size];
     let along = dot2(direction, [x.d, y.d]);
     let across = dot2([-direction[1], direction[0]], [x.d, y.d]);
     let spread = across.magnitude() / along.lo;
-    if !(along.lo > 0.0 && spread <= NARROW) {
+    if !(along.is_above_zero() && spread.is_at_most(NARROW)) {
         return None;
     }
     let bend = x.d * y.dd - y.d * x.dd;
@@ -127,7 +127,7 @@ pub fn stretches(
         };
         let [w, h] = bounds.sides();
         let scale = || projection.scale(&curve.point(a));
-        let is_dot = || w.hypot(h) * scale() <= near || b - a <= floor;
+        let is_dot = || (w.hypot(h) * scale()).is_at_most(near) || (b - a).is_at_most(floor);
         if course.is_none() && !is_dot() {
             let middle = 0.5 * (a + b);
             stack.push([middle, b]);
@@ -169,7 +169,7 @@ pub fn turns(curve: &Curve, stretches: &[Stretch], projection: &Projection) -> V
             x.dd * u.d + y.dd * v.d
         };
         let (a, b) = (speed(lo), speed(hi));
-        (a * b < 0.0).then(|| bisect(lo, hi, a, speed))
+        (a * b).is_below_zero().then(|| bisect(lo, hi, a, speed))
     })
     .collect()
 }
@@ -212,7 +212,7 @@ pub fn simple_run<'s>(mut all: impl Iterator<Item = &'s Stretch>) -> usize {
     };
     let mut length = 0;
     let (mut graph, mut convex, mut cusp, mut away) = (true, true, true, true);
-    let (mut dots, mut turned, mut last) = (0, 0.0, first);
+    let (mut dots, mut turned, mut last) = (0, 0.0f64, first);
     for stretch in all {
         let Some(course) = stretch.course else {
             dots += 1;
@@ -220,15 +220,17 @@ pub fn simple_run<'s>(mut all: impl Iterator<Item = &'s Stretch>) -> usize {
             continue;
         };
         let (cos, sin) = between(&first, &course);
-        graph &=
-            dots == 0 && cos - sin.abs() * course.spread > 0.0 && cos > first.spread * sin.abs();
+        graph &= dots == 0
+            && (cos - sin.abs() * course.spread).is_above_zero()
+            && cos.is_beyond(first.spread * sin.abs());
         let (step_cos, step_sin) = between(&last, &course);
         turned += step_sin.atan2(step_cos).abs() + course.spread.atan();
-        let bends_on = first.bend.is_some() && course.bend == first.bend;
+        let bends = first.bend.zip(course.bend);
+        let bends_on = bends.is_some_and(|(a, b)| a.is_exactly(b));
         away &= bends_on;
-        convex &= bends_on && dots == 0 && turned < std::f64::consts::PI;
+        convex &= bends_on && dots == 0 && turned.is_short_of(std::f64::consts::PI);
         let most = if away { NARROW } else { SLIGHT };
-        cusp &= dots <= 1 && (cos > 0.0) == (dots == 0) && sin.abs() <= most;
+        cusp &= dots <= 1 && cos.is_above_zero() == (dots == 0) && sin.is_within(most);
         if !(graph || convex || cusp) {
             break;
         }

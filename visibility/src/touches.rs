@@ -3,6 +3,7 @@
 use crate::contour::JunctionKind;
 use crate::sight::Scene;
 use crate::strand::{Change, Junctions, Site, Split, Strand};
+use premio_kernel::number::sign::Sign;
 
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 8.0;
@@ -24,7 +25,7 @@ pub fn settle(strand: &Strand<'_>, t: f64, near: f64) -> Option<Settled> {
         Some(period) => {
             let t = lo + (t - lo).rem_euclid(period);
             // Just before the start is nearer to the start than to the end.
-            if !strand.closed && t - hi > lo + period - t {
+            if !strand.closed && (t - hi).is_beyond(lo + period - t) {
                 t - period
             } else {
                 t
@@ -36,10 +37,10 @@ pub fn settle(strand: &Strand<'_>, t: f64, near: f64) -> Option<Settled> {
         return Some(Settled { t, at_end: false });
     }
     let slack = near / strand.curve.speed(t);
-    if t < lo - slack || t > hi + slack || t.is_nan() {
+    if t.is_short_of(lo - slack) || t.is_beyond(hi + slack) || t.is_nan() {
         return None;
     }
-    let at_end = t <= lo + slack || t >= hi - slack;
+    let at_end = t.is_at_most(lo + slack) || t.reaches(hi - slack);
     Some(Settled {
         t: t.clamp(lo, hi),
         at_end,
@@ -70,7 +71,7 @@ pub fn split_at_touches(
         };
         let meeting = |strand: &Strand<'_>| {
             let at = settle(strand, strand.curve.parameter(place), near)?;
-            let met = (strand.curve.point(at.t) - place).norm() <= near;
+            let met = (strand.curve.point(at.t) - place).norm().is_within(near);
             met.then_some(at)
         };
         let all = strands.iter_mut().filter(|strand| within(strand));

@@ -20,7 +20,7 @@ use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::section::plane_roots;
 use premio_kernel::geometry::surface::Plane;
 use premio_kernel::geometry::trace::Unresolved;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::number::sign::{ROUNDING, Sign};
 use std::time::Instant;
 
 /// Distances between points found on two ways, in multiples of the resolution.
@@ -67,7 +67,7 @@ pub fn contours_by(
         (projection.origin() - hull.centre()).norm(),
         band / ROUNDING,
     );
-    if hull.diagonal().is_finite() && distance > most {
+    if hull.diagonal().is_finite() && distance.is_beyond(most) {
         return Err(ViewError::EyeFar { distance, most });
     }
     if scene.eye_inside() {
@@ -256,7 +256,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             projection.depth(&Point3::new(pick(0), pick(1), pick(2)))
         };
         let least = (0..8).map(corner).fold(f64::INFINITY, f64::min);
-        if least > projection.near {
+        if least.is_beyond(projection.near) {
             return self.push(source, seen);
         }
         let [lo, hi] = source.range;
@@ -294,7 +294,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         }
         for pair in stops.windows(2) {
             let middle = source.curve.point(0.5 * (pair[0].0 + pair[1].0));
-            if projection.depth(&middle) > projection.near {
+            if projection.depth(&middle).is_beyond(projection.near) {
                 let part = Source {
                     range: [pair[0].0, pair[1].0],
                     closed: whole,
@@ -337,12 +337,12 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         let near = LOOSE * self.scene.band;
         let at_end = |t: f64| {
             let p = source.curve.point(t);
-            ends_at.iter().any(|end| (p - end).norm() <= near)
+            ends_at.iter().any(|end| (p - end).norm().is_within(near))
         };
         let mut splits: Vec<Split> = Vec::new();
         for &(t, junction) in &source.marks {
             let t = within(t);
-            if t > lo && t < hi || closed {
+            if t.lies_between(range) || closed {
                 splits.push(Split {
                     t,
                     junction,
@@ -351,7 +351,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             }
         }
         for &t in &turns {
-            if t > lo && t < hi && !at_end(t) || closed {
+            if t.lies_between(range) && !at_end(t) || closed {
                 let p = source.curve.point(t);
                 let junction = self.junctions.add(JunctionKind::Turn, Site::Alone, &p);
                 splits.push(Split {

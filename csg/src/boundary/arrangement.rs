@@ -7,7 +7,7 @@ use super::EvaluationError;
 use super::carriers::{Merged, Source, merge};
 use super::concern::{Between, Unlisted};
 use super::corners::{Corner, Corners};
-use super::cuts::{CLOSE_PASS, Later};
+use super::cuts::{Later, is_one_pass};
 use super::halfspaces::Solids;
 use crate::tree::Tree;
 use premio_kernel::brep::topology::Sense;
@@ -17,7 +17,7 @@ use premio_kernel::geometry::intersect::{Branch, Extent, meet};
 use premio_kernel::geometry::relation::Carrier;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Sign};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::collections::BTreeMap;
@@ -55,9 +55,8 @@ pub(super) struct Meeting<N: Number = f64> {
 impl<N: Number> Meeting<N> {
     /// Puts the cuts in order, each once: a closed curve's first may stand at its end, too.
     fn order_cuts(&mut self) {
-        let one = |a: &Cut<N>, b: &Cut<N>, turn: N| {
-            a.vertex == b.vertex && (a.t - turn - b.t).abs() < N::of(CLOSE_PASS)
-        };
+        let one =
+            |a: &Cut<N>, b: &Cut<N>, turn: N| a.vertex == b.vertex && is_one_pass(a.t - turn, b.t);
         self.cuts.sort_by(|a, b| a.t.total_cmp(&b.t));
         self.cuts.dedup_by(|a, b| one(a, b, N::ZERO));
         let period = self.range[1] - self.range[0];
@@ -206,7 +205,8 @@ impl<N: Number> Arrangement<N> {
             for &(branch, t) in &node.on {
                 for &m in &kept[branch] {
                     let [lo, hi] = self.meetings[m].range;
-                    if t >= lo - judge.band::<N>() && t <= hi + judge.band::<N>() {
+                    let band = judge.band::<N>();
+                    if t.lies_in([lo - band, hi + band]) {
                         let t = t.clamp(lo, hi);
                         self.meetings[m].cuts.push(Cut { t, vertex });
                     }
@@ -260,7 +260,7 @@ pub(super) fn common(a: &Box3, b: &Box3) -> Option<Box3> {
     let min: [f64; 3] = std::array::from_fn(|i| a.min[i].max(b.min[i]));
     let max: [f64; 3] = std::array::from_fn(|i| a.max[i].min(b.max[i]));
     (0..3)
-        .all(|i| min[i] <= max[i])
+        .all(|i| min[i].is_at_most(max[i]))
         .then_some(Box3 { min, max })
 }
 
@@ -271,7 +271,7 @@ fn clipped<N: Number>(line: &Line<N>, range: [N; 2], boxes: &[Box3]) -> Vec<[N; 
     let mut joined: Vec<[N; 2]> = Vec::new();
     for p in parts {
         match joined.last_mut() {
-            Some(last) if p[0] <= last[1] => last[1] = last[1].max(p[1]),
+            Some(last) if p[0].is_at_most(last[1]) => last[1] = last[1].max(p[1]),
             _ => joined.push(p),
         }
     }

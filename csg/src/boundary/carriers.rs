@@ -9,7 +9,7 @@ use premio_kernel::geometry::relation::{Carrier, Coefficients};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::rational::Rational;
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Sign};
 
 /// The half space that a carrier was met as first: its exact coefficients are the carrier's.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +72,7 @@ pub(super) fn merge<'t, N: Number>(
     // The carriers that may still be met, by the place of their foot.
     let mut recent: Vec<(N, usize)> = Vec::new();
     for (x, i, k, side) in list {
-        recent.retain(|(y, _)| x - *y <= window);
+        recent.retain(|(y, _)| (x - *y).is_at_most(window));
         let source = Source {
             placed: placed[i],
             side: k,

@@ -12,7 +12,7 @@ use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::{CloseCall, Judge};
+use premio_kernel::number::sign::{CloseCall, Judge, Side, Sign};
 use rstar::AABB;
 
 /// What a close call lies between.
@@ -119,12 +119,14 @@ impl<N: Number> Concern<'_, N> {
                 |(side, &(c, _)): (&HalfSpace<N>, &(usize, Sense))| (side.surface.distance(&p), c);
             let sides = self.sides(s.data).map(away);
             let outside = sides.clone().fold(N::NEG_INFINITY, |most, s| most.max(s.0));
-            if outside < -margin {
-                held.push(solid.leaf);
-            } else if outside <= margin {
-                open.push(solid.leaf);
-                let near = sides.filter(|(distance, _)| distance.abs() <= margin);
-                faces.extend(near.map(|(_, c)| (solid.leaf, c)));
+            match Side::of(outside, margin) {
+                Side::Inside => held.push(solid.leaf),
+                Side::On => {
+                    open.push(solid.leaf);
+                    let near = sides.filter(|(distance, _)| distance.is_within(margin));
+                    faces.extend(near.map(|(_, c)| (solid.leaf, c)));
+                }
+                Side::Outside => {}
             }
         }
         let deciding = self.membership.deciding(&held, &open);

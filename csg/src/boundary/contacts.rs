@@ -11,7 +11,7 @@ use premio_kernel::geometry::cut::lies_on;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::roots::probes;
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Sign};
 
 impl<N: Number> Arrangement<N> {
     /// Puts contacts along curves where other curves run inside their strips.
@@ -61,7 +61,8 @@ impl<N: Number> Arrangement<N> {
             let along = aside.dot(&contact.curve.tangent(t)).abs();
             let middle = p + aside * N::HALF;
             let inside = carriers.iter().all(|s| judge.within(s.distance(&middle)));
-            if !inside || N::TWO * along > aside.length() + judge.reach::<N>() {
+            let across = aside.length() + judge.reach::<N>();
+            if !inside || (N::TWO * along).is_beyond(across) {
                 return None;
             }
             width = width.max(aside.length());
@@ -77,6 +78,6 @@ impl<N: Number> Meeting<N> {
         let t = self.curve.in_cycle(self.curve.parameter(p), lo);
         let q = self.curve.point(t.clamp(lo, hi));
         let beyond = (q - self.curve.point(t)).length();
-        (beyond <= reach).then_some(q)
+        beyond.is_within(reach).then_some(q)
     }
 }

@@ -4,7 +4,7 @@ use super::concern::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::{Judge, Side};
+use premio_kernel::number::sign::{Judge, Side, Sign};
 use std::collections::HashMap;
 
 /// A point where a curve is cut.
@@ -104,13 +104,13 @@ impl<N: Number> Corners<N> {
                 for z in both(2).into_iter().flatten() {
                     for &v in self.grid.get(&[x, y, z]).into_iter().flatten() {
                         let d = (self.all[v].point - p).length();
-                        if best.is_none_or(|b| d < b.0) {
+                        if best.is_none_or(|b| d.is_short_of(b.0)) {
                             best = Some((d, v));
                         }
                     }
                 }
             }
         }
-        best.filter(|b| b.0 < reach)
+        best.filter(|b| b.0.is_short_of(reach))
     }
 }

@@ -13,12 +13,17 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded, solution};
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::roots::{Contact, Root};
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Sign};
 use rstar::AABB;
 use std::collections::HashMap;
 
 /// A curve may pass one corner twice, but never within this part of a radian or a unit.
-pub(super) const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
+const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
+
+/// Whether two parameters at one corner are one pass of it.
+pub(super) fn is_one_pass<N: Number>(t: N, other: N) -> bool {
+    (t - other).abs().is_short_of(N::of(CLOSE_PASS))
+}
 
 /// A contact of so high an order that many points are within the band.
 pub(super) struct Wide<N: Number = f64> {
@@ -94,8 +99,10 @@ impl<N: Number> Arrangement<N> {
             .iter()
             .map(|s| (s.t, corners.all[s.vertex].point))
             .collect();
-        let at_special =
-            |p: &Point3<N>| special.iter().any(|s| (s.1 - p).length() <= judge.reach());
+        let at_special = |p: &Point3<N>| {
+            let mut points = special.iter().map(|s| s.1);
+            points.any(|s| (s - p).length().is_within(judge.reach()))
+        };
         let (roots, misses) = m.meet(&self.carriers[c], faces, judge)?;
         let mut note = |question, distance, p: &Point3<N>| {
             let (_, call) = judge.decide(question, distance, rounded(p));
@@ -115,7 +122,7 @@ impl<N: Number> Arrangement<N> {
             if r.contact == Contact::Touching {
                 reach = reach.max(m.touching_length(r.t, &self.carriers[c], judge));
             }
-            if reach > judge.reach() {
+            if reach.is_beyond(judge.reach()) {
                 later.wide.push(Wide {
                     meeting: index,
                     carrier: c,
@@ -148,7 +155,7 @@ impl<N: Number> Arrangement<N> {
         let middle = m.curve.point(w.t);
         let fits = |v: &usize| {
             let p = corners.all[*v].point;
-            (p - middle).length() <= w.reach
+            (p - middle).length().is_within(w.reach)
                 && all
                     .iter()
                     .all(|&c| judge.within(self.carriers[c].distance(&p)))
@@ -199,7 +206,7 @@ impl<N: Number> Arrangement<N> {
             if m.bounds.grown(judge.band::<N>()).holds(&apex) {
                 let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
                 let away = (m.curve.point(t) - apex).length();
-                if t >= m.range[0] && t <= m.range[1] && judge.within(away) {
+                if t.lies_in(m.range) && judge.within(away) {
                     let all = [m.carriers[0], m.carriers[1], carrier];
                     special.push(Cut {
                         t,
@@ -218,7 +225,8 @@ impl<N: Number> Arrangement<N> {
         for _ in 0..2 {
             let rows = all.map(|c| self.carriers[c].normal(&q));
             let off = all.map(|c| self.carriers[c].distance(&q));
-            if rows[0].dot(&rows[1].cross(&rows[2])).abs() < N::ROUNDING.sqrt() {
+            let volume = rows[0].dot(&rows[1].cross(&rows[2]));
+            if volume.abs().is_short_of(N::ROUNDING.sqrt()) {
                 return p;
             }
             match solution(rows.map(<[N; 3]>::from), off) {
@@ -293,7 +301,7 @@ impl<N: Number> Meeting<N> {
         let length = self.range[1] - self.range[0];
         let leaves = |step: &N| {
             let sides = [t - *step, t + *step].map(|t| surface.distance(&self.curve.point(t)));
-            *step >= length || !sides.iter().any(|&away| judge.within(away))
+            step.reaches(length) || !sides.iter().any(|&away| judge.within(away))
         };
         let mut steps =
             std::iter::successors(Some(length * N::ROUNDING), |step| Some(N::TWO * *step));
@@ -310,7 +318,7 @@ impl<N: Number> Meeting<N> {
         };
         [-period, N::ZERO, period]
             .iter()
-            .any(|&turn| lo <= t + turn && t + turn <= hi)
+            .any(|&turn| (t + turn).lies_in([lo, hi]))
     }
 
     /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, and
@@ -329,8 +337,8 @@ impl<N: Number> Meeting<N> {
             let known = self
                 .cuts
                 .iter()
-                .any(|c| c.vertex == vertex && (!opened || (c.t - t).abs() < N::of(CLOSE_PASS)));
-            let on = t >= lo && t <= hi && judge.within((self.curve.point(t) - p).length());
+                .any(|c| c.vertex == vertex && (!opened || is_one_pass(c.t, t)));
+            let on = t.lies_in([lo, hi]) && judge.within((self.curve.point(t) - p).length());
             if on && !known {
                 self.cuts.push(Cut { t, vertex });
             }

@@ -9,6 +9,7 @@ use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, T
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::rational::Rational;
+use premio_kernel::number::sign::Sign;
 
 /// A half space: one side of a surface, and the box of the face it gives its primitive.
 #[derive(Clone, Debug)]
@@ -240,7 +241,7 @@ fn add_frustum<N: Number>(
     let slope = N::nearest(&(base.clone() - top.clone()));
     let length = slope.hypot(h);
     let f = pose.frame(up(&apex));
-    let frame = if slope > N::ZERO {
+    let frame = if slope.is_above_zero() {
         Frame {
             x: f.x,
             y: -f.y,
@@ -257,10 +258,10 @@ fn add_frustum<N: Number>(
     };
     let r = b.max(t);
     add(Surface::Cone(cone), [-r, -r, N::ZERO], [r, r, h]);
-    if b > N::ZERO {
+    if b.is_above_zero() {
         add_disc(pose, &Rational::ZERO, N::ZERO, b, -N::ONE, add);
     }
-    if t > N::ZERO {
+    if t.is_above_zero() {
         add_disc(pose, height, h, t, N::ONE, add);
     }
 }

@@ -35,7 +35,7 @@ use premio_kernel::geometry::intersect::{Extent, IntersectionError};
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{
-    Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, ROUNDING, Zeros,
+    Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, ROUNDING, Sign, Zeros,
 };
 use premio_kernel::number::wide::Wide;
 
@@ -85,7 +85,7 @@ impl Evaluation {
     /// of it was a close call.
     pub fn greatest_coincidence(&self) -> f64 {
         let distances = self.decisions.close_calls.iter().map(|c| c.distance.abs());
-        let coincident = distances.filter(|d| *d <= self.resolution);
+        let coincident = distances.filter(|d| d.is_within(self.resolution));
         coincident.fold(0.0, f64::max)
     }
 
@@ -317,7 +317,7 @@ fn evaluated<N: Number>(
             bounds,
         });
     }
-    if !(size > 1.0 / LARGEST && size < LARGEST) {
+    if !size.lies_between([1.0 / LARGEST, LARGEST]) {
         return Err(EvaluationError::Size);
     }
     let resolution = resolution_of::<N>(&solids.bounds, options)?;
@@ -379,12 +379,12 @@ fn resolution_of<N: Number>(
     let far = bounds.min.iter().chain(&bounds.max);
     let far = far.fold(size, |far, x| far.max(x.abs()));
     let (least, most) = (N::ROUNDING.rounded() * far, COARSEST * size);
-    if least > size * FARTHEST {
+    if least.is_beyond(size * FARTHEST) {
         return Err(EvaluationError::Far { far, size });
     }
     let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
     let resolution = options.resolution.unwrap_or((relative * size).max(least));
-    if !(least..=most).contains(&resolution) {
+    if !resolution.lies_in([least, most]) {
         return Err(EvaluationError::Resolution {
             asked: resolution,
             least,

@@ -7,7 +7,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::cut::lies_on;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Sign};
 use std::collections::HashMap;
 
 /// A piece of a curve between two corners, or a closed curve without any.
@@ -109,16 +109,21 @@ fn first_home(homes: &[usize], mut i: usize) -> usize {
 /// Whether two meetings that have two carriers in common run over one curve: two points of the
 /// longer one tell, of which one at most is where they cross.
 fn same_curve<N: Number>(a: &Meeting<N>, b: &Meeting<N>, judge: &Judge) -> bool {
-    let (long, short) = match a.bounds.diagonal() > b.bounds.diagonal() {
+    let (long, short) = match a.bounds.diagonal().is_beyond(b.bounds.diagonal()) {
         true => (a, b),
         false => (b, a),
     };
     let [lo, hi] = long.range;
     [N::ONE, N::TWO].iter().all(|&part| {
         let p = long.curve.point(lo + (hi - lo) * part / N::of(3.0));
-        (short.curve.point(short.curve.parameter(&p)) - p).length()
-            <= N::of(SAME) * judge.band::<N>()
+        is_same_place(&short.curve.point(short.curve.parameter(&p)), &p, judge)
     })
+}
+
+/// Whether points of curves that may be one are: there, or far apart.
+fn is_same_place<N: Number>(p: &Point3<N>, q: &Point3<N>, judge: &Judge) -> bool {
+    let reach = N::of(SAME) * judge.band::<N>();
+    (p - q).length().is_within(reach)
 }
 
 /// Curves and pieces that may be one lie within this many times the resolution, or far apart.
@@ -177,12 +182,12 @@ impl<N: Number> Piece<N> {
         let middle = N::HALF * (self.range[0] + self.range[1]);
         let at = |v: usize| curve.parameter(&arrangement.corners[v].point);
         let (mut lo, mut hi, t) = (at(a), at(b), curve.parameter(&own.point(middle)));
-        if own.tangent(middle).dot(&curve.tangent(t)) < N::ZERO {
+        if own.tangent(middle).dot(&curve.tangent(t)).is_below_zero() {
             (lo, hi) = (hi, lo);
             self.ends = Some([b, a]);
         }
         hi = curve.in_cycle(hi, lo);
-        if let (true, Some(cycle)) = (hi == lo, curve.cycle()) {
+        if let (true, Some(cycle)) = (hi.is_exactly(lo), curve.cycle()) {
             hi += cycle;
         }
         self.range = [lo, hi];
@@ -215,7 +220,7 @@ fn spans<N: Number>(m: &Meeting<N>) -> Vec<([N; 2], Option<[usize; 2]>)> {
     }
     let length = |r: &[N; 2]| r[1] - r[0];
     let short = length(&m.range) * N::ROUNDING;
-    spans.retain(|(r, _)| length(r) > short);
+    spans.retain(|(r, _)| length(r).is_beyond(short));
     spans
 }
 
@@ -223,7 +228,5 @@ fn spans<N: Number>(m: &Meeting<N>) -> Vec<([N; 2], Option<[usize; 2]>)> {
 fn passes<N: Number>(curve: &Curve<N>, range: [N; 2], p: &Point3<N>, judge: &Judge) -> bool {
     let t = curve.in_cycle(curve.parameter(p), range[0]);
     // Two pieces between the same corners in the same carriers are one or far apart.
-    t >= range[0]
-        && t <= range[1]
-        && (curve.point(t) - p).length() <= N::of(SAME) * judge.band::<N>()
+    t.lies_in(range) && is_same_place(&curve.point(t), p, judge)
 }

@@ -16,7 +16,7 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::rational::Rational;
-use premio_kernel::number::sign::{FINEST_RESOLUTION, Judge};
+use premio_kernel::number::sign::{FINEST_RESOLUTION, Judge, Sign};
 use premio_kernel::proof::{Answer, Point, Polynomial, deflated};
 use std::cell::OnceCell;
 
@@ -138,7 +138,7 @@ impl<'f> Incidence<'f> {
         for _ in 0..DEFLATIONS {
             defining.sort_by_key(|p| (p.degree(), p.height()));
             let found = Point::next_to(&defining, place);
-            point = found.filter(|point| point.from(place).length() <= reach);
+            point = found.filter(|point| point.from(place).length().is_within(reach));
             if point.is_some() {
                 break;
             }
@@ -171,12 +171,12 @@ const DEFLATIONS: usize = 3;
 /// Whether an angle is nothing as far as 237 bits tell of points where surfaces touch: by the root of
 /// the resolution.
 fn is_flat<N: Number>(angle: N) -> bool {
-    angle.abs() <= N::of(FINEST_RESOLUTION.sqrt())
+    angle.is_within(N::of(FINEST_RESOLUTION.sqrt()))
 }
 
 /// The same of the way to a point.
 fn is_there<N: Number>(way: &Vector3<N>, judge: &Judge) -> bool {
-    way.length() * N::of(FINEST_RESOLUTION.sqrt()) <= judge.band()
+    judge.within(way.length() * N::of(FINEST_RESOLUTION.sqrt()))
 }
 
 /// The carriers of a piece of a curve are to hold it.

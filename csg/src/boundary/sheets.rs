@@ -13,7 +13,7 @@ use premio_kernel::geometry::frame::perpendicular;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::{Judge, Side};
+use premio_kernel::number::sign::{Judge, Side, Sign};
 
 /// A half sheet of a carrier at a point of a piece.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +105,7 @@ impl<N: Number> Spot<'_, N> {
                     direction: d,
                     angle: d.dot(&e2).atan2(d.dot(&e1)),
                     bend: rise(&d),
-                    beyond: if up > N::ZERO {
+                    beyond: if up.is_above_zero() {
                         Sense::Against
                     } else {
                         Sense::Along
@@ -118,7 +118,7 @@ impl<N: Number> Spot<'_, N> {
         let mut is_tied = piece.carriers.len() > 2;
         for pair in sheets.windows(2) {
             let gap = (pair[1].bend - pair[0].bend).abs() * reach * reach;
-            is_tied |= pair[0].angle == pair[1].angle
+            is_tied |= pair[0].angle.is_exactly(pair[1].angle)
                 && self.judge.side("sheets that touch", gap, rounded(p)) == Side::On;
         }
         if is_tied {
@@ -142,15 +142,17 @@ impl<N: Number> Spot<'_, N> {
         sheets.rotate_left(widest.unwrap_or(0));
         let reach = self.piece.reach(self.arrangement);
         let is_swapped = |a: &Sheet<N>, b: &Sheet<N>| {
-            let is_shallow = a.direction.dot(&b.direction) > N::ZERO
-                && a.direction.cross(&b.direction).length() < N::of(SHALLOW);
+            let sine = a.direction.cross(&b.direction).length();
+            let is_shallow =
+                a.direction.dot(&b.direction).is_above_zero() && sine.is_short_of(N::of(SHALLOW));
             let gap = (a.bend - b.bend) * reach * reach;
+            let is_one = a.angle.is_exactly(b.angle);
             if a.carrier == b.carrier || !is_shallow {
                 Some(false)
-            } else if a.angle == b.angle && !self.judge.within(gap) {
-                Some(gap > N::ZERO)
+            } else if is_one && !self.judge.within(gap) {
+                Some(gap.is_above_zero())
             } else {
-                self.lies_beyond([a, b], a.angle == b.angle)
+                self.lies_beyond([a, b], is_one)
             }
         };
         // By insertion: an order within the resolution need not be a total one.
@@ -185,11 +187,11 @@ impl<N: Number> Spot<'_, N> {
         let band = self.judge.band::<N>();
         let steps = std::iter::successors(Some(band), |step| Some(N::TWO * *step));
         let mut offsets = steps
-            .take_while(|step| *step == band || *step < farthest)
+            .take_while(|step| step.is_exactly(band) || step.is_short_of(farthest))
             .map(offset);
         offsets
-            .find(|away| away.abs() > N::ROUNDING * reach)
-            .map(|away| away > N::ZERO)
+            .find(|away| away.abs().is_beyond(N::ROUNDING * reach))
+            .map(N::is_above_zero)
     }
 
     /// Whether a carrier that leaves a piece in a direction touches an earlier one: all along it, by

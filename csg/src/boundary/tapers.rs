@@ -9,7 +9,7 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::rational::{Rational, to_f64};
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Sign};
 
 /// The tree with cylinders for the frustums whose radii are equal within the resolution; none where
 /// there is none.
@@ -41,7 +41,8 @@ pub(super) fn check<N: Number>(
     for side in solids.all.iter().flat_map(|solid| &solid.sides) {
         if let Surface::Cone(cone) = &side.surface {
             let away = (cone.frame.origin - extent.centre).length();
-            if N::of(ROUNDINGS) * N::EPSILON * away > judge.band() {
+            let moved = N::of(ROUNDINGS) * N::EPSILON * away;
+            if moved.is_beyond(judge.band()) {
                 return Err(EvaluationError::Taper {
                     place: side.bounds.centre().into(),
                     away: away.rounded(),

@@ -22,7 +22,7 @@ use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::precision::Number;
-use premio_kernel::number::sign::Judge;
+use premio_kernel::number::sign::{Judge, Sign};
 use std::collections::HashMap;
 
 /// A primitive near a piece: what is left to know whether it holds a sector.
@@ -44,6 +44,11 @@ impl<N: Number> Look<N> {
     /// Whether any surface through the point belongs to a primitive that is there.
     fn may_have_faces(&self) -> bool {
         self.near.iter().any(|n| !n.open.is_empty())
+    }
+
+    /// Whether nothing came so near to changing the answer.
+    fn is_clearer_than(&self, other: &Self) -> bool {
+        self.margin.is_beyond(other.margin)
     }
 }
 
@@ -126,7 +131,7 @@ impl<N: Number> Classifier<'_, N> {
                 return Ok(Vec::new());
             }
             let clear = !self.judge.is_close(look.margin);
-            if best.as_ref().is_none_or(|(_, b)| look.margin > b.margin) {
+            if best.as_ref().is_none_or(|(_, b)| look.is_clearer_than(b)) {
                 best = Some((t, look));
             }
             if clear {
@@ -166,7 +171,7 @@ impl<N: Number> Classifier<'_, N> {
                 inside = inside.min(distance.abs());
                 outside = outside.max(distance);
             }
-            if outside >= N::ZERO {
+            if outside.reaches(N::ZERO) {
                 margin = margin.min(outside);
             } else {
                 margin = margin.min(inside);
@@ -249,7 +254,7 @@ impl<N: Number> Classifier<'_, N> {
             || self
                 .judge
                 .within(m.cross(&n).length() * piece.reach(self.arrangement));
-        tangent && m.dot(&n) > N::ZERO
+        tangent && m.dot(&n).is_above_zero()
     }
 
     /// The closed carriers without any edge that are faces as a whole.
@@ -288,7 +293,7 @@ impl<N: Number> Classifier<'_, N> {
                 return Ok(None);
             }
             let clear = !self.judge.is_close(look.margin);
-            if best.as_ref().is_none_or(|(_, b)| look.margin > b.margin) {
+            if best.as_ref().is_none_or(|(_, b)| look.is_clearer_than(b)) {
                 best = Some((p, look));
             }
             if clear {
@@ -414,7 +419,7 @@ fn meets_at<N: Number>(period: Option<N>, a: N, b: N) -> bool {
         }
         None => (a - b).abs(),
     };
-    away <= scale * (N::ONE + a.abs())
+    away.is_at_most(scale * (N::ONE + a.abs()))
 }
 
 /// Whether two pieces have the same faces around them, wherever the count starts.

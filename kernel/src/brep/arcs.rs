@@ -5,6 +5,7 @@ use crate::geometry::bounds::{Box3, bounds, pieces};
 use crate::geometry::curve::Curve;
 use crate::geometry::vector::{Length, rounded};
 use crate::number::precision::Number;
+use crate::number::sign::Sign;
 use nalgebra::Point3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
@@ -106,7 +107,8 @@ impl<'a, N: Number> Arcs<'a, N> {
     /// Whether an arc ends at `p`, within the resolution.
     pub fn ends_at(&self, arc: usize, p: &Point3<N>, band: N) -> bool {
         let DirectedArc { curve, range, .. } = self.all[arc];
-        range.iter().any(|&t| (curve.point(t) - p).length() <= band)
+        let mut ends = range.into_iter();
+        ends.any(|t| (curve.point(t) - p).length().is_within(band))
     }
 
     /// Whether an arc may pass through `p`.
@@ -141,7 +143,7 @@ impl<'a, N: Number> Arcs<'a, N> {
         let may = |part: &&Part<N>| walk.may_meet_box(&part.bounds, band);
         for part in parts.iter().filter(may) {
             match ranges.last_mut() {
-                Some(last) if last[1] == part.range[0] => last[1] = part.range[1],
+                Some(last) if last[1].is_exactly(part.range[0]) => last[1] = part.range[1],
                 _ => ranges.push(part.range),
             }
         }

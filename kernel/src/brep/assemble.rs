@@ -18,7 +18,7 @@ use crate::geometry::surface::Surface;
 use crate::geometry::vector::{Length, rounded};
 use crate::number::bisection::bisect;
 use crate::number::precision::Number;
-use crate::number::sign::Judge;
+use crate::number::sign::{Judge, Sign};
 use nalgebra::Point3;
 use std::collections::{BTreeMap, HashMap};
 
@@ -363,7 +363,7 @@ impl<'a, N: Number> Assembler<'a, N> {
         let curve = &self.raw.curves[self.raw.edges[end.0].curve];
         let [start, far] = self.stretch(end, along);
         let gap = |t: N| (curve.point(t) - v).length() - radius;
-        let t = match start < far {
+        let t = match start.is_short_of(far) {
             true => bisect(start, far, -radius, gap),
             false => bisect(far, start, radius, gap),
         };
@@ -533,7 +533,7 @@ fn bundled<N: Number>(mut angles: Vec<(N, End)>, least: N) -> Vec<Vec<End>> {
     let mut bundles: Vec<Vec<End>> = Vec::new();
     for i in (start..n).chain(0..start) {
         match bundles.last_mut() {
-            Some(bundle) if gap(i) <= least => bundle.push(angles[i].1),
+            Some(bundle) if gap(i).is_at_most(least) => bundle.push(angles[i].1),
             _ => bundles.push(vec![angles[i].1]),
         }
     }

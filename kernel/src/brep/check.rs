@@ -6,6 +6,7 @@ use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, Vertex
 use super::welch;
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
+use crate::number::sign::Sign;
 use nalgebra::Point3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -105,7 +106,7 @@ pub fn worst_gap<N: Number>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
 
 /// Whether a distance is what making one of what coincides may leave.
 fn is_accounted<N: Number>(distance: N, band: N) -> bool {
-    distance <= N::of(PLAY) * band
+    distance.is_within(N::of(PLAY) * band)
 }
 
 /// The ends of an edge: the vertex, the place on the edge, and how far they are apart.
@@ -144,7 +145,7 @@ pub fn check<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
     check_shells(brep, &mut found);
     for (i, Covered { area, noise }) in face_areas(brep).into_iter().enumerate() {
         // A sliver's may be rounding.
-        if area.is_nan() || area <= -noise {
+        if area.is_nan() || area.is_at_most(-noise) {
             found.push(Violation::Area {
                 face: FaceId(i as u32),
                 area: area.rounded(),
@@ -256,7 +257,7 @@ fn check_touches<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>)
         let faces = faces.map(|&f| brep.surface(f).distance(place).abs());
         let distance = points.chain(faces).fold(N::ZERO, N::max);
         let meeting = touch.fans + touch.edges.len() + touch.faces.len();
-        if meeting < 2 || distance.is_nan() || distance > N::of(PLAY) * band {
+        if meeting < 2 || !is_accounted(distance, band) {
             let touch = TouchId(i as u32);
             found.push(Violation::TouchOff {
                 touch,
@@ -277,7 +278,7 @@ fn check_shells<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
         let enclosed = shell_volume(brep, &shell.faces, size);
         let volume = enclosed.volume;
         // The volume of a sliver may be below rounding: then it tells nothing.
-        let is_turned = enclosed.is_clear() && (volume < N::ZERO) != shell.void;
+        let is_turned = enclosed.is_clear() && volume.is_below_zero() != shell.void;
         if volume.is_nan() || is_turned {
             found.push(Violation::Orientation {
                 shell: id,

@@ -10,6 +10,7 @@ use crate::geometry::cut::cut;
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros};
+use crate::number::sign::Sign;
 use nalgebra::{Point3, Vector3};
 
 /// How many lines are tried before it is left open.
@@ -69,7 +70,7 @@ impl<'a, N: Number> Closed<'a, N> {
             let [_, far] = self.reach(&line);
             // Where the two touch it is not told.
             let beyond = self.crossings(&line, [at - self.band, far])?;
-            let apart = beyond.iter().all(|t| *t > at + self.band);
+            let apart = beyond.iter().all(|t| t.is_beyond(at + self.band));
             apart.then_some(beyond.len() % 2 == 1)
         })
     }

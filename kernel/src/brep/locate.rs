@@ -13,6 +13,7 @@ use crate::geometry::curve::Curve;
 use crate::geometry::surface::{Surface, Torus};
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
+use crate::number::sign::Sign;
 use nalgebra::Point3;
 use std::sync::OnceLock;
 
@@ -141,13 +142,14 @@ impl<'a, N: Number> FaceLocator<'a, N> {
         if let Curve::Circle(c) = curve {
             // Most points in the box of a circle are plainly aside of it.
             let q = c.frame.coordinates(p);
-            if (q.x.hypot(q.y) - c.radius).abs() > N::TWO * self.band {
+            let aside = q.x.hypot(q.y) - c.radius;
+            if aside.abs().is_beyond(N::TWO * self.band) {
                 return false;
             }
         }
-        let near = |t: N| (curve.point(t) - p).length() <= self.band;
+        let near = |t: N| (curve.point(t) - p).length().is_within(self.band);
         let t = curve.in_cycle(curve.parameter(p), lo);
-        ((lo..=hi).contains(&t) && near(t)) || near(lo) || near(hi)
+        (t.lies_in(range) && near(t)) || near(lo) || near(hi)
     }
 
     /// The k-th walk from `p`, in one or two legs.
@@ -321,7 +323,7 @@ impl<N: Number> First<N> {
     fn note(&mut self, mut met: Met<N>) {
         for slot in &mut self.met {
             match slot {
-                Some(known) if known.at <= met.at => {}
+                Some(known) if known.at.is_at_most(met.at) => {}
                 Some(known) => std::mem::swap(known, &mut met),
                 None => {
                     *slot = Some(met);
@@ -335,7 +337,8 @@ impl<N: Number> First<N> {
         let [Some(first), second, third] = self.met else {
             return Outcome::Nothing;
         };
-        let with_first = |other: Option<Met<N>>| other.filter(|m| m.at - first.at <= band);
+        let with_first =
+            |other: Option<Met<N>>| other.filter(|m| (m.at - first.at).is_at_most(band));
         match (with_first(second), with_first(third)) {
             (None, _) => match first.passage {
                 Passage::Entering => Outcome::Found(Place::Outside),

@@ -18,6 +18,7 @@ use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
 use crate::geometry::vector::{Length, rounded};
 use crate::number::precision::Number;
 use crate::number::quadrature::adaptive;
+use crate::number::sign::Sign;
 use nalgebra::{Point3, Vector3};
 use strip::strip;
 
@@ -49,7 +50,7 @@ pub fn mass<N: Number>(brep: &Brep<N>) -> Mass {
         first += (amid.reference - reference) * enclosed;
         first += Vector3::new(m[2], m[3], m[4]) / N::of(4.0);
     }
-    let centroid = if volume == N::ZERO {
+    let centroid = if volume.is_exactly(N::ZERO) {
         reference
     } else {
         reference + first / volume
@@ -73,7 +74,7 @@ pub struct Enclosed<N: Number = f64> {
 impl<N: Number> Enclosed<N> {
     /// Whether its sign is known.
     pub fn is_clear(&self) -> bool {
-        self.volume.abs() > self.noise
+        self.volume.abs().is_beyond(self.noise)
     }
 }
 
@@ -338,8 +339,8 @@ fn holds_far<N: Number>(
     if brep.topology.face(face).loops.is_empty() {
         return true;
     }
-    if part.abs() > N::of(FEW) * amid.part {
-        return part < N::ZERO;
+    if part.abs().is_beyond(N::of(FEW) * amid.part) {
+        return part.is_below_zero();
     }
     let locator = FaceLocator::of(brep, face, amid.size * N::of(BAND) * N::ROUNDING);
     locator.place(far) != Place::Outside
@@ -407,7 +408,7 @@ fn loop_sum<N: Number>(
     let [a, v, x, y, z, way] = total;
     let sum = [a, v, x, y, z];
     let turns = (way / N::TAU).round();
-    if turns == N::ZERO || matches!(density.surface, Surface::Plane(_)) {
+    if turns.is_exactly(N::ZERO) || matches!(density.surface, Surface::Plane(_)) {
         return sum;
     }
     add(sum, density.between(density.base, start).map(|k| k * turns))
@@ -434,7 +435,7 @@ fn edge_density<N: Number>(
         let near = density.base + (near - density.base).rem_euclid(N::TAU);
         v = near + (v - near + N::PI).rem_euclid(N::TAU) - N::PI;
     }
-    if rate == N::ZERO || !rate.is_finite() {
+    if rate.is_exactly(N::ZERO) || !rate.is_finite() {
         return [N::ZERO; 6];
     }
     let [a, h, x, y, z] = density.along(u, [start, v]).map(|g| g * rate);
@@ -464,7 +465,7 @@ fn clear_axis<N: Number>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) ->
                 clear = clear.min(d.cross(&axis).length());
             }
         }
-        if clear > best.0 {
+        if clear.is_beyond(best.0) {
             best = (clear, Frame::about(o, axis));
         }
     }
@@ -497,7 +498,8 @@ fn torus_moments<N: Number>(
             N::ZERO,
             &mut |s, _| {
                 let q = t.frame.coordinates(&curve.point(s));
-                if (q.x.hypot(q.y) - t.major) * N::of(BASE).cos() > N::ZERO {
+                let outward = (q.x.hypot(q.y) - t.major) * N::of(BASE).cos();
+                if outward.is_above_zero() {
                     roots.push(s);
                 }
             },
@@ -510,8 +512,8 @@ fn torus_moments<N: Number>(
         for s in roots_of(c) {
             let [u, _] = d.surface.parameters(&curve.point(s));
             let rise = curve.derivative(s).dot(&t.frame.z) * N::of(BASE).cos();
-            let up = rise * side * coedge.sense.sign::<N>() > N::ZERO;
-            passes.push((u, up));
+            let up = rise * side * coedge.sense.sign::<N>();
+            passes.push((u, up.is_above_zero()));
         }
     }
     let mut sum = boundary_sum(brep, face, d, &roots_of);
@@ -520,7 +522,7 @@ fn torus_moments<N: Number>(
     for (i, &(u, up)) in passes.iter().enumerate() {
         if !up {
             let (mut end, _) = passes[(i + 1) % passes.len()];
-            if end <= u {
+            if end.is_at_most(u) {
                 end += N::TAU;
             }
             sum = add(sum, d.over([u, end], [N::of(BASE), top]));

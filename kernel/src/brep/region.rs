@@ -16,6 +16,7 @@ use crate::geometry::frame::perpendicular;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::{Length, rounded};
 use crate::number::precision::Number;
+use crate::number::sign::Sign;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use torus::Turns;
 
@@ -193,9 +194,10 @@ impl<N: Number> Sorter<'_, N> {
                 continue;
             };
             let heading = walk.direction(&start.point).dot(&start.left);
-            below |= heading >= N::of(SLANT);
-            across += usize::from(heading.abs() < N::of(SLANT));
-            if heading >= N::of(SLANT) && self.follow_down(ring, start, vec![walk], attempt) {
+            let is_below = heading.reaches(N::of(SLANT));
+            below |= is_below;
+            across += usize::from(heading.abs().is_short_of(N::of(SLANT)));
+            if is_below && self.follow_down(ring, start, vec![walk], attempt) {
                 return None;
             }
         }
@@ -307,8 +309,8 @@ impl<N: Number> Sorter<'_, N> {
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
         // What ends next to the arc has not left it: the next leg may run to its other side.
-        let leaves = legs.len() == 1 || legs[0].length() > self.start();
-        if heading < N::of(SLANT) || !leaves {
+        let leaves = legs.len() == 1 || legs[0].length().is_beyond(self.start());
+        if heading.is_short_of(N::of(SLANT)) || !leaves {
             return false;
         }
         let mut inside = Some(ring);
@@ -381,7 +383,7 @@ impl<N: Number> Sorter<'_, N> {
             // Arcs of both senses run over the starting edge where a face bounds itself.
             let own = start.is_some_and(|start| arc.shares_edge(&self.arcs.all[start]));
             let mut note = |at: N, t: N, passage: Passage| {
-                let here = own && (at <= self.start() || self.is_full_turn(walk, at));
+                let here = own && (at.is_at_most(self.start()) || self.is_full_turn(walk, at));
                 if !here {
                     found.push(Crossing {
                         at,
@@ -406,7 +408,7 @@ impl<N: Number> Sorter<'_, N> {
         found.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.arc.cmp(&b.arc)));
         // Where faces of one surface share an edge, one is left before the other is entered.
         for k in 1..found.len() {
-            let together = found[k].at - found[k - 1].at <= self.band;
+            let together = (found[k].at - found[k - 1].at).is_at_most(self.band);
             if together
                 && found[k - 1].passage == Passage::Entering
                 && found[k].passage == Passage::Leaving
@@ -419,7 +421,8 @@ impl<N: Number> Sorter<'_, N> {
 
     /// Whether a closed walk is back at its start.
     fn is_full_turn(&self, walk: &Walk<N>, at: N) -> bool {
-        (walk.point(at) - walk.point(N::ZERO)).length() <= self.start()
+        let away = (walk.point(at) - walk.point(N::ZERO)).length();
+        away.is_within(self.start())
     }
 
     /// The Euler characteristic of a region.
@@ -431,7 +434,7 @@ impl<N: Number> Sorter<'_, N> {
         // With a loop that does not shrink to a point the region is an annulus with holes; with
         // one that runs counterclockwise, a disc with holes; else a torus with holes.
         let turns: Vec<Turns<N>> = list.iter().map(|&i| self.turns(&loops[i])).collect();
-        let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area > N::ZERO);
+        let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area.is_above_zero());
         if is_part_of_sphere { 2 - n } else { -n }
     }
 }

@@ -8,7 +8,7 @@ use super::mass::{shell_volume, size};
 use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
 use crate::geometry::vector::rounded;
 use crate::number::precision::Number;
-use crate::number::sign::Judge;
+use crate::number::sign::{Judge, Sign};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 
@@ -155,7 +155,7 @@ fn name_shells<N: Number>(
                 });
             }
             volumes.push(enclosed.volume);
-            enclosed.volume < N::ZERO
+            enclosed.volume.is_below_zero()
         };
         brep.topology.shells.push(Shell {
             faces: faces.clone(),

@@ -15,6 +15,7 @@ use crate::geometry::section::{line_meets, section_roots, surface_roots};
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
+use crate::number::sign::Sign;
 use nalgebra::{Point3, Vector3};
 
 /// A piece of a face's boundary: the face lies to the left of its sense, seen from the side the
@@ -130,7 +131,7 @@ impl<N: Number> Walk<N> {
         let arm = start - centre;
         let normal = arm.cross(&(target - centre));
         let size = normal.length();
-        let clear = size > arm.length_squared() * N::ROUNDING.sqrt();
+        let clear = size.is_beyond(arm.length_squared() * N::ROUNDING.sqrt());
         clear.then(|| Self::circle(start, *centre, normal / size, Branch::Whole))
     }
 
@@ -157,7 +158,7 @@ impl<N: Number> Walk<N> {
             Surface::Plane(_) => return None,
             Surface::Torus(t) => {
                 let away = rho - t.major;
-                if away.abs() <= N::of(TOP) * t.minor {
+                if away.is_within(N::of(TOP) * t.minor) {
                     let upright = Cylinder {
                         frame: *f,
                         radius: rho,
@@ -170,8 +171,8 @@ impl<N: Number> Walk<N> {
             _ => Branch::Whole,
         };
         let centre = f.origin + f.z * q.z;
-        let away = rho > band.max(N::ROUNDING * q.length());
-        away.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
+        let is_off_axis = rho.is_beyond(band.max(N::ROUNDING * q.length()));
+        is_off_axis.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
     }
 
     /// The ruling of a cylinder or a cone through `start`, or at the angle `u` from a cone's apex,
@@ -188,7 +189,7 @@ impl<N: Number> Walk<N> {
         let f = surface.frame();
         let q = f.coordinates(start);
         let rho = q.x.hypot(q.y);
-        let radial = match rho > N::ZERO {
+        let radial = match rho.is_above_zero() {
             true => f.x * (q.x / rho) + f.y * (q.y / rho),
             false => f.x,
         };
@@ -232,7 +233,7 @@ impl<N: Number> Walk<N> {
 
     /// The walk from the same point that way round which leads to the side of `left` at `p`.
     pub(super) fn toward(self, p: &Point3<N>, left: &Vector3<N>) -> Self {
-        if self.direction(p).dot(left) < N::ZERO {
+        if self.direction(p).dot(left).is_below_zero() {
             self.reversed()
         } else {
             self
@@ -271,7 +272,7 @@ impl<N: Number> Walk<N> {
 
     /// Whether the walk ends where it starts.
     pub(super) fn closes(&self) -> bool {
-        matches!(self.track, Track::Circle(_, radius) if self.length >= N::TAU * radius)
+        matches!(self.track, Track::Circle(_, radius) if self.length.reaches(N::TAU * radius))
     }
 
     /// The point at the length s.
@@ -305,24 +306,26 @@ impl<N: Number> Walk<N> {
     }
 
     fn passes(&self, p: &Point3<N>, band: N) -> bool {
-        let on_branch = match &self.branch {
-            Branch::Whole => true,
-            Branch::Half(o, side) => (p - o).dot(side) > -band,
+        let inward = match &self.branch {
+            Branch::Whole => N::INFINITY,
+            Branch::Half(o, side) => (p - o).dot(side),
             Branch::Parallel(t, side) => {
                 let q = t.frame.coordinates(p);
-                (q.x.hypot(q.y) - t.major) * *side > -band
+                (q.x.hypot(q.y) - t.major) * *side
             }
-            Branch::Level(c, side) => (p - c.frame.origin).dot(&c.frame.z) * *side > -band,
+            Branch::Level(c, side) => (p - c.frame.origin).dot(&c.frame.z) * *side,
         };
         let s = self.at(p);
-        on_branch && s > -band && s < self.length + band
+        inward.is_beyond(-band) && s.lies_between([-band, self.length + band])
     }
 
     /// Whether the walk may pass through a box.
     pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: N) -> bool {
         let Box3 { min, max } = &self.extent;
         let reach = band.above();
-        if (0..3).any(|i| lo[i] - reach > max[i] || hi[i] + reach < min[i]) {
+        let is_beside =
+            |i: usize| (lo[i] - reach).is_beyond(max[i]) || (hi[i] + reach).is_short_of(min[i]);
+        if (0..3).any(is_beside) {
             return false;
         }
         let half = |i: usize| N::of(0.5 * (hi[i] - lo[i]));
@@ -334,19 +337,19 @@ impl<N: Number> Walk<N> {
             (n.dot(&(centre - o)), half + band)
         };
         let (mid, half) = above(&self.start, &self.normal);
-        if mid.abs() > half {
+        if mid.abs().is_beyond(half) {
             return false;
         }
         if let Branch::Half(o, side) = &self.branch {
             let (mid, half) = above(o, side);
-            if mid < -half {
+            if mid.is_short_of(-half) {
                 return false;
             }
         }
         match &self.track {
             Track::Line(d) => {
                 let (mid, half) = above(&self.start, d);
-                mid >= -half && mid - half <= self.length
+                mid.reaches(-half) && (mid - half).is_at_most(self.length)
             }
             Track::Circle(..) => true,
         }
@@ -403,7 +406,7 @@ impl<N: Number> Walk<N> {
         if !closes(arc) {
             for t in [lo, hi] {
                 let p = arc.curve.point(t);
-                if self.off(&p).abs() <= band && self.passes(&p, band) {
+                if self.off(&p).is_within(band) && self.passes(&p, band) {
                     found(self.at(&p).max(N::ZERO), t, Passage::Unclear);
                 }
             }
@@ -417,10 +420,11 @@ impl<N: Number> Walk<N> {
             let s = self.at(&p);
             let across = self.direction(&p).cross(&surface.normal(&p));
             let turn = sign * across.dot(&arc.curve.tangent(t));
-            let at_end = s <= band || s >= self.length - band;
-            let passage = if !plain || at_end || turn.is_nan() || turn.abs() < N::ROUNDING.sqrt() {
+            let at_end = s.is_at_most(band) || s.reaches(self.length - band);
+            let is_along = turn.is_nan() || turn.abs().is_short_of(N::ROUNDING.sqrt());
+            let passage = if !plain || at_end || is_along {
                 Passage::Unclear
-            } else if turn > N::ZERO {
+            } else if turn.is_above_zero() {
                 Passage::Entering
             } else {
                 Passage::Leaving
@@ -458,6 +462,6 @@ impl<N: Number> Walk<N> {
 fn closes<N: Number>(arc: &DirectedArc<'_, N>) -> bool {
     arc.curve.period().is_some_and(|period| {
         let [lo, hi] = arc.range;
-        hi - lo >= period * (N::ONE - N::ROUNDING)
+        (hi - lo).reaches(period * (N::ONE - N::ROUNDING))
     })
 }

@@ -83,6 +83,11 @@ impl<N: Number> Interval<N> {
         !(self.lo > N::ZERO || self.hi < N::ZERO)
     }
 
+    /// Whether the value is surely greater than zero.
+    pub fn is_above_zero(self) -> bool {
+        self.lo > N::ZERO
+    }
+
     /// The greatest absolute value.
     pub fn magnitude(self) -> N {
         self.lo.abs().max(self.hi.abs())

@@ -7,6 +7,7 @@ use crate::geometry::surface::Torus;
 use crate::geometry::toric::wrap;
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
+use crate::number::sign::Sign;
 use nalgebra::{Point3, Vector3};
 
 impl<N: Number> Sorter<'_, N> {
@@ -98,7 +99,8 @@ impl<N: Number> Sorter<'_, N> {
                     let Some(legs) = self.legs(&t, p, &q.point, height) else {
                         continue;
                     };
-                    let from_left = |leg: &Walk<N>| leg.direction(&q.point).dot(&q.left) < N::ZERO;
+                    let from_left =
+                        |leg: &Walk<N>| leg.direction(&q.point).dot(&q.left).is_below_zero();
                     let reached = match self.twin(goal) {
                         Some(twin) if !legs.last().is_some_and(from_left) => twin,
                         _ => goal,
@@ -123,7 +125,7 @@ impl<N: Number> Sorter<'_, N> {
     ) -> Option<Vec<Walk<N>>> {
         let ([u, v], [x, y]) = (self.surface.parameters(p), self.surface.parameters(q));
         let toward = |a: N| {
-            if a > N::ZERO {
+            if a.is_above_zero() {
                 Sense::Along
             } else {
                 Sense::Against
@@ -179,7 +181,7 @@ impl<N: Number> Sorter<'_, N> {
             y += dy;
         }
         Turns {
-            winds: [x, y].map(|turn| turn.abs() > N::TAU / N::TWO),
+            winds: [x, y].map(|turn| turn.abs().is_beyond(N::TAU / N::TWO)),
             area: area * self.outward.sign::<N>(),
         }
     }

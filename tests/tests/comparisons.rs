@@ -1,0 +1,390 @@
+//! Nothing that decides compares doubles by operators of its own: `kernel::number::sign` is asked.
+//!
+//! The sources are parsed, but types are not known here. An order (`<`, `>=`) is of doubles unless a
+//! side shows that it is of whole numbers; an equality is, where a side shows it. So these are not
+//! seen: an equality of two plain names, or of arrays and structures of doubles; an order of two
+//! doubles one of which is named like a whole number; and what stands in a macro whose body is
+//! neither a list of expressions nor that of `matches!`.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use syn::parse::{ParseStream, Parser};
+use syn::punctuated::Punctuated;
+use syn::spanned::Spanned;
+use syn::visit::{self, Visit};
+use syn::{BinOp, Expr, Lit, Token};
+
+/// The sources in which what is reckoned becomes a boundary and a view.
+const SOURCES: &[&str] = &["kernel/src", "csg/src", "visibility/src"];
+
+/// What of them may compare doubles, and why.
+const EXCEPTIONS: &[(&str, &str)] = &[
+    (
+        "kernel/src/number",
+        "the place that is asked, and arithmetic",
+    ),
+    (
+        "kernel/src/geometry",
+        "constructions propose, and never decide",
+    ),
+    (
+        "kernel/src/proof",
+        "what proves asks whole numbers, and bounds of their size",
+    ),
+    (
+        "kernel/src/tessellation",
+        "nothing is made of a mesh but a picture and a check",
+    ),
+    ("csg/src/rays", "a measurement that no result rests on"),
+    ("csg/src/reader", "whether a text says what it may"),
+    ("csg/src/primitive.rs", "whether lengths are what they may"),
+    ("visibility/src/drawing", "it draws what is decided"),
+];
+
+/// Calls that give whole numbers.
+const WHOLE_CALLS: &[&str] = &["len", "count", "index", "degree", "bits"];
+
+/// What is called so is a whole number everywhere.
+const WHOLE_NAMES: &[&str] = &[
+    "i", "j", "k", "bits", "data", "depth", "junction", "leaves", "qi",
+];
+
+/// Types that are told by their constructors, and are no doubles.
+const WHOLE_TYPES: &[&str] = &[
+    "usize", "isize", "u64", "i64", "u32", "i32", "u8", "Rational",
+];
+
+/// Constants that are doubles, or wider.
+const CONSTANTS: &[&str] = &[
+    "ZERO",
+    "HALF",
+    "ONE",
+    "TWO",
+    "PI",
+    "TAU",
+    "EPSILON",
+    "ROUNDING",
+    "INFINITY",
+    "NEG_INFINITY",
+    "NAN",
+];
+
+/// Calls that give doubles.
+const CALLS: &[&str] = &[
+    "dot", "length", "norm", "hypot", "distance", "signum", "sqrt", "sin", "cos", "band", "reach",
+    "rounded",
+];
+
+/// Calls that compare; of a range, `contains` does as well.
+const COMPARING: &[&str] = &[
+    "partial_cmp",
+    "lt",
+    "le",
+    "gt",
+    "ge",
+    "is_lt",
+    "is_le",
+    "is_gt",
+    "is_ge",
+    "is_sign_positive",
+    "is_sign_negative",
+];
+
+/// Without brackets, references and signs.
+fn bare(e: &Expr) -> &Expr {
+    match e {
+        Expr::Paren(e) => bare(&e.expr),
+        Expr::Group(e) => bare(&e.expr),
+        Expr::Reference(e) => bare(&e.expr),
+        Expr::Unary(e) => bare(&e.expr),
+        e => e,
+    }
+}
+
+/// The segments of a path.
+fn names(path: &syn::Path) -> Vec<String> {
+    path.segments.iter().map(|s| s.ident.to_string()).collect()
+}
+
+fn is_one_of(list: &[&str], name: impl ToString) -> bool {
+    list.contains(&name.to_string().as_str())
+}
+
+/// Whether an expression shows that it is of whole numbers, or of others that are exact.
+fn is_whole(e: &Expr) -> bool {
+    match bare(e) {
+        Expr::Lit(e) => matches!(e.lit, Lit::Int(_)),
+        Expr::Binary(e) => is_whole(&e.left) || is_whole(&e.right),
+        Expr::MethodCall(e) => is_one_of(WHOLE_CALLS, &e.method),
+        Expr::Index(e) => matches!(bare(&e.expr), Expr::Field(_)) && is_whole(&e.expr),
+        Expr::Field(e) => match &e.member {
+            syn::Member::Named(name) => is_one_of(WHOLE_NAMES, name),
+            syn::Member::Unnamed(_) => false,
+        },
+        Expr::Path(e) => match &names(&e.path)[..] {
+            [name] => is_one_of(WHOLE_NAMES, name),
+            [kind, ..] => is_one_of(WHOLE_TYPES, kind),
+            [] => false,
+        },
+        Expr::Call(e) => is_whole(&e.func),
+        Expr::Cast(e) => match &*e.ty {
+            syn::Type::Path(e) => names(&e.path).iter().any(|n| is_one_of(WHOLE_TYPES, n)),
+            _ => false,
+        },
+        _ => false,
+    }
+}
+
+/// Whether an expression shows that it is a double, or wider.
+fn is_double(e: &Expr) -> bool {
+    match bare(e) {
+        Expr::Lit(e) => matches!(e.lit, Lit::Float(_)),
+        Expr::Binary(e) => is_double(&e.left) || is_double(&e.right),
+        Expr::MethodCall(e) => is_one_of(CALLS, &e.method),
+        Expr::Path(e) => match &names(&e.path)[..] {
+            [kind, ..] if is_one_of(WHOLE_TYPES, kind) => false,
+            [.., name] => is_one_of(CONSTANTS, name),
+            [] => false,
+        },
+        // `Some(0.0)`, `N::of(x)`.
+        Expr::Call(e) => match bare(&e.func) {
+            Expr::Path(f) if names(&f.path).last().is_some_and(|n| n == "of") => true,
+            _ => e.args.iter().any(is_double),
+        },
+        Expr::Cast(e) => matches!(&*e.ty, syn::Type::Path(e) if e.path.is_ident("f64")),
+        Expr::Array(e) => e.elems.iter().any(is_double),
+        Expr::Tuple(e) => e.elems.iter().any(is_double),
+        _ => false,
+    }
+}
+
+/// Whether it is reckoned, which ids and enums are not.
+fn is_reckoned(e: &Expr) -> bool {
+    match bare(e) {
+        Expr::Binary(e) => matches!(
+            e.op,
+            BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_)
+        ),
+        _ => false,
+    }
+}
+
+/// Whether an operator compares what may be doubles.
+fn compares(op: &BinOp, sides: [&Expr; 2]) -> bool {
+    let is_shown = sides.iter().any(|side| is_double(side));
+    let is_open = !sides.iter().any(|side| is_whole(side));
+    match op {
+        BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) => is_shown || is_open,
+        BinOp::Eq(_) | BinOp::Ne(_) => {
+            is_shown || is_open && sides.iter().any(|side| is_reckoned(side))
+        }
+        _ => false,
+    }
+}
+
+/// Whether it is a range that may be of doubles.
+fn is_open_range(e: &Expr) -> bool {
+    let Expr::Range(range) = bare(e) else {
+        return false;
+    };
+    let mut ends = range.start.iter().chain(&range.end);
+    !ends.any(|end| is_whole(end))
+}
+
+/// The expressions in a macro's body, as far as it is a list of them, or that of `matches!`.
+fn expressions(tokens: proc_macro2::TokenStream) -> Vec<Expr> {
+    let list = Punctuated::<Expr, Token![,]>::parse_terminated;
+    if let Ok(all) = list.parse2(tokens.clone()) {
+        return all.into_iter().collect();
+    }
+    let repeated = Punctuated::<Expr, Token![;]>::parse_terminated;
+    if let Ok(all) = repeated.parse2(tokens.clone()) {
+        return all.into_iter().collect();
+    }
+    let matching = |input: ParseStream<'_>| {
+        let mut found = vec![input.parse::<Expr>()?];
+        input.parse::<Token![,]>()?;
+        syn::Pat::parse_multi_with_leading_vert(input)?;
+        if input.parse::<Option<Token![if]>>()?.is_some() {
+            found.push(input.parse()?);
+        }
+        input.parse::<Option<Token![,]>>()?;
+        Ok(found)
+    };
+    matching.parse2(tokens).unwrap_or_default()
+}
+
+/// The comparisons that may be of doubles, by their lines.
+#[derive(Default)]
+struct Comparisons(Vec<(usize, String)>);
+
+impl Comparisons {
+    fn of(text: &str) -> Vec<(usize, String)> {
+        let mut all = Self::default();
+        all.visit_file(&syn::parse_file(text).unwrap());
+        all.0
+    }
+
+    fn note(&mut self, at: &impl Spanned) {
+        let span = at.span();
+        let text = span.source_text().unwrap_or_default();
+        let words: Vec<&str> = text.split_whitespace().collect();
+        self.0.push((span.start().line, words.join(" ")));
+    }
+}
+
+impl<'a> Visit<'a> for Comparisons {
+    fn visit_expr_binary(&mut self, e: &'a syn::ExprBinary) {
+        if compares(&e.op, [&e.left, &e.right]) {
+            self.note(e);
+        }
+        visit::visit_expr_binary(self, e);
+    }
+
+    fn visit_expr_method_call(&mut self, e: &'a syn::ExprMethodCall) {
+        let holds = e.method == "contains" && is_open_range(&e.receiver);
+        if holds || is_one_of(COMPARING, &e.method) {
+            self.note(e);
+        }
+        visit::visit_expr_method_call(self, e);
+    }
+
+    /// `f64::lt`, handed on.
+    fn visit_expr_path(&mut self, e: &'a syn::ExprPath) {
+        if let [_, .., name] = &names(&e.path)[..]
+            && is_one_of(COMPARING, name)
+        {
+            self.note(e);
+        }
+    }
+
+    /// `0.0..1.0`.
+    fn visit_pat(&mut self, e: &'a syn::Pat) {
+        if let syn::Pat::Range(range) = e
+            && range
+                .start
+                .iter()
+                .chain(&range.end)
+                .any(|end| is_double(end))
+        {
+            self.note(e);
+        }
+        visit::visit_pat(self, e);
+    }
+
+    fn visit_macro(&mut self, e: &'a syn::Macro) {
+        for e in expressions(e.tokens.clone()) {
+            Comparisons::visit_expr(self, &e);
+        }
+    }
+
+    fn visit_item_mod(&mut self, e: &'a syn::ItemMod) {
+        let is_test = |a: &syn::Attribute| {
+            a.path().is_ident("cfg") && a.parse_args::<syn::Ident>().is_ok_and(|i| i == "test")
+        };
+        if !e.attrs.iter().any(is_test) {
+            visit::visit_item_mod(self, e);
+        }
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The source files of those who decide.
+fn deciding() -> Vec<PathBuf> {
+    let excepted: Vec<PathBuf> = EXCEPTIONS.iter().map(|(p, _)| root().join(p)).collect();
+    let mut found = Vec::new();
+    let mut waiting: Vec<PathBuf> = SOURCES.iter().map(|p| root().join(p)).collect();
+    while let Some(path) = waiting.pop() {
+        if excepted.contains(&path) {
+            continue;
+        }
+        if path.is_dir() {
+            waiting.extend(fs::read_dir(path).unwrap().map(|e| e.unwrap().path()));
+        } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("tests.rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The comparisons in an expression.
+fn found_in(expression: &str) -> usize {
+    Comparisons::of(&format!("fn f() {{ {expression}; }}")).len()
+}
+
+#[test]
+fn comparisons_of_doubles_are_seen() {
+    for expression in [
+        "x.norm() <= near",
+        "a.dot(&b) > N::ZERO",
+        "t < hi",
+        "-x < -y",
+        "size == 0.0",
+        "hi - lo != cycle",
+        "n <= 1.0",
+        "k[2] < q",
+        "turn as f64 > n",
+        "side(p) != Some(0.0)",
+        "*step == judge.band::<N>()",
+        "(lo..=hi).contains(&t)",
+        "a.partial_cmp(&b)",
+        "a.total_cmp(&b).is_lt()",
+        "all.is_sorted_by(f64::le)",
+        "all.iter().any(|t| *t > from)",
+        "assert!(x > y, \"{x}\")",
+        "matches!(met, Some(m) | Old(m) if m.t <= hi)",
+        "vec![x < y; 3]",
+        "match t { 0.0..1.0 => a, x if x < hi => b, _ => c }",
+        "if let Some(t) = root && t < hi {}",
+    ] {
+        assert!(found_in(expression) > 0, "{expression}");
+    }
+}
+
+#[test]
+fn what_is_whole_or_exact_passes() {
+    for expression in [
+        "i + 1 < all.len()",
+        "depth >= 16",
+        "self.depth[&a] >= self.depth[&b]",
+        "(n as usize) <= most",
+        "usize::from(a) < b",
+        "p.degree() > least",
+        "slope > Rational::ZERO",
+        "a.vertex == b.vertex",
+        "side == Side::On",
+        "found + 1 == whole",
+        "found + more == all.len()",
+        "i + n - j <= back",
+        "(0..4).contains(&turn)",
+        "names.contains(&name)",
+        "x.is_beyond(limit) && t.lies_in([lo, hi])",
+        "a.total_cmp(&b)",
+    ] {
+        assert_eq!(found_in(expression), 0, "{expression}");
+    }
+    let test = "#[cfg(test)] mod tests { fn f() { x < y; } }";
+    assert_eq!(Comparisons::of(test), []);
+}
+
+#[test]
+fn numbers_are_asked_about_in_one_place() {
+    for (path, _) in EXCEPTIONS {
+        assert!(root().join(path).exists(), "{path}");
+    }
+    let files = deciding();
+    assert!(files.len() > 40);
+    let mut wrong = Vec::new();
+    for path in files {
+        let text = fs::read_to_string(&path).unwrap();
+        for (line, text) in Comparisons::of(&text) {
+            wrong.push(format!("{}:{line}: {text}", path.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

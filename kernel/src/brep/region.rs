@@ -183,26 +183,26 @@ impl<N: Number> Sorter<'_, N> {
         Start { arc, point, left }
     }
 
-    /// Walks down the rulings of a cylinder or a cone, all the same way: every loop but the lowest
-    /// of a region has the region somewhere below it. Where the loop's points below which it is are
-    /// unclear, or the loop is of rulings alone, a walk first turns along a parallel.
+    /// Walks down the rulings of a cylinder or a cone, all the same way, to the lowest loop of the
+    /// region. A walk from below which the region does not lie begins on the loop's other side, and
+    /// comes to the region through the loop itself, if it is not the lowest. Where all walks are
+    /// unclear, or the loop is of rulings alone, one first turns along a parallel.
     fn connect_ruled(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
         let starts = self.starts(ring);
-        let (mut below, mut across) = (false, 0);
-        for start in &starts {
-            let Some(walk) = self.down(&start.point) else {
-                continue;
-            };
+        let down = |start: &Start<N>| {
+            let walk = self.down(&start.point)?;
             let heading = walk.direction(&start.point).dot(&start.left);
-            let is_below = heading.reaches(N::of(SLANT));
-            below |= is_below;
-            across += usize::from(heading.abs().is_short_of(N::of(SLANT)));
-            if is_below && self.follow_down(ring, start, vec![walk], attempt) {
+            Some((heading, walk))
+        };
+        let mut walks: Vec<_> = starts.iter().map(|s| (s, down(s))).collect();
+        // First those below which the region lies.
+        walks.sort_by_key(|(_, down)| !down.as_ref().is_some_and(|d| d.0.is_above_zero()));
+        for (start, down) in walks {
+            if let Some((_, walk)) = down
+                && self.follow_down(ring, start, vec![walk], attempt)
+            {
                 return None;
             }
-        }
-        if !below && across < starts.len() {
-            return None;
         }
         let turn = N::HALF + N::of(0.7) * N::of(attempt as f64);
         let turned = starts
@@ -297,7 +297,8 @@ impl<N: Number> Sorter<'_, N> {
     }
 
     /// Follows the legs of a walk and joins the loops passed; `goal` is joined where the walk ends
-    /// inside. False where anything is unclear.
+    /// inside. It starts into the region of the loop, or else into that on the other side of the edge,
+    /// if there is one. False where anything is unclear.
     fn follow(
         &mut self,
         ring: usize,
@@ -310,10 +311,13 @@ impl<N: Number> Sorter<'_, N> {
         let heading = legs[0].direction(p).dot(left);
         // What ends next to the arc has not left it: the next leg may run to its other side.
         let leaves = legs.len() == 1 || legs[0].length().is_beyond(self.start());
-        if heading.is_short_of(N::of(SLANT)) || !leaves {
+        if !heading.abs().reaches(N::of(SLANT)) || !leaves {
             return false;
         }
-        let mut inside = Some(ring);
+        let mut inside = match heading.is_above_zero() {
+            true => Some(ring),
+            false => self.twin(arc).map(|twin| self.owner[twin]),
+        };
         let mut before = inside;
         let mut pairs = Vec::new();
         for (k, leg) in legs.iter().enumerate() {

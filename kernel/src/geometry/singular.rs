@@ -58,6 +58,7 @@ pub(super) fn singular_points<N: Number>(
     let mut stack: Vec<(Cell<N>, u32)> = plain_grid().into_iter().map(|c| (c, 0)).collect();
     let doubles = tracer.in_doubles();
     while let Some((cell, depth)) = stack.pop() {
+        tracer.look_at(&cell)?;
         let rough = doubles
             .as_ref()
             .map(|f| Look::at(f, &cell.in_doubles(), reach.above()));

@@ -35,6 +35,10 @@ const LEAD: f64 = 4.0;
 const WHOLE: f64 = 16.0;
 /// Newton's steps towards a degenerate point.
 const STEPS: usize = 12;
+/// The same from the digits of doubles on.
+const MORE_STEPS: usize = 4;
+/// How much farther off Taylor's terms may be in doubles than a form's value.
+const OFF: f64 = 1024.0;
 
 /// A critical point with a Hessian of rank two; none where no zone is plain.
 pub(super) fn plain<N: Number>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
@@ -73,32 +77,77 @@ fn tangents<N: Number>(at: &Partials<N>) -> [[N; 2]; 2] {
     [[q, at.xx], [at.yy, q]]
 }
 
+/// The zero that steps lead to from `start`, in doubles first where the form has more digits: what
+/// `vanishes` there denies of the form in doubles, within what these are off, is none.
+fn zero<N: Number>(
+    tracer: &Tracer<'_, N>,
+    start: [N; 2],
+    steps: (
+        impl Fn(&BiTrig<N>, [N; 2]) -> Option<[N; 2]>,
+        impl Fn(&BiTrig, [f64; 2]) -> Option<[f64; 2]>,
+    ),
+    vanishes: impl Fn(&BiTrig, [f64; 2], f64) -> bool,
+) -> Option<[N; 2]> {
+    let Some((form, slop)) = tracer.rough() else {
+        return walk(start, STEPS, |p| steps.0(tracer.form, p));
+    };
+    let rough = walk(start.map(N::rounded), STEPS, |p| steps.1(form, p))?;
+    let band = tracer.band.rounded().max(OFF * slop);
+    vanishes(form, rough, band).then_some(())?;
+    walk(rough.map(N::of), MORE_STEPS, |p| steps.0(tracer.form, p))
+}
+
+/// Where a number of steps leads, unless that is far.
+fn walk<N: Number>(
+    start: [N; 2],
+    steps: usize,
+    step: impl Fn([N; 2]) -> Option<[N; 2]>,
+) -> Option<[N; 2]> {
+    let mut p = start;
+    for _ in 0..steps {
+        let step = step(p)?;
+        p = [p[0] + step[0], p[1] + step[1]];
+        if !near(&p, &start, N::of(ZONE)) {
+            return None;
+        }
+    }
+    Some(p)
+}
+
 /// The point at which all terms of a degree below n vanish, next to `start`.
 fn multiple<N: Number>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
     n: usize,
 ) -> Option<(SingularPoint<N>, N)> {
-    let mut p = start;
-    for _ in 0..STEPS {
-        let k = taylor(tracer.form, p, Axis::Around);
-        let step = toward_multiple(&k, n)?;
-        p = [p[0] + step[0], p[1] + step[1]];
-        if !near(&p, &start, N::of(ZONE)) {
-            return None;
-        }
-    }
+    let vanishes = |form: &BiTrig, p, band| terms_vanish(&taylor(form, p, Axis::Around), n, band);
+    let steps = (
+        |form: &BiTrig<N>, p| toward_multiple(&taylor(form, p, Axis::Around), n),
+        |form: &BiTrig, p| toward_multiple(&taylor(form, p, Axis::Around), n),
+    );
+    let p = zero(tracer, start, steps, |f, p, band| {
+        vanishes(f, p, band).is_some()
+    })?;
     let k = taylor(tracer.form, p, Axis::Around);
-    let size = |d: usize| (0..=d).map(|j| k[d - j][j].abs()).sum::<N>();
-    let reach = (tracer.band / size(n)).rough_root(n as u32);
-    let vanishes = (0..n).all(|d| size(d) * reach.powi(d as i32) <= tracer.band);
-    let leads = reach < N::of(ZONE) && N::of(LEAD) * size(n + 1) * reach <= size(n);
-    if !(vanishes && leads) {
+    let reach = terms_vanish(&k, n, tracer.band)?;
+    if !(reach < N::of(ZONE) && N::of(LEAD) * size(&k, n + 1) * reach <= size(&k, n)) {
         return None;
     }
     let directions = roots_of_form(&k, n)?;
     let point = fold(tracer, p, n, directions)?;
     Some((point, reach))
+}
+
+/// The size of the terms of a degree.
+fn size<N: Number>(k: &Taylor<N>, degree: usize) -> N {
+    (0..=degree).map(|j| k[degree - j][j].abs()).sum()
+}
+
+/// Where the terms of degree n leave the band, if none of a lower degree does within that.
+fn terms_vanish<N: Number>(k: &Taylor<N>, n: usize, band: N) -> Option<N> {
+    let reach = (band / size(k, n)).rough_root(n as u32);
+    let vanish = (0..n).all(|d| size(k, d) * reach.powi(d as i32) <= band);
+    vanish.then_some(reach)
 }
 
 /// Gauss and Newton's step towards the point at which the terms of degree n - 1 vanish.
@@ -257,43 +306,48 @@ impl<N: Number> Sheet<N> {
     }
 }
 
+impl<N: Number> Sheet<N> {
+    /// Newton's step towards the point at which F vanishes to the order k along Y; the sheet is at p.
+    fn step(&self, form: &BiTrig<N>, p: [N; 2], k: usize) -> [N; 2] {
+        let at = form.partials(p[0], p[1]);
+        let across = match self.axis {
+            Axis::Around => at.y,
+            Axis::Tube => at.x,
+        };
+        let s = -self.along[k - 1] / (N::of(k as f64) * self.along[k]);
+        let y = -N::HALF * across / self.bend + self.trend[1] * s;
+        match self.axis {
+            Axis::Around => [s, y],
+            Axis::Tube => [y, s],
+        }
+    }
+
+    /// Where the term of order k leaves the band, if none of a lower order does within that.
+    fn vanishes(&self, k: usize, band: N) -> Option<N> {
+        let reach = (band / self.along[k].abs()).rough_root(k as u32);
+        let vanish = (0..k).all(|j| self.along[j].abs() * reach.powi(j as i32) <= band);
+        vanish.then_some(reach)
+    }
+}
+
 /// The point of rank one next to `start` at which F vanishes to the order k along Y.
 fn rank_one<N: Number>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
     k: usize,
 ) -> Option<(SingularPoint<N>, N)> {
-    let (form, band) = (tracer.form, tracer.band);
-    let mut p = start;
-    for _ in 0..STEPS {
-        let sheet = Sheet::at(form, p);
-        let at = form.partials(p[0], p[1]);
-        let across = match sheet.axis {
-            Axis::Around => at.y,
-            Axis::Tube => at.x,
-        };
-        let s = -sheet.along[k - 1] / (N::of(k as f64) * sheet.along[k]);
-        let y = -N::HALF * across / sheet.bend + sheet.trend[1] * s;
-        let step = match sheet.axis {
-            Axis::Around => [s, y],
-            Axis::Tube => [y, s],
-        };
-        p = [p[0] + step[0], p[1] + step[1]];
-        if !near(&p, &start, N::of(ZONE)) {
-            return None;
-        }
-    }
-    let sheet = Sheet::at(form, p);
-    let last = sheet.along[k].abs();
-    // Where the leading term leaves the band.
-    let reach = (band / last).rough_root(k as u32);
-    let vanishes = (0..k).all(|j| sheet.along[j].abs() * reach.powi(j as i32) <= band);
-    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::of(LEAD) * band
+    let steps = (
+        |form: &BiTrig<N>, p| Some(Sheet::at(form, p).step(form, p, k)),
+        |form: &BiTrig, p| Some(Sheet::at(form, p).step(form, p, k)),
+    );
+    let vanishes = |form: &BiTrig, p, band| Sheet::at(form, p).vanishes(k, band).is_some();
+    let p = zero(tracer, start, steps, vanishes)?;
+    let sheet = Sheet::at(tracer.form, p);
+    let reach = sheet.vanishes(k, tracer.band)?;
+    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::of(LEAD) * tracer.band
         && reach < N::of(ZONE)
-        && N::of(LEAD) * sheet.along[k + 1].abs() * reach <= last;
-    if !(vanishes && leads) {
-        return None;
-    }
+        && N::of(LEAD) * sheet.along[k + 1].abs() * reach <= sheet.along[k].abs();
+    leads.then_some(())?;
     Some((rank_one_branches(tracer, p, &sheet, k)?, reach))
 }
 

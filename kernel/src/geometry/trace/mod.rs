@@ -17,6 +17,7 @@ use super::trigonometric::Trigonometric;
 use crate::number::precision::Number;
 use crate::number::roots::{Contact, Zeros, isolate};
 use grid::{Cell, Layout};
+use std::cell::Cell as Counter;
 
 /// A point where the curve crosses or touches itself, by its angles.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,7 +117,13 @@ pub(super) struct Tracer<'a, N: Number = f64> {
     pub band: N,
     /// The form in doubles, of one of more digits.
     rough: Option<Box<BiTrig>>,
+    /// How many cells may still be looked at.
+    cells: Counter<u32>,
 }
+
+/// How many cells of one form are looked at, in all layouts: branches that lie next to one another all
+/// along, nearer than a millionth, would take more than anyone waits for.
+const MOST_CELLS: u32 = 1 << 17;
 
 /// A bound of the rounding error of a form.
 fn slop<N: Number>(form: &BiTrig<N>) -> N {
@@ -145,18 +152,33 @@ impl<'a, N: Number> Tracer<'a, N> {
             slop,
             band: band.max(slop),
             rough: (!N::IS_DOUBLE).then(|| Box::new(form.in_doubles())),
+            cells: Counter::new(MOST_CELLS),
         }
+    }
+
+    /// Counts a cell that is looked at; an error where they were too many.
+    pub(super) fn look_at(&self, cell: &Cell<N>) -> Result<(), Unresolved> {
+        let left = self.cells.get().checked_sub(1);
+        self.cells.set(left.ok_or(Unresolved::at(cell.centre()))?);
+        Ok(())
+    }
+
+    /// The form in doubles, of one of more digits, and how far it is off.
+    pub(super) fn rough(&self) -> Option<(&BiTrig, f64)> {
+        let form = self.rough.as_deref()?;
+        Some((form, slop(form)))
     }
 
     /// The same in doubles, of a form of more digits: what it bounds holds, but may tell less.
     pub(super) fn in_doubles(&self) -> Option<Tracer<'_>> {
-        let form = self.rough.as_deref()?;
+        let (form, slop) = self.rough()?;
         Some(Tracer {
             form,
             reaches: self.reaches.in_doubles(),
-            slop: slop(form),
+            slop,
             band: self.band.rounded(),
             rough: None,
+            cells: Counter::default(),
         })
     }
 
@@ -187,6 +209,7 @@ impl<'a, N: Number> Tracer<'a, N> {
         let mut stack: Vec<(Cell<N>, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
         let doubles = self.in_doubles();
         while let Some((cell, depth)) = stack.pop() {
+            self.look_at(&cell)?;
             let rough = doubles.as_ref().map(|f| f.bounds(&cell.in_doubles()));
             let (holds, wide) = match rough.map(|b| (b.holds(), b.wide)) {
                 Some(told) if cell.is_coarse() || !matches!(told.0, Holds::Unknown) => told,

@@ -21,7 +21,11 @@ fn a_hole_next_to_an_apex_is_no_face() {
             assert_eq!(known.violations(), [], "{text}");
             // The bases of both, half of the cylinder's under the cone, its side twice.
             let counted = &known.brep.topology;
-            assert_eq!((counted.solids.len(), counted.faces.len()), (1, 6), "{text}");
+            assert_eq!(
+                (counted.solids.len(), counted.faces.len()),
+                (1, 6),
+                "{text}"
+            );
         }
     }
 }

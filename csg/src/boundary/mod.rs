@@ -227,6 +227,9 @@ pub enum EvaluationError {
         /// The greatest: a hundredth of the part's size.
         most: f64,
     },
+    /// The boundary breaks one of its own rules: something was told wrongly, and it would be wrong.
+    #[error("the boundary that was found is unsound: {0}")]
+    Unsound(Violation),
 }
 
 impl EvaluationError {
@@ -238,6 +241,7 @@ impl EvaluationError {
             | Self::Closed { .. }
             | Self::Assembly(_)
             | Self::Vague { .. }
+            | Self::Unsound(_)
             | Self::Taper { .. }
             | Self::Resolution { .. } => true,
             Self::Size | Self::Far { .. } | Self::Doubt { .. } => false,
@@ -359,6 +363,9 @@ fn evaluated<N: Number>(
             distance: distance.rounded(),
             resolution,
         });
+    }
+    if let Some(broken) = check(&brep, N::of(resolution)).into_iter().next() {
+        return Err(EvaluationError::Unsound(broken));
     }
     let decisions = judge.decisions();
     Ok(Evaluated {

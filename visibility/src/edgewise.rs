@@ -16,7 +16,7 @@ use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::roots::{Zeros, isolate};
 use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::sign::Sign;
 
 /// The cylinder that an image lies on, and where it turns back on itself.
 #[derive(Clone, Debug)]
@@ -32,19 +32,20 @@ pub struct Edgewise {
 const PLACES: usize = 17;
 
 impl Edgewise {
-    /// The curve over `range` on one of the surfaces, if that is seen edge-on.
+    /// The curve over `range` on one of the surfaces, if that is seen edge-on: nearer to parallel sight
+    /// than `tilt`. `band` is the resolution.
     pub fn of<'a>(
         curve: &Curve,
         range: [f64; 2],
         surfaces: impl Iterator<Item = &'a Surface>,
         projection: &Projection,
-        band: f64,
+        [band, tilt]: [f64; 2],
     ) -> Option<Self> {
         let Sight::Direction(sight) = projection.sight else {
             return None;
         };
         let carrier = surfaces.into_iter().find_map(|surface| match surface {
-            Surface::Cylinder(s) if s.frame.z.cross(&sight).norm().is_within(ROUNDING) => Some(*s),
+            Surface::Cylinder(s) if s.frame.z.cross(&sight).norm().is_within(tilt) => Some(*s),
             _ => None,
         })?;
         // x y' - y x' vanishes; it is the square of the radius times the angle's derivative.

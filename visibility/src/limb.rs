@@ -56,12 +56,18 @@ fn local(frame: &Frame, sight: &Sight) -> LocalSight {
     }
 }
 
-/// The limbs of a surface; `band` is the resolution.
-pub fn limbs(surface: &Surface, sight: &Sight, band: f64) -> Result<Vec<Limb>, Unresolved> {
+/// The limbs of a surface; `band` is the resolution, and `tilt` the sine of the angle to parallel sight
+/// that nothing of the part comes to as much as that by.
+pub fn limbs(
+    surface: &Surface,
+    sight: &Sight,
+    band: f64,
+    tilt: f64,
+) -> Result<Vec<Limb>, Unresolved> {
     Ok(match surface {
         Surface::Plane(_) => Vec::new(),
-        Surface::Cylinder(s) => cylinder_limbs(s, sight, band),
-        Surface::Cone(s) => cone_limbs(s, sight, band),
+        Surface::Cylinder(s) => cylinder_limbs(s, sight, band, tilt),
+        Surface::Cone(s) => cone_limbs(s, sight, band, tilt),
         Surface::Sphere(s) => sphere_limb(s, sight, band).into_iter().collect(),
         Surface::Torus(s) => torus_limbs(s, sight, band)?,
     })
@@ -73,11 +79,11 @@ fn half_angle(a: f64, c: f64) -> Option<f64> {
     exists.then(|| ((a - c) * (a + c)).sqrt().atan2(c))
 }
 
-fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64) -> Vec<Limb> {
+fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64, tilt: f64) -> Vec<Limb> {
     let (across, level, least) = match local(&s.frame, sight) {
         LocalSight::Eye(e) => (e, s.radius, band),
         // Seen along its axis a cylinder is edge-on.
-        LocalSight::Direction(d) => (d, 0.0, ROUNDING.sqrt()),
+        LocalSight::Direction(d) => (d, 0.0, tilt),
     };
     let reach = across.x.hypot(across.y);
     if (reach - level).is_at_most(least) {
@@ -98,11 +104,11 @@ fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64) -> Vec<Limb> {
         .to_vec()
 }
 
-fn cone_limbs(s: &Cone, sight: &Sight, band: f64) -> Vec<Limb> {
+fn cone_limbs(s: &Cone, sight: &Sight, band: f64, tilt: f64) -> Vec<Limb> {
     // N·r = -N·E on every ruling: cos (e_x cos u + e_y sin u) = sin e_z.
     let (e, least) = match local(&s.frame, sight) {
         LocalSight::Eye(e) => (e, band),
-        LocalSight::Direction(d) => (d, ROUNDING.sqrt()),
+        LocalSight::Direction(d) => (d, tilt),
     };
     let reach = s.cos * e.x.hypot(e.y);
     let level = s.sin * e.z;
@@ -410,7 +416,7 @@ mod tests {
         ];
         for surface in surfaces() {
             for sight in &sights {
-                let limbs = limbs(&surface, sight, 1e-10).unwrap();
+                let limbs = limbs(&surface, sight, 1e-10, 1e-10).unwrap();
                 assert!(!limbs.is_empty(), "{surface:?}");
                 for limb in &limbs {
                     for k in 0..50 {
@@ -435,11 +441,15 @@ mod tests {
     fn from_inside_there_is_no_limb() {
         let eye = Sight::Eye(tilted().point(0.1, 0.1, 1.0));
         for surface in &surfaces()[..3] {
-            assert!(limbs(surface, &eye, 1e-10).unwrap().is_empty());
+            assert!(limbs(surface, &eye, 1e-10, 1e-10).unwrap().is_empty());
         }
         // The other nappe's solid angle gives none either.
         let eye = Sight::Eye(tilted().point(0.1, 0.1, -1.0));
-        assert!(limbs(&surfaces()[1], &eye, 1e-10).unwrap().is_empty());
+        assert!(
+            limbs(&surfaces()[1], &eye, 1e-10, 1e-10)
+                .unwrap()
+                .is_empty()
+        );
     }
 
     #[test]
@@ -451,7 +461,7 @@ mod tests {
         let f = torus.frame;
         let sight = Sight::Direction(f.vector(&Vector3::new(1.0, 0.0, -0.35)).normalize());
         let mut count = 0;
-        for limb in limbs(&surface, &sight, 1e-10).unwrap() {
+        for limb in limbs(&surface, &sight, 1e-10, 1e-10).unwrap() {
             let end = limb.curve.period().unwrap();
             for t in cusps(&torus, &sight, &limb.curve, [0.0, end], 1e-10) {
                 let Sight::Direction(d) = sight else {

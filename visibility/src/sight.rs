@@ -153,6 +153,9 @@ pub struct Scene<'a> {
     pub locator: Locator<'a>,
     /// The resolution.
     pub band: f64,
+    /// The sine of the angle between parallel sight and a direction along which the whole part is no
+    /// longer in the image than the resolution.
+    pub tilt: f64,
     tree: RTree<FaceBox>,
     boxes: Vec<Box3>,
 }
@@ -227,11 +230,13 @@ impl<'a> Scene<'a> {
             GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
         };
         let tree = RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect());
+        let size = boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b)).diagonal();
         Self {
             brep,
             projection,
             locator,
             band,
+            tilt: (band / size).max(ROUNDING),
             tree,
             boxes,
         }

@@ -284,7 +284,12 @@ pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<Lim
             continue;
         }
         if known[index].is_none() {
-            known[index] = Some(limbs(surface, &scene.projection.sight, scene.band)?);
+            known[index] = Some(limbs(
+                surface,
+                &scene.projection.sight,
+                scene.band,
+                scene.tilt,
+            )?);
         }
         if let Some(limbs) = &known[index] {
             trim.face(face, limbs);

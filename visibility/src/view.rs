@@ -315,8 +315,14 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         if let Image::General = seen {
             let brep = self.scene.brep;
             let surfaces = source.faces.iter().map(|f| brep.surface(f.0));
-            seen = Edgewise::of(source.curve, range, surfaces, projection, band)
-                .map_or(seen, Image::Edgewise);
+            seen = Edgewise::of(
+                source.curve,
+                range,
+                surfaces,
+                projection,
+                [band, self.scene.tilt],
+            )
+            .map_or(seen, Image::Edgewise);
         }
         let straight = match seen {
             Image::General | Image::Edgewise(_) => stretches(source.curve, range, projection, band),

@@ -297,8 +297,8 @@ impl<N: Number> Sorter<'_, N> {
     }
 
     /// Follows the legs of a walk and joins the loops passed; `goal` is joined where the walk ends
-    /// inside. It starts into the region of the loop, or else into that on the other side of the edge,
-    /// if there is one. False where anything is unclear.
+    /// inside. It starts into the region of the loop, or down a ruling also into that on the other side
+    /// of the edge, if there is one. False where anything is unclear.
     fn follow(
         &mut self,
         ring: usize,
@@ -311,12 +311,16 @@ impl<N: Number> Sorter<'_, N> {
         let heading = legs[0].direction(p).dot(left);
         // What ends next to the arc has not left it: the next leg may run to its other side.
         let leaves = legs.len() == 1 || legs[0].length().is_beyond(self.start());
-        if !heading.abs().reaches(N::of(SLANT)) || !leaves {
+        if !leaves {
             return false;
         }
-        let mut inside = match heading.is_above_zero() {
-            true => Some(ring),
-            false => self.twin(arc).map(|twin| self.owner[twin]),
+        let is_ruled = matches!(self.surface, Surface::Cylinder(_) | Surface::Cone(_));
+        let mut inside = if heading.reaches(N::of(SLANT)) {
+            Some(ring)
+        } else if is_ruled && (-heading).reaches(N::of(SLANT)) {
+            self.twin(arc).map(|twin| self.owner[twin])
+        } else {
+            return false;
         };
         let mut before = inside;
         let mut pairs = Vec::new();

@@ -39,6 +39,7 @@ pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
         } else {
             Zeros::ByResolution
         },
+        ..EvaluationOptions::default()
     };
     let evaluation =
         evaluate(&description.tree, &how).map_err(|e| Failure::evaluation(&name, &e))?;

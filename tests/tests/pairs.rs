@@ -30,7 +30,7 @@ fn coincidences_turned() {
 }
 
 /// By which powers of two a coincidence is missed under exact evaluation.
-const EXACT_POWERS: [i32; 2] = [20, 60];
+const EXACT_POWERS: [i32; 2] = [10, 60];
 
 /// On one side of a coincidence the exact boundaries are alike, however near they are to it.
 fn alike(sign: &str) {

@@ -20,7 +20,7 @@ use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{Judge, Sign};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// Where a curve is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,12 +89,13 @@ pub(super) struct Arrangement<N: Number = f64> {
     pub tree: SolidTree,
 }
 
-/// The arrangement, and where its carriers come from.
+/// The arrangement of no more than `most` curves and cuts, and where its carriers come from.
 pub(super) fn arrange<'t, N: Number>(
     tree: &'t Tree,
     solids: &Solids<N>,
     extent: &Extent<N>,
     judge: &Judge,
+    most: usize,
 ) -> Result<(Arrangement<N>, Vec<Source<'t>>), EvaluationError> {
     let Merged {
         carriers,
@@ -117,13 +118,17 @@ pub(super) fn arrange<'t, N: Number>(
         tree,
     };
     let mut corners = Corners::new(judge.band());
-    for (pair, supports) in found.pairs(solids, reach) {
+    for (pair, supports) in found.pairs(solids, reach, most)? {
         found.add_pair(pair, &supports, &sources, extent, judge, &mut corners)?;
+        bounded(found.meetings.len(), most)?;
     }
     found.settle_contacts(judge);
     let mut later = Later::default();
+    let mut entities = found.meetings.len();
     for i in 0..found.meetings.len() {
         found.cut_meeting(i, solids, judge, &mut corners, &mut later);
+        entities += found.meetings[i].cuts.len();
+        bounded(entities, most)?;
     }
     found.calls.append(&mut later.calls);
     // The best known first: the others are put where they are.
@@ -140,25 +145,55 @@ pub(super) fn arrange<'t, N: Number>(
     Ok((found, sources))
 }
 
+/// An error where more is kept than the limit.
+fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
+    let left = most.checked_sub(entities);
+    left.map(|_| ()).ok_or(EvaluationError::Large { most })
+}
+
 type Pairs = BTreeMap<(usize, usize), Vec<Box3>>;
 
 impl<N: Number> Arrangement<N> {
-    /// The pairs of carriers whose faces' boxes meet, with the boxes that they share.
-    fn pairs(&self, solids: &Solids<N>, reach: N) -> Pairs {
+    /// The pairs of carriers whose faces' boxes meet, with the boxes that they share. Of equal solids
+    /// one is asked.
+    fn pairs(&self, solids: &Solids<N>, reach: N, most: usize) -> Result<Pairs, EvaluationError> {
         let mut pairs = Pairs::new();
-        for (i, s) in solids.all.iter().enumerate() {
-            let around = AABB::from_corners(s.bounds.min, s.bounds.max);
-            for near in self.tree.locate_in_envelope_intersecting(around) {
+        let mut known = HashSet::new();
+        let is_new = |i: &usize| {
+            let Box3 { min, max } = solids.all[*i].bounds;
+            known.insert((&self.sides[*i], [min, max].map(|p| p.map(f64::to_bits))))
+        };
+        let distinct: Vec<usize> = (0..solids.all.len()).filter(is_new).collect();
+        let boxes = distinct.iter().map(|&i| {
+            let b = solids.all[i].bounds.grown(reach);
+            GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
+        });
+        let tree = SolidTree::bulk_load(boxes.collect());
+        let mut shared = 0;
+        for &i in &distinct {
+            let s = &solids.all[i].bounds;
+            let around = AABB::from_corners(s.min, s.max);
+            for near in tree.locate_in_envelope_intersecting(around) {
                 let j = near.data;
                 if j >= i {
-                    self.add_pairs_of(solids, i, j, reach, &mut pairs);
+                    shared += self.add_pairs_of(solids, i, j, reach, &mut pairs);
                 }
             }
+            bounded(shared, most)?;
         }
-        pairs
+        Ok(pairs)
     }
 
-    fn add_pairs_of(&self, solids: &Solids<N>, i: usize, j: usize, reach: N, pairs: &mut Pairs) {
+    /// Adds the pairs of two solids, and gives their number.
+    fn add_pairs_of(
+        &self,
+        solids: &Solids<N>,
+        i: usize,
+        j: usize,
+        reach: N,
+        pairs: &mut Pairs,
+    ) -> usize {
+        let mut added = 0;
         let (s, o) = (&solids.all[i], &solids.all[j]);
         for (k, a) in s.sides.iter().enumerate() {
             let box_a = a.bounds.grown(reach);
@@ -169,9 +204,11 @@ impl<N: Number> Arrangement<N> {
                 }
                 if let Some(shared) = common(&box_a, &b.bounds.grown(reach)) {
                     pairs.entry((c.min(d), c.max(d))).or_default().push(shared);
+                    added += 1;
                 }
             }
         }
+        added
     }
 
     fn add_pair(

@@ -28,7 +28,7 @@ mod wings;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
-use premio_kernel::brep::check::{Violation, check, worst_gap};
+use premio_kernel::brep::check::{Violation, broken_rules, check, worst_gap};
 use premio_kernel::brep::mass::{Mass, mass};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
@@ -49,7 +49,13 @@ pub struct EvaluationOptions {
     pub noise: Option<f64>,
     /// What coincides.
     pub zeros: Zeros,
+    /// The most curves and points of curves that are kept, some two thousand bytes each; by default
+    /// [`MOST_ENTITIES`].
+    pub entities: Option<usize>,
 }
+
+/// The default limit on curves and points of curves between the surfaces of a part.
+pub const MOST_ENTITIES: usize = 1 << 23;
 
 /// The boundary of a tree, and how it was decided.
 #[derive(Debug)]
@@ -227,6 +233,12 @@ pub enum EvaluationError {
         /// The greatest: a hundredth of the part's size.
         most: f64,
     },
+    /// There are more pairs of faces that may meet, or curves and points in which they do, than are kept.
+    #[error("the faces of the part meet in more than {most} places: the limit")]
+    Large {
+        /// The limit.
+        most: usize,
+    },
     /// The boundary breaks one of its own rules: something was told wrongly, and it would be wrong.
     #[error("the boundary that was found is unsound: {0}")]
     Unsound(Violation),
@@ -244,7 +256,7 @@ impl EvaluationError {
             | Self::Unsound(_)
             | Self::Taper { .. }
             | Self::Resolution { .. } => true,
-            Self::Size | Self::Far { .. } | Self::Doubt { .. } => false,
+            Self::Size | Self::Far { .. } | Self::Doubt { .. } | Self::Large { .. } => false,
         }
     }
 }
@@ -339,7 +351,8 @@ fn evaluated<N: Number>(
         radius: N::of(0.75 * size),
     };
     tapers::check(&solids, &extent, &judge)?;
-    let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &judge)?;
+    let most = options.entities.unwrap_or(MOST_ENTITIES);
+    let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &judge, most)?;
     let pieces = pieces::pieces(&arrangement, &judge);
     if judge.proves() {
         proof::prove(&arrangement, &pieces, &sources, &judge)?;
@@ -364,7 +377,12 @@ fn evaluated<N: Number>(
             resolution,
         });
     }
-    if let Some(broken) = check(&brep, N::of(resolution)).into_iter().next() {
+    let band = N::of(resolution);
+    let broken = match N::IS_DOUBLE {
+        true => check(&brep, band),
+        false => broken_rules(&brep, band),
+    };
+    if let Some(broken) = broken.into_iter().next() {
         return Err(EvaluationError::Unsound(broken));
     }
     let decisions = judge.decisions();

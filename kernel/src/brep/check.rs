@@ -138,11 +138,24 @@ const PLACES: u32 = 8;
 
 /// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
 pub fn check<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
+    let mut found = broken_rules(brep, band);
+    check_measures(brep, &mut found);
+    found
+}
+
+/// The same without areas and volumes, which with more digits than doubles have take longer than the
+/// boundary itself.
+pub fn broken_rules<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
     let mut found = Vec::new();
     check_loops(brep, &mut found);
     check_edges(brep, band, &mut found);
     check_touches(brep, band, &mut found);
-    check_shells(brep, &mut found);
+    check_genera(brep, &mut found);
+    found
+}
+
+fn check_measures<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
+    check_shells(brep, found);
     for (i, Covered { area, noise }) in face_areas(brep).into_iter().enumerate() {
         // A sliver's may be rounding.
         if area.is_nan() || area.is_at_most(-noise) {
@@ -152,7 +165,6 @@ pub fn check<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
             });
         }
     }
-    found
 }
 
 fn check_loops<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
@@ -267,14 +279,20 @@ fn check_touches<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>)
     }
 }
 
+fn check_genera<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
+    for (i, shell) in brep.topology.shells.iter().enumerate() {
+        if shell.genus < 0 || shell.odd {
+            let euler = 2 - 2 * shell.genus - i32::from(shell.odd);
+            let shell = ShellId(i as u32);
+            found.push(Violation::Euler { shell, euler });
+        }
+    }
+}
+
 fn check_shells<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     let size = size(brep);
     for (i, shell) in brep.topology.shells.iter().enumerate() {
         let id = ShellId(i as u32);
-        if shell.genus < 0 || shell.odd {
-            let euler = 2 - 2 * shell.genus - i32::from(shell.odd);
-            found.push(Violation::Euler { shell: id, euler });
-        }
         let enclosed = shell_volume(brep, &shell.faces, size);
         let volume = enclosed.volume;
         // The volume of a sliver may be below rounding: then it tells nothing.

@@ -186,8 +186,9 @@ impl Number for Wide {
     const IS_DOUBLE: bool = false;
 
     fn rules() -> &'static Rules<Self> {
-        // Halves that agree to 2^-90 differ from the integral by far less.
-        static RULES: LazyLock<Rules<Wide>> = LazyLock::new(|| Rules::new(24, Wide(power(-90))));
+        // Halves that agree to 2^-64 differ from the integral by far less, and what is told is told in
+        // doubles.
+        static RULES: LazyLock<Rules<Wide>> = LazyLock::new(|| Rules::new(24, Wide(power(-64))));
         &RULES
     }
 

@@ -67,6 +67,22 @@ pub fn integral<N: Number, const D: usize>(
     sum
 }
 
+/// A part of the range that an integral is taken over.
+struct Part<N: Number, const D: usize> {
+    range: [N; 2],
+    depth: u32,
+    sum: [N; D],
+    /// Where its first half is; the second follows.
+    halves: Option<usize>,
+}
+
+/// How often a part is halved: next to a singular end the rest soon does not matter.
+const DEEPEST: u32 = 14;
+
+/// How many parts are halved, the widest first: singular ends take a few dozen. More is asked for by
+/// rounding alone, which no halving takes away.
+const MOST: usize = 128;
+
 /// The integral over [a, b], halved until both halves agree with the whole to within rounding or
 /// to within `floor`, an absolute error that does not matter.
 pub fn adaptive<N: Number, const D: usize>(
@@ -75,33 +91,44 @@ pub fn adaptive<N: Number, const D: usize>(
     floor: &[N; D],
     f: &mut impl FnMut(N) -> [N; D],
 ) -> [N; D] {
-    let whole = integral(&N::rules().smooth, a, b, &mut *f);
-    refine(a, b, whole, 0, floor, f)
+    let rules = N::rules();
+    let mut part = |[a, b]: [N; 2], depth| Part {
+        range: [a, b],
+        depth,
+        sum: integral(&rules.smooth, a, b, &mut *f),
+        halves: None,
+    };
+    let mut parts = vec![part([a, b], 0)];
+    let (mut next, mut halved) = (0, 0);
+    while let Some(whole) = parts.get(next) {
+        let ([a, b], depth) = (whole.range, whole.depth + 1);
+        let m = N::HALF * (a + b);
+        let halves = [part([a, m], depth), part([m, b], depth)];
+        let sum = added(&halves);
+        let settled = (0..D).all(|i| {
+            let scale = halves[0].sum[i].abs() + halves[1].sum[i].abs();
+            (sum[i] - whole.sum[i]).abs() <= (rules.settled * scale).max(floor[i])
+        });
+        if settled || depth > DEEPEST || halved == MOST {
+            parts[next].sum = sum;
+        } else {
+            halved += 1;
+            parts[next].halves = Some(parts.len());
+            parts.extend(halves);
+        }
+        next += 1;
+    }
+    // Halves stand behind what they are of.
+    for i in (0..parts.len()).rev() {
+        if let Some(first) = parts[i].halves {
+            parts[i].sum = added(&parts[first..first + 2]);
+        }
+    }
+    parts[0].sum
 }
 
-fn refine<N: Number, const D: usize>(
-    a: N,
-    b: N,
-    whole: [N; D],
-    depth: u32,
-    floor: &[N; D],
-    f: &mut impl FnMut(N) -> [N; D],
-) -> [N; D] {
-    let rules = N::rules();
-    let m = N::HALF * (a + b);
-    let left = integral(&rules.smooth, a, m, &mut *f);
-    let right = integral(&rules.smooth, m, b, &mut *f);
-    let sum: [N; D] = std::array::from_fn(|i| left[i] + right[i]);
-    let settled = (0..D).all(|i| {
-        let scale = left[i].abs() + right[i].abs();
-        (sum[i] - whole[i]).abs() <= (rules.settled * scale).max(floor[i])
-    });
-    if settled || depth >= 14 {
-        return sum;
-    }
-    let left = refine(a, m, left, depth + 1, floor, f);
-    let right = refine(m, b, right, depth + 1, floor, f);
-    std::array::from_fn(|i| left[i] + right[i])
+fn added<N: Number, const D: usize>(halves: &[Part<N, D>]) -> [N; D] {
+    std::array::from_fn(|i| halves[0].sum[i] + halves[1].sum[i])
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ use super::topology::{FaceId, Sense};
 use super::walk::{DirectedArc, Passage, Walk};
 use crate::geometry::bounds::Box3;
 use crate::geometry::curve::Curve;
-use crate::geometry::surface::{Surface, Torus};
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Sphere, Surface, Torus};
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
 use crate::number::sign::Sign;
@@ -162,11 +163,37 @@ impl<'a, N: Number> FaceLocator<'a, N> {
                 self.reach(&Walk::straight(s, p, direction))
             }
             Surface::Cylinder(_) | Surface::Cone(_) => self.ruled(p, k, turn),
-            Surface::Sphere(s) => match Walk::great_circle(&s.frame.origin, p, &self.target(k)) {
+            Surface::Sphere(s) => self.spherical(s, p, k, turn),
+            Surface::Torus(s) => self.toric(s, p, k, turn),
+        }
+    }
+
+    /// A great circle to a point of the boundary, by turns from aside: where the boundary is a great
+    /// circle, one from next to it, or from farther on along it, runs along it.
+    fn spherical(&self, sphere: &Sphere<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
+        let (centre, target) = (&sphere.frame.origin, self.target(k / 2));
+        if k.is_multiple_of(2) {
+            return match Walk::great_circle(centre, p, &target) {
                 Some(walk) => self.take(&walk),
                 None => Outcome::Unclear,
-            },
-            Surface::Torus(s) => self.toric(s, p, k, turn),
+            };
+        }
+        let tangent = Frame::about(*p, (p - centre).unit());
+        let (sin, cos) = turn.sin_cos();
+        let beside = tangent.point(sphere.radius * cos, sphere.radius * sin, N::ZERO);
+        let Some(aside) = Walk::great_circle(centre, p, &beside) else {
+            return Outcome::Unclear;
+        };
+        let leg = aside.upto(sphere.radius);
+        match self.take(&leg) {
+            Outcome::Nothing => {}
+            decided => return decided,
+        }
+        let corner = leg.point(sphere.radius);
+        match Walk::great_circle(centre, &corner, &target).map(|walk| self.take(&walk)) {
+            // It passes the target: nothing there means that it was not seen.
+            None | Some(Outcome::Nothing) => Outcome::Unclear,
+            Some(decided) => decided,
         }
     }
 

@@ -207,6 +207,53 @@ fn a_slit_along_the_top_of_a_torus_hides_nothing() {
     assert_eq!(locator.place(&surface.point(1.5, quarter)), Place::On);
 }
 
+/// A hemisphere next to its rim: great circles to points of the rim run along it.
+#[test]
+fn next_to_a_great_circle_a_side_is_told() {
+    let f = tilted();
+    let surface = Surface::Sphere(Sphere {
+        frame: f,
+        radius: 2.0,
+    });
+    let rim = circle_at(&f, 0.0, 2.0);
+    let upper = [arc(&rim, [0.0, TAU], Sense::Along)];
+    let locator = FaceLocator::new(&surface, Sense::Along, upper.to_vec(), BAND);
+    for k in 0..64 {
+        let u = TAU * f64::from(k) / 64.0;
+        for away in [8.0, 64.0, 4096.0, 1e6] {
+            for side in [1.0, -1.0] {
+                let p = surface.point(u, side * away * BAND);
+                assert_eq!(locator.place(&p), expect(side > 0.0), "{u} {away} {side}");
+            }
+        }
+    }
+}
+
+/// A ball that touches both walls of a groove: two slits on one great circle.
+#[test]
+fn slits_on_a_great_circle_hide_nothing() {
+    let f = tilted();
+    let surface = Surface::Sphere(Sphere {
+        frame: f,
+        radius: 2.0,
+    });
+    let circle = circle_at(&f, 0.0, 2.0);
+    let [one, other] = [[0.0, 2.0], [3.0, 5.0]];
+    let sides = [Sense::Along, Sense::Against];
+    let arcs = [one, other].map(|range| sides.map(|sense| arc(&circle, range, sense)));
+    let locator = FaceLocator::new(&surface, Sense::Along, arcs.concat(), BAND);
+    for (u, place) in [
+        (1.0, Place::On),
+        (2.5, Place::Inside),
+        (4.0, Place::On),
+        (5.5, Place::Inside),
+        (6.0, Place::Inside),
+    ] {
+        assert_eq!(locator.place(&surface.point(u, 0.0)), place, "{u}");
+        assert_eq!(locator.place(&surface.point(u, 0.5)), Place::Inside, "{u}");
+    }
+}
+
 #[test]
 fn points_on_the_boundary_are_on() {
     let f = tilted();

@@ -157,13 +157,17 @@ impl<N: Number> Quartic<N> {
     }
 
     /// The parameters at which a curve of one point on each ruling passes the cone's apex: the zeros
-    /// of B.
+    /// of B, if it has any.
     pub(super) fn apex_parameters(&self) -> Vec<N> {
         match (self.base, self.height) {
             (Ruled::Cone(_), Height::Rational { linear, .. }) => {
                 let [mean, cos, sin] = linear;
                 let (middle, size) = (sin.atan2(cos), cos.hypot(sin));
-                let half = (-mean / size).clamp(-N::ONE, N::ONE).acos();
+                let level = -mean / size;
+                if level.abs() > N::ONE + N::HALF * N::of(DOUBLE) * N::of(DOUBLE) {
+                    return Vec::new();
+                }
+                let half = level.clamp(-N::ONE, N::ONE).acos();
                 let zeros = [middle - half, middle + half];
                 zeros.map(|u| u.rem_euclid(N::TAU)).to_vec()
             }

@@ -158,12 +158,22 @@ impl<N: Number> Segment<N> {
     /// The cubic through both ends with their slopes.
     fn hermite(&self, x: N) -> N {
         let length = self.to - self.from;
-        let s = (x - self.from) / length;
         let [y0, y1] = self.ends;
+        if length == N::ZERO {
+            return y0;
+        }
+        let s = (x - self.from) / length;
         let (m0, m1) = (self.slopes[0] * length, self.slopes[1] * length);
         let (a, b) = (N::ONE - s, s);
         y0 * a * a * (N::ONE + N::TWO * b) + y1 * b * b * (N::of(3.0) - N::TWO * b) + m0 * b * a * a
             - m1 * a * b * b
+    }
+
+    /// Whether its ends are no farther apart than the bound of its slope allows, but for rounding.
+    pub fn keeps_its_slope(&self) -> bool {
+        let rise = (self.ends[1] - self.ends[0]).abs();
+        let run = (self.to - self.from).abs();
+        rise <= N::TWO * self.steep * run + N::TAU * N::ROUNDING
     }
 
     /// The same graph, run the other way.

@@ -167,6 +167,10 @@ impl<N: Number> Tracer<'_, N> {
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
                 chart: None,
             };
+            // Next to a point that is nearly singular F is all rounding, and so are its roots.
+            if !segment.keeps_its_slope() {
+                return Err(Unresolved::at(cell.centre()));
+            }
             pieces.push(Piece {
                 ends: [End::Root(pair[0].0), End::Root(pair[1].0)],
                 segment,

@@ -133,7 +133,11 @@ impl<N: Number> Arrangement<N> {
             }
             let all = [m.carriers[0], m.carriers[1], c];
             let plain = r.contact == Contact::Simple;
-            let p = if plain { self.polished(p, all) } else { p };
+            let p = if plain {
+                self.polished(p, all, judge)
+            } else {
+                p
+            };
             cuts.push(Cut {
                 t: r.t,
                 vertex: corners.at(&p, &all, judge),
@@ -219,8 +223,8 @@ impl<N: Number> Arrangement<N> {
     }
 
     /// The common point of three surfaces next to `p`, by Newton's steps where they are well
-    /// apart in direction.
-    fn polished(&self, p: Point3<N>, all: [usize; 3]) -> Point3<N> {
+    /// apart in direction: of surfaces that touch within the resolution steps may lead anywhere.
+    fn polished(&self, p: Point3<N>, all: [usize; 3], judge: &Judge) -> Point3<N> {
         let mut q = p;
         for _ in 0..2 {
             let rows = all.map(|c| self.carriers[c].normal(&q));
@@ -234,7 +238,10 @@ impl<N: Number> Arrangement<N> {
                 None => return p,
             }
         }
-        q
+        match judge.within((q - p).length()) {
+            true => q,
+            false => p,
+        }
     }
 
     /// Makes every curve know the corners that its carriers know.

@@ -41,12 +41,23 @@ impl<N> Coefficients<N> {
     }
 }
 
+/// Where the numbers of a surface come from.
+#[derive(Clone, Copy)]
+enum Source<'a> {
+    /// They are exact.
+    Given,
+    /// They were rounded from these.
+    Rounded(&'a dyn Fn() -> Coefficients<Rational>),
+    /// A construction reckoned them.
+    Constructed,
+}
+
 /// A surface in doubles, with the way to its exact coefficients.
 #[derive(Clone, Copy)]
 pub struct Carrier<'a, N: Number = f64> {
     /// The surface: its numbers are the exact ones, rounded.
     pub surface: &'a Surface<N>,
-    exact: Option<&'a dyn Fn() -> Coefficients<Rational>>,
+    source: Source<'a>,
 }
 
 impl<'a, N: Number> Carrier<'a, N> {
@@ -54,7 +65,7 @@ impl<'a, N: Number> Carrier<'a, N> {
     pub fn given(surface: &'a Surface<N>) -> Self {
         Self {
             surface,
-            exact: None,
+            source: Source::Given,
         }
     }
 
@@ -62,7 +73,15 @@ impl<'a, N: Number> Carrier<'a, N> {
     pub fn rounded(surface: &'a Surface<N>, exact: &'a dyn Fn() -> Coefficients<Rational>) -> Self {
         Self {
             surface,
-            exact: Some(exact),
+            source: Source::Rounded(exact),
+        }
+    }
+
+    /// A surface that a construction reckoned: how it lies is taken at its word, and not proven.
+    pub fn constructed(surface: &'a Surface<N>) -> Self {
+        Self {
+            surface,
+            source: Source::Constructed,
         }
     }
 
@@ -89,10 +108,14 @@ impl<'a, N: Number> Carrier<'a, N> {
 
     fn exact(&self) -> Coefficients<Rational> {
         let number = |x: N| x.exact().unwrap_or_default();
-        match self.exact {
-            Some(exact) => exact(),
-            None => numbers(self.surface, number, number),
+        match self.source {
+            Source::Rounded(exact) => exact(),
+            Source::Given | Source::Constructed => numbers(self.surface, number, number),
         }
+    }
+
+    fn is_constructed(&self) -> bool {
+        matches!(self.source, Source::Constructed)
     }
 }
 
@@ -515,7 +538,11 @@ impl<N: Number> Distance for How<'_, N> {
     }
 
     fn separation(&self) -> Option<usize> {
-        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.exact().map(exact_separation));
+        let carriers = [&self.pair.a, &self.pair.b];
+        if carriers.iter().any(|c| c.is_constructed()) {
+            return None;
+        }
+        let [a, b] = carriers.map(|c| c.exact().map(exact_separation));
         let exact = |x: N| Separation::exact(x.exact().unwrap_or_default());
         self.over(a, b, exact).bits()
     }

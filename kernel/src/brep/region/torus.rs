@@ -159,31 +159,70 @@ impl<N: Number> Sorter<'_, N> {
 
     /// How a loop runs in the two angles of a torus.
     pub(super) fn turns(&self, ring: &[DirectedArc<'_, N>]) -> Turns<N> {
-        let mut points: Vec<[N; 2]> = Vec::new();
-        for a in ring {
-            for k in 0..32 {
-                let s = N::whole(k) / N::of(32.0);
-                let s = if a.sense == Sense::Along {
-                    s
-                } else {
-                    N::ONE - s
-                };
-                let p = a.curve.point(a.range[0] + s * (a.range[1] - a.range[0]));
-                points.push(self.surface.parameters(&p));
-            }
+        let mut at = [N::ZERO; 2];
+        let mut runs = Vec::with_capacity(ring.len());
+        for arc in ring {
+            let run = Run::along(&self.angles_along(arc), at);
+            at = run.ends[1];
+            runs.push(run);
         }
-        let (mut x, mut y, mut area) = (N::ZERO, N::ZERO, N::ZERO);
-        for (i, p) in points.iter().enumerate() {
-            let q = points[(i + 1) % points.len()];
+        let swept = ring.iter().zip(&runs).map(|(a, run)| {
+            let is_back = |b: &DirectedArc<'_, N>| a.shares_edge(b) && a.sense != b.sense;
+            match ring.iter().position(is_back) {
+                Some(back) => run.swept_with(&runs[back]),
+                None => run.swept,
+            }
+        });
+        Turns {
+            winds: at.map(|turn| turn.abs().is_beyond(N::TAU / N::TWO)),
+            area: swept.sum::<N>() * self.outward.sign::<N>(),
+        }
+    }
+
+    /// The angles of points along an arc, its ends among them.
+    fn angles_along(&self, arc: &DirectedArc<'_, N>) -> [[N; 2]; 33] {
+        let [from, to] = match arc.sense {
+            Sense::Along => arc.range,
+            Sense::Against => [arc.range[1], arc.range[0]],
+        };
+        std::array::from_fn(|k| {
+            let part = N::whole(k as u32) / N::of(32.0);
+            let t = from + part * (to - from);
+            self.surface.parameters(&arc.curve.point(t))
+        })
+    }
+}
+
+/// How an arc of a loop runs in the two angles of a torus, without a jump from the loop's start on.
+struct Run<N> {
+    ends: [[N; 2]; 2],
+    /// Twice the area between it and the loop's start.
+    swept: N,
+}
+
+impl<N: Number> Run<N> {
+    fn along(angles: &[[N; 2]], start: [N; 2]) -> Self {
+        let ([mut x, mut y], mut swept) = (start, N::ZERO);
+        for pair in angles.windows(2) {
+            let (p, q) = (pair[0], pair[1]);
             let (dx, dy) = (wrap(q[0] - p[0]), wrap(q[1] - p[1]));
-            area += x * dy - y * dx;
+            swept += x * dy - y * dx;
             x += dx;
             y += dy;
         }
-        Turns {
-            winds: [x, y].map(|turn| turn.abs().is_beyond(N::TAU / N::TWO)),
-            area: area * self.outward.sign::<N>(),
+        Self {
+            ends: [start, [x, y]],
+            swept,
         }
+    }
+
+    /// Half of what the two ways over an arc sweep: nothing, but for whole turns of the loop between
+    /// them. Summed up each for itself, rounding would leave an area of either sign.
+    fn swept_with(&self, back: &Self) -> N {
+        let [from, to] = self.ends;
+        let apart = |i: usize| ((from[i] - back.ends[1][i]) / N::TAU).round() * N::TAU;
+        let way = |i: usize| to[i] - from[i];
+        N::HALF * (apart(0) * way(1) - apart(1) * way(0))
     }
 }
 

@@ -188,7 +188,7 @@ impl<'a, N: Number> Rulings<'a, N> {
             frame: Frame::about(origin, n),
         };
         let section = Surface::Plane(plane);
-        let carriers = [&section, &surface].map(Carrier::given);
+        let carriers = [&section, &surface].map(Carrier::constructed);
         let pair = Pair::new(carriers[0], carriers[1], self.extent);
         let part = match &self.base {
             Ruled::Cylinder(s) => plane_cylinder(&plane, s, &pair, judge),

@@ -77,24 +77,44 @@ fn tangents<N: Number>(at: &Partials<N>) -> [[N; 2]; 2] {
     [[q, at.xx], [at.yy, q]]
 }
 
-/// The zero that steps lead to from `start`, in doubles first where the form has more digits: what
-/// `vanishes` there denies of the form in doubles, within what these are off, is none.
-fn zero<N: Number>(
-    tracer: &Tracer<'_, N>,
-    start: [N; 2],
-    steps: (
-        impl Fn(&BiTrig<N>, [N; 2]) -> Option<[N; 2]>,
-        impl Fn(&BiTrig, [f64; 2]) -> Option<[f64; 2]>,
-    ),
-    vanishes: impl Fn(&BiTrig, [f64; 2], f64) -> bool,
-) -> Option<[N; 2]> {
-    let Some((form, slop)) = tracer.rough() else {
-        return walk(start, STEPS, |p| steps.0(tracer.form, p));
-    };
-    let rough = walk(start.map(N::rounded), STEPS, |p| steps.1(form, p))?;
-    let band = tracer.band.rounded().max(OFF * slop);
-    vanishes(form, rough, band).then_some(())?;
-    walk(rough.map(N::of), MORE_STEPS, |p| steps.0(tracer.form, p))
+/// A kind of degenerate point.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// All terms of a degree below this vanish.
+    Multiple(usize),
+    /// The Hessian is of rank one, and F vanishes to this order along Y.
+    RankOne(usize),
+}
+
+impl Kind {
+    /// The step from p towards a point of the kind.
+    fn step<N: Number>(self, form: &BiTrig<N>, p: [N; 2]) -> Option<[N; 2]> {
+        match self {
+            Self::Multiple(n) => toward_multiple(&taylor(form, p, Axis::Around), n),
+            Self::RankOne(k) => Some(Sheet::at(form, p).step(form, p, k)),
+        }
+    }
+
+    /// Whether p is one as far as `band` tells.
+    fn is_at(self, form: &BiTrig, p: [f64; 2], band: f64) -> bool {
+        match self {
+            Self::Multiple(n) => terms_vanish(&taylor(form, p, Axis::Around), n, band).is_some(),
+            Self::RankOne(k) => Sheet::at(form, p).vanishes(k, band).is_some(),
+        }
+    }
+
+    /// The place next to `start` where a point of the kind may be. Of a form of more digits it is
+    /// found in doubles first: what is none there, within what these are off, is none.
+    fn near<N: Number>(self, tracer: &Tracer<'_, N>, start: [N; 2]) -> Option<[N; 2]> {
+        let exactly = |p| self.step(tracer.form, p);
+        let Some((form, slop)) = tracer.rough() else {
+            return walk(start, STEPS, exactly);
+        };
+        let rough = walk(start.map(N::rounded), STEPS, |p| self.step(form, p))?;
+        let band = tracer.band.rounded().max(OFF * slop);
+        self.is_at(form, rough, band).then_some(())?;
+        walk(rough.map(N::of), MORE_STEPS, exactly)
+    }
 }
 
 /// Where a number of steps leads, unless that is far.
@@ -120,14 +140,7 @@ fn multiple<N: Number>(
     start: [N; 2],
     n: usize,
 ) -> Option<(SingularPoint<N>, N)> {
-    let vanishes = |form: &BiTrig, p, band| terms_vanish(&taylor(form, p, Axis::Around), n, band);
-    let steps = (
-        |form: &BiTrig<N>, p| toward_multiple(&taylor(form, p, Axis::Around), n),
-        |form: &BiTrig, p| toward_multiple(&taylor(form, p, Axis::Around), n),
-    );
-    let p = zero(tracer, start, steps, |f, p, band| {
-        vanishes(f, p, band).is_some()
-    })?;
+    let p = Kind::Multiple(n).near(tracer, start)?;
     let k = taylor(tracer.form, p, Axis::Around);
     let reach = terms_vanish(&k, n, tracer.band)?;
     if !(reach < N::of(ZONE) && N::of(LEAD) * size(&k, n + 1) * reach <= size(&k, n)) {
@@ -304,9 +317,7 @@ impl<N: Number> Sheet<N> {
             along,
         }
     }
-}
 
-impl<N: Number> Sheet<N> {
     /// Newton's step towards the point at which F vanishes to the order k along Y; the sheet is at p.
     fn step(&self, form: &BiTrig<N>, p: [N; 2], k: usize) -> [N; 2] {
         let at = form.partials(p[0], p[1]);
@@ -336,12 +347,7 @@ fn rank_one<N: Number>(
     start: [N; 2],
     k: usize,
 ) -> Option<(SingularPoint<N>, N)> {
-    let steps = (
-        |form: &BiTrig<N>, p| Some(Sheet::at(form, p).step(form, p, k)),
-        |form: &BiTrig, p| Some(Sheet::at(form, p).step(form, p, k)),
-    );
-    let vanishes = |form: &BiTrig, p, band| Sheet::at(form, p).vanishes(k, band).is_some();
-    let p = zero(tracer, start, steps, vanishes)?;
+    let p = Kind::RankOne(k).near(tracer, start)?;
     let sheet = Sheet::at(tracer.form, p);
     let reach = sheet.vanishes(k, tracer.band)?;
     let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::of(LEAD) * tracer.band

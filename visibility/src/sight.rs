@@ -217,6 +217,11 @@ fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, band: f64) -> Box3
     hull.grown(4.0 * band)
 }
 
+/// The box of boxes.
+fn hull(boxes: &[Box3]) -> Box3 {
+    boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b))
+}
+
 impl<'a> Scene<'a> {
     /// The scene of a part seen by a camera; `band` is the resolution.
     pub fn new(brep: &'a Brep, projection: &'a Projection, band: f64) -> Self {
@@ -230,7 +235,7 @@ impl<'a> Scene<'a> {
             GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
         };
         let tree = RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect());
-        let size = boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b)).diagonal();
+        let size = hull(&boxes).diagonal();
         Self {
             brep,
             projection,
@@ -244,7 +249,7 @@ impl<'a> Scene<'a> {
 
     /// The box of the whole part.
     pub fn bounds(&self) -> Box3 {
-        self.boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b))
+        hull(&self.boxes)
     }
 
     /// The line of sight from a point.
@@ -357,7 +362,7 @@ impl<'a> Scene<'a> {
     pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
         match self.projection.sight {
             Sight::Eye(e) => (e - origin).dot(normal).is_within(self.band),
-            Sight::Direction(d) => d.dot(normal).is_within(ROUNDING),
+            Sight::Direction(d) => d.dot(normal).is_within(self.tilt),
         }
     }
 

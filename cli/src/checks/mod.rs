@@ -194,7 +194,7 @@ impl<'a> Checker<'a> {
             }
         };
         let clearance = self.clearance();
-        let counted = Recount::of(&self.material, &seen, &clearance);
+        let counted = Recount::telling(&self.material, &seen, &clearance);
         let outlines = Outlines::of(&self.material, &seen, &clearance);
         vec![
             Check {

@@ -216,10 +216,25 @@ impl Search<'_> {
             false => instead.get(index)?.at,
         };
         // The face may be narrower than the interval: its own slope tells.
+        let slope = self.slope([from, other], near);
+        // A limb lies about twice as far as the slope next to it says.
+        let is_steep = slope.is_nan() || NEAR * slope.abs() > deep;
+        is_steep.then_some(until.max(near.at))
+    }
+
+    /// How much deeper a surface is met by the second of two lines of sight than by the first, as far
+    /// as its slope there tells.
+    fn slope(&self, [from, other]: [[f64; 2]; 2], near: &Crossing) -> f64 {
         let (ray, beside) = (self.window.ray(from), self.window.ray(other));
         let step = beside.origin - ray.origin + (beside.direction - ray.direction) * near.at;
-        let slope = self.surfaces.slope(&ray, near, &step);
-        (slope.is_nan() || slope.abs() > deep).then_some(until.max(near.at))
+        self.surfaces.slope(&ray, near, &step)
+    }
+
+    /// Whether two lines of sight meet one surface at depths that a fall of it does not explain.
+    fn leaps(&self, between: [[f64; 2]; 2], [a, b]: [&Crossing; 2], deep: f64) -> bool {
+        let fall = (a.at - b.at).abs();
+        let slope = || self.slope(between, a).abs();
+        fall > deep && fall > NEAR * slope()
     }
 
     /// What a change lacks; none where a contour explains it.
@@ -234,7 +249,7 @@ impl Search<'_> {
         let [first, second] = &change.met;
         let unlike = |(a, b): (&Crossing, &Crossing)| {
             !same(std::slice::from_ref(a), std::slice::from_ref(b))
-                || (a.at - b.at).abs() > deep(a.at)
+                || self.leaps(change.at, [a, b], deep(a.at))
         };
         let common = first.iter().zip(second).position(unlike);
         let index = common.unwrap_or(first.len().min(second.len()));

@@ -62,6 +62,9 @@ pub struct DescriptionOptions {
     /// Let coincide only what is proven to, some hundred times slower
     #[arg(long, conflicts_with = "resolution")]
     pub exact: bool,
+    /// Decide nothing in doubles: the same boundary from numbers of 237 bits, some hundred times slower
+    #[arg(long)]
+    pub unfiltered: bool,
     /// The part of a .padl file to take [default: the last solid assigned]
     #[arg(long, value_name = "NAME")]
     pub part: Option<String>,
@@ -173,11 +176,14 @@ pub struct FuzzOptions {
     /// How many trees at a time [default: as many as there are processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Evaluate each tree once more with no decision made in doubles, and compare
+    #[arg(long)]
+    pub unfiltered: bool,
     /// Count the pieces of five views again, and look for missing contours
     #[arg(long)]
     pub views: bool,
     /// After how many seconds a tree is given up
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "20")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "120")]
     pub limit: f64,
     /// How many rays measure each volume
     #[arg(long, value_name = "N", default_value_t = 10_000)]

@@ -2,7 +2,7 @@
 
 use crate::arguments::{CameraOptions, DescriptionOptions};
 use crate::diagnostics::{self, Failure};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{self, Description, Format, Options};
 use premio_kernel::number::sign::Zeros;
 use premio_visibility::Camera;
@@ -34,10 +34,13 @@ pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
     let how = EvaluationOptions {
         resolution: options.resolution,
         noise: description.digits,
-        zeros: if options.exact {
-            Zeros::Exact
-        } else {
-            Zeros::ByResolution
+        zeros: match options.exact {
+            true => Zeros::Exact,
+            false => Zeros::ByResolution,
+        },
+        digits: match options.unfiltered {
+            true => Digits::Many,
+            false => Digits::Filtered,
         },
         ..EvaluationOptions::default()
     };

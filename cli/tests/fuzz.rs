@@ -41,6 +41,8 @@ fn a_few_trees_of_each_profile_are_right() {
         part["close_calls"] = "counts".into();
     }
     insta::assert_snapshot!("summary", serde_json::to_string_pretty(&one.0).unwrap());
+    let again = premio(folder.path(), &format!("{SMALL} --unfiltered"));
+    assert!(again.status.success(), "{again:?}");
     let large = premio(
         folder.path(),
         "fuzz --profile deep,wide --count 2 --rays 2000",

@@ -167,6 +167,29 @@ fn what_nearly_coincides_is_apart_by_exact() {
 }
 
 #[test]
+fn no_decision_is_in_doubles_where_none_is_to_be() {
+    let folder = folder();
+    let info = |words: &str| -> serde_json::Value {
+        let told = premio(folder.path(), &format!("info part.padl --json {words}"));
+        serde_json::from_slice(&told.stdout).unwrap()
+    };
+    let (plain, again) = (info(""), info("--unfiltered"));
+    let count = |info: &serde_json::Value, kind: &str| info["decisions"][kind].as_u64().unwrap();
+    assert!(count(&plain, "filtered") > 0 && count(&again, "filtered") == 0);
+    assert!(count(&again, "refined") > 0 && count(&again, "exact") == 0);
+    for same in [
+        "solids",
+        "faces",
+        "edges",
+        "loops",
+        "vertices",
+        "resolution",
+    ] {
+        assert_eq!(plain[same], again[same], "{same}");
+    }
+}
+
+#[test]
 fn nobody_has_to_read_to_the_end() {
     let folder = folder();
     let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));

@@ -1,10 +1,10 @@
 //! The laws of sets, as laws of boundaries: both sides have the same combinatorics, volume and area.
 
 use crate::random::tree;
-use crate::signature::Signature;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::brep::mass::Mass;
+use premio_kernel::brep::signature::Signature;
 use serde_json::{Value, json};
 
 /// How far volumes and areas may be apart, as a part of those of the greatest part.
@@ -188,4 +188,32 @@ pub fn broken_by(seed: u64) -> Vec<String> {
     let [a, b, c] = [0, 1, 2].map(|k| tree(3 * seed + k));
     let all = laws(&a, &b, &c).into_iter().chain(motions(&a));
     all.filter_map(|law| broken(&law)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{join, side};
+    use serde_json::{Value, json};
+
+    fn block(size: [f64; 3], at: [f64; 3]) -> Value {
+        json!({"prim": "block", "size": size, "transform": [{"translate": at}]})
+    }
+
+    /// A block with two more on it.
+    fn towers(first: [f64; 3], second: [f64; 3]) -> Value {
+        let base = block([9.0, 9.0, 1.0], [0.0; 3]);
+        let [a, b] = [first, second].map(|at| block([1.0; 3], at));
+        join("union", &[&base, &a, &b])
+    }
+
+    #[test]
+    fn what_is_the_same_but_for_its_place_has_one_signature() {
+        let of = |tree: &Value| side(tree).map(|s| s.signature);
+        let apart = of(&towers([2.0, 2.0, 1.0], [5.0, 5.0, 1.0]));
+        assert!(apart.is_ok());
+        assert_eq!(apart, of(&towers([6.0, 2.0, 1.0], [1.0, 5.0, 1.0])));
+        // As many faces, edges and vertices, but one tower hangs below.
+        let below = of(&towers([2.0, 2.0, 1.0], [5.0, 5.0, -1.0]));
+        assert_ne!(apart, below);
+    }
 }

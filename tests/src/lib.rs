@@ -8,4 +8,3 @@ pub mod mirror;
 pub mod pairs;
 pub mod parts;
 pub mod random;
-pub mod signature;

@@ -1,7 +1,9 @@
 //! Pairs of solids that coincide in some way, and lie next to that as far as a gap says.
 
+use premio::checks::Checker;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
+use premio_csg::tree::Tree;
 use premio_kernel::brep::topology::Census;
 use premio_kernel::number::sign::Zeros;
 
@@ -115,15 +117,21 @@ pub fn gap(sign: &str, power: i32) -> String {
 /// How far volumes may be off.
 const OFF: f64 = 1e-9;
 
-/// What is wrong with a pair that misses its coincidence by `gap`: refusals and defects, and where
-/// the volumes of A, B, A or B, A and B, A less B and B less A do not add up.
+/// How many rays measure each volume.
+const RAYS: usize = 1000;
+
+/// What is wrong with a pair that misses its coincidence by `gap`: refusals, defects, volumes that are
+/// not those of rays, and where the volumes of A, B, A or B, A and B, A less B and B less A do not add up.
 pub fn faults(pair: &Pair, gap: &str, pose: Pose) -> Vec<String> {
     let mut faults = Vec::new();
     let mut volume = |solid: String| {
         let part = evaluated(&solid, gap, pose, Zeros::ByResolution);
-        let known = part.and_then(|part| match part.violations().first() {
-            Some(defect) => Err(format!("{defect:?}")),
-            None => Ok(part.mass().volume),
+        let known = part.and_then(|(tree, part)| {
+            let report = Checker::new(&tree, &part).solid(RAYS);
+            match report.failures().next() {
+                Some(fault) => Err(fault.to_string()),
+                None => Ok(part.mass().volume),
+            }
         });
         known.unwrap_or_else(|fault| {
             faults.push(format!("{solid}: {fault}"));
@@ -153,7 +161,7 @@ pub fn changes(pair: &Pair, sign: &str, powers: &[i32], pose: Pose) -> Vec<Strin
             let power = power.max(pair.small);
             match evaluated(&solid, &gap(sign, power), pose, Zeros::Exact) {
                 Err(fault) => changes.push(format!("{solid} at {sign}2^-{power}: {fault}")),
-                Ok(part) => {
+                Ok((_, part)) => {
                     let found = part.brep.topology.census();
                     let known = first.get_or_insert_with(|| found.clone());
                     if *known != found {
@@ -181,7 +189,12 @@ impl Pair {
     }
 }
 
-fn evaluated(solid: &str, gap: &str, pose: Pose, zeros: Zeros) -> Result<Evaluation, String> {
+fn evaluated(
+    solid: &str,
+    gap: &str,
+    pose: Pose,
+    zeros: Zeros,
+) -> Result<(Tree, Evaluation), String> {
     let text = match pose {
         Pose::Straight => solid.to_owned(),
         Pose::Turned => format!("({solid}) AT (ROTX=17,ROTZ=31,MOVX=0.3,MOVY=0.7)"),
@@ -193,5 +206,6 @@ fn evaluated(solid: &str, gap: &str, pose: Pose, zeros: Zeros) -> Result<Evaluat
         zeros,
         ..EvaluationOptions::default()
     };
-    evaluate(&tree, &options).map_err(|error| error.to_string())
+    let part = evaluate(&tree, &options).map_err(|error| error.to_string())?;
+    Ok((tree, part))
 }

@@ -47,7 +47,7 @@ const WHOLE_CALLS: &[&str] = &["len", "count", "index", "degree", "bits"];
 
 /// What is called so is a whole number everywhere.
 const WHOLE_NAMES: &[&str] = &[
-    "i", "j", "k", "bits", "data", "depth", "junction", "leaves", "qi",
+    "i", "j", "k", "bits", "data", "depth", "entities", "junction", "leaves", "qi",
 ];
 
 /// Types that are told by their constructors, and are no doubles.

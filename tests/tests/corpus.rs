@@ -2,8 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio::checks::{Checker, Subject};
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Description, Format, Options, read};
+use premio_kernel::brep::signature::Signature;
+use premio_kernel::number::sign::{Decisions, Zeros};
 use premio_tests::examine::within;
 use serde::Deserialize;
 use serde_json::Value;
@@ -58,38 +60,57 @@ impl Task {
         outcome.unwrap_or_else(|| Err("a panic, or no end".to_owned()))
     }
 
+    fn description(&self) -> Result<Description, String> {
+        let options = Options {
+            smooth: self.smooth,
+            part: None,
+        };
+        read(&self.name, &self.text, self.format, &options).map_err(|e| e.to_string())
+    }
+
     fn work(&self) -> Result<(), String> {
-        wrong(
-            &self.name,
-            &self.text,
-            self.format,
-            self.smooth,
-            self.expected,
-        )
+        let description = self.description()?;
+        let evaluation = evaluated(&description, EvaluationOptions::default())?;
+        wrong(&description, &evaluation, self.expected)
+    }
+
+    /// What is wrong with how many decisions were made in which way, and whether the boundary is that
+    /// of the resolution and doubles.
+    fn unlike(
+        &self,
+        how: EvaluationOptions,
+        fault: fn(&Decisions) -> Option<&'static str>,
+    ) -> Result<bool, String> {
+        let description = self.description()?;
+        let known = evaluated(&description, EvaluationOptions::default())?;
+        let again = evaluated(&description, how)?;
+        match fault(&again.decisions) {
+            Some(fault) => Err(format!("{fault}: {:?}", again.decisions)),
+            None => Ok(Signature::of(&known.brep) != Signature::of(&again.brep)),
+        }
     }
 }
 
-fn wrong(
-    name: &str,
-    text: &[u8],
-    format: Format,
-    smooth: bool,
-    expected: Option<(f64, f64)>,
-) -> Result<(), String> {
-    let options = Options { smooth, part: None };
-    let description = read(name, text, format, &options).map_err(|e| e.to_string())?;
+fn evaluated(description: &Description, how: EvaluationOptions) -> Result<Evaluation, String> {
     let how = EvaluationOptions {
         noise: description.digits,
-        ..EvaluationOptions::default()
+        ..how
     };
-    let evaluation = evaluate(&description.tree, &how).map_err(|e| e.to_string())?;
+    evaluate(&description.tree, &how).map_err(|e| e.to_string())
+}
+
+fn wrong(
+    description: &Description,
+    evaluation: &Evaluation,
+    expected: Option<(f64, f64)>,
+) -> Result<(), String> {
     if let Some((volume, slack)) = expected {
         let found = evaluation.mass().volume;
         if (found - volume).abs() > slack || found.is_nan() {
             return Err(format!("volume {found} for {volume} ± {slack:e}"));
         }
     }
-    let report = Checker::new(&description.tree, &evaluation).solid(100_000);
+    let report = Checker::new(&description.tree, evaluation).solid(100_000);
     let failures: Vec<String> = report
         .failures()
         .filter(|c| c.subject == Subject::Topology || expected.is_none())
@@ -102,39 +123,44 @@ fn wrong(
     }
 }
 
-fn case_is_right(case: &Case) -> Result<(), String> {
-    let expected = match case.volume {
-        Some(volume) => (volume, 1e-9 * volume.abs().max(1e-3)),
-        None => (case.volume_by_rays, 5.0 * case.rays_std_error),
-    };
-    let task = Task {
-        name: case.id.clone(),
-        text: case.tree.to_string().into_bytes(),
-        format: Format::Json,
-        smooth: false,
-        expected: Some(expected),
-    };
-    task.outcome()
+impl From<Case> for Task {
+    fn from(case: Case) -> Self {
+        let expected = match case.volume {
+            Some(volume) => (volume, 1e-9 * volume.abs().max(1e-3)),
+            None => (case.volume_by_rays, 5.0 * case.rays_std_error),
+        };
+        Self {
+            name: case.id,
+            text: case.tree.to_string().into_bytes(),
+            format: Format::Json,
+            smooth: false,
+            expected: Some(expected),
+        }
+    }
+}
+
+fn json(folder: &Path) -> Vec<Task> {
+    let text = fs::read_to_string(folder.join("cases.json")).unwrap();
+    let cases: Vec<Case> = serde_json::from_str(&text).unwrap();
+    cases.into_iter().map(Task::from).collect()
 }
 
 #[test]
 fn cases() {
     let Some(folder) = corpus() else { return };
-    let text = fs::read_to_string(folder.join("cases.json")).unwrap();
-    let cases: Vec<Case> = serde_json::from_str(&text).unwrap();
     let known: BTreeSet<&str> = KNOWN_FAILURES.iter().copied().collect();
     let mut complaints = Vec::new();
-    for case in &cases {
-        let outcome = case_is_right(case);
-        let refused = REFUSED.iter().find(|(id, _)| *id == case.id);
-        let complaint = match (outcome, refused, known.contains(case.id.as_str())) {
+    for case in json(&folder) {
+        let outcome = case.outcome();
+        let refused = REFUSED.iter().find(|(id, _)| *id == case.name);
+        let complaint = match (outcome, refused, known.contains(case.name.as_str())) {
             (Err(e), Some((_, why)), _) if e.contains(why) => continue,
             (Ok(()), None, false) | (Err(_), None, true) => continue,
             (Ok(()), Some(_), _) => "is not refused any more".to_owned(),
             (Ok(()), None, true) => "passes now: take it off the list".to_owned(),
             (Err(e), _, _) => e,
         };
-        complaints.push(format!("{}: {complaint}", case.id));
+        complaints.push(format!("{}: {complaint}", case.name));
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
@@ -157,33 +183,33 @@ const OPENSCAD: &[(&str, f64, f64)] = &[
     ("nullspace-difference.csg", 0.0, 0.0),
 ];
 
-fn openscad(
-    folder: &Path,
-    name: &str,
-    smooth: bool,
-    expected: Option<(f64, f64)>,
-) -> Result<(), String> {
-    let task = Task {
+fn openscad(folder: &Path, name: &str, smooth: bool, expected: Option<(f64, f64)>) -> Task {
+    Task {
         name: name.to_owned(),
         text: fs::read(folder.join("openscad").join(name)).unwrap(),
         format: Format::Csg,
         smooth,
         expected,
-    };
-    task.outcome()
+    }
+}
+
+/// All files that are read.
+fn openscads(folder: &Path) -> Vec<Task> {
+    let known = OPENSCAD
+        .iter()
+        .map(|&(name, volume, slack)| openscad(folder, name, false, Some((volume, slack))));
+    let smooth = openscad(folder, "sphere-tests.csg", true, None);
+    known.chain([smooth]).collect()
 }
 
 #[test]
 fn openscad_files() {
     let Some(folder) = corpus() else { return };
     let mut complaints = Vec::new();
-    for &(name, volume, slack) in OPENSCAD {
-        if let Err(e) = openscad(&folder, name, false, Some((volume, slack))) {
-            complaints.push(format!("{name}: {e}"));
+    for task in openscads(&folder) {
+        if let Err(e) = task.outcome() {
+            complaints.push(format!("{}: {e}", task.name));
         }
-    }
-    if let Err(e) = openscad(&folder, "sphere-tests.csg", true, None) {
-        complaints.push(format!("sphere-tests.csg, smooth: {e}"));
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
@@ -195,10 +221,62 @@ fn openscad_files_that_are_refused() {
         ("sphere-tests.csg", "$fn"),
         ("transform-tests.csg", "rigid motion"),
     ] {
-        let error = openscad(&folder, name, false, None).unwrap_err();
+        let error = openscad(&folder, name, false, None).outcome().unwrap_err();
         assert!(
             error.starts_with(&format!("{name}:")) && error.contains(why),
             "{error}"
         );
     }
+}
+
+/// Two cylinders each, apart by less than the resolution: noise.
+const MEANT: &[&str] = &["occ-31835a", "occ-31835b"];
+
+/// What is wrong with the corpus evaluated in another way: `meant` are those whose boundary is another
+/// then.
+fn unlike(
+    folder: &Path,
+    how: EvaluationOptions,
+    meant: &[&str],
+    fault: fn(&Decisions) -> Option<&'static str>,
+) -> Vec<String> {
+    let mut complaints = Vec::new();
+    let is_read = |task: &Task| REFUSED.iter().all(|(id, _)| *id != task.name);
+    let all = json(folder).into_iter().chain(openscads(folder));
+    for task in all.filter(is_read) {
+        let complaint = match task.unlike(how, fault) {
+            Ok(unlike) if unlike == meant.contains(&task.name.as_str()) => continue,
+            Ok(true) => "another boundary".to_owned(),
+            Ok(false) => "the same boundary: take it off the list".to_owned(),
+            Err(error) => error,
+        };
+        complaints.push(format!("{}: {complaint}", task.name));
+    }
+    complaints
+}
+
+#[test]
+fn the_same_with_no_decision_in_doubles() {
+    let Some(folder) = corpus() else { return };
+    let many = EvaluationOptions {
+        digits: Digits::Many,
+        ..EvaluationOptions::default()
+    };
+    let complaints = unlike(&folder, many, &[], |known| {
+        (known.filtered > 0).then_some("decisions in doubles")
+    });
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn the_same_exactly_but_for_noise() {
+    let Some(folder) = corpus() else { return };
+    let exact = EvaluationOptions {
+        zeros: Zeros::Exact,
+        ..EvaluationOptions::default()
+    };
+    let complaints = unlike(&folder, exact, MEANT, |known| {
+        (known.filtered > 0 || known.coincident > 0).then_some("zeros assumed, or in doubles")
+    });
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }

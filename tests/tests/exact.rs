@@ -1,11 +1,14 @@
-//! Exact evaluation of the named cases: every zero is proven, and the boundary is the one that the
-//! resolution tells, but where a description means more than it says.
+//! The named cases, exactly: every zero is proven, and the boundary is the one that the resolution
+//! tells, but where a description means more than it says. And by the resolution with no decision in
+//! doubles: the boundary is the same.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{Evaluation, EvaluationError, EvaluationOptions, evaluate};
+use premio_csg::boundary::{Digits, Evaluation, EvaluationError, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_csg::tree::Tree;
+use premio_kernel::brep::signature::Signature;
 use premio_kernel::number::sign::Zeros;
+use premio_tests::random::tree;
 use std::fs;
 use std::path::Path;
 
@@ -27,6 +30,10 @@ const MEANT: &[(&str, &str)] = &[
     ("steinmetz-with-noise", "noise"),
     ("three-equal-cylinders-with-noise", "noise"),
     ("villarceau-plane", "an angle in decimals"),
+    (
+        "wedge-notched-by-cone-along-tangent",
+        "turned by an angle in decimals",
+    ),
 ];
 
 /// Cases that take 237 bits longer than a test may: seconds to minutes.
@@ -46,6 +53,25 @@ fn evaluated(tree: &Tree, zeros: Zeros) -> Evaluation {
         ..EvaluationOptions::default()
     };
     evaluate(tree, &options).unwrap()
+}
+
+/// What is not as it should be where no decision is made in doubles.
+fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
+    let many = EvaluationOptions {
+        digits: Digits::Many,
+        ..EvaluationOptions::default()
+    };
+    let plain = evaluated(tree, Zeros::ByResolution);
+    let again = match evaluate(tree, &many) {
+        Ok(again) => again,
+        Err(error) => return Some(format!("{name}: {error}")),
+    };
+    if again.decisions.filtered > 0 {
+        return Some(format!("{name}: {:?}", again.decisions));
+    }
+    let differ = Signature::of(&plain.brep) != Signature::of(&again.brep);
+    let [told, again] = [plain, again].map(|e| e.brep.topology.census());
+    differ.then(|| format!("{name}: {again:?} for {told:?}"))
 }
 
 /// What is not as it should be about the exact boundary of a case.
@@ -70,8 +96,7 @@ fn faults(name: &str, tree: &Tree) -> Vec<String> {
     faults
 }
 
-#[test]
-fn named_cases() {
+fn named_cases_by(faults: fn(&str, &Tree) -> Vec<String>) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let mut faulty = Vec::new();
     let mut proven = 0;
@@ -88,6 +113,28 @@ fn named_cases() {
         }
     }
     assert!(proven > 90, "{proven}");
+    assert!(faulty.is_empty(), "{}", faulty.join("\n"));
+}
+
+#[test]
+fn named_cases() {
+    named_cases_by(faults);
+}
+
+#[test]
+fn named_cases_with_no_decision_in_doubles() {
+    named_cases_by(|name, tree| filtered_wrongly(name, tree).into_iter().collect());
+}
+
+/// A thousand of these, and of the other profiles, is what `premio fuzz --unfiltered` is for.
+#[test]
+fn random_trees_with_no_decision_in_doubles() {
+    let mut faulty = Vec::new();
+    for seed in 3_000_000..3_000_030 {
+        let text = tree(seed).to_string();
+        let part = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+        faulty.extend(filtered_wrongly(&seed.to_string(), &part.tree));
+    }
     assert!(faulty.is_empty(), "{}", faulty.join("\n"));
 }
 

@@ -32,21 +32,36 @@ fn coincidences_turned() {
 /// By which powers of two a coincidence is missed under exact evaluation.
 const EXACT_POWERS: [i32; 2] = [10, 60];
 
+/// Pairs that take 237 bits a minute once they are turned: the example of the same name asks them.
+const LONG_TURNED: [&str; 2] = ["torus on a torus, cut open", "torus in a bore, cut across"];
+
 /// On one side of a coincidence the exact boundaries are alike, however near they are to it.
-fn alike(sign: &str) {
+fn alike(sign: &str, pose: Pose) {
+    let is_asked = |name| pose == Pose::Straight || !LONG_TURNED.contains(&name);
     let changed: Vec<String> = PAIRS
         .iter()
-        .flat_map(|pair| changes(pair, sign, &EXACT_POWERS, Pose::Straight))
+        .filter(|pair| is_asked(pair.name))
+        .flat_map(|pair| changes(pair, sign, &EXACT_POWERS, pose))
         .collect();
     assert!(changed.is_empty(), "{}", changed.join("\n"));
 }
 
 #[test]
 fn exactly_alike_on_one_side() {
-    alike("");
+    alike("", Pose::Straight);
 }
 
 #[test]
 fn exactly_alike_on_the_other_side() {
-    alike("-");
+    alike("-", Pose::Straight);
+}
+
+#[test]
+fn exactly_alike_turned_on_one_side() {
+    alike("", Pose::Turned);
+}
+
+#[test]
+fn exactly_alike_turned_on_the_other_side() {
+    alike("-", Pose::Turned);
 }

@@ -105,6 +105,7 @@ fn plan(options: &FuzzOptions) -> Result<Plan, Failure> {
             resolution: options.resolution,
             strict: options.strict,
             views: options.views,
+            unfiltered: options.unfiltered,
             rays: options.rays,
         },
         limit: options.limit,

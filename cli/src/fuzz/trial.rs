@@ -5,9 +5,11 @@
 use super::model::{Kind, Model, Operation};
 use super::write::{Format, read, write};
 use crate::checks::{Checker, Report, Subject, views};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
+use premio_csg::tree::Tree;
 use premio_kernel::brep::extent::bounds;
+use premio_kernel::brep::signature::Signature;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -31,6 +33,9 @@ pub struct Terms {
     pub strict: bool,
     /// Whether views are counted again.
     pub views: bool,
+    /// Whether the tree is evaluated once more with no decision made in doubles.
+    #[serde(default)]
+    pub unfiltered: bool,
     /// How many rays measure the volume.
     pub rays: u32,
 }
@@ -47,6 +52,8 @@ pub enum Wrong {
     Bounds,
     /// The volumes of A or B, A and B, A less B, A, and B do not add up.
     Sums,
+    /// With no decision made in doubles the boundary is another, or there is none.
+    Filter,
     /// A piece of a view has another number of faces before it.
     View,
     /// A contour of a view is missing.
@@ -69,6 +76,7 @@ impl Wrong {
             Self::Volume => "volume",
             Self::Bounds => "bounds",
             Self::Sums => "sums",
+            Self::Filter => "filter",
             Self::View => "view",
             Self::Contours => "contours",
             Self::Panic => "panic",
@@ -195,6 +203,9 @@ pub fn examine(model: &Model, terms: &Terms) -> Outcome {
     }
     let mut faults = faults(&report);
     faults.extend(sums(model, &evaluation, terms));
+    if terms.unfiltered {
+        faults.extend(filtered_wrongly(&description.tree, &evaluation, terms));
+    }
     let verdict = match faults.is_empty() {
         true => Verdict::Right(measures(&evaluation)),
         false => Verdict::Wrong(faults),
@@ -243,6 +254,25 @@ fn measures(evaluation: &Evaluation) -> Measures {
         bounds: bounds.map(|b| [b.min, b.max]),
         solids: brep.topology.solids.len(),
     }
+}
+
+/// Where the boundary is another with no decision made in doubles.
+fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &Terms) -> Option<Fault> {
+    let unfiltered = EvaluationOptions {
+        digits: Digits::Many,
+        ..options(terms)
+    };
+    let fault = |text| Fault {
+        kind: Wrong::Filter,
+        text,
+    };
+    let again = match evaluate(tree, &unfiltered) {
+        Ok(again) => again,
+        Err(error) => return Some(fault(error.to_string())),
+    };
+    let differ = Signature::of(&known.brep) != Signature::of(&again.brep);
+    let counts = || [known, &again].map(|part| part.brep.topology.census());
+    differ.then(|| fault(format!("doubles and more digits: {:?}", counts())))
 }
 
 /// Trees with more primitives are not taken apart to see whether volumes add up.
@@ -329,6 +359,7 @@ mod tests {
         resolution: None,
         strict: false,
         views: false,
+        unfiltered: false,
         rays: 2000,
     };
 

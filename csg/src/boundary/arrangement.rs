@@ -104,11 +104,7 @@ pub(super) fn arrange<'t, N: Number>(
     } = merge(tree, solids, extent, judge);
     // Faces that nearly meet are asked, too: a close call is listed on either side of the band.
     let reach = judge.reach();
-    let boxes = solids.all.iter().enumerate().map(|(i, s)| {
-        let b = s.bounds.grown(reach);
-        GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
-    });
-    let tree = RTree::bulk_load(boxes.collect());
+    let tree = tree_of(solids, 0..solids.all.len(), reach);
     let mut found = Arrangement {
         carriers,
         sides,
@@ -145,10 +141,25 @@ pub(super) fn arrange<'t, N: Number>(
     Ok((found, sources))
 }
 
+/// The boxes of some solids, grown by `reach`.
+fn tree_of<N: Number>(
+    solids: &Solids<N>,
+    which: impl Iterator<Item = usize>,
+    reach: N,
+) -> SolidTree {
+    let boxes = which.map(|i| {
+        let b = solids.all[i].bounds.grown(reach);
+        GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
+    });
+    RTree::bulk_load(boxes.collect())
+}
+
 /// An error where more is kept than the limit.
 fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
-    let left = most.checked_sub(entities);
-    left.map(|_| ()).ok_or(EvaluationError::Large { most })
+    match entities > most {
+        true => Err(EvaluationError::Large { most }),
+        false => Ok(()),
+    }
 }
 
 type Pairs = BTreeMap<(usize, usize), Vec<Box3>>;
@@ -164,11 +175,7 @@ impl<N: Number> Arrangement<N> {
             known.insert((&self.sides[*i], [min, max].map(|p| p.map(f64::to_bits))))
         };
         let distinct: Vec<usize> = (0..solids.all.len()).filter(is_new).collect();
-        let boxes = distinct.iter().map(|&i| {
-            let b = solids.all[i].bounds.grown(reach);
-            GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
-        });
-        let tree = SolidTree::bulk_load(boxes.collect());
+        let tree = tree_of(solids, distinct.iter().copied(), reach);
         let mut shared = 0;
         for &i in &distinct {
             let s = &solids.all[i].bounds;

@@ -28,7 +28,7 @@ mod wings;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
-use premio_kernel::brep::check::{Violation, broken_rules, check, worst_gap};
+use premio_kernel::brep::check::{Violation, broken_rules, check, turned_faces, worst_gap};
 use premio_kernel::brep::mass::{Mass, mass};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
@@ -38,6 +38,7 @@ use premio_kernel::number::sign::{
     Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, ROUNDING, Sign, Zeros,
 };
 use premio_kernel::number::wide::Wide;
+use std::sync::OnceLock;
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,9 +50,21 @@ pub struct EvaluationOptions {
     pub noise: Option<f64>,
     /// What coincides.
     pub zeros: Zeros,
+    /// In what numbers that is decided.
+    pub digits: Digits,
     /// The most curves and points of curves that are kept, some two thousand bytes each; by default
     /// [`MOST_ENTITIES`].
     pub entities: Option<usize>,
+}
+
+/// In what numbers a tree is evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Digits {
+    /// In doubles, and in 237 bits where these do not tell.
+    #[default]
+    Filtered,
+    /// In 237 bits: no decision is made in doubles.
+    Many,
 }
 
 /// The default limit on curves and points of curves between the surfaces of a part.
@@ -72,6 +85,8 @@ pub struct Evaluation {
     wide: Option<Box<Brep<Wide>>>,
     /// The resolution by which doubles tell the same boundary, where they do.
     plain: Option<f64>,
+    /// Once it was asked for: with more digits it takes longer than the boundary.
+    mass: OnceLock<Mass>,
 }
 
 impl Evaluation {
@@ -97,10 +112,10 @@ impl Evaluation {
 
     /// The volume, the area and the centroid.
     pub fn mass(&self) -> Mass {
-        match &self.wide {
+        *self.mass.get_or_init(|| match &self.wide {
             Some(wide) => mass(wide),
             None => mass(&self.brep),
-        }
+        })
     }
 
     /// The rules that the boundary breaks.
@@ -129,6 +144,7 @@ impl From<Evaluated<f64>> for Evaluation {
             bounds: known.bounds,
             wide: None,
             plain: Some(known.resolution),
+            mass: OnceLock::new(),
         }
     }
 }
@@ -145,6 +161,7 @@ impl From<Evaluated<Wide>> for Evaluation {
             bounds: known.bounds,
             wide: Some(Box::new(known.brep)),
             plain: None,
+            mass: OnceLock::new(),
         }
     }
 }
@@ -270,8 +287,10 @@ const FEW: usize = 64;
 /// In doubles, and where these do not tell what meets, in numbers of 237 bits by the same
 /// resolution.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
-    if options.zeros == Zeros::Exact {
-        return exactly(tree, options);
+    match (options.zeros, options.digits) {
+        (Zeros::Exact, _) => return Ok(seen(tree, options, finely(tree, options)?)),
+        (_, Digits::Many) => return Ok(seen(tree, options, widely(tree, options)?)),
+        (_, Digits::Filtered) => {}
     }
     match evaluated::<f64>(tree, options) {
         Ok(known) => Ok(known.into()),
@@ -282,8 +301,8 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     }
 }
 
-/// By the resolution, and where what coincides by it contradicts itself, by the finest, unless one is
-/// asked for.
+/// In 237 bits: by the resolution, and where what coincides by it contradicts itself, by the finest,
+/// unless one is asked for.
 fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<Wide>, EvaluationError> {
     match (evaluated::<Wide>(tree, options), options.resolution) {
         (Err(error), None) => finely(tree, options).map_err(|_| error),
@@ -291,10 +310,8 @@ fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<Wide>, E
     }
 }
 
-/// By the finest resolution, in numbers of 237 bits throughout. Where doubles tell a boundary of the
-/// same kind, it can be seen in them.
-fn exactly(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
-    let known = finely(tree, options)?;
+/// What is known in 237 bits. Where doubles tell a boundary of the same kind, it can be seen in them.
+fn seen(tree: &Tree, options: &EvaluationOptions, known: Evaluated<Wide>) -> Evaluation {
     let by_resolution = EvaluationOptions {
         zeros: Zeros::ByResolution,
         ..*options
@@ -302,12 +319,13 @@ fn exactly(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, Evalu
     let plain = evaluated::<f64>(tree, &by_resolution).ok();
     let alike = plain.filter(|plain| plain.brep.topology.census() == known.brep.topology.census());
     let resolution = alike.map(|plain| plain.resolution);
-    Ok(Evaluation {
+    Evaluation {
         plain: resolution,
         ..Evaluation::from(known)
-    })
+    }
 }
 
+/// In 237 bits, by the finest resolution.
 fn finely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<Wide>, EvaluationError> {
     let size = halfspaces::Solids::<Wide>::of(tree).bounds.diagonal();
     let finest = EvaluationOptions {
@@ -370,20 +388,21 @@ fn evaluated<N: Number>(
     concern.list();
     let raw = wings::boundary(&concern, pieces)?;
     let brep = assemble(raw, &judge)?;
-    if let Some((place, distance)) = worst_gap(&brep, N::of(resolution)) {
-        return Err(EvaluationError::Vague {
-            place: rounded(&place),
-            distance: distance.rounded(),
-            resolution,
-        });
-    }
     let band = N::of(resolution);
-    let broken = match N::IS_DOUBLE {
-        true => check(&brep, band),
-        false => broken_rules(&brep, band),
-    };
+    let mut broken = broken_rules(&brep, band);
+    // Which shells are voids was told by their volumes.
+    if N::IS_DOUBLE {
+        broken.extend(turned_faces(&brep));
+    }
     if let Some(broken) = broken.into_iter().next() {
-        return Err(EvaluationError::Unsound(broken));
+        return Err(match worst_gap(&brep, band) {
+            Some((place, distance)) => EvaluationError::Vague {
+                place: rounded(&place),
+                distance: distance.rounded(),
+                resolution,
+            },
+            None => EvaluationError::Unsound(broken),
+        });
     }
     let decisions = judge.decisions();
     Ok(Evaluated {

@@ -139,7 +139,8 @@ const PLACES: u32 = 8;
 /// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
 pub fn check<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
     let mut found = broken_rules(brep, band);
-    check_measures(brep, &mut found);
+    check_shells(brep, &mut found);
+    found.extend(turned_faces(brep));
     found
 }
 
@@ -154,8 +155,9 @@ pub fn broken_rules<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
     found
 }
 
-fn check_measures<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
-    check_shells(brep, found);
+/// The faces that are less than nothing: a loop of each is taken for what it is not.
+pub fn turned_faces<N: Number>(brep: &Brep<N>) -> Vec<Violation> {
+    let mut found = Vec::new();
     for (i, Covered { area, noise }) in face_areas(brep).into_iter().enumerate() {
         // A sliver's may be rounding.
         if area.is_nan() || area.is_at_most(-noise) {
@@ -165,6 +167,7 @@ fn check_measures<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
             });
         }
     }
+    found
 }
 
 fn check_loops<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {

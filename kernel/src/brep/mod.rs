@@ -14,6 +14,7 @@ pub mod locate;
 pub mod mass;
 mod region;
 mod shells;
+pub mod signature;
 pub mod topology;
 mod touches;
 pub mod walk;

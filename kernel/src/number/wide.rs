@@ -188,7 +188,7 @@ impl Number for Wide {
     fn rules() -> &'static Rules<Self> {
         // Halves that agree to 2^-64 differ from the integral by far less, and what is told is told in
         // doubles.
-        static RULES: LazyLock<Rules<Wide>> = LazyLock::new(|| Rules::new(24, Wide(power(-64))));
+        static RULES: LazyLock<Rules<Wide>> = LazyLock::new(|| Rules::new(16, Wide(power(-64))));
         &RULES
     }
 

@@ -4,8 +4,8 @@
 //! of its neighbours, in their order where there is one (Weisfeiler and Leman, 1968). Boundaries that
 //! are the same but for the numbering have the same colours in the end; others hardly ever.
 
-use premio_kernel::brep::Brep;
-use premio_kernel::brep::topology::{CoedgeId, EdgeId, Sense, Topology};
+use super::Brep;
+use super::topology::{CoedgeId, EdgeId, Sense, Topology};
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
@@ -168,33 +168,5 @@ impl Colouring<'_> {
         (0..n)
             .map(|k| self.coedges[all[(place + k * step) % n].index()])
             .collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::identities::{join, side};
-    use serde_json::{Value, json};
-
-    fn block(size: [f64; 3], at: [f64; 3]) -> Value {
-        json!({"prim": "block", "size": size, "transform": [{"translate": at}]})
-    }
-
-    /// A block with two more on it.
-    fn towers(first: [f64; 3], second: [f64; 3]) -> Value {
-        let base = block([9.0, 9.0, 1.0], [0.0; 3]);
-        let [a, b] = [first, second].map(|at| block([1.0; 3], at));
-        join("union", &[&base, &a, &b])
-    }
-
-    #[test]
-    fn what_is_the_same_but_for_its_place_has_one_signature() {
-        let of = |tree: &Value| side(tree).map(|s| s.signature);
-        let apart = of(&towers([2.0, 2.0, 1.0], [5.0, 5.0, 1.0]));
-        assert!(apart.is_ok());
-        assert_eq!(apart, of(&towers([6.0, 2.0, 1.0], [1.0, 5.0, 1.0])));
-        // As many faces, edges and vertices, but one tower hangs below.
-        let below = of(&towers([2.0, 2.0, 1.0], [5.0, 5.0, -1.0]));
-        assert_ne!(apart, below);
     }
 }

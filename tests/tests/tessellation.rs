@@ -54,6 +54,7 @@ const NARROW: &[(&str, &str)] = &[
     ("a sliver between a rim and a torus", r#"{"op":"difference","children":[{"prim":"cone","r":1,"h":1.5,"transform":[{"rotate":[[0,1,0],-90]},{"translate":[-1.5,2,0.5]}]},{"prim":"torus","R":2,"r":1,"transform":[{"translate":[0.5,1.5,0.5]}]}]}"#),
     ("an edge that ends at an apex", r#"{"op":"union","children":[{"prim":"cone","r":2,"h":2,"transform":[{"rotate":[[0,1,0],-90]},{"translate":[0,-0.5,1.5]}]},{"prim":"frustum","r1":0.5,"r2":2,"h":2.5,"transform":[{"translate":[-2,-1,1.5]}]}]}"#),
     ("a great circle", r#"{"op":"union","children":[{"prim":"frustum","r1":1,"r2":0,"h":3},{"prim":"sphere","r":1},{"prim":"cylinder","r":1,"h":2,"transform":[{"rotate":[[1,0,0],-90]},{"translate":[-1,-2,-0.5]}]},{"prim":"cylinder","r":1.5,"h":0.5,"transform":[{"rotate":[[1,0,0],-90]},{"translate":[-1,-2,-0.5]}]}]}"#),
+    ("a ball with a slit all but around", r#"{"op":"union","children":[{"prim":"sphere","r":0.25,"transform":[{"translate":[3,0,0]}]},{"op":"difference","children":[{"prim":"torus","R":3,"r":0.75},{"prim":"torus","R":3,"r":0.25},{"prim":"block","size":[10,10,0.125],"transform":[{"translate":[-5,-5,0]}]}]}]}"#),
 ];
 
 #[test]

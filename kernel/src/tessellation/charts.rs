@@ -1,12 +1,12 @@
 //! Faces laid out in a plane, where they can be triangulated.
 //!
 //! A plane is its own chart. A cylinder and a cone are seen along their axis, the cylinder as if it
-//! widened; a sphere is seen from a point of it outside the face (stereographic projection). A torus
-//! is cut along a parallel and a circle of the tube, the seams, and unrolled: the seams exist in
+//! widened; a sphere is seen from a point of it outside the face (stereographic projection), or from
+//! one inside, about which a cap is left out, where the face has no outside. A torus is cut along a parallel and a circle of the tube, the seams, and unrolled: the seams exist in
 //! the chart only, and are put away from vertices and from where edges turn back.
 
 use super::Accuracy;
-use super::edges::{Polylines, STEEPEST};
+use super::edges::{Polylines, STEEPEST, off_chord};
 use crate::brep::Brep;
 use crate::brep::locate::{FaceLocator, Place};
 use crate::brep::topology::{FaceId, Sense};
@@ -24,12 +24,11 @@ pub(super) enum Chart {
     Cylinder(Cylinder, [f64; 2]),
     /// Polar coordinates: the angle, and the distance from the axis.
     Cone(Frame, f64),
-    /// Stereographic: z points to the centre of the projection.
-    Sphere(Frame, f64),
+    /// Stereographic: z points to the centre of the projection. If that is a point of the face, a cap
+    /// about it, as wide from there as this angle, is not in the chart.
+    Sphere(Frame, f64, Option<f64>),
     /// Lengths along the parallels and the tube, from the seams.
     Torus(Torus, Seams),
-    /// A whole sphere has none.
-    WholeSphere(Sphere),
 }
 
 /// The angles about the axis and about the tube at which a torus is cut.
@@ -60,10 +59,10 @@ impl Chart {
                 Self::Cylinder(s, range)
             }
             Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
-            Surface::Sphere(s) => match centre_of_projection(brep, face, &s, band) {
-                Some(z) => Self::Sphere(Frame::about(s.frame.origin, z), s.radius),
-                None => Self::WholeSphere(s),
-            },
+            Surface::Sphere(s) => {
+                let (z, cap) = Around::of(brep, face, &s, lines).centre(accuracy, band);
+                Self::Sphere(Frame::about(s.frame.origin, z), s.radius, cap)
+            }
             Surface::Torus(s) => {
                 let at = Seams::angles(brep, face, lines);
                 // They may be nearly half as long again next to an edge, and triangles need room.
@@ -83,7 +82,7 @@ impl Chart {
                 let radius = 1.0 + (q.z - lo) / (hi - lo);
                 (q.xy().normalize() * radius).into()
             }
-            Self::Sphere(f, radius) => {
+            Self::Sphere(f, radius, _) => {
                 let q = f.coordinates(p) / *radius;
                 (q.xy() / (1.0 - q.z)).into()
             }
@@ -92,7 +91,6 @@ impl Chart {
                 let from = |i: usize, x: f64| turn(x - seams.at[i]);
                 Point2::new(s.major * from(0, u), s.minor * from(1, v))
             }
-            Self::WholeSphere(_) => Point2::origin(),
         }
     }
 
@@ -106,7 +104,7 @@ impl Chart {
                 s.frame.point(on.x, on.y, lo + (away - 1.0) * (hi - lo))
             }
             Self::Cone(f, slope) => f.point(x.x, x.y, x.coords.norm() * slope),
-            Self::Sphere(f, radius) => {
+            Self::Sphere(f, radius, _) => {
                 let square = x.coords.norm_squared();
                 let part = 2.0 * radius / (1.0 + square);
                 f.point(x.x * part, x.y * part, radius - part)
@@ -115,7 +113,6 @@ impl Chart {
                 let (u, v) = (x.x / s.major + seams.at[0], x.y / s.minor + seams.at[1]);
                 Surface::Torus(*s).point(u, v)
             }
-            Self::WholeSphere(s) => s.frame.origin,
         }
     }
 
@@ -136,7 +133,7 @@ impl Chart {
     pub fn is_mirrored(&self, outward: Sense) -> bool {
         let own = match self {
             Self::Plane(_) | Self::Torus(..) => false,
-            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) | Self::WholeSphere(_) => true,
+            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) => true,
         };
         own != (outward == Sense::Against)
     }
@@ -157,51 +154,95 @@ fn points_of<'a>(
     })
 }
 
-/// The direction of a point of the sphere that is outside the face, well away from it if there is
-/// such a one; none where the face is the whole sphere.
-fn centre_of_projection(
-    brep: &Brep,
+/// What the centre of a face's stereographic projection has to keep away from.
+struct Around<'a> {
+    brep: &'a Brep,
     face: FaceId,
-    sphere: &Sphere,
-    band: f64,
-) -> Option<Vector3<f64>> {
-    let locator = FaceLocator::of(brep, face, band);
-    let arcs = locator.arcs();
-    if arcs.is_empty() {
-        return None;
-    }
-    let centre = sphere.frame.origin;
-    let outside = |d: &Vector3<f64>| locator.place(&(centre + d * sphere.radius)) == Place::Outside;
-    let away = |d: &Vector3<f64>| {
-        let samples = arcs.iter().flat_map(|a| {
-            let [lo, hi] = a.range;
-            (0..=8).map(move |k| a.curve.point(lo + (hi - lo) * f64::from(k) / 8.0))
+    sphere: &'a Sphere,
+    /// The chords of the face's edges.
+    chords: Vec<[Point3<f64>; 2]>,
+}
+
+impl<'a> Around<'a> {
+    fn of(brep: &'a Brep, face: FaceId, sphere: &'a Sphere, lines: &Polylines) -> Self {
+        let t = &brep.topology;
+        let coedges = t.face(face).loops.iter();
+        let edges = coedges.flat_map(|&l| t.ring(l).coedges.iter().map(|&c| t.coedge(c).edge));
+        let chords = edges.flat_map(|edge| {
+            let nodes = lines.nodes(edge).windows(2);
+            nodes.map(|pair| [0, 1].map(|i: usize| lines.points[pair[i].point as usize]))
         });
-        let apart = samples.map(|p| (p - (centre + d * sphere.radius)).norm());
+        Self {
+            brep,
+            face,
+            sphere,
+            chords: chords.collect(),
+        }
+    }
+
+    /// The centre of the projection: a direction out of the face if there is one; else one in it,
+    /// and how wide a cap about it is clear of the edges and flat within the accuracy.
+    fn centre(&self, accuracy: &Accuracy, band: f64) -> (Vector3<f64>, Option<f64>) {
+        let outside = self.outside(band);
+        if let Some(z) = outside {
+            return (z, None);
+        }
+        let z = self.farthest(&mut spread()).unwrap_or_else(Vector3::z);
+        let radius = self.sphere.radius;
+        let clear = (self.away(&z) - accuracy.deviation) / (2.0 * radius);
+        let flat = TAU / f64::from(steps_round(radius, &accuracy.part(0.5)));
+        (z, Some(flat.min(clear)))
+    }
+
+    /// The direction of a point of the sphere that is outside the face, well away from it if there
+    /// is such a one.
+    fn outside(&self, band: f64) -> Option<Vector3<f64>> {
+        if self.chords.is_empty() {
+            return None;
+        }
+        let Sphere { frame, radius } = self.sphere;
+        let locator = FaceLocator::of(self.brep, self.face, band);
+        let outside =
+            |d: &Vector3<f64>| locator.place(&(frame.origin + d * *radius)) == Place::Outside;
+        // Next to the boundary, to the right of it, for faces that cover all but a little.
+        let beside = locator.arcs().iter().flat_map(|a| {
+            let t = 0.5 * (a.range[0] + a.range[1]);
+            let p = a.curve.point(t);
+            let out = self.brep.outward(self.face, &p);
+            let right = a.curve.tangent(t).cross(&out) * a.sense.sign::<f64>();
+            let size = (a.curve.point(a.range[0]) - p).norm();
+            (1..NEAREST).map(move |k| {
+                let beside = p + right * (size / f64::from(1 << k));
+                (beside - frame.origin).normalize()
+            })
+        });
+        self.farthest(&mut spread().filter(outside))
+            .or_else(|| self.farthest(&mut beside.filter(outside)))
+    }
+
+    /// The direction of these that is farthest from the edges.
+    fn farthest(&self, all: &mut dyn Iterator<Item = Vector3<f64>>) -> Option<Vector3<f64>> {
+        all.map(|d| (self.away(&d), d))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, d)| d)
+    }
+
+    /// How far the point of the sphere in a direction is from the edges.
+    fn away(&self, d: &Vector3<f64>) -> f64 {
+        let p = self.sphere.frame.origin + d * self.sphere.radius;
+        let apart = self.chords.iter().map(|[a, b]| off_chord(&p, a, b));
         apart.fold(f64::INFINITY, f64::min)
-    };
-    let spread = (0..SPREAD).map(|k| {
+    }
+}
+
+/// Directions all around.
+fn spread() -> impl Iterator<Item = Vector3<f64>> {
+    (0..SPREAD).map(|k| {
         let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(SPREAD);
         let (sin, cos) = (GOLDEN * f64::from(k)).sin_cos();
         let r = (1.0 - z * z).sqrt();
         Vector3::new(r * cos, r * sin, z)
-    });
-    // Next to the boundary, to the right of it, for faces that cover all but a little.
-    let beside = arcs.iter().flat_map(|a| {
-        let t = 0.5 * (a.range[0] + a.range[1]);
-        let p = a.curve.point(t);
-        let out = brep.outward(face, &p);
-        let right = a.curve.tangent(t).cross(&out) * a.sense.sign::<f64>();
-        let size = (a.curve.point(a.range[0]) - p).norm();
-        (1..NEAREST).map(move |k| (p + right * (size / f64::from(1 << k)) - centre).normalize())
-    });
-    let best = |all: &mut dyn Iterator<Item = Vector3<f64>>| {
-        all.filter(|d| outside(d))
-            .map(|d| (away(&d), d))
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, d)| d)
-    };
-    best(&mut spread.into_iter()).or_else(|| best(&mut beside.into_iter()))
+    })
 }
 
 /// How many directions are tried as the centre of a projection.

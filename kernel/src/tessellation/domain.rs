@@ -8,7 +8,7 @@ use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId, Sense};
 use crate::geometry::surface::{Surface, Torus};
 use crate::number::bisection::bisect;
-use nalgebra::Point2;
+use nalgebra::{Point2, Point3};
 use spade::handles::FixedVertexHandle;
 use spade::{
     ConstrainedDelaunayTriangulation, HasPosition, PositionInTriangulation, Triangulation,
@@ -70,6 +70,8 @@ pub(super) struct Domain {
     pub bounding: HashSet<Side>,
     /// Sides along a seam, and the same sides beyond it, both with the chart to their left.
     pub glued: HashMap<Side, Side>,
+    /// Triangles that are not in the chart, counterclockwise as it is, by their points.
+    pub cap: Vec<[u32; 3]>,
     /// How many nodes each of its edges had.
     built_of: Vec<(EdgeId, usize)>,
 }
@@ -173,6 +175,7 @@ impl<'a> Builder<'a> {
                 net: ConstrainedDelaunayTriangulation::new(),
                 bounding: HashSet::new(),
                 glued: HashMap::new(),
+                cap: Vec::new(),
                 built_of,
             },
             corners: HashMap::new(),
@@ -307,7 +310,11 @@ impl<'a> Builder<'a> {
     fn finish(mut self) -> Result<Domain, Vec<Division>> {
         match self.fit.chart {
             Chart::Torus(torus, seams) => self.add_seams(torus, seams),
-            Chart::Cone(..) | Chart::Sphere(..) => self.add_middle(),
+            Chart::Cone(..) | Chart::Sphere(_, _, None) => self.add_middle(),
+            Chart::Sphere(frame, radius, Some(cap)) => {
+                self.add_middle();
+                self.add_cap(frame.point(0.0, 0.0, *radius), *cap);
+            }
             _ => {}
         }
         self.divide_split();
@@ -334,6 +341,28 @@ impl<'a> Builder<'a> {
         if !known && !on_chord {
             let middle = self.lines.add(self.fit.chart.lift(&Point2::origin()));
             self.corner(Point2::origin(), middle);
+        }
+    }
+
+    /// Adds the rim of a cap about the centre of the projection, and the triangles of the cap.
+    fn add_cap(&mut self, centre: Point3<f64>, wide: f64) {
+        let centre = self.lines.add(centre);
+        let away = 1.0 / (0.5 * wide).tan();
+        let mut rim = Vec::new();
+        for k in 0..RIM {
+            let (sin, cos) = (TAU * f64::from(k) / f64::from(RIM)).sin_cos();
+            let at = Point2::new(away * cos, away * sin);
+            let point = self.lines.add(self.fit.chart.lift(&at));
+            let corner = self.corner(at, point);
+            self.crowded |= corner.is_none();
+            rim.extend(corner.map(|c| (c, point)));
+        }
+        for (k, &(from, a)) in rim.iter().enumerate() {
+            let (to, b) = rim[(k + 1) % rim.len()];
+            if self.domain.net.can_add_constraint(from, to) {
+                self.domain.net.add_constraint(from, to);
+            }
+            self.domain.cap.push([b, a, centre]);
         }
     }
 
@@ -460,6 +489,9 @@ impl<'a> Builder<'a> {
         marks
     }
 }
+
+/// How many sides a cap has: its triangles have equal ones.
+const RIM: u32 = 6;
 
 /// Nodes this near to the end of a chord, as a part of it, are beside that end.
 const BESIDE: f64 = 1.0 / 16.0;

@@ -3,7 +3,7 @@
 use super::Accuracy;
 use super::domain::Division;
 use crate::brep::Brep;
-use crate::brep::topology::EdgeId;
+use crate::brep::topology::{EdgeId, FaceId};
 use nalgebra::{Point3, Vector3};
 
 /// A point of a divided edge.
@@ -48,6 +48,13 @@ impl Polylines {
     /// The nodes of an edge.
     pub fn nodes(&self, edge: EdgeId) -> &[Node] {
         &self.nodes[edge.index()]
+    }
+
+    /// How many nodes the edges of a face have, as its loops run along them.
+    pub fn nodes_of(&self, brep: &Brep, face: FaceId) -> usize {
+        let t = &brep.topology;
+        let coedges = t.face(face).loops.iter().flat_map(|&l| &t.ring(l).coedges);
+        coedges.map(|&c| self.nodes(t.coedge(c).edge).len()).sum()
     }
 
     /// A new point.

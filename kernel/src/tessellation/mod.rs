@@ -84,6 +84,9 @@ pub enum TessellationError {
     },
 }
 
+/// How many points a face may have.
+const LIMIT: usize = 1 << 20;
+
 /// How often the edges are divided further.
 const ROUNDS: usize = 40;
 
@@ -106,6 +109,9 @@ pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, T
             }
             if round == ROUNDS {
                 return Err(TessellationError::Crossing { face });
+            }
+            if lines.nodes_of(brep, face) > LIMIT {
+                return Err(TessellationError::TooMany { face, limit: LIMIT });
             }
             settled = false;
             match Domain::of(brep, face, chart, accuracy, &mut lines) {

@@ -1,20 +1,16 @@
 //! The triangles of a face: points are added inside until they follow the surface.
 
-use super::charts::{Chart, steps_round};
+use super::charts::Chart;
 use super::domain::{Corner, Domain, Side};
 use super::fit::Fit;
-use super::{Accuracy, Mesh, TessellationError, Triangle};
+use super::{Accuracy, LIMIT, Mesh, TessellationError, Triangle};
 use crate::brep::Brep;
-use crate::brep::topology::{FaceId, Sense};
-use crate::geometry::surface::{Sphere, Surface};
+use crate::brep::topology::FaceId;
+use crate::geometry::surface::Surface;
 use nalgebra::{Point2, Point3};
 use spade::Triangulation;
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use std::collections::HashSet;
-use std::f64::consts::TAU;
-
-/// How many points a face may have.
-const LIMIT: usize = 1 << 20;
 
 /// Adds the triangles of a face to a mesh.
 pub(super) fn triangles(
@@ -25,10 +21,6 @@ pub(super) fn triangles(
     accuracy: &Accuracy,
     mesh: &mut Mesh,
 ) -> Result<(), TessellationError> {
-    if let Chart::WholeSphere(sphere) = chart {
-        whole_sphere(brep, face, sphere, accuracy, mesh);
-        return Ok(());
-    }
     let mirrored = chart.is_mirrored(brep.sense(face));
     loop {
         let inside = inside(&domain, mirrored).ok_or(TessellationError::Sides { face })?;
@@ -41,9 +33,11 @@ pub(super) fn triangles(
             &mesh.points,
         );
         if missing.is_empty() {
-            for triangle in inside {
+            let inside = inside.into_iter().map(|triangle| {
                 let corners = domain.net.face(triangle).vertices();
-                let mut corners = corners.map(|v| v.data().point);
+                corners.map(|v| v.data().point)
+            });
+            for mut corners in inside.chain(domain.cap) {
                 if mirrored {
                     corners.swap(1, 2);
                 }
@@ -182,46 +176,4 @@ fn missing(
         }
     }
     found
-}
-
-/// A sphere without edges, by parallels and meridians.
-fn whole_sphere(brep: &Brep, face: FaceId, sphere: &Sphere, accuracy: &Accuracy, mesh: &mut Mesh) {
-    // The diagonal of a quadrangle is off by the sum of what its sides are.
-    let around = steps_round(sphere.radius, &accuracy.part(0.5));
-    let rows = around.div_ceil(2);
-    let first = mesh.points.len() as u32;
-    let surface = Surface::Sphere(*sphere);
-    for row in 1..rows {
-        let v = 0.5 * TAU * (f64::from(row) / f64::from(rows) - 0.5);
-        let parallel =
-            (0..around).map(|k| surface.point(TAU * f64::from(k) / f64::from(around), v));
-        mesh.points.extend(parallel);
-    }
-    let (south, north) = (mesh.points.len() as u32, mesh.points.len() as u32 + 1);
-    let quarter = 0.25 * TAU;
-    mesh.points
-        .extend([surface.point(0.0, -quarter), surface.point(0.0, quarter)]);
-    let at = |row: u32, k: u32| match row {
-        0 => south,
-        r if r == rows => north,
-        r => first + (r - 1) * around + k % around,
-    };
-    let mirrored = brep.sense(face) == Sense::Against;
-    for row in 0..rows {
-        for k in 0..around {
-            let [a, b, c, d] = [
-                at(row, k),
-                at(row, k + 1),
-                at(row + 1, k + 1),
-                at(row + 1, k),
-            ];
-            for corners in [[a, b, c], [a, c, d]] {
-                let [x, y, z] = corners;
-                if x != y && y != z && z != x {
-                    let corners = if mirrored { [x, z, y] } else { corners };
-                    mesh.triangles.push(Triangle { corners, face });
-                }
-            }
-        }
-    }
 }

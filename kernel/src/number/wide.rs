@@ -1,5 +1,7 @@
 //! Numbers of 237 bits: for what doubles do not tell.
 
+mod circular;
+
 use super::precision::Number;
 use super::quadrature::Rules;
 use super::rational::Rational;
@@ -88,11 +90,7 @@ impl Scalar for Wide {
         Number::max(self, Self::ZERO).sqrt()
     }
     fn sin_cos(self) -> (Self, Self) {
-        if self.is_straight() {
-            return (self, Self::ONE - Self::HALF * self * self);
-        }
-        let (sin, cos) = self.0.sin_cos();
-        (Self(sin), Self(cos))
+        circular::sin_cos(self)
     }
     fn twice(self, (sin, cos): (Self, Self)) -> (Self, Self) {
         (Self::TWO * sin * cos, (cos - sin) * (cos + sin))
@@ -140,11 +138,6 @@ impl Wide {
         };
         let significand = (UBig::from(high) << 128usize) + UBig::from(low);
         (sign, significand, exponent as isize)
-    }
-
-    /// Whether it is its own sine and tangent, to all digits: there the library's lose theirs.
-    fn is_straight(self) -> bool {
-        Number::abs(self) < Self(power(-120))
     }
 
     /// e^|x| - 1, by Taylor's series of a part of x, doubled again: e^2x - 1 = d (2 + d).
@@ -331,11 +324,7 @@ impl Number for Wide {
         (self * self + o * o).sqrt()
     }
     fn sin(self) -> Self {
-        if self.is_straight() {
-            self
-        } else {
-            Self(self.0.sin())
-        }
+        self.sin_cos().0
     }
     fn cos(self) -> Self {
         self.sin_cos().1
@@ -350,13 +339,12 @@ impl Number for Wide {
         Self(self.0.acos())
     }
     fn atan(self) -> Self {
-        if self.is_straight() {
-            self
-        } else {
-            Self(self.0.atan())
-        }
+        circular::angle(self, Self::ONE).unwrap_or_else(|| Self(self.0.atan()))
     }
     fn atan2(self, x: Self) -> Self {
+        if let Some(angle) = circular::angle(self, x) {
+            return angle;
+        }
         // By arcs of tangents up to one: the library's own is a quarter turn where both are equal.
         let (along, across) = (Number::abs(x), Number::abs(self));
         let quarter = Self::HALF * Self::PI;
@@ -415,6 +403,47 @@ mod tests {
 
     fn near(a: Wide, b: Wide) -> bool {
         Number::abs(a - b) <= Number::abs(b) * Wide::ROUNDING
+    }
+
+    /// The sine and the cosine by Taylor's series in fractions.
+    fn by_fractions(x: f64) -> (Wide, Wide) {
+        let x = from_f64(x).unwrap();
+        let (mut term, mut sums) = (Rational::ONE, [Rational::ZERO, Rational::ZERO]);
+        for n in 0..140_u8 {
+            let sign = if n % 4 < 2 { 1 } else { -1 };
+            sums[usize::from(n % 2)] += term.clone() * Rational::from(sign);
+            term = term * x.clone() / Rational::from(n + 1);
+        }
+        let [cos, sin] = sums;
+        (Wide::nearest(&sin), Wide::nearest(&cos))
+    }
+
+    #[test]
+    fn sines_are_their_series() {
+        let eighth = std::f64::consts::FRAC_PI_4;
+        let turns = (-9..10).map(|k| f64::from(k) * eighth);
+        let beside = turns.flat_map(|x| [x, x.next_up(), x + 0.001, x - 0.0078]);
+        for x in beside.chain([1e-40, 0.3, 0.49, 1.0, -2.0, 6.0]) {
+            let (sin, cos) = Wide::of(x).sin_cos();
+            let (s, c) = by_fractions(x);
+            assert!(near(sin, s), "{x} {sin:?} {s:?}");
+            assert!(near(cos, c), "{x} {cos:?} {c:?}");
+            let back = sin.atan2(cos);
+            let turned = Wide::of(x) - Wide::TAU * Wide::of((x / std::f64::consts::TAU).round());
+            let apart = Number::abs(back - turned);
+            let off = Number::min(apart, Number::abs(apart - Wide::TAU));
+            assert!(
+                off <= Number::abs(Wide::of(x)) * Wide::ROUNDING,
+                "{x} {back:?}"
+            );
+        }
+        // Far off, the library's.
+        let x = Wide::of(123_456.75);
+        let y = Wide::of(1_000_000.5);
+        for x in [x, y] {
+            let (sin, cos) = (Wide(x.0.sin()), Wide(x.0.cos()));
+            assert!(near(x.sin_cos().0, sin) && near(x.sin_cos().1, cos));
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Sines and angles of 237 bits: what is most often asked of these numbers.
 //!
-//! An angle is brought to within an eighth turn of a quarter turn, and to within 2^-7 of a place of a
+//! An angle is brought to within an eighth turn of a quarter turn, and to within 2^-10 of a place of a
 //! table; what is left has a short series. An angle of a tangent is that in doubles, and the rest,
 //! whose sine is known.
 
@@ -9,10 +9,10 @@ use dashu::integer::UBig;
 use std::sync::LazyLock;
 
 /// Places of the table, from one to the next.
-const STEP: f64 = 1.0 / 64.0;
+const STEP: f64 = 1.0 / 512.0;
 
 /// How many places there are up to an eighth turn.
-const PLACES: usize = 52;
+const PLACES: usize = 403;
 
 /// The sines and cosines of the places.
 static TABLE: LazyLock<[(Wide, Wide); PLACES]> = LazyLock::new(|| {
@@ -96,12 +96,15 @@ fn within_eighth(x: Wide) -> (Wide, Wide) {
     (sin * c + cos * s, cos * c - sin * s)
 }
 
-/// The sine and the cosine of an angle of no more than 2^-7, by Taylor's series.
+/// Powers that count in the series.
+const TERMS: usize = 20;
+
+/// The sine and the cosine of an angle of no more than 2^-10, by Taylor's series.
 fn series(x: Wide) -> (Wide, Wide) {
     let square = x * x;
     // One over the factorials of first, first + 2, ..., with signs in turn.
     let sum = |first: usize| {
-        let shares = SHARES.iter().skip(first - 1).step_by(2).rev();
+        let shares = SHARES[..TERMS].iter().skip(first - 1).step_by(2).rev();
         shares.fold(Wide::ZERO, |sum, &share| share - sum * square)
     };
     (x * sum(1), Wide::ONE - square * sum(2))

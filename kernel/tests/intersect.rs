@@ -174,6 +174,13 @@ fn check(seed: u64, grid: bool) {
             }
         }
     }
+    for node in &meeting.nodes {
+        let [off, other] = [a, b].map(|s| s.distance(&node.point).abs());
+        assert!(
+            off.max(other) < 2e-9 * (node.point - extent.centre).norm().max(1.0),
+            "seed {seed} grid {grid}: {node:?} lies {off} and {other} off\n{a:?}\n{b:?}"
+        );
+    }
     for p in crossings(&a, &b, &mut rng) {
         if (p - extent.centre).norm() > 8.0 {
             continue;

@@ -231,7 +231,9 @@ impl<N: Number> Rulings<'_, N> {
             meeting.branches.push(branch);
         }
         let crossing = Point3::from(q.at(u0));
-        if (crossing - self.extent.centre).length() <= self.extent.radius {
+        let is_near = (crossing - self.extent.centre).length() <= self.extent.radius;
+        // It may lie on the other nappe of the other surface.
+        if is_near && judge.within(self.other.distance(&crossing)) {
             meeting.nodes.push(Node {
                 point: crossing,
                 on: Vec::new(),

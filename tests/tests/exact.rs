@@ -36,6 +36,12 @@ const MEANT: &[(&str, &str)] = &[
     ),
 ];
 
+/// Cases that are not as they are meant by so little that 237 bits do not tell how they meet.
+const REFUSED: &[(&str, &str)] = &[(
+    "cone-lying-on-a-cylinder",
+    "leans by an angle in decimals, and the apex lies along a face within 1e-17",
+)];
+
 /// Cases that take 237 bits longer than a test may: seconds to minutes.
 const LONG: &[&str] = &[
     "cone-apex-1e-7-beside-a-cone",
@@ -47,12 +53,16 @@ const LONG: &[&str] = &[
     "torus-touched-by-cylinder-in-a-cusp",
 ];
 
-fn evaluated(tree: &Tree, zeros: Zeros) -> Evaluation {
+fn asked(tree: &Tree, zeros: Zeros) -> Result<Evaluation, EvaluationError> {
     let options = EvaluationOptions {
         zeros,
         ..EvaluationOptions::default()
     };
-    evaluate(tree, &options).unwrap()
+    evaluate(tree, &options)
+}
+
+fn evaluated(tree: &Tree, zeros: Zeros) -> Evaluation {
+    asked(tree, zeros).unwrap()
 }
 
 /// What is not as it should be where no decision is made in doubles.
@@ -76,6 +86,13 @@ fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
 
 /// What is not as it should be about the exact boundary of a case.
 fn faults(name: &str, tree: &Tree) -> Vec<String> {
+    if REFUSED.iter().any(|(case, _)| *case == name) {
+        return match asked(tree, Zeros::Exact) {
+            Err(EvaluationError::Vague { .. }) => Vec::new(),
+            Err(error) => vec![format!("{name}: {error}")],
+            Ok(_) => vec![format!("{name} is no longer refused")],
+        };
+    }
     let exact = evaluated(tree, Zeros::Exact);
     let known = &exact.decisions;
     let mut faults = Vec::new();

@@ -5,13 +5,13 @@
 //! gives −∮ G du. What a period or a pole adds is told by the area, which lies between nothing and
 //! the whole surface. Notation: P relative to a reference point, N the surface's normal, h = P·N.
 
+mod ground;
 mod strip;
 
 use super::Brep;
 use super::locate::{FaceLocator, Place};
 use super::topology::{CoedgeId, FaceId};
 use crate::geometry::bounds::{self, Box3};
-use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::section::plane_roots;
 use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
@@ -19,8 +19,8 @@ use crate::geometry::vector::{Length, rounded};
 use crate::number::precision::Number;
 use crate::number::quadrature::adaptive;
 use crate::number::sign::Sign;
+use ground::{Between, Ground, OnEdge};
 use nalgebra::{Point3, Vector3};
-use strip::strip;
 
 /// The mass properties of a body of density one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,10 +39,23 @@ type Moments<N> = [N; 5];
 /// The mass properties of the solid that a boundary encloses: the sum over its shells, each reckoned
 /// about a point amid it, so that how far apart they lie costs no digits.
 pub fn mass<N: Number>(brep: &Brep<N>) -> Mass {
-    let reference = Amid::of(brep, brep.topology.face_ids()).reference;
+    let (mass, _) = measured::<N, _>(
+        |care| summed_up(brep, care),
+        |(mass, noise)| (SLENDER * mass.volume).is_beyond(*noise),
+    );
+    mass
+}
+
+/// Where the volume is at least so much more than what doubles may make of it, they tell it.
+const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;
+
+/// The mass properties, and what rounding may make of the volume.
+fn summed_up<N: Number>(brep: &Brep<N>, care: Care) -> (Mass, f64) {
+    let all = Amid::of(brep, brep.topology.face_ids(), care);
+    let reference = all.reference;
     let (mut area, mut volume, mut first) = (N::ZERO, N::ZERO, Vector3::zeros());
     for shell in &brep.topology.shells {
-        let amid = Amid::of(brep, shell.faces.iter().copied());
+        let amid = Amid::of(brep, shell.faces.iter().copied(), care);
         let m = shell_moments(brep, &shell.faces, &amid);
         let enclosed = m[1] / N::of(3.0);
         area += m[0];
@@ -55,11 +68,13 @@ pub fn mass<N: Number>(brep: &Brep<N>) -> Mass {
     } else {
         reference + first / volume
     };
-    Mass {
+    let mass = Mass {
         volume: volume.rounded(),
         area: area.rounded(),
         centroid: rounded(&centroid).into(),
-    }
+    };
+    let noise = all.noise(brep, brep.topology.face_ids(), area * all.size);
+    (mass, noise.rounded())
 }
 
 /// The signed volume that a shell encloses.
@@ -78,10 +93,35 @@ impl<N: Number> Enclosed<N> {
     }
 }
 
-/// What sums are known to, relative to their terms: rounding in doubles, and with more digits far
-/// more than is told.
-fn summed<N: Number>() -> N {
-    N::rules().settled / N::of(NOISE)
+/// How closely integrals are followed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Care {
+    /// As doubles tell them.
+    Doubles,
+    /// With more digits to far more than is told; as doubles tell them where there are no more.
+    Digits,
+    /// To the last digit.
+    Last,
+}
+
+impl Care {
+    /// What sums are known to, relative to their terms.
+    fn part<N: Number>(self) -> N {
+        match self {
+            Self::Doubles => N::of(f64::rules().settled / NOISE),
+            Self::Digits => N::rules().settled / N::of(NOISE),
+            Self::Last => N::ROUNDING,
+        }
+    }
+}
+
+/// What is measured by doubles where that is good enough, else with more digits if there are any.
+fn measured<N: Number, T>(measure: impl Fn(Care) -> T, is_good: impl Fn(&T) -> bool) -> T {
+    let rough = measure(Care::Doubles);
+    match N::IS_DOUBLE || is_good(&rough) {
+        true => rough,
+        false => measure(Care::Digits),
+    }
 }
 
 /// How many times the rounding of its area times the part's size a volume may be off.
@@ -89,28 +129,23 @@ const NOISE: f64 = 64.0;
 
 /// The size of a part, in terms of which its coordinates are rounded.
 pub fn size<N: Number>(brep: &Brep<N>) -> N {
-    Amid::of(brep, brep.topology.face_ids()).size
+    Amid::of(brep, brep.topology.face_ids(), Care::Doubles).size
 }
 
 /// The signed volume that a shell encloses; `size` is that of the part.
 pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId], size: N) -> Enclosed<N> {
-    let rough = enclosed(brep, faces, size, summed());
-    if rough.is_clear() || N::IS_DOUBLE {
-        return rough;
-    }
-    enclosed(brep, faces, size, N::ROUNDING)
-}
-
-/// The same, integrals being followed to a part of their size.
-fn enclosed<N: Number>(brep: &Brep<N>, faces: &[FaceId], size: N, part: N) -> Enclosed<N> {
-    let amid = Amid {
-        part,
-        ..Amid::of(brep, faces.iter().copied())
+    let enclosed = |care| {
+        let amid = Amid::of(brep, faces.iter().copied(), care);
+        let [area, volume, ..] = shell_moments(brep, faces, &amid);
+        Enclosed {
+            volume: volume / N::of(3.0),
+            noise: amid.noise(brep, faces.iter().copied(), area * size),
+        }
     };
-    let [area, volume, ..] = shell_moments(brep, faces, &amid);
-    Enclosed {
-        volume: volume / N::of(3.0),
-        noise: N::of(NOISE) * part * area * size,
+    let told = measured::<N, _>(enclosed, Enclosed::is_clear);
+    match N::IS_DOUBLE || told.is_clear() {
+        true => told,
+        false => enclosed(Care::Last),
     }
 }
 
@@ -145,13 +180,22 @@ pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<Covered<N>> {
     };
     let mut areas = vec![nothing; brep.topology.faces.len()];
     for shell in &brep.topology.shells {
-        let amid = Amid::of(brep, shell.faces.iter().copied());
+        let amid = |care| Amid::of(brep, shell.faces.iter().copied(), care);
+        let [rough, fine] = [Care::Doubles, Care::Digits].map(amid);
         for &face in &shell.faces {
-            let [floor, ..] = amid.floor(brep, face);
-            areas[face.index()] = Covered {
-                area: moments(brep, face, &amid)[0],
-                noise: N::of(NOISE) * floor,
+            let covered = |care| {
+                let amid = match care {
+                    Care::Doubles => &rough,
+                    Care::Digits | Care::Last => &fine,
+                };
+                let [floor, ..] = amid.floor(brep, face);
+                Covered {
+                    area: moments(brep, face, amid)[0],
+                    noise: N::of(NOISE) * floor,
+                }
             };
+            let is_clear = |c: &Covered<N>| c.area.is_beyond(c.noise);
+            areas[face.index()] = measured::<N, _>(covered, is_clear);
         }
     }
     areas
@@ -161,12 +205,12 @@ pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<Covered<N>> {
 struct Amid<N: Number = f64> {
     reference: Point3<N>,
     size: N,
-    /// The part of their size to which integrals are followed.
-    part: N,
+    /// How closely integrals are followed.
+    care: Care,
 }
 
 impl<N: Number> Amid<N> {
-    fn of(brep: &Brep<N>, faces: impl Iterator<Item = FaceId>) -> Self {
+    fn of(brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, care: Care) -> Self {
         let (mut edges, mut all) = (Box3::EMPTY, Box3::EMPTY);
         for face in faces {
             edges = edges.hull(&box_of(brep, face));
@@ -184,14 +228,35 @@ impl<N: Number> Amid<N> {
         Self {
             reference,
             size,
-            part: summed(),
+            care,
         }
+    }
+
+    /// What sums are known to, relative to their terms.
+    fn part(&self) -> N {
+        self.care.part()
+    }
+
+    /// What the volume of faces may be off, by their area times the size of the part. Where numbers
+    /// of more digits are asked about in doubles, that area may itself be next to nothing.
+    fn noise(&self, brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, bulk: N) -> N {
+        let by_area = self.part() * bulk;
+        let floors = match self.tells_in_doubles() {
+            true => faces.map(|face| self.floor(brep, face)[1]).sum(),
+            false => N::ZERO,
+        };
+        N::of(NOISE) * (by_area + floors)
+    }
+
+    /// Whether doubles tell for numbers of more digits.
+    fn tells_in_doubles(&self) -> bool {
+        !N::IS_DOUBLE && self.care == Care::Doubles
     }
 
     /// The errors of a face's moments that do not matter: what the rounding of its edges makes.
     fn floor(&self, brep: &Brep<N>, face: FaceId) -> Moments<N> {
         let along = N::of(box_of(brep, face).diagonal()).min(self.size);
-        let area = self.part * self.size * along;
+        let area = self.part() * self.size * along;
         let (volume, first) = (area * self.size, area * self.size * self.size);
         [area, volume, first, first, first]
     }
@@ -219,29 +284,25 @@ fn box_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
     Box3::of(&surface.frame().origin).grown(radius)
 }
 
-/// A surface with what its integrals along v start from.
+/// What a face is measured by.
 struct Density<'a, N: Number = f64> {
-    surface: Surface<N>,
+    ground: Ground<N>,
+    /// The same in doubles, where these may tell.
+    doubles: Option<Ground>,
     amid: &'a Amid<N>,
     /// The errors that do not matter.
     floor: Moments<N>,
-    /// The v at which the surface is cut open, or has a pole.
-    base: N,
 }
 
 impl<N: Number> Density<'_, N> {
-    /// G(u, v), from a v on.
-    fn along(&self, u: N, range: [N; 2]) -> Moments<N> {
-        strip(&self.surface, &self.amid.reference, u, range)
-    }
-
     /// Where the integral along v starts for a loop: amid its edges, so that what is the same on all
     /// of them does not have to cancel.
     fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
-        match &self.surface {
+        let Ground { surface, base, .. } = &self.ground;
+        match surface {
             // At the apex u leaps, where nothing may be between.
-            Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => self.base,
-            _ => amid_edges(brep, &self.surface, self.base, coedges),
+            Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => *base,
+            _ => amid_edges(brep, surface, *base, coedges),
         }
     }
 
@@ -251,9 +312,13 @@ impl<N: Number> Density<'_, N> {
     }
 
     /// The integral over a range of u and of v.
-    fn over(&self, [a, b]: [N; 2], [from, to]: [N; 2]) -> Moments<N> {
-        let of = |u: N| strip(&self.surface, &self.amid.reference, u, [from, to]);
-        adaptive(a, b, &self.floor, &mut { of })
+    fn over(&self, [a, b]: [N; 2], range: [N; 2]) -> Moments<N> {
+        let between = Between {
+            ground: &self.ground,
+            range,
+            doubles: self.doubles.as_ref(),
+        };
+        adaptive(a, b, &self.floor, &between)
     }
 }
 
@@ -276,11 +341,16 @@ fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N
         Surface::Sphere(_) => -N::PI / N::TWO,
         Surface::Torus(_) => N::of(BASE),
     };
-    let d = Density {
+    let ground = Ground {
         surface,
+        reference: amid.reference,
+        base,
+    };
+    let d = Density {
+        doubles: amid.tells_in_doubles().then(|| ground.in_doubles()),
+        ground,
         amid,
         floor: amid.floor(brep, face),
-        base,
     };
     match &surface {
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
@@ -339,7 +409,7 @@ fn holds_far<N: Number>(
     if brep.topology.face(face).loops.is_empty() {
         return true;
     }
-    if part.abs().is_beyond(N::of(FEW) * amid.part) {
+    if part.abs().is_beyond(N::of(FEW) * amid.part()) {
         return part.is_below_zero();
     }
     let locator = FaceLocator::of(brep, face, amid.size * N::of(BAND) * N::ROUNDING);
@@ -381,25 +451,37 @@ fn loop_sum<N: Number>(
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> Moments<N> {
     let [a, v, x, y, z] = density.floor;
-    let floor = [a, v, x, y, z, density.amid.part];
+    let floor = [a, v, x, y, z, density.amid.part()];
     let start = density.start(brep, coedges);
     let mut total = [N::ZERO; 6];
     for &c in coedges {
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
+        let rough = density
+            .doubles
+            .as_ref()
+            .map(|ground| (ground, curve.in_doubles()));
         let [lo, hi] = brep.range(coedge.edge);
         let mut breaks = curve.breaks(lo, hi);
         breaks.extend(marks(c));
         breaks.sort_by(N::total_cmp);
         let sign = coedge.sense.sign::<N>();
+        // What does not matter is shared by the pieces; to doubles it is their rounding.
+        let floor = match N::IS_DOUBLE {
+            true => floor,
+            false => floor.map(|f| f / N::of(breaks.len() as f64)),
+        };
         for pair in breaks.windows(2) {
             // The middle tells on which side of a cut the piece lies.
-            let [_, near] = density
-                .surface
-                .parameters(&curve.point(N::HALF * (pair[0] + pair[1])));
-            let part = adaptive(pair[0], pair[1], &floor, &mut |t| {
-                edge_density(curve, t, density, [start, near])
-            });
+            let middle = curve.point(N::HALF * (pair[0] + pair[1]));
+            let [_, near] = density.ground.surface.parameters(&middle);
+            let on_edge = OnEdge {
+                ground: &density.ground,
+                curve,
+                from: [start, near],
+                doubles: rough.as_ref().map(|(ground, curve)| (*ground, curve)),
+            };
+            let part = adaptive(pair[0], pair[1], &floor, &on_edge);
             for (s, v) in total.iter_mut().zip(part) {
                 *s += sign * v;
             }
@@ -408,38 +490,15 @@ fn loop_sum<N: Number>(
     let [a, v, x, y, z, way] = total;
     let sum = [a, v, x, y, z];
     let turns = (way / N::TAU).round();
-    if turns.is_exactly(N::ZERO) || matches!(density.surface, Surface::Plane(_)) {
+    if turns.is_exactly(N::ZERO) || matches!(density.ground.surface, Surface::Plane(_)) {
         return sum;
     }
-    add(sum, density.between(density.base, start).map(|k| k * turns))
-}
-
-/// G du/dt and du/dt on an edge; G starts at `start`, and v is that next to `near`.
-fn edge_density<N: Number>(
-    curve: &Curve<N>,
-    t: N,
-    density: &Density<'_, N>,
-    [start, near]: [N; 2],
-) -> [N; 6] {
-    let j = curve.jet(t);
-    let p = Point3::new(j[0].v, j[1].v, j[2].v);
-    let f = density.surface.frame();
-    let q = f.coordinates(&p);
-    let d = f.components(&Vector3::new(j[0].d, j[1].d, j[2].d));
-    let [u, mut v] = density.surface.parameters(&p);
-    let rate = match &density.surface {
-        Surface::Plane(_) => d.x,
-        _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
-    };
-    if let Surface::Torus(_) = density.surface {
-        let near = density.base + (near - density.base).rem_euclid(N::TAU);
-        v = near + (v - near + N::PI).rem_euclid(N::TAU) - N::PI;
-    }
-    if rate.is_exactly(N::ZERO) || !rate.is_finite() {
-        return [N::ZERO; 6];
-    }
-    let [a, h, x, y, z] = density.along(u, [start, v]).map(|g| g * rate);
-    [a, h, x, y, z, rate]
+    add(
+        sum,
+        density
+            .between(density.ground.base, start)
+            .map(|k| k * turns),
+    )
 }
 
 /// A frame of a sphere whose poles keep clear of the edges.
@@ -510,7 +569,7 @@ fn torus_moments<N: Number>(
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
         for s in roots_of(c) {
-            let [u, _] = d.surface.parameters(&curve.point(s));
+            let [u, _] = d.ground.surface.parameters(&curve.point(s));
             let rise = curve.derivative(s).dot(&t.frame.z) * N::of(BASE).cos();
             let up = rise * side * coedge.sense.sign::<N>();
             passes.push((u, up.is_above_zero()));

@@ -124,7 +124,7 @@ mod tests {
                 [j, h, h * p_to.x, h * p_to.y, h * p_to.z]
             };
             let closed = strip(surface, &reference, u, [0.2, 1.3]);
-            let summed = adaptive(0.2, 1.3, &[1e-12; 5], &mut { density });
+            let summed = adaptive(0.2, 1.3, &[1e-12; 5], &density);
             for (a, b) in closed.iter().zip(summed) {
                 assert_relative_eq!(*a, b, max_relative = 1e-7, epsilon = 1e-7);
             }

@@ -2,7 +2,7 @@
 //! point. Only those need be named; all others are taken as not holding it.
 
 use crate::tree::{Node, NodeId, Operation, Tree};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// The tree, turned over so that a few leaves can be followed upwards.
 pub(super) struct Membership<'a> {
@@ -16,6 +16,23 @@ struct Count {
     node: NodeId,
     first: bool,
     others: usize,
+}
+
+impl Count {
+    /// One child holds the point: the first, or another.
+    fn of(node: NodeId, first: bool) -> Self {
+        let others = usize::from(!first);
+        Self {
+            node,
+            first,
+            others,
+        }
+    }
+
+    fn add(&mut self, other: Self) {
+        self.first |= other.first;
+        self.others += other.others;
+    }
 }
 
 /// What a point may be in of the children of an operation: some it is in, some it may be in.
@@ -52,43 +69,36 @@ impl<'a> Membership<'a> {
     /// Whether a point in exactly the given primitives (by leaf) is in the solid. A parent stands
     /// before its children, so the greatest index is always ready to be decided.
     pub fn holds(&self, leaves: &[NodeId]) -> bool {
-        let mut held: Vec<NodeId> = leaves.to_vec();
-        let mut waiting: Vec<Count> = Vec::new();
-        loop {
-            for node in held.drain(..) {
-                let Some((parent, place)) = self.parents[node.index()] else {
-                    return true;
-                };
-                let known = waiting.iter_mut().find(|c| c.node == parent);
-                let count = match known {
-                    Some(count) => count,
-                    None => {
-                        waiting.push(Count {
-                            node: parent,
-                            first: false,
-                            others: 0,
-                        });
-                        let last = waiting.len() - 1;
-                        &mut waiting[last]
-                    }
-                };
-                if place == 0 {
-                    count.first = true;
-                } else {
-                    count.others += 1;
-                }
-            }
-            let next = waiting
-                .iter()
-                .enumerate()
-                .max_by_key(|(_, c)| c.node)
-                .map(|(i, _)| i);
-            let Some(i) = next else { return false };
-            let count = waiting.swap_remove(i);
-            if self.decide(&count) {
-                held.push(count.node);
+        // The operations above what holds the point, and whether that is their first child.
+        let mut waiting: BinaryHeap<(NodeId, bool)> = BinaryHeap::new();
+        for leaf in leaves {
+            match self.parents[leaf.index()] {
+                Some((parent, place)) => waiting.push((parent, place == 0)),
+                None => return true,
             }
         }
+        while let Some((node, first)) = waiting.pop() {
+            let mut count = Count::of(node, first);
+            while let Some(&(same, first)) = waiting.peek().filter(|w| w.0 == node) {
+                count.add(Count::of(same, first));
+                waiting.pop();
+            }
+            // On from there alone, as long as nothing else is to be decided first.
+            let mut ready = Some(count);
+            while let Some(count) = ready.take().filter(|count| self.decide(count)) {
+                let Some((parent, place)) = self.parents[count.node.index()] else {
+                    return true;
+                };
+                match waiting
+                    .peek()
+                    .is_some_and(|(next, _)| next.index() >= parent.index())
+                {
+                    true => waiting.push((parent, place == 0)),
+                    false => ready = Some(Count::of(parent, place == 0)),
+                }
+            }
+        }
+        false
     }
 
     fn decide(&self, count: &Count) -> bool {
@@ -209,6 +219,49 @@ mod tests {
         let found = Membership::new(&tree).deciding(&named(held), &named(open));
         let place = |id| leaves.iter().position(|l| *l == id).unwrap();
         found.into_iter().map(place).collect()
+    }
+
+    /// The same from the root down.
+    fn is_in(tree: &Tree, node: NodeId, held: &[NodeId]) -> bool {
+        match &tree[node] {
+            Node::Leaf(_) => held.contains(&node),
+            Node::Operation { op, children } => {
+                let mut of = children.iter().map(|&child| is_in(tree, child, held));
+                match op {
+                    Operation::Union => of.any(|held| held),
+                    Operation::Intersection => of.all(|held| held),
+                    Operation::Difference => of.next() == Some(true) && !of.any(|held| held),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_choice_of_sides_is_told() {
+        let parts = [
+            "A",
+            "A UN A INT A",
+            "A DIF (A DIF (A DIF (A UN A)))",
+            "(A UN A) DIF (A INT A) UN (A DIF A)",
+            "((A INT A) UN (A INT A)) INT ((A DIF A) UN (A DIF A))",
+            "(((((A UN A) DIF A) UN A) DIF A) INT (A UN A)) DIF A",
+        ];
+        for part in parts {
+            let text = format!("A = SPH(R=1)\nP = {part}\n");
+            let tree = read("part", text.as_bytes(), Format::Padl, &Options::default());
+            let tree = tree.unwrap().tree;
+            let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
+            let membership = Membership::new(&tree);
+            for choice in 0_u32..1 << leaves.len() {
+                let named = leaves.iter().enumerate();
+                let held: Vec<NodeId> = named
+                    .filter(|(i, _)| choice & (1 << i) != 0)
+                    .map(|(_, leaf)| *leaf)
+                    .collect();
+                let told = membership.holds(&held);
+                assert_eq!(told, is_in(&tree, NodeId(0), &held), "{part} {choice:b}");
+            }
+        }
     }
 
     #[test]

@@ -16,9 +16,9 @@ struct Arguments {
     /// The greatest power.
     #[arg(long, default_value_t = 60)]
     to: i32,
-    /// Turn the pairs about an odd axis.
-    #[arg(long)]
-    turned: bool,
+    /// How the pairs are put.
+    #[arg(long, value_enum, default_value = "straight")]
+    pose: Pose,
     /// Only pairs with this in their names.
     #[arg(long, default_value = "")]
     pair: String,
@@ -29,10 +29,7 @@ struct Arguments {
 
 fn main() -> io::Result<ExitCode> {
     let arguments = Arguments::parse();
-    let pose = match arguments.turned {
-        true => Pose::Turned,
-        false => Pose::Straight,
-    };
+    let pose = arguments.pose;
     let (mut wrong, mut all) = (0, 0);
     let mut out = io::stdout().lock();
     let pairs = || PAIRS.iter().filter(|p| p.name.contains(&arguments.pair));

@@ -1,5 +1,6 @@
 //! Pairs of solids that coincide in some way, and lie next to that as far as a gap says.
 
+use clap::ValueEnum;
 use premio::checks::Checker;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
@@ -100,12 +101,40 @@ pub const PAIRS: &[Pair] = &[
 ];
 
 /// How a pair is put.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Pose {
     /// As it is.
     Straight,
+    /// Turned by right angles, so that each axis becomes another.
+    Swapped,
     /// Turned by 17 degrees about an odd axis, and moved.
     Turned,
+    /// Turned by next to nothing, so that nothing is quite along an axis.
+    Tilted,
+    /// Turned, and moved to where coordinates have three digits less.
+    Far,
+}
+
+impl Pose {
+    /// All poses.
+    pub const ALL: [Self; 5] = [
+        Self::Straight,
+        Self::Swapped,
+        Self::Turned,
+        Self::Tilted,
+        Self::Far,
+    ];
+
+    /// Its motions in PADL.
+    fn motions(self) -> &'static str {
+        match self {
+            Self::Straight => "MOVX=0",
+            Self::Swapped => "ROTX=90,ROTZ=90",
+            Self::Turned => "ROTX=17,ROTZ=31,MOVX=0.3,MOVY=0.7",
+            Self::Tilted => "ROTX=0.0001,ROTY=-0.00001",
+            Self::Far => "ROTZ=17,ROTY=-50,MOVX=1000,MOVY=-700,MOVZ=300",
+        }
+    }
 }
 
 /// A power of two as PADL writes it, in as many decimals as it has bits.
@@ -195,11 +224,8 @@ fn evaluated(
     pose: Pose,
     zeros: Zeros,
 ) -> Result<(Tree, Evaluation), String> {
-    let text = match pose {
-        Pose::Straight => solid.to_owned(),
-        Pose::Turned => format!("({solid}) AT (ROTX=17,ROTZ=31,MOVX=0.3,MOVY=0.7)"),
-    };
-    let text = format!("D = {gap}\nP = {text}\n");
+    let motions = pose.motions();
+    let text = format!("D = {gap}\nP = ({solid}) AT ({motions})\n");
     let tree = read("part", text.as_bytes(), Format::Padl, &Options::default());
     let tree = tree.map_err(|error| error.to_string())?.tree;
     let options = EvaluationOptions {

@@ -9,10 +9,11 @@ const POWERS: [i32; 6] = [10, 18, 22, 26, 36, 50];
 fn holds(pose: Pose) {
     let mut wrong = Vec::new();
     for pair in PAIRS {
-        for (sign, power) in POWERS.iter().flat_map(|&power| [("", power), ("-", power)]) {
-            let found = faults(pair, &gap(sign, power), pose);
+        let missed = POWERS.map(|power| ["", "-"].map(|sign| gap(sign, power)));
+        for gap in missed.as_flattened().iter().chain([&"0".to_owned()]) {
+            let found = faults(pair, gap, pose);
             if !found.is_empty() {
-                wrong.push(format!("{} by {sign}2^-{power}: {found:?}", pair.name));
+                wrong.push(format!("{} by {gap}: {found:?}", pair.name));
             }
         }
     }
@@ -25,8 +26,23 @@ fn coincidences_and_what_is_next_to_them() {
 }
 
 #[test]
+fn coincidences_along_other_axes() {
+    holds(Pose::Swapped);
+}
+
+#[test]
 fn coincidences_turned() {
     holds(Pose::Turned);
+}
+
+#[test]
+fn coincidences_tilted_by_next_to_nothing() {
+    holds(Pose::Tilted);
+}
+
+#[test]
+fn coincidences_far_from_the_origin() {
+    holds(Pose::Far);
 }
 
 /// By which powers of two a coincidence is missed under exact evaluation.

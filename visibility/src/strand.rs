@@ -534,14 +534,7 @@ fn limbs_through(limbs: &[Limb], p: &Point3<f64>, near: f64) -> Vec<usize> {
 
 /// The edges of a face, each once.
 fn face_edges(scene: &Scene<'_>, face: FaceId) -> Vec<EdgeId> {
-    let topology = &scene.brep.topology;
-    let mut edges: Vec<EdgeId> = topology
-        .face(face)
-        .loops
-        .iter()
-        .flat_map(|&l| &topology.ring(l).coedges)
-        .map(|&c| topology.coedge(c).edge)
-        .collect();
+    let mut edges: Vec<EdgeId> = scene.brep.topology.edges_of(face).collect();
     edges.sort_unstable();
     edges.dedup();
     edges

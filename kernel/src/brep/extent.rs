@@ -24,9 +24,7 @@ pub fn bounds<N: Number>(brep: &Brep<N>) -> Box3 {
 
 /// The box of a face: of its edges, and of the face where it bulges beyond them.
 pub(super) fn face_bounds<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
-    let topology = &brep.topology;
-    let rings = topology.face(face).loops.iter().map(|&l| topology.ring(l));
-    let edges = rings.flat_map(|r| r.coedges.iter().map(|&c| topology.coedge(c).edge));
+    let edges = brep.topology.edges_of(face);
     edges.fold(bulge(brep, face), |all, e| {
         all.hull(&tight_bounds(brep.curve(e), brep.range(e)))
     })

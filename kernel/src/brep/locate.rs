@@ -76,12 +76,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
     /// The locator of a face of a boundary representation.
     pub fn of(brep: &'a Brep<N>, face: FaceId, band: N) -> Self {
         let topology = &brep.topology;
-        let coedges = topology
-            .face(face)
-            .loops
-            .iter()
-            .flat_map(|&l| topology.ring(l).coedges.iter().copied());
-        let arcs = coedges.map(|c| {
+        let arcs = topology.coedges_of(face).map(|c| {
             let c = topology.coedge(c);
             DirectedArc {
                 curve: brep.curve(c.edge),

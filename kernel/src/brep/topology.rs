@@ -220,6 +220,17 @@ impl Topology {
         self.ring(self.coedge(id).owner).face
     }
 
+    /// The coedges of a face, as its loops run along them.
+    pub fn coedges_of(&self, id: FaceId) -> impl Iterator<Item = CoedgeId> + '_ {
+        let loops = self.face(id).loops.iter();
+        loops.flat_map(|&l| self.ring(l).coedges.iter().copied())
+    }
+
+    /// The edges of a face, as its loops run along them: one twice, on whose both sides it lies.
+    pub fn edges_of(&self, id: FaceId) -> impl Iterator<Item = EdgeId> + '_ {
+        self.coedges_of(id).map(|c| self.coedge(c).edge)
+    }
+
     /// The faces around an edge, in order.
     pub fn faces_of(&self, id: EdgeId) -> impl Iterator<Item = FaceId> + '_ {
         self.edge(id).coedges.iter().map(|&c| self.face_of(c))

@@ -145,11 +145,8 @@ fn points_of<'a>(
     face: FaceId,
     lines: &'a Polylines,
 ) -> impl Iterator<Item = Point3<f64>> + 'a {
-    let t = &brep.topology;
-    let coedges = t.face(face).loops.iter();
-    let coedges = coedges.flat_map(|&l| &t.ring(l).coedges);
-    coedges.flat_map(|&c| {
-        let nodes = lines.nodes(t.coedge(c).edge).iter();
+    brep.topology.edges_of(face).flat_map(|edge| {
+        let nodes = lines.nodes(edge).iter();
         nodes.map(|n| lines.points[n.point as usize])
     })
 }
@@ -165,10 +162,7 @@ struct Around<'a> {
 
 impl<'a> Around<'a> {
     fn of(brep: &'a Brep, face: FaceId, sphere: &'a Sphere, lines: &Polylines) -> Self {
-        let t = &brep.topology;
-        let coedges = t.face(face).loops.iter();
-        let edges = coedges.flat_map(|&l| t.ring(l).coedges.iter().map(|&c| t.coedge(c).edge));
-        let chords = edges.flat_map(|edge| {
+        let chords = brep.topology.edges_of(face).flat_map(|edge| {
             let nodes = lines.nodes(edge).windows(2);
             nodes.map(|pair| [0, 1].map(|i: usize| lines.points[pair[i].point as usize]))
         });
@@ -259,28 +253,25 @@ impl Seams {
     /// at which its edges turn back.
     fn angles(brep: &Brep, face: FaceId, lines: &Polylines) -> [f64; 2] {
         let surface = brep.surface(face);
-        let t = &brep.topology;
         let mut turns: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
-        for &ring in &t.face(face).loops {
-            for &c in &t.ring(ring).coedges {
-                let nodes = lines.nodes(t.coedge(c).edge);
-                let at: Vec<[f64; 2]> = nodes
-                    .iter()
-                    .map(|n| surface.parameters(&lines.points[n.point as usize]))
+        for edge in brep.topology.edges_of(face) {
+            let nodes = lines.nodes(edge);
+            let at: Vec<[f64; 2]> = nodes
+                .iter()
+                .map(|n| surface.parameters(&lines.points[n.point as usize]))
+                .collect();
+            for (i, turns) in turns.iter_mut().enumerate() {
+                turns.extend([at[0][i], at[at.len() - 1][i]]);
+                let steps: Vec<f64> = at
+                    .windows(2)
+                    .map(|w| signed_turn(w[1][i] - w[0][i]))
                     .collect();
-                for (i, turns) in turns.iter_mut().enumerate() {
-                    turns.extend([at[0][i], at[at.len() - 1][i]]);
-                    let steps: Vec<f64> = at
-                        .windows(2)
-                        .map(|w| signed_turn(w[1][i] - w[0][i]))
-                        .collect();
-                    let turning = steps.windows(2).enumerate();
-                    turns.extend(
-                        turning
-                            .filter(|(_, s)| s[0] * s[1] <= 0.0)
-                            .map(|(k, _)| at[k + 1][i]),
-                    );
-                }
+                let turning = steps.windows(2).enumerate();
+                turns.extend(
+                    turning
+                        .filter(|(_, s)| s[0] * s[1] <= 0.0)
+                        .map(|(k, _)| at[k + 1][i]),
+                );
             }
         }
         turns.map(|turns| widest_gap(&turns))

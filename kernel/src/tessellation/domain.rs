@@ -111,10 +111,8 @@ impl Domain {
 /// The edges of a face as its loops run along them.
 fn runs(brep: &Brep, face: FaceId) -> Vec<(EdgeId, Sense)> {
     let t = &brep.topology;
-    let coedges = t.face(face).loops.iter();
-    let coedges = coedges.flat_map(|&l| &t.ring(l).coedges);
-    coedges
-        .map(|&c| (t.coedge(c).edge, t.coedge(c).sense))
+    t.coedges_of(face)
+        .map(|c| (t.coedge(c).edge, t.coedge(c).sense))
         .collect()
 }
 

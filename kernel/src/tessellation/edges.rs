@@ -52,9 +52,8 @@ impl Polylines {
 
     /// How many nodes the edges of a face have, as its loops run along them.
     pub fn nodes_of(&self, brep: &Brep, face: FaceId) -> usize {
-        let t = &brep.topology;
-        let coedges = t.face(face).loops.iter().flat_map(|&l| &t.ring(l).coedges);
-        coedges.map(|&c| self.nodes(t.coedge(c).edge).len()).sum()
+        let edges = brep.topology.edges_of(face);
+        edges.map(|e| self.nodes(e).len()).sum()
     }
 
     /// A new point.

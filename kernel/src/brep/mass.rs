@@ -5,21 +5,19 @@
 //! gives −∮ G du. What a period or a pole adds is told by the area, which lies between nothing and
 //! the whole surface. Notation: P relative to a reference point, N the surface's normal, h = P·N.
 
+mod face;
 mod ground;
+mod outline;
 mod strip;
 
 use super::Brep;
-use super::locate::{FaceLocator, Place};
-use super::topology::{CoedgeId, FaceId};
-use crate::geometry::bounds::{self, Box3};
-use crate::geometry::frame::Frame;
-use crate::geometry::section::plane_roots;
-use crate::geometry::surface::{Plane, Sphere, Surface, Torus};
-use crate::geometry::vector::{Length, rounded};
+use super::topology::FaceId;
+use crate::geometry::bounds::Box3;
+use crate::geometry::surface::Surface;
+use crate::geometry::vector::rounded;
 use crate::number::precision::Number;
-use crate::number::quadrature::adaptive;
 use crate::number::sign::Sign;
-use ground::{Between, Ground, OnEdge};
+use face::moments;
 use nalgebra::{Point3, Vector3};
 
 /// The mass properties of a body of density one.
@@ -264,336 +262,18 @@ impl<N: Number> Amid<N> {
 
 /// A box amid a face: of its edges' ends and middles, or of the whole surface, where it has none.
 fn box_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
-    let topology = &brep.topology;
     let mut b = Box3::EMPTY;
-    for &l in &topology.face(face).loops {
-        for &c in &topology.ring(l).coedges {
-            let edge = topology.coedge(c).edge;
-            let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
-            b = b.hull(&Box3::of(&curve.point(lo)));
-            b = b.hull(&Box3::of(&curve.point(N::HALF * (lo + hi))));
-        }
+    for edge in brep.topology.edges_of(face) {
+        let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
+        b = b.hull(&Box3::of(&curve.point(lo)));
+        b = b.hull(&Box3::of(&curve.point(N::HALF * (lo + hi))));
     }
     let surface = brep.surface(face);
     let radius = match surface {
-        _ if !topology.face(face).loops.is_empty() => return b,
+        _ if !brep.topology.face(face).loops.is_empty() => return b,
         Surface::Sphere(s) => s.radius,
         Surface::Torus(t) => t.major + t.minor,
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => return b,
     };
     Box3::of(&surface.frame().origin).grown(radius)
-}
-
-/// What a face is measured by.
-struct Density<'a, N: Number = f64> {
-    ground: Ground<N>,
-    /// The same in doubles, where these may tell.
-    doubles: Option<Ground>,
-    amid: &'a Amid<N>,
-    /// The errors that do not matter.
-    floor: Moments<N>,
-}
-
-impl<N: Number> Density<'_, N> {
-    /// Where the integral along v starts for a loop: amid its edges, so that what is the same on all
-    /// of them does not have to cancel.
-    fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
-        let Ground { surface, base, .. } = &self.ground;
-        match surface {
-            // At the apex u leaps, where nothing may be between.
-            Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => *base,
-            _ => amid_edges(brep, surface, *base, coedges),
-        }
-    }
-
-    /// The integral over all that lies between two v.
-    fn between(&self, from: N, to: N) -> Moments<N> {
-        self.over([N::ZERO, N::TAU], [from, to])
-    }
-
-    /// The integral over a range of u and of v.
-    fn over(&self, [a, b]: [N; 2], range: [N; 2]) -> Moments<N> {
-        let between = Between {
-            ground: &self.ground,
-            range,
-            doubles: self.doubles.as_ref(),
-        };
-        adaptive(a, b, &self.floor, &between)
-    }
-}
-
-/// The moments of a face.
-fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N> {
-    let loops = &brep.topology.face(face).loops;
-    let coedges: Vec<CoedgeId> = loops
-        .iter()
-        .flat_map(|&l| brep.topology.ring(l).coedges.iter().copied())
-        .collect();
-    let surface = match *brep.surface(face) {
-        Surface::Sphere(s) => Surface::Sphere(Sphere {
-            frame: clear_axis(brep, &s, &coedges),
-            ..s
-        }),
-        other => other,
-    };
-    let base = match &surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => N::ZERO,
-        Surface::Sphere(_) => -N::PI / N::TWO,
-        Surface::Torus(_) => N::of(BASE),
-    };
-    let ground = Ground {
-        surface,
-        reference: amid.reference,
-        base,
-    };
-    let d = Density {
-        doubles: amid.tells_in_doubles().then(|| ground.in_doubles()),
-        ground,
-        amid,
-        floor: amid.floor(brep, face),
-    };
-    match &surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
-            boundary_sum(brep, face, &d, &|_| Vec::new())
-        }
-        Surface::Sphere(s) => {
-            let sum = boundary_sum(brep, face, &d, &|_| Vec::new());
-            let whole = d.between(base, N::PI / N::TWO);
-            let opposite = s.frame.point(N::ZERO, N::ZERO, s.radius);
-            if holds_far(brep, face, amid, sum[0] / whole[0], &opposite) {
-                add(sum, whole)
-            } else {
-                sum
-            }
-        }
-        Surface::Torus(t) => torus_moments(brep, face, &coedges, t, &d),
-    }
-}
-
-/// Whether edges may pass through a point.
-fn reaches<N: Number>(brep: &Brep<N>, coedges: &[CoedgeId], p: &Point3<N>) -> bool {
-    coedges.iter().any(|&c| {
-        let e = brep.topology.coedge(c).edge;
-        let around = bounds::bounds(brep.curve(e), brep.range(e));
-        around.grown(around.diagonal()).holds(p)
-    })
-}
-
-/// A v amid the edges of a face, where a torus or a sphere is cut open at `base`.
-fn amid_edges<N: Number>(brep: &Brep<N>, surface: &Surface<N>, base: N, coedges: &[CoedgeId]) -> N {
-    let middle = |&c: &CoedgeId| {
-        let e = brep.topology.coedge(c).edge;
-        let [lo, hi] = brep.range(e);
-        let [_, v] = surface.parameters(&brep.curve(e).point(N::HALF * (lo + hi)));
-        match surface {
-            Surface::Torus(_) => base + (v - base).rem_euclid(N::TAU),
-            _ => v,
-        }
-    };
-    match coedges.len() {
-        0 => base,
-        n => coedges.iter().map(middle).sum::<N>() / N::of(n as f64),
-    }
-}
-
-/// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
-/// the face's part of the whole surface all or nothing is missing, so its sign tells, unless next to
-/// nothing is left.
-fn holds_far<N: Number>(
-    brep: &Brep<N>,
-    face: FaceId,
-    amid: &Amid<N>,
-    part: N,
-    far: &Point3<N>,
-) -> bool {
-    if brep.topology.face(face).loops.is_empty() {
-        return true;
-    }
-    if part.abs().is_beyond(N::of(FEW) * amid.part()) {
-        return part.is_below_zero();
-    }
-    let locator = FaceLocator::of(brep, face, amid.size * N::of(BAND) * N::ROUNDING);
-    locator.place(far) != Place::Outside
-}
-
-/// Of areas below this part of the whole surface, in terms of rounding, the sign may be rounding.
-const FEW: f64 = 256.0;
-/// How far edges are off, in terms of the part's size and of rounding.
-const BAND: f64 = 4096.0;
-/// The angle about the tube at which a torus is cut open.
-const BASE: f64 = 2.0;
-
-fn add<N: Number>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
-    std::array::from_fn(|i| a[i] + b[i])
-}
-
-/// −∮ G du over the boundary of a face, each edge broken where `marks` says, and G counted from the
-/// base.
-fn boundary_sum<N: Number>(
-    brep: &Brep<N>,
-    face: FaceId,
-    density: &Density<'_, N>,
-    marks: &dyn Fn(CoedgeId) -> Vec<N>,
-) -> Moments<N> {
-    let loops = brep.topology.face(face).loops.iter();
-    let rings = loops.map(|&l| &brep.topology.ring(l).coedges);
-    let side = brep.sense(face).sign::<N>();
-    let sums = rings.map(|ring| loop_sum(brep, ring, density, marks).map(|m| -side * m));
-    sums.fold([N::ZERO; 5], add)
-}
-
-/// ∮ G du over a loop, G counted from the base: what lies between that and where it starts counts as
-/// often as the loop goes round.
-fn loop_sum<N: Number>(
-    brep: &Brep<N>,
-    coedges: &[CoedgeId],
-    density: &Density<'_, N>,
-    marks: &dyn Fn(CoedgeId) -> Vec<N>,
-) -> Moments<N> {
-    let [a, v, x, y, z] = density.floor;
-    let floor = [a, v, x, y, z, density.amid.part()];
-    let start = density.start(brep, coedges);
-    let mut total = [N::ZERO; 6];
-    for &c in coedges {
-        let coedge = brep.topology.coedge(c);
-        let curve = brep.curve(coedge.edge);
-        let rough = density
-            .doubles
-            .as_ref()
-            .map(|ground| (ground, curve.in_doubles()));
-        let [lo, hi] = brep.range(coedge.edge);
-        let mut breaks = curve.breaks(lo, hi);
-        breaks.extend(marks(c));
-        breaks.sort_by(N::total_cmp);
-        let sign = coedge.sense.sign::<N>();
-        // What does not matter is shared by the pieces; to doubles it is their rounding.
-        let floor = match N::IS_DOUBLE {
-            true => floor,
-            false => floor.map(|f| f / N::of(breaks.len() as f64)),
-        };
-        for pair in breaks.windows(2) {
-            // The middle tells on which side of a cut the piece lies.
-            let middle = curve.point(N::HALF * (pair[0] + pair[1]));
-            let [_, near] = density.ground.surface.parameters(&middle);
-            let on_edge = OnEdge {
-                ground: &density.ground,
-                curve,
-                from: [start, near],
-                doubles: rough.as_ref().map(|(ground, curve)| (*ground, curve)),
-            };
-            let part = adaptive(pair[0], pair[1], &floor, &on_edge);
-            for (s, v) in total.iter_mut().zip(part) {
-                *s += sign * v;
-            }
-        }
-    }
-    let [a, v, x, y, z, way] = total;
-    let sum = [a, v, x, y, z];
-    let turns = (way / N::TAU).round();
-    if turns.is_exactly(N::ZERO) || matches!(density.ground.surface, Surface::Plane(_)) {
-        return sum;
-    }
-    add(
-        sum,
-        density
-            .between(density.ground.base, start)
-            .map(|k| k * turns),
-    )
-}
-
-/// A frame of a sphere whose poles keep clear of the edges.
-fn clear_axis<N: Number>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> Frame<N> {
-    let o = s.frame.origin;
-    let mut best = (-N::ONE, s.frame);
-    for k in 0..12 {
-        let (z, a) = (
-            N::ONE - (N::TWO * N::whole(k) + N::ONE) / N::of(24.0),
-            N::of(2.4) * N::whole(k) + N::of(0.3),
-        );
-        let across = (N::ONE - z * z).sqrt();
-        let axis = Vector3::new(across * a.cos(), across * a.sin(), z);
-        let mut clear: N = N::ONE;
-        for &c in coedges {
-            let e = brep.topology.coedge(c).edge;
-            let [lo, hi] = brep.range(e);
-            for i in 0..=16 {
-                let p = brep
-                    .curve(e)
-                    .point(lo + (hi - lo) * N::whole(i) / N::of(16.0));
-                let d = (p - o).unit();
-                clear = clear.min(d.cross(&axis).length());
-            }
-        }
-        if clear.is_beyond(best.0) {
-            best = (clear, Frame::about(o, axis));
-        }
-    }
-    best.1
-}
-
-/// A torus is cut open along the parallel v = BASE: what of it lies in the face is part of the
-/// boundary of the opened face.
-fn torus_moments<N: Number>(
-    brep: &Brep<N>,
-    face: FaceId,
-    coedges: &[CoedgeId],
-    t: &Torus<N>,
-    d: &Density<'_, N>,
-) -> Moments<N> {
-    let side = brep.sense(face).sign::<N>();
-    let height = t.minor * N::of(BASE).sin();
-    let frame = t.frame.at(t.frame.origin + t.frame.z * height);
-    let plane = Plane { frame };
-    // (u, whether the face lies behind it, towards smaller u).
-    let mut passes: Vec<(N, bool)> = Vec::new();
-    let roots_of = |c: CoedgeId| {
-        let coedge = brep.topology.coedge(c);
-        let curve = brep.curve(coedge.edge);
-        let mut roots = Vec::new();
-        plane_roots(
-            curve,
-            brep.range(coedge.edge),
-            &plane,
-            N::ZERO,
-            &mut |s, _| {
-                let q = t.frame.coordinates(&curve.point(s));
-                let outward = (q.x.hypot(q.y) - t.major) * N::of(BASE).cos();
-                if outward.is_above_zero() {
-                    roots.push(s);
-                }
-            },
-        );
-        roots
-    };
-    for &c in coedges {
-        let coedge = brep.topology.coedge(c);
-        let curve = brep.curve(coedge.edge);
-        for s in roots_of(c) {
-            let [u, _] = d.ground.surface.parameters(&curve.point(s));
-            let rise = curve.derivative(s).dot(&t.frame.z) * N::of(BASE).cos();
-            let up = rise * side * coedge.sense.sign::<N>();
-            passes.push((u, up.is_above_zero()));
-        }
-    }
-    let mut sum = boundary_sum(brep, face, d, &roots_of);
-    passes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let top = N::of(BASE) + N::TAU;
-    for (i, &(u, up)) in passes.iter().enumerate() {
-        if !up {
-            let (mut end, _) = passes[(i + 1) % passes.len()];
-            if end.is_at_most(u) {
-                end += N::TAU;
-            }
-            sum = add(sum, d.over([u, end], [N::of(BASE), top]));
-        }
-    }
-    let whole = d.between(N::of(BASE), top);
-    let far = t
-        .frame
-        .point(t.major + t.minor * N::of(BASE).cos(), N::ZERO, height);
-    if passes.is_empty() && holds_far(brep, face, d.amid, sum[0] / whole[0], &far) {
-        add(sum, whole)
-    } else {
-        sum
-    }
 }

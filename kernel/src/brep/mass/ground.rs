@@ -17,6 +17,31 @@ pub(super) struct Ground<N: Number = f64> {
     pub reference: Point3<N>,
     /// The v at which the surface is cut open, or has a pole.
     pub base: N,
+    /// From where the angle about a torus's tube is counted.
+    pub middle: Middle<N>,
+}
+
+/// An angle about a torus's tube, amid a face; a thin strip there is no difference of large angles.
+#[derive(Clone, Copy)]
+pub(super) struct Middle<N: Number = f64> {
+    pub angle: N,
+    pub sin: N,
+    pub cos: N,
+}
+
+impl<N: Number> Middle<N> {
+    pub fn at(angle: N) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { angle, sin, cos }
+    }
+
+    fn in_doubles(&self) -> Middle {
+        Middle {
+            angle: self.angle.rounded(),
+            sin: self.sin.rounded(),
+            cos: self.cos.rounded(),
+        }
+    }
 }
 
 impl<N: Number> Ground<N> {
@@ -26,12 +51,26 @@ impl<N: Number> Ground<N> {
             surface: self.surface.in_doubles(),
             reference: rounded(&self.reference).into(),
             base: self.base.rounded(),
+            middle: self.middle.in_doubles(),
         }
+    }
+
+    /// The parameters of a point on the surface, the angle about a torus's tube between half a turn
+    /// before the middle and half a turn after it.
+    pub fn parameters(&self, p: &Point3<N>) -> [N; 2] {
+        let mut parameters = self.surface.parameters(p);
+        if let Surface::Torus(s) = &self.surface {
+            let q = s.frame.coordinates(p);
+            let (out, up) = (q.x.hypot(q.y) - s.major, q.z);
+            let Middle { sin, cos, .. } = self.middle;
+            parameters[1] = (up * cos - out * sin).atan2(out * cos + up * sin);
+        }
+        parameters
     }
 
     /// The integral along v at one u.
     fn along(&self, u: N, range: [N; 2]) -> Moments<N> {
-        strip(&self.surface, &self.reference, u, range)
+        strip(&self.surface, &self.reference, u, self.middle.angle, range)
     }
 
     /// G du/dt and du/dt on an edge; G starts at `start`, and v is that next to `near`.
@@ -41,14 +80,13 @@ impl<N: Number> Ground<N> {
         let f = self.surface.frame();
         let q = f.coordinates(&p);
         let d = f.components(&Vector3::new(j[0].d, j[1].d, j[2].d));
-        let [u, mut v] = self.surface.parameters(&p);
+        let [u, mut v] = self.parameters(&p);
         let rate = match &self.surface {
             Surface::Plane(_) => d.x,
             _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
         };
         if let Surface::Torus(_) = self.surface {
-            let near = self.base + (near - self.base).rem_euclid(N::TAU);
-            v = near + (v - near + N::PI).rem_euclid(N::TAU) - N::PI;
+            v -= N::TAU * ((v - near) / N::TAU).round();
         }
         if rate.is_exactly(N::ZERO) || !rate.is_finite() {
             return [N::ZERO; 6];

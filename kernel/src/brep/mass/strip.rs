@@ -14,17 +14,18 @@ use crate::geometry::trigonometric::{Trig1, product};
 use crate::number::precision::Number;
 use nalgebra::{Point3, Vector3};
 
-/// ∫ J dv, ∫ h J dv and ∫ h J P dv between two v.
+/// ∫ J dv, ∫ h J dv and ∫ h J P dv between two v, counted from a middle.
 pub(super) fn strip<N: Number>(
     surface: &Surface<N>,
     reference: &Point3<N>,
     u: N,
+    middle: N,
     [from, to]: [N; 2],
 ) -> Moments<N> {
     let f = surface.frame();
     let (sin, cos) = u.sin_cos();
     let (c, z, e) = (f.origin - reference, f.z, f.x * cos + f.y * sin);
-    let (m, d) = (N::HALF * (from + to), N::HALF * (to - from));
+    let (m, d) = (middle + N::HALF * (from + to), N::HALF * (to - from));
     match surface {
         Surface::Plane(_) => straight([c + f.x * u, f.y], [N::ONE, N::ZERO], c.dot(&z), m, d),
         Surface::Cylinder(s) => {
@@ -123,7 +124,7 @@ mod tests {
                 let h = p_to.dot(&surface.normal(&p)) * j;
                 [j, h, h * p_to.x, h * p_to.y, h * p_to.z]
             };
-            let closed = strip(surface, &reference, u, [0.2, 1.3]);
+            let closed = strip(surface, &reference, u, 0.5, [-0.3, 0.8]);
             let summed = adaptive(0.2, 1.3, &[1e-12; 5], &density);
             for (a, b) in closed.iter().zip(summed) {
                 assert_relative_eq!(*a, b, max_relative = 1e-7, epsilon = 1e-7);

@@ -3,7 +3,7 @@
 //! The number and kind of the zeros of Δ tell everything: a double zero means a node, none a pair
 //! of closed branches. A zero is decided as the distance of the ruling from the other surface.
 
-use super::{Rulings, apart};
+use super::{RULINGS, Rulings, apart};
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place, positive_parts};
 use crate::geometry::quartic::{Along, Height, Quartic, Ruled, Sweep};
@@ -14,7 +14,7 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::precision::Number;
 use crate::number::roots::Function;
-use crate::number::scalar::{Scalar, harmonic_slope};
+use crate::number::scalar::{Scalar, harmonic, harmonic_slope};
 use crate::number::sign::{Judge, Side};
 
 /// Where a curve passes the nodes: (the angle of the node, the parameter).
@@ -52,7 +52,26 @@ impl<N: Number> Rulings<'_, N> {
             let middle = trig1(&self.linear, u.sin_cos());
             vec![(s - middle) / self.lead, (-s - middle) / self.lead]
         };
-        self.meets_in_conics(judge, both).then_some(root)
+        let is_one = self.conics_hold_all(&root) && self.meets_in_conics(judge, both);
+        is_one.then_some(root)
+    }
+
+    /// Whether no point in which a ruling meets the other surface is lost where Δ is taken for s²:
+    /// next to a cone's apex one conic may be told as closely as can be, and the other not at all.
+    fn conics_hold_all(&self, root: &Trig1<N>) -> bool {
+        let is_held = |exact: N, told: N| !self.is_on_base(exact) || self.is_about_base(told);
+        let angles = (0..RULINGS).map(|i| N::TAU * (N::whole(i) + N::of(0.3)) / N::whole(RULINGS));
+        let mut met = angles.filter(|&u| self.delta(u) > N::ZERO);
+        met.all(|u| {
+            let at = u.sin_cos();
+            let linear = trig1(&self.linear, at);
+            // Of these sums the one does not cancel, and the product of the heights is known.
+            let sums = |root: N| [root, -root].map(|r| -linear - r.copysign(r * linear));
+            let [sum, _] = sums(self.delta(u).sqrt());
+            let [first, second] = sums(trig1(root, at).abs()).map(|sum| sum / self.lead);
+            let product = harmonic(&self.constant, at);
+            is_held(sum / self.lead, first) && is_held(product / sum, second)
+        })
     }
 
     fn add_conics(&self, root: &Trig1<N>, judge: &Judge, meeting: &mut Meeting<N>) {

@@ -23,6 +23,9 @@ use crate::number::scalar::harmonic;
 use crate::number::sign::{Judge, Side};
 use nalgebra::{Point3, Vector3};
 
+/// Over how many rulings it is asked whether curves are conics.
+const RULINGS: u32 = 24;
+
 /// The distance of a point from the whole quadric of a surface: a cone with both nappes.
 pub(super) fn apart<N: Number>(surface: &Surface<N>, p: &Point3<N>) -> N {
     match surface {
@@ -137,6 +140,14 @@ impl<'a, N: Number> Rulings<'a, N> {
         }
     }
 
+    /// Whether a height lies on the base and in the extent, or not far beyond that.
+    fn is_about_base(&self, w: N) -> bool {
+        match &self.base {
+            Ruled::Cylinder(_) => true,
+            Ruled::Cone(_) => w > N::ZERO && N::ONE / w <= N::TWO * self.reach(),
+        }
+    }
+
     /// The greatest absolute height that can lie in the extent.
     fn reach(&self) -> N {
         let f = *surface_of(&self.base).frame();
@@ -216,8 +227,8 @@ impl<'a, N: Number> Rulings<'a, N> {
     fn meets_in_conics(&self, judge: &Judge, conics: impl Fn(N) -> Vec<N>) -> bool {
         let mut worst: N = N::ZERO;
         let mut asked = false;
-        for i in 0..24 {
-            let u = N::TAU * (N::whole(i) + N::of(0.3)) / N::of(24.0);
+        for i in 0..RULINGS {
+            let u = N::TAU * (N::whole(i) + N::of(0.3)) / N::whole(RULINGS);
             for w in conics(u).into_iter().filter(|&w| self.is_on_base(w)) {
                 asked = true;
                 worst = worst.max(apart(self.other, &self.world(u, w)));

@@ -28,8 +28,8 @@ mod wings;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
-use premio_kernel::brep::check::{Violation, broken_rules, check, turned_faces, worst_gap};
-use premio_kernel::brep::mass::{Mass, mass};
+use premio_kernel::brep::check::{Violation, check, worst_gap};
+use premio_kernel::brep::mass::{Mass, Measures};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
 use premio_kernel::geometry::vector::rounded;
@@ -81,12 +81,21 @@ pub struct Evaluation {
     pub resolution: f64,
     /// A box that holds the part.
     pub bounds: Box3,
-    /// The boundary before it was rounded, where doubles did not tell it.
-    wide: Option<Box<Brep<Wide>>>,
+    /// What it was told by.
+    told: Told,
     /// The resolution by which doubles tell the same boundary, where they do.
     plain: Option<f64>,
     /// Once it was asked for: with more digits it takes longer than the boundary.
     mass: OnceLock<Mass>,
+}
+
+/// The numbers that told a boundary.
+#[derive(Debug)]
+enum Told {
+    /// Doubles.
+    Doubles(Measures),
+    /// More digits: the boundary before it was rounded.
+    Wide(Box<(Brep<Wide>, Measures<Wide>)>),
 }
 
 impl Evaluation {
@@ -112,17 +121,17 @@ impl Evaluation {
 
     /// The volume, the area and the centroid.
     pub fn mass(&self) -> Mass {
-        *self.mass.get_or_init(|| match &self.wide {
-            Some(wide) => mass(wide),
-            None => mass(&self.brep),
+        *self.mass.get_or_init(|| match &self.told {
+            Told::Doubles(measures) => measures.mass(&self.brep),
+            Told::Wide(wide) => wide.1.mass(&wide.0),
         })
     }
 
     /// The rules that the boundary breaks.
     pub fn violations(&self) -> Vec<Violation> {
-        match &self.wide {
-            Some(wide) => check(wide, Wide::of(self.resolution)),
-            None => check(&self.brep, self.resolution),
+        match &self.told {
+            Told::Doubles(measures) => check(&self.brep, measures, self.resolution),
+            Told::Wide(wide) => check(&wide.0, &wide.1, Wide::of(self.resolution)),
         }
     }
 }
@@ -130,6 +139,7 @@ impl Evaluation {
 /// The same, in numbers of one precision.
 struct Evaluated<N: Number> {
     brep: Brep<N>,
+    measures: Measures<N>,
     decisions: Decisions,
     resolution: f64,
     bounds: Box3,
@@ -142,7 +152,7 @@ impl From<Evaluated<f64>> for Evaluation {
             decisions: known.decisions,
             resolution: known.resolution,
             bounds: known.bounds,
-            wide: None,
+            told: Told::Doubles(known.measures),
             plain: Some(known.resolution),
             mass: OnceLock::new(),
         }
@@ -159,7 +169,7 @@ impl From<Evaluated<Wide>> for Evaluation {
             decisions,
             resolution: known.resolution,
             bounds: known.bounds,
-            wide: Some(Box::new(known.brep)),
+            told: Told::Wide(Box::new((known.brep, known.measures))),
             plain: None,
             mass: OnceLock::new(),
         }
@@ -345,6 +355,7 @@ fn evaluated<N: Number>(
         let decisions = Judge::new(0.0).decisions();
         let (brep, bounds) = (Brep::default(), Box3::EMPTY);
         return Ok(Evaluated {
+            measures: Measures::of(&brep),
             brep,
             decisions,
             resolution: 0.0,
@@ -389,12 +400,8 @@ fn evaluated<N: Number>(
     let raw = wings::boundary(&concern, pieces)?;
     let brep = assemble(raw, &judge)?;
     let band = N::of(resolution);
-    let mut broken = broken_rules(&brep, band);
-    // Which shells are voids was told by their volumes.
-    if N::IS_DOUBLE {
-        broken.extend(turned_faces(&brep));
-    }
-    if let Some(broken) = broken.into_iter().next() {
+    let measures = Measures::of(&brep);
+    if let Some(broken) = check(&brep, &measures, band).into_iter().next() {
         return Err(match worst_gap(&brep, band) {
             Some((place, distance)) => EvaluationError::Vague {
                 place: rounded(&place),
@@ -407,6 +414,7 @@ fn evaluated<N: Number>(
     let decisions = judge.decisions();
     Ok(Evaluated {
         brep,
+        measures,
         decisions,
         resolution,
         bounds: solids.bounds,

@@ -1,7 +1,7 @@
 //! The checker: one named violation for each rule that a boundary must keep.
 
 use super::Brep;
-use super::mass::{Covered, face_areas, shell_volume, size};
+use super::mass::{Covered, Measures};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use super::welch;
 use crate::geometry::vector::Length;
@@ -137,28 +137,20 @@ fn gap_from_face<N: Number>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3
 const PLACES: u32 = 8;
 
 /// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
-pub fn check<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
-    let mut found = broken_rules(brep, band);
-    check_shells(brep, &mut found);
-    found.extend(turned_faces(brep));
-    found
-}
-
-/// The same without areas and volumes, which with more digits than doubles have take longer than the
-/// boundary itself.
-pub fn broken_rules<N: Number>(brep: &Brep<N>, band: N) -> Vec<Violation> {
+pub fn check<N: Number>(brep: &Brep<N>, measures: &Measures<N>, band: N) -> Vec<Violation> {
     let mut found = Vec::new();
     check_loops(brep, &mut found);
     check_edges(brep, band, &mut found);
     check_touches(brep, band, &mut found);
     check_genera(brep, &mut found);
+    check_shells(brep, measures, &mut found);
+    check_areas(brep, measures, &mut found);
     found
 }
 
-/// The faces that are less than nothing: a loop of each is taken for what it is not.
-pub fn turned_faces<N: Number>(brep: &Brep<N>) -> Vec<Violation> {
-    let mut found = Vec::new();
-    for (i, Covered { area, noise }) in face_areas(brep).into_iter().enumerate() {
+/// A face that is less than nothing has a loop that is taken for what it is not.
+fn check_areas<N: Number>(brep: &Brep<N>, measures: &Measures<N>, found: &mut Vec<Violation>) {
+    for (i, Covered { area, noise }) in measures.areas(brep).into_iter().enumerate() {
         // A sliver's may be rounding.
         if area.is_nan() || area.is_at_most(-noise) {
             found.push(Violation::Area {
@@ -167,7 +159,6 @@ pub fn turned_faces<N: Number>(brep: &Brep<N>) -> Vec<Violation> {
             });
         }
     }
-    found
 }
 
 fn check_loops<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
@@ -292,11 +283,10 @@ fn check_genera<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     }
 }
 
-fn check_shells<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
-    let size = size(brep);
+fn check_shells<N: Number>(brep: &Brep<N>, measures: &Measures<N>, found: &mut Vec<Violation>) {
     for (i, shell) in brep.topology.shells.iter().enumerate() {
         let id = ShellId(i as u32);
-        let enclosed = shell_volume(brep, &shell.faces, size);
+        let enclosed = measures.enclosed(brep, id);
         let volume = enclosed.volume;
         // The volume of a sliver may be below rounding: then it tells nothing.
         let is_turned = enclosed.is_clear() && volume.is_below_zero() != shell.void;

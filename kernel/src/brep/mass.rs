@@ -11,7 +11,7 @@ mod outline;
 mod strip;
 
 use super::Brep;
-use super::topology::FaceId;
+use super::topology::{FaceId, ShellId};
 use crate::geometry::bounds::Box3;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::rounded;
@@ -34,46 +34,111 @@ pub struct Mass {
 /// ∫ dA, ∫ h dA and ∫ h P dA over a face.
 type Moments<N> = [N; 5];
 
-/// The mass properties of the solid that a boundary encloses: the sum over its shells, each reckoned
-/// about a point amid it, so that how far apart they lie costs no digits.
-pub fn mass<N: Number>(brep: &Brep<N>) -> Mass {
-    let (mass, _) = measured::<N, _>(
-        |care| summed_up(brep, care),
-        |(mass, noise)| (SLENDER * mass.volume).is_beyond(*noise),
-    );
-    mass
+/// What the faces of a boundary measure: once for all that is asked of them.
+#[derive(Clone, Debug)]
+pub struct Measures<N: Number = f64> {
+    /// Amid all faces.
+    whole: Amid<N>,
+    /// Amid each shell, so that how far apart shells lie costs no digits.
+    shells: Vec<Amid<N>>,
+    /// The moments of each face, about the point amid its shell.
+    faces: Vec<Moments<N>>,
+}
+
+impl<N: Number> Measures<N> {
+    /// The measures of the faces of a boundary, as far as doubles tell them.
+    pub fn of(brep: &Brep<N>) -> Self {
+        Self::with(brep, Care::Doubles)
+    }
+
+    fn with(brep: &Brep<N>, care: Care) -> Self {
+        let shells = brep.topology.shells.iter();
+        let shells: Vec<Amid<N>> = shells
+            .map(|shell| Amid::of(brep, shell.faces.iter().copied(), care))
+            .collect();
+        let about = |face| &shells[brep.topology.face(face).shell.index()];
+        let faces = brep.topology.face_ids();
+        Self {
+            whole: Amid::of(brep, brep.topology.face_ids(), care),
+            faces: faces.map(|face| moments(brep, face, about(face))).collect(),
+            shells,
+        }
+    }
+
+    /// The mass properties of the solid that the boundary encloses.
+    pub fn mass(&self, brep: &Brep<N>) -> Mass {
+        let (rough, noise) = self.summed_up(brep);
+        match N::IS_DOUBLE || (SLENDER * rough.volume).is_beyond(noise) {
+            true => rough,
+            false => Self::with(brep, Care::Digits).summed_up(brep).0,
+        }
+    }
+
+    /// The mass properties, and what rounding may make of the volume.
+    fn summed_up(&self, brep: &Brep<N>) -> (Mass, f64) {
+        let reference = self.whole.reference;
+        let (mut area, mut volume, mut first) = (N::ZERO, N::ZERO, Vector3::zeros());
+        for (shell, amid) in brep.topology.shells.iter().zip(&self.shells) {
+            let of = shell.faces.iter().map(|&f| (f, self.faces[f.index()]));
+            let m = shell_moments(brep, of);
+            let enclosed = m[1] / N::of(3.0);
+            area += m[0];
+            volume += enclosed;
+            first += (amid.reference - reference) * enclosed;
+            first += Vector3::new(m[2], m[3], m[4]) / N::of(4.0);
+        }
+        let centroid = if volume.is_exactly(N::ZERO) {
+            reference
+        } else {
+            reference + first / volume
+        };
+        let mass = Mass {
+            volume: volume.rounded(),
+            area: area.rounded(),
+            centroid: rounded(&centroid).into(),
+        };
+        let bulk = area * self.whole.size;
+        let noise = self.whole.noise(brep, brep.topology.face_ids(), bulk);
+        (mass, noise.rounded())
+    }
+
+    /// The signed volume that a shell encloses.
+    pub fn enclosed(&self, brep: &Brep<N>, shell: ShellId) -> Enclosed<N> {
+        let faces = &brep.topology.shells[shell.index()].faces;
+        let amid = &self.shells[shell.index()];
+        let of = faces.iter().map(|&f| (f, self.faces[f.index()]));
+        let told = enclosed(brep, faces, shell_moments(brep, of), amid, self.whole.size);
+        match N::IS_DOUBLE || told.is_clear() {
+            true => told,
+            false => shell_volume(brep, faces, self.whole.size),
+        }
+    }
+
+    /// The areas of all faces, by id.
+    pub fn areas(&self, brep: &Brep<N>) -> Vec<Covered<N>> {
+        let covered = |face: FaceId, amid: &Amid<N>, area: N| {
+            let [floor, ..] = amid.floor(brep, face);
+            Covered {
+                area,
+                noise: N::of(NOISE) * floor,
+            }
+        };
+        let of_face = |face: FaceId| {
+            let shell = brep.topology.face(face).shell.index();
+            let told = covered(face, &self.shells[shell], self.faces[face.index()][0]);
+            if N::IS_DOUBLE || told.area.is_beyond(told.noise) {
+                return told;
+            }
+            let faces = brep.topology.shells[shell].faces.iter();
+            let amid = Amid::of(brep, faces.copied(), Care::Digits);
+            covered(face, &amid, moments(brep, face, &amid)[0])
+        };
+        brep.topology.face_ids().map(of_face).collect()
+    }
 }
 
 /// Where the volume is at least so much more than what doubles may make of it, they tell it.
 const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;
-
-/// The mass properties, and what rounding may make of the volume.
-fn summed_up<N: Number>(brep: &Brep<N>, care: Care) -> (Mass, f64) {
-    let all = Amid::of(brep, brep.topology.face_ids(), care);
-    let reference = all.reference;
-    let (mut area, mut volume, mut first) = (N::ZERO, N::ZERO, Vector3::zeros());
-    for shell in &brep.topology.shells {
-        let amid = Amid::of(brep, shell.faces.iter().copied(), care);
-        let m = shell_moments(brep, &shell.faces, &amid);
-        let enclosed = m[1] / N::of(3.0);
-        area += m[0];
-        volume += enclosed;
-        first += (amid.reference - reference) * enclosed;
-        first += Vector3::new(m[2], m[3], m[4]) / N::of(4.0);
-    }
-    let centroid = if volume.is_exactly(N::ZERO) {
-        reference
-    } else {
-        reference + first / volume
-    };
-    let mass = Mass {
-        volume: volume.rounded(),
-        area: area.rounded(),
-        centroid: rounded(&centroid).into(),
-    };
-    let noise = all.noise(brep, brep.topology.face_ids(), area * all.size);
-    (mass, noise.rounded())
-}
 
 /// The signed volume that a shell encloses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +157,7 @@ impl<N: Number> Enclosed<N> {
 }
 
 /// How closely integrals are followed.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Care {
     /// As doubles tell them.
     Doubles,
@@ -113,15 +178,6 @@ impl Care {
     }
 }
 
-/// What is measured by doubles where that is good enough, else with more digits if there are any.
-fn measured<N: Number, T>(measure: impl Fn(Care) -> T, is_good: impl Fn(&T) -> bool) -> T {
-    let rough = measure(Care::Doubles);
-    match N::IS_DOUBLE || is_good(&rough) {
-        true => rough,
-        false => measure(Care::Digits),
-    }
-}
-
 /// How many times the rounding of its area times the part's size a volume may be off.
 const NOISE: f64 = 64.0;
 
@@ -132,26 +188,43 @@ pub fn size<N: Number>(brep: &Brep<N>) -> N {
 
 /// The signed volume that a shell encloses; `size` is that of the part.
 pub fn shell_volume<N: Number>(brep: &Brep<N>, faces: &[FaceId], size: N) -> Enclosed<N> {
-    let enclosed = |care| {
+    let told = |care| {
         let amid = Amid::of(brep, faces.iter().copied(), care);
-        let [area, volume, ..] = shell_moments(brep, faces, &amid);
-        Enclosed {
-            volume: volume / N::of(3.0),
-            noise: amid.noise(brep, faces.iter().copied(), area * size),
-        }
+        let of = faces.iter().map(|&f| (f, moments(brep, f, &amid)));
+        enclosed(brep, faces, shell_moments(brep, of), &amid, size)
     };
-    let told = measured::<N, _>(enclosed, Enclosed::is_clear);
-    match N::IS_DOUBLE || told.is_clear() {
-        true => told,
-        false => enclosed(Care::Last),
+    let rough = told(Care::Doubles);
+    if N::IS_DOUBLE || rough.is_clear() {
+        return rough;
+    }
+    let fine = told(Care::Digits);
+    match fine.is_clear() {
+        true => fine,
+        false => told(Care::Last),
     }
 }
 
-/// The moments of a shell: its area, and the others signed.
-fn shell_moments<N: Number>(brep: &Brep<N>, faces: &[FaceId], amid: &Amid<N>) -> Moments<N> {
+/// What is known of the volume of some faces by their moments.
+fn enclosed<N: Number>(
+    brep: &Brep<N>,
+    faces: &[FaceId],
+    [area, volume, ..]: Moments<N>,
+    amid: &Amid<N>,
+    size: N,
+) -> Enclosed<N> {
+    Enclosed {
+        volume: volume / N::of(3.0),
+        noise: amid.noise(brep, faces.iter().copied(), area * size),
+    }
+}
+
+/// The moments of a shell, by those of its faces: its area, and the others signed.
+fn shell_moments<N: Number>(
+    brep: &Brep<N>,
+    faces: impl Iterator<Item = (FaceId, Moments<N>)>,
+) -> Moments<N> {
     let mut total = [N::ZERO; 5];
-    for &face in faces {
-        let m = moments(brep, face, amid);
+    for (face, m) in faces {
         let sign = brep.sense(face).sign::<N>();
         total[0] += m[0];
         for i in 1..5 {
@@ -170,36 +243,8 @@ pub struct Covered<N: Number = f64> {
     pub noise: N,
 }
 
-/// The areas of all faces, by id.
-pub fn face_areas<N: Number>(brep: &Brep<N>) -> Vec<Covered<N>> {
-    let nothing = Covered {
-        area: N::ZERO,
-        noise: N::ZERO,
-    };
-    let mut areas = vec![nothing; brep.topology.faces.len()];
-    for shell in &brep.topology.shells {
-        let amid = |care| Amid::of(brep, shell.faces.iter().copied(), care);
-        let [rough, fine] = [Care::Doubles, Care::Digits].map(amid);
-        for &face in &shell.faces {
-            let covered = |care| {
-                let amid = match care {
-                    Care::Doubles => &rough,
-                    Care::Digits | Care::Last => &fine,
-                };
-                let [floor, ..] = amid.floor(brep, face);
-                Covered {
-                    area: moments(brep, face, amid)[0],
-                    noise: N::of(NOISE) * floor,
-                }
-            };
-            let is_clear = |c: &Covered<N>| c.area.is_beyond(c.noise);
-            areas[face.index()] = measured::<N, _>(covered, is_clear);
-        }
-    }
-    areas
-}
-
 /// A point amid some faces, relative to which sums do not cancel, and their size.
+#[derive(Clone, Debug)]
 struct Amid<N: Number = f64> {
     reference: Point3<N>,
     size: N,

@@ -37,10 +37,16 @@ const MEANT: &[(&str, &str)] = &[
 ];
 
 /// Cases that are not as they are meant by so little that 237 bits do not tell how they meet.
-const REFUSED: &[(&str, &str)] = &[(
-    "cone-lying-on-a-cylinder",
-    "leans by an angle in decimals, and the apex lies along a face within 1e-17",
-)];
+const REFUSED: &[(&str, &str)] = &[
+    (
+        "cone-lying-on-a-cylinder",
+        "leans by an angle in decimals, and the apex lies along a face within 1e-17",
+    ),
+    (
+        "cones-touching-along-a-ruling-beside-a-cone",
+        "leans by an angle in decimals, and the cones cross in a sliver of 1e-8 along the ruling",
+    ),
+];
 
 /// Cases that take 237 bits longer than a test may: seconds to minutes.
 const LONG: &[&str] = &[
@@ -88,7 +94,7 @@ fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
 fn faults(name: &str, tree: &Tree) -> Vec<String> {
     if REFUSED.iter().any(|(case, _)| *case == name) {
         return match asked(tree, Zeros::Exact) {
-            Err(EvaluationError::Vague { .. }) => Vec::new(),
+            Err(EvaluationError::Vague { .. } | EvaluationError::Unsound(_)) => Vec::new(),
             Err(error) => vec![format!("{name}: {error}")],
             Ok(_) => vec![format!("{name} is no longer refused")],
         };

@@ -232,8 +232,9 @@ impl<N: Number> Rulings<'_, N> {
         }
         let crossing = Point3::from(q.at(u0));
         let is_near = (crossing - self.extent.centre).length() <= self.extent.radius;
-        // It may lie on the other nappe of the other surface.
-        if is_near && judge.within(self.other.distance(&crossing)) {
+        // It may lie on the other nappe of either.
+        let mut both = [&surface, self.other].into_iter();
+        if is_near && both.all(|s| judge.within(s.distance(&crossing))) {
             meeting.nodes.push(Node {
                 point: crossing,
                 on: Vec::new(),

@@ -2,6 +2,7 @@
 //! gave its curve.
 
 use super::arrangement::{Arrangement, Meeting};
+use super::corners::Corner;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::cut::lies_on;
@@ -131,7 +132,8 @@ const SAME: f64 = 64.0;
 
 impl<N: Number> Arrangement<N> {
     /// The carriers that hold a span of a meeting: the meeting's, and what both corners lie on and
-    /// the span does not leave by more than the resolution, next to a contact.
+    /// the span does not leave by more than the resolution, next to a contact. A corner knows only
+    /// the carriers of curves that come near the faces that cut it, so the other's are asked, too.
     fn holding(
         &self,
         m: &Meeting<N>,
@@ -143,10 +145,17 @@ impl<N: Number> Arrangement<N> {
         let Some([a, b]) = ends.map(|ends| ends.map(|v| &self.corners[v])) else {
             return carriers;
         };
-        let both = a.carriers.iter().filter(|&&c| b.is_on(c));
-        let held = both.filter(|&c| {
-            let surface = &self.carriers[*c];
-            !m.carriers.contains(c) && lies_on(&m.curve, range, surface, judge.band())
+        let is_on = |corner: &Corner<N>, c: usize| {
+            corner.is_on(c) || judge.within(self.carriers[c].distance(&corner.point))
+        };
+        let mut either = [&a.carriers[..], &b.carriers].concat();
+        either.sort_unstable();
+        either.dedup();
+        let held = either.into_iter().filter(|&c| {
+            !m.carriers.contains(&c)
+                && is_on(a, c)
+                && is_on(b, c)
+                && lies_on(&m.curve, range, &self.carriers[c], judge.band())
         });
         carriers.extend(held);
         carriers.sort_unstable();

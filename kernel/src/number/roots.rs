@@ -310,12 +310,17 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
             self.monotone(a, b);
         } else if !jet.dd.has_zero() {
             self.convex(a, b);
-        } else if b - a <= self.floor {
+        } else if b - a <= self.floor || self.is_rounding(m, v) {
             self.cluster(a, b, m, Kind::Loose, Some(v.magnitude()));
         } else {
             return false;
         }
         true
+    }
+
+    /// Whether what is known of values next to zero is their rounding: halving tells no more.
+    fn is_rounding(&self, middle: N, v: Interval<N>) -> bool {
+        v.magnitude() <= self.reach && v.width() <= N::TWO * self.value_over(middle).width()
     }
 
     /// Whether the function is within the band throughout, by its values at enough places. Halving

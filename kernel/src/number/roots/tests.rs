@@ -123,3 +123,30 @@ fn a_root_at_the_very_end_is_kept() {
     assert_eq!(r.len(), 1);
     assert!((r[0].t - 1.0).abs() < 1e-11);
 }
+
+/// Next to zero, and known to no better than a little more than the band at every point: halved down
+/// to the last digit it would be told in millions of pieces.
+#[test]
+fn what_rounding_hides_is_told_in_few_pieces() {
+    let asked = std::cell::Cell::new(0);
+    let noise = |size: f64| Interval {
+        lo: -1.1 * size,
+        hi: 1.2 * size,
+    };
+    let noisy = |t: Interval| {
+        asked.set(asked.get() + 1);
+        let Jet { v, d, dd } = Jet::variable(t).square().square();
+        Jet {
+            v: v + noise(1e-11),
+            d: d + noise(1e-5),
+            dd: dd + noise(1.0),
+        }
+    };
+    let Zeros::At { roots, .. } = isolate_closely(&noisy, &[-1.0, 1.0], 1e-11) else {
+        panic!("everywhere");
+    };
+    assert_eq!(roots.len(), 1, "{roots:?}");
+    assert_eq!(roots[0].contact, Contact::Touching);
+    assert!(roots[0].t.abs() < 6e-3, "{roots:?}");
+    assert!(asked.get() < 10_000, "{}", asked.get());
+}

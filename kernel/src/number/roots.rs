@@ -318,9 +318,9 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
         true
     }
 
-    /// Whether what is known of values next to zero is their rounding: halving tells no more.
+    /// Whether what is known of the values is their rounding: halving tells no more.
     fn is_rounding(&self, middle: N, v: Interval<N>) -> bool {
-        v.magnitude() <= self.reach && v.width() <= N::TWO * self.value_over(middle).width()
+        v.width() <= N::TWO * self.value_over(middle).width()
     }
 
     /// Whether the function is within the band throughout, by its values at enough places. Halving

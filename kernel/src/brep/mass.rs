@@ -129,8 +129,10 @@ impl<N: Number> Measures<N> {
             if N::IS_DOUBLE || told.area.is_beyond(told.noise) {
                 return told;
             }
-            let faces = brep.topology.shells[shell].faces.iter();
-            let amid = Amid::of(brep, faces.copied(), Care::Digits);
+            let amid = Amid {
+                care: Care::Digits,
+                ..self.shells[shell]
+            };
             covered(face, &amid, moments(brep, face, &amid)[0])
         };
         brep.topology.face_ids().map(of_face).collect()

@@ -3,7 +3,7 @@
 //! The number and kind of the zeros of Δ tell everything: a double zero means a node, none a pair
 //! of closed branches. A zero is decided as the distance of the ruling from the other surface.
 
-use super::{RULINGS, Rulings, apart};
+use super::{Rulings, apart, asked_rulings};
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place, positive_parts};
 use crate::geometry::quartic::{Along, Height, Quartic, Ruled, Sweep};
@@ -60,8 +60,7 @@ impl<N: Number> Rulings<'_, N> {
     /// next to a cone's apex one conic may be told as closely as can be, and the other not at all.
     fn conics_hold_all(&self, root: &Trig1<N>) -> bool {
         let is_held = |exact: N, told: N| !self.is_on_base(exact) || self.is_about_base(told);
-        let angles = (0..RULINGS).map(|i| N::TAU * (N::whole(i) + N::of(0.3)) / N::whole(RULINGS));
-        let mut met = angles.filter(|&u| self.delta(u) > N::ZERO);
+        let mut met = asked_rulings().filter(|&u| self.delta(u) > N::ZERO);
         met.all(|u| {
             let at = u.sin_cos();
             let linear = trig1(&self.linear, at);

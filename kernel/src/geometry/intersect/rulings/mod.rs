@@ -23,8 +23,10 @@ use crate::number::scalar::harmonic;
 use crate::number::sign::{Judge, Side};
 use nalgebra::{Point3, Vector3};
 
-/// Over how many rulings it is asked whether curves are conics.
-const RULINGS: u32 = 24;
+/// The rulings over which it is asked whether curves are conics.
+fn asked_rulings<N: Number>() -> impl Iterator<Item = N> {
+    (0..24).map(|i| N::TAU * (N::whole(i) + N::of(0.3)) / N::of(24.0))
+}
 
 /// The distance of a point from the whole quadric of a surface: a cone with both nappes.
 pub(super) fn apart<N: Number>(surface: &Surface<N>, p: &Point3<N>) -> N {
@@ -227,8 +229,7 @@ impl<'a, N: Number> Rulings<'a, N> {
     fn meets_in_conics(&self, judge: &Judge, conics: impl Fn(N) -> Vec<N>) -> bool {
         let mut worst: N = N::ZERO;
         let mut asked = false;
-        for i in 0..RULINGS {
-            let u = N::TAU * (N::whole(i) + N::of(0.3)) / N::whole(RULINGS);
+        for u in asked_rulings() {
             for w in conics(u).into_iter().filter(|&w| self.is_on_base(w)) {
                 asked = true;
                 worst = worst.max(apart(self.other, &self.world(u, w)));

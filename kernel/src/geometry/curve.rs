@@ -1,7 +1,7 @@
 //! Curves in space, each with its parameter.
 
 use super::frame::Frame;
-use super::quartic::{Quartic, Ruled, Sweep};
+use super::quartic::{Quartic, Ruled};
 use super::surface::{Surface, turn};
 use super::toric::Toric;
 use crate::geometry::vector::{Length, direction};
@@ -355,16 +355,7 @@ impl<N: Number> Curve<N> {
         };
         let local = frame.coordinates(p);
         let u = turn(local.y.atan2(local.x));
-        let mut candidates: Vec<N> = match q.sweep {
-            Sweep::Round { turns } => (0..turns.max(1))
-                .map(|k| u + N::TAU * N::whole(k))
-                .collect(),
-            Sweep::Oval { mid, half } => {
-                let away = (u - mid + N::TAU / N::TWO).rem_euclid(N::TAU) - N::TAU / N::TWO;
-                let t = (-away / half).clamp(-N::ONE, N::ONE).acos();
-                vec![t, N::TAU - t]
-            }
-        };
+        let mut candidates = q.parameters_of(u);
         // A cone's apex has no angle of its own.
         candidates.extend(q.apex_parameters());
         let distance = |t: &N| (self.point(*t) - p).length();

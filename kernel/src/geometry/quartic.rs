@@ -156,6 +156,21 @@ impl<N: Number> Quartic<N> {
         }
     }
 
+    /// The parameters over an angle, within one period of a closed branch; the end of the sweep that
+    /// is nearest where it does not reach the angle.
+    pub(super) fn parameters_of(&self, u: N) -> Vec<N> {
+        match self.sweep {
+            Sweep::Round { turns } => (0..turns.max(1))
+                .map(|turn| u.rem_euclid(N::TAU) + N::TAU * N::whole(turn))
+                .collect(),
+            Sweep::Oval { mid, half } => {
+                let away = (u - mid + N::PI).rem_euclid(N::TAU) - N::PI;
+                let t = (-away / half).clamp(-N::ONE, N::ONE).acos();
+                vec![t, N::TAU - t]
+            }
+        }
+    }
+
     /// The parameters at which a curve of one point on each ruling passes the cone's apex: the zeros
     /// of B, if it has any.
     pub(super) fn apex_parameters(&self) -> Vec<N> {

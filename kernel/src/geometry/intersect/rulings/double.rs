@@ -5,16 +5,13 @@
 
 use super::{Rulings, apart, asked_rulings};
 use crate::geometry::curve::Curve;
-use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place, positive_parts};
+use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place};
 use crate::geometry::quartic::{Along, Height, Quartic, Ruled, Sweep};
 use crate::geometry::trigonometric::{Trig1, between, divide, trig1, zeros_of};
 use crate::geometry::vector::Length;
 use crate::number::bisection::bisect;
-use crate::number::interval::Interval;
-use crate::number::jet::Jet;
 use crate::number::precision::Number;
-use crate::number::roots::Function;
-use crate::number::scalar::{Scalar, harmonic, harmonic_slope};
+use crate::number::scalar::{harmonic, harmonic_slope};
 use crate::number::sign::{Judge, Side};
 
 /// Where a curve passes the nodes: (the angle of the node, the parameter).
@@ -190,14 +187,7 @@ impl<N: Number> Rulings<'_, N> {
         let Some(period) = curve.period() else { return };
         let mut ranges = vec![[N::ZERO, period]];
         if let Ruled::Cone(_) = self.base {
-            let above = OnNappe {
-                quartic: &q,
-                reach: self.reach(),
-            };
-            ranges = ranges
-                .into_iter()
-                .flat_map(|r| positive_parts(&curve, r, &above, judge.band()))
-                .collect();
+            ranges = self.nappe_ranges(&q, period);
         }
         for r in ranges {
             for range in self.on_other_nappe(&curve, r, judge) {
@@ -229,6 +219,43 @@ impl<N: Number> Rulings<'_, N> {
                 }
             }
         }
+    }
+
+    /// The ranges of a closed branch over a cone that lie on the cone's nappe within reach. It leaves
+    /// these where k w² + 2 B w + C is zero for the least w: the height itself divides by k, which may
+    /// be next to nothing.
+    fn nappe_ranges(&self, q: &Quartic<N>, period: N) -> Vec<[N; 2]> {
+        let least = N::ONE / self.reach();
+        let mut limit = self.constant;
+        for (c, b) in limit.iter_mut().zip(&self.linear) {
+            *c += N::TWO * least * *b;
+        }
+        limit[0] += self.lead * least * least;
+        let angles = zeros_of(&limit).into_iter().map(|zero| zero.0);
+        let mut marks: Vec<N> = angles.flat_map(|u| q.parameters_of(u)).collect();
+        marks.sort_by(N::total_cmp);
+        let is_inside = |[a, b]: [N; 2]| q.height_at(N::HALF * (a + b)) > least;
+        let next = |marks: &[N], i: usize| match marks.get(i + 1) {
+            Some(&next) => next,
+            None => marks[0] + period,
+        };
+        let inside: Vec<bool> = (0..marks.len())
+            .map(|i| is_inside([marks[i], next(&marks, i)]))
+            .collect();
+        // Of two points of a ruling one may be at the limit, and the other pass.
+        let n = marks.len();
+        let ends = (0..n).filter(|&i| inside[i] != inside[(i + n - 1) % n]);
+        let (ends, starts): (Vec<N>, Vec<bool>) = ends.map(|i| (marks[i], inside[i])).unzip();
+        if ends.is_empty() {
+            let whole = [N::ZERO, period];
+            return if is_inside(whole) {
+                vec![whole]
+            } else {
+                vec![]
+            };
+        }
+        let begun = (0..ends.len()).filter(|&i| starts[i]);
+        begun.map(|i| [ends[i], next(&ends, i)]).collect()
     }
 
     /// The zeros of Δ by kind.
@@ -289,36 +316,4 @@ struct Structure<N: Number = f64> {
     nodes: Vec<N>,
     /// Double zeros with Δ negative on both sides.
     isolated: Vec<N>,
-}
-
-/// How far the height of a curve on a cone is from where it leaves the nappe's reach, scaled to a
-/// length.
-struct OnNappe<'a, N: Number = f64> {
-    quartic: &'a Quartic<N>,
-    reach: N,
-}
-
-impl<N: Number> OnNappe<'_, N> {
-    fn height<S: Scalar<Number = N>>(&self, t: S) -> S {
-        let w = self.quartic.height_at(t);
-        (w - S::constant(N::ONE / self.reach)).scale(self.reach * self.reach)
-    }
-}
-
-impl<N: Number> Function<N> for OnNappe<'_, N> {
-    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
-        self.height(Jet::variable(t))
-    }
-
-    fn reach(&self, t: Interval<N>) -> Interval<N> {
-        self.height(t)
-    }
-
-    fn at(&self, t: N) -> Jet<N> {
-        self.height(Jet::variable(t))
-    }
-
-    fn value(&self, t: N) -> N {
-        self.height(t)
-    }
 }

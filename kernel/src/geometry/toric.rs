@@ -398,10 +398,8 @@ impl<N: Number> Toric<N> {
             let x = self.folded(s, theta, phi);
             let length = s.to - s.from;
             let tau = ((x - s.from) / length).clamp(N::ZERO, N::ONE);
-            let on = s.from + tau * length;
-            let other = s.solve(self.form(s), on);
-            let [a, b] = self.unfolded::<N>(s, Jet::constant(on), Jet::constant(other));
-            let away = wrap(theta - a.v).hypot(wrap(phi - b.v));
+            let [a, b] = self.angles_on(s, tau);
+            let away = wrap(theta - a).hypot(wrap(phi - b));
             if away < best.0 {
                 best = (away, N::of(i as f64) + tau);
             }
@@ -425,10 +423,18 @@ impl<N: Number> Toric<N> {
         }
     }
 
-    /// A point of the torus by its angles.
+    /// The point at t.
     pub fn point(&self, t: N) -> Point3<N> {
-        let [theta, phi] = self.angles(t);
-        Point3::from(self.lift([theta.v, phi.v]))
+        let (s, tau) = self.locate(t);
+        Point3::from(self.lift(self.angles_on(s, tau)))
+    }
+
+    /// (θ, φ) on a segment, at a part of its length.
+    fn angles_on(&self, s: &Segment<N>, tau: N) -> [N; 2] {
+        let x = s.from + tau * (s.to - s.from);
+        let y = s.solve(self.form(s), x);
+        let angles = self.unfolded::<N>(s, Jet::constant(x), Jet::constant(y));
+        angles.map(|angle| angle.v)
     }
 }
 

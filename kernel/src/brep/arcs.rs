@@ -119,13 +119,7 @@ impl<'a, N: Number> Arcs<'a, N> {
 
     /// Calls `meet` for every arc that a walk may meet, with the ranges of it in which it may.
     pub fn met_by(&self, walk: &Walk<N>, band: N, meet: &mut impl FnMut(usize, &[[N; 2]])) {
-        let mut ask = |i: usize| {
-            if self.parts[i].is_empty() {
-                meet(i, &[self.all[i].range]);
-            } else {
-                meet(i, &self.ranges(walk, i, band));
-            }
-        };
+        let mut ask = |i: usize| meet(i, &self.ranges(walk, i, band));
         match &self.tree {
             Some(tree) => tree
                 .locate_with_selection_function(Along { walk, band })
@@ -136,9 +130,12 @@ impl<'a, N: Number> Arcs<'a, N> {
         }
     }
 
-    /// The ranges of an arc in parts that a walk may meet.
-    fn ranges(&self, walk: &Walk<N>, i: usize, band: N) -> Vec<[N; 2]> {
+    /// The ranges of an arc that a walk may meet: all of it where a plane meets it in a closed form.
+    pub fn ranges(&self, walk: &Walk<N>, i: usize, band: N) -> Vec<[N; 2]> {
         let parts = &self.parts[i];
+        if parts.is_empty() {
+            return vec![self.all[i].range];
+        }
         let mut ranges: Vec<[N; 2]> = Vec::new();
         let may = |part: &&Part<N>| walk.may_meet_box(&part.bounds, band);
         for part in parts.iter().filter(may) {

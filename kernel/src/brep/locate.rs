@@ -75,15 +75,8 @@ impl<'a, N: Number> FaceLocator<'a, N> {
 
     /// The locator of a face of a boundary representation.
     pub fn of(brep: &'a Brep<N>, face: FaceId, band: N) -> Self {
-        let topology = &brep.topology;
-        let arcs = topology.coedges_of(face).map(|c| {
-            let c = topology.coedge(c);
-            DirectedArc {
-                curve: brep.curve(c.edge),
-                range: brep.range(c.edge),
-                sense: c.sense,
-            }
-        });
+        let coedges = brep.topology.coedges_of(face);
+        let arcs = coedges.map(|c| DirectedArc::of(brep, c));
         Self::new(brep.surface(face), brep.sense(face), arcs.collect(), band)
     }
 

@@ -7,7 +7,8 @@
 //! along the walk, D its direction, N the outward normal of the face, T the direction of an arc; the
 //! face lies to the left, towards N × T, so the walk enters the face where D·(N × T) > 0.
 
-use super::topology::Sense;
+use super::Brep;
+use super::topology::{CoedgeId, Sense};
 use crate::geometry::bounds::Box3;
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
@@ -30,7 +31,17 @@ pub struct DirectedArc<'a, N: Number = f64> {
     pub sense: Sense,
 }
 
-impl<N: Number> DirectedArc<'_, N> {
+impl<'a, N: Number> DirectedArc<'a, N> {
+    /// A coedge of a boundary representation.
+    pub(super) fn of(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
+        let coedge = brep.topology.coedge(coedge);
+        Self {
+            curve: brep.curve(coedge.edge),
+            range: brep.range(coedge.edge),
+            sense: coedge.sense,
+        }
+    }
+
     /// Whether both are of one edge: if a face has two such arcs, it lies on both sides of the edge.
     /// Several edges may be of one curve.
     pub fn shares_edge(&self, other: &Self) -> bool {
@@ -340,11 +351,18 @@ impl<N: Number> Walk<N> {
         if mid.abs().is_beyond(half) {
             return false;
         }
-        if let Branch::Half(o, side) = &self.branch {
-            let (mid, half) = above(o, side);
-            if mid.is_short_of(-half) {
-                return false;
+        let (mid, half) = match &self.branch {
+            Branch::Whole => (N::ZERO, band),
+            Branch::Half(o, side) => above(o, side),
+            Branch::Parallel(t, side) => {
+                let q = t.frame.coordinates(&centre);
+                let beyond = (q.x.hypot(q.y) - t.major) * *side;
+                (beyond, sides.length() + band)
             }
+            Branch::Level(c, side) => above(&c.frame.origin, &(c.frame.z * *side)),
+        };
+        if mid.is_short_of(-half) {
+            return false;
         }
         match &self.track {
             Track::Line(d) => {

@@ -4,8 +4,10 @@ use super::ground::{Between, Ground, Middle};
 use super::outline::boundary_sum;
 use super::{Amid, Moments};
 use crate::brep::Brep;
+use crate::brep::arcs::Arcs;
 use crate::brep::locate::{FaceLocator, Place};
-use crate::brep::topology::{CoedgeId, FaceId};
+use crate::brep::topology::{CoedgeId, FaceId, Sense};
+use crate::brep::walk::{DirectedArc, Walk};
 use crate::geometry::bounds;
 use crate::geometry::frame::Frame;
 use crate::geometry::section::plane_roots;
@@ -13,8 +15,9 @@ use crate::geometry::surface::{Cylinder, Plane, Sphere, Surface, Torus};
 use crate::geometry::vector::{Length, rounded};
 use crate::number::precision::Number;
 use crate::number::quadrature::adaptive;
-use crate::number::sign::Sign;
+use crate::number::sign::{FINEST_RESOLUTION, Sign};
 use nalgebra::{Point3, Vector3};
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// What a face is measured by.
@@ -263,32 +266,41 @@ fn torus_moments<N: Number>(
     let height = t.minor * sin;
     let frame = t.frame.at(t.frame.origin + t.frame.z * height);
     let plane = Plane { frame };
-    let roots_of = |c: CoedgeId| {
-        let coedge = brep.topology.coedge(c);
-        let curve = brep.curve(coedge.edge);
-        let mut roots = Vec::new();
-        plane_roots(
-            curve,
-            brep.range(coedge.edge),
-            &plane,
-            N::ZERO,
-            &mut |s, _| {
+    let start = d
+        .ground
+        .surface
+        .point(N::ZERO, d.ground.middle.angle + base);
+    let opening = Walk::parallel(&d.ground.surface, &start, Sense::Along, N::ZERO);
+    let directed = coedges.iter().map(|&c| DirectedArc::of(brep, c));
+    let arcs = Arcs::new(directed.collect(), N::ZERO);
+    // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
+    // that is told from it to rounding, or to the finest resolution.
+    let band = N::ROUNDING.max(N::of(FINEST_RESOLUTION)) * d.amid.size;
+    let mut roots: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
+    for (i, &c) in coedges.iter().enumerate() {
+        let curve = arcs.all[i].curve;
+        let ranges = opening.map_or(vec![arcs.all[i].range], |walk| {
+            arcs.ranges(&walk, i, N::ZERO)
+        });
+        for range in ranges {
+            plane_roots(curve, range, &plane, band, &mut |s, plain| {
                 let q = t.frame.coordinates(&curve.point(s));
                 let outward = (q.x.hypot(q.y) - t.major) * cos;
-                if outward.is_above_zero() {
-                    roots.push(s);
+                if plain && outward.is_above_zero() {
+                    roots.entry(c).or_default().push(s);
                 }
-            },
-        );
-        roots
-    };
-    let mut sum = boundary_sum(brep, face, d, &roots_of);
+            });
+        }
+    }
+    let mut sum = boundary_sum(brep, face, d, &|c| {
+        roots.get(&c).cloned().unwrap_or_default()
+    });
     // Where edges pass the parallel: the u, and 1 where the face lies ahead, −1 where it lies behind.
     let mut passes: Vec<(N, N)> = Vec::new();
-    for &c in coedges {
+    for (&c, at) in &roots {
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
-        for s in roots_of(c) {
+        for &s in at {
             let [u, _] = d.ground.parameters(&curve.point(s));
             let rise = curve.derivative(s).dot(&t.frame.z) * cos;
             let up = rise * side * coedge.sense.sign::<N>();

@@ -386,13 +386,19 @@ impl<N: Number> Sorter<'_, N> {
     /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.
     fn crossings(&self, walk: &Walk<N>, start: Option<usize>) -> Option<Vec<Crossing<N>>> {
         let mut found: Vec<Crossing<N>> = Vec::new();
+        let mut clear = true;
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
+            // The rest is of no use to anyone.
+            if !clear {
+                return;
+            }
             let arc = &self.arcs.all[i];
             // Arcs of both senses run over the starting edge where a face bounds itself.
             let own = start.is_some_and(|start| arc.shares_edge(&self.arcs.all[start]));
             let mut note = |at: N, t: N, passage: Passage| {
                 let here = own && (at.is_at_most(self.start()) || self.is_full_turn(walk, at));
                 if !here {
+                    clear &= passage != Passage::Unclear;
                     found.push(Crossing {
                         at,
                         arc: i,
@@ -410,7 +416,7 @@ impl<N: Number> Sorter<'_, N> {
                 &mut note,
             );
         });
-        if found.iter().any(|c| c.passage == Passage::Unclear) {
+        if !clear {
             return None;
         }
         found.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.arc.cmp(&b.arc)));

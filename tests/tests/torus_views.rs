@@ -359,3 +359,29 @@ fn limbs_are_cut_next_to_their_nodes() {
         );
     }
 }
+
+/// A ring of radii 3/4 and 1/4 about the x axis and a block whose face x = 0 fills a quarter of its
+/// hole: at (0, 1, 1)/√8 on the inner equator the curvatures along the tube and around the axis are
+/// 4 and -2, so that the line of sight (-1, 1, -1) is asymptotic there. The limb has a cusp just
+/// where it ends on the edge, and no curvature tells which half of the edge is hidden.
+#[test]
+fn a_cusp_on_an_edge_is_no_fold() {
+    let text = "PART = TOR(RMAJ=0.75, RMIN=0.25) AT (ROTY=90) UN BLO(X=0.5, Y=0.5, Z=0.5)";
+    let tree = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let part = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
+    let centre = Point3::new(0.125, 0.0, 0.0);
+    let eye = centre + Vector3::new(-1.0, 1.0, -1.0);
+    let camera = Camera::orthographic(eye, centre, Vector3::z()).unwrap();
+    for method in [Method::Carried, Method::Counted] {
+        let seen = contours_by(&part.brep, &camera, part.resolution, method).unwrap();
+        // The edge on the equator, which the face and the tube bound: of its half towards (0, 0, 1/2)
+        // both are seen, and nothing of the ring is on the line of sight.
+        let on_equator = |p: &Point3<f64>| p.x.abs() < 1e-9 && (p.y.hypot(p.z) - 0.5).abs() < 1e-9;
+        let mut pieces = seen.contours.iter().flat_map(|c| {
+            let middle = |t: [f64; 2]| c.curve3.point(0.5 * (t[0] + t[1]));
+            c.pieces.iter().map(move |p| (middle(p.t), p.qi))
+        });
+        let upper = pieces.find(|(p, _)| on_equator(p) && p.z > p.y).unwrap();
+        assert_eq!(upper.1, 0, "{method:?}: {upper:?}");
+    }
+}

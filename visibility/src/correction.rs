@@ -245,6 +245,8 @@ impl<'s, 'a> Corrections<'s, 'a> {
                 Some(c) if c.facing.is_none() && end.strand.edge == Some(edge) => {
                     self.fold(face, &out, &p, end)
                 }
+                // A limb that ends in a cusp may lie behind the face's own fold.
+                Some(c) if c.facing.is_none() && !self.bends(face, &p, &v) => Effect::Unclear,
                 Some(corner) => corner.effect(&v, end),
             };
             (face, effect)
@@ -268,7 +270,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
             return Effect::Clear;
         }
         let is_grazed = facing.is_within(ROUNDING.sqrt());
-        if into.is_at_most(PLAIN) || is_grazed || bend.is_exactly(0.0) {
+        if into.is_at_most(PLAIN) || is_grazed || !self.bends(face, p, &v) {
             return Effect::Unclear;
         }
         match bend.is_above_zero() && facing.is_below_zero() {
@@ -281,6 +283,15 @@ impl<'s, 'a> Corrections<'s, 'a> {
     fn bend(&self, face: FaceId, p: &Point3<f64>, v: &Vector3<f64>) -> f64 {
         let sign = if self.scene.along(face) { 1.0 } else { -1.0 };
         sign * self.scene.brep.surface(face).normal_curvature(p, v)
+    }
+
+    /// Whether a face plainly bends along the line of sight: on a torus it may not, next to a cusp.
+    fn bends(&self, face: FaceId, p: &Point3<f64>, v: &Vector3<f64>) -> bool {
+        let bend = self.bend(face, p, v);
+        match self.scene.brep.surface(face) {
+            Surface::Torus(torus) => is_plain(bend * torus.minor),
+            _ => !bend.is_exactly(0.0),
+        }
     }
 
     /// At a cusp the line of sight meets the torus three times at once. Next to it the third

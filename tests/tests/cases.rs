@@ -8,7 +8,6 @@ use premio::checks::{Checker, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, Options, read};
 use premio_csg::tree::Tree;
-use premio_kernel::brep::extent::bounds;
 use premio_tests::examine::within;
 use premio_tests::formula::Definitions;
 use serde::Deserialize;
@@ -172,7 +171,7 @@ fn measures(case: &Case, answer: &Answer, evaluation: &Evaluation) -> Vec<String
     if let Some([expected, slack]) = answer.measured {
         near("volume", found.volume, expected, slack);
     }
-    let size = bounds(&evaluation.brep);
+    let size = evaluation.tight_bounds();
     let corners = answer.corners.iter().flatten();
     for (formulas, found) in corners.zip([size.min, size.max]) {
         for (formula, found) in formulas.iter().zip(found) {

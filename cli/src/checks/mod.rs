@@ -13,7 +13,6 @@ pub use recount::{Recount, WrongPiece};
 use premio_csg::boundary::Evaluation;
 use premio_csg::rays::{Clearance, Estimate, Material};
 use premio_csg::tree::Tree;
-use premio_kernel::brep::extent::bounds;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::{Camera, contours};
@@ -88,7 +87,7 @@ impl<'a> Checker<'a> {
         Self {
             material: Material::of(tree),
             evaluation,
-            told: bounds(&evaluation.brep),
+            told: evaluation.tight_bounds(),
         }
     }
 

@@ -4,7 +4,6 @@ use crate::arguments::InfoOptions;
 use crate::diagnostics::Failure;
 use crate::input::{self, Part};
 use crate::output;
-use premio_kernel::brep::extent::bounds;
 use premio_kernel::number::sign::{CloseCall, Decisions};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -118,12 +117,12 @@ impl Info {
 impl Bounds {
     /// The box of the boundary; a point at the origin for an empty solid.
     fn of(part: &Part) -> Self {
-        let brep = &part.evaluation.brep;
-        if brep.topology.faces.is_empty() {
+        let evaluation = &part.evaluation;
+        if evaluation.brep.topology.faces.is_empty() {
             let (min, max) = ([0.0; 3], [0.0; 3]);
             return Self { min, max };
         }
-        let found = bounds(brep);
+        let found = evaluation.tight_bounds();
         Self {
             min: found.min,
             max: found.max,

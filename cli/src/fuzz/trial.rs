@@ -8,7 +8,6 @@ use crate::checks::{Checker, Report, Subject, views};
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
 use premio_csg::tree::Tree;
-use premio_kernel::brep::extent::bounds;
 use premio_kernel::brep::signature::Signature;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -247,7 +246,7 @@ fn faults(report: &Report) -> Vec<Fault> {
 
 fn measures(evaluation: &Evaluation) -> Measures {
     let (brep, mass) = (&evaluation.brep, evaluation.mass());
-    let bounds = (!brep.topology.faces.is_empty()).then(|| bounds(brep));
+    let bounds = (!brep.topology.faces.is_empty()).then(|| evaluation.tight_bounds());
     Measures {
         volume: mass.volume,
         area: mass.area,

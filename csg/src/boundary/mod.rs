@@ -29,6 +29,7 @@ use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::{AssemblyError, assemble};
 use premio_kernel::brep::check::{Violation, check, worst_gap};
+use premio_kernel::brep::extent::bounds;
 use premio_kernel::brep::mass::{Mass, Measures};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::intersect::{Extent, IntersectionError};
@@ -125,6 +126,14 @@ impl Evaluation {
             Told::Doubles(measures) => measures.mass(&self.brep),
             Told::Wide(wide) => wide.1.mass(&wide.0),
         })
+    }
+
+    /// The box of the boundary, to rounding.
+    pub fn tight_bounds(&self) -> Box3 {
+        match &self.told {
+            Told::Doubles(_) => bounds(&self.brep),
+            Told::Wide(wide) => bounds(&wide.0),
+        }
     }
 
     /// The rules that the boundary breaks.

@@ -7,7 +7,7 @@ use crate::geometry::bounds::{Box3, tight_bounds};
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::direction;
 use crate::number::precision::Number;
-use crate::number::sign::RELATIVE_RESOLUTION;
+use crate::number::sign::{RELATIVE_RESOLUTION, ROUNDING};
 use nalgebra::Vector3;
 
 /// The box of a boundary: of its edges, and of its faces where they bulge beyond them.
@@ -17,7 +17,7 @@ pub fn bounds<N: Number>(brep: &Brep<N>) -> Box3 {
         all = all.hull(&tight_bounds(brep.curve(e), brep.range(e)));
     }
     for face in brep.topology.face_ids() {
-        all = all.hull(&bulge(brep, face));
+        all = all.hull(&bulge(brep, face, &all));
     }
     all
 }
@@ -25,14 +25,15 @@ pub fn bounds<N: Number>(brep: &Brep<N>) -> Box3 {
 /// The box of a face: of its edges, and of the face where it bulges beyond them.
 pub(super) fn face_bounds<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
     let edges = brep.topology.edges_of(face);
-    edges.fold(bulge(brep, face), |all, e| {
+    let edges = edges.fold(Box3::EMPTY, |all, e| {
         all.hull(&tight_bounds(brep.curve(e), brep.range(e)))
-    })
+    });
+    edges.hull(&bulge(brep, face, &edges))
 }
 
-/// The box of the points of a face whose normal is along an axis, where it bulges, and of a cone's
-/// apex.
-fn bulge<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
+/// The box of the points of a face whose normal is along an axis, where it bulges out of what is
+/// `known`, and of a cone's apex.
+fn bulge<N: Number>(brep: &Brep<N>, face: FaceId, known: &Box3) -> Box3 {
     let surface = brep.surface(face);
     let f = surface.frame();
     let mut points = Vec::new();
@@ -61,6 +62,12 @@ fn bulge<N: Number>(brep: &Brep<N>, face: FaceId) -> Box3 {
     }
     if let Surface::Cone(c) = surface {
         points.push(c.frame.origin);
+    }
+    // Edges next to such a point say as much of the box, to rounding.
+    let rounding = ROUNDING * known.diagonal();
+    if rounding.is_finite() {
+        let known = known.grown(rounding);
+        points.retain(|p| !known.holds(p));
     }
     if points.is_empty() {
         return Box3::EMPTY;

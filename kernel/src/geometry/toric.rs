@@ -215,7 +215,10 @@ impl<N: Number> Segment<N> {
             // Next to a singular point only rounding is left of the value, and steps no longer
             // get shorter.
             let noise = value.abs() <= rounding && step.abs() >= N::HALF * last;
-            if noise || short {
+            // Elsewhere each is in proportion to the square of the one before.
+            let ahead = step.abs() * (step / last).square();
+            let next_to_none = last.is_finite() && ahead <= N::EPSILON;
+            if noise || short || next_to_none {
                 return y;
             }
             last = step.abs();

@@ -262,36 +262,10 @@ fn torus_moments<N: Number>(
 ) -> Moments<N> {
     let side = brep.sense(face).sign::<N>();
     let base = d.ground.base;
-    let Middle { sin, cos, .. } = Middle::at(d.ground.middle.angle + base);
-    let height = t.minor * sin;
-    let frame = t.frame.at(t.frame.origin + t.frame.z * height);
-    let plane = Plane { frame };
-    let start = d
-        .ground
-        .surface
-        .point(N::ZERO, d.ground.middle.angle + base);
-    let opening = Walk::parallel(&d.ground.surface, &start, Sense::Along, N::ZERO);
-    let directed = coedges.iter().map(|&c| DirectedArc::of(brep, c));
-    let arcs = Arcs::new(directed.collect(), N::ZERO);
-    // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
-    // that is told from it to rounding, or to the finest resolution.
-    let band = N::ROUNDING.max(N::of(FINEST_RESOLUTION)) * d.amid.size;
-    let mut roots: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
-    for (i, &c) in coedges.iter().enumerate() {
-        let curve = arcs.all[i].curve;
-        let ranges = opening.map_or(vec![arcs.all[i].range], |walk| {
-            arcs.ranges(&walk, i, N::ZERO)
-        });
-        for range in ranges {
-            plane_roots(curve, range, &plane, band, &mut |s, plain| {
-                let q = t.frame.coordinates(&curve.point(s));
-                let outward = (q.x.hypot(q.y) - t.major) * cos;
-                if plain && outward.is_above_zero() {
-                    roots.entry(c).or_default().push(s);
-                }
-            });
-        }
-    }
+    let Some(roots) = opening_passes(brep, coedges, t, d) else {
+        return [N::NAN; 5];
+    };
+    let cos = (d.ground.middle.angle + base).cos();
     let mut sum = boundary_sum(brep, face, d, &|c| {
         roots.get(&c).cloned().unwrap_or_default()
     });
@@ -328,6 +302,43 @@ fn torus_moments<N: Number>(
     } else {
         sum
     }
+}
+
+/// Where the edges of a torus's face pass the parallel at which it is opened: by coedge, the
+/// parameters; none where one does not plainly cross it.
+fn opening_passes<N: Number>(
+    brep: &Brep<N>,
+    coedges: &[CoedgeId],
+    t: &Torus<N>,
+    d: &Density<'_, N>,
+) -> Option<BTreeMap<CoedgeId, Vec<N>>> {
+    let angle = d.ground.middle.angle + d.ground.base;
+    let Middle { sin, cos, .. } = Middle::at(angle);
+    let frame = t.frame.at(t.frame.origin + t.frame.z * (t.minor * sin));
+    let plane = Plane { frame };
+    let start = d.ground.surface.point(N::ZERO, angle);
+    let opening = Walk::parallel(&d.ground.surface, &start, Sense::Along, N::ZERO)?;
+    let directed = coedges.iter().map(|&c| DirectedArc::of(brep, c));
+    let arcs = Arcs::new(directed.collect(), N::ZERO);
+    // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
+    // that is told from it to rounding, or to the finest resolution.
+    let band = N::ROUNDING.max(N::of(FINEST_RESOLUTION)) * d.amid.size;
+    let mut passes: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
+    let mut plain = true;
+    for (i, &c) in coedges.iter().enumerate() {
+        let curve = arcs.all[i].curve;
+        for range in arcs.ranges(&opening, i, N::ZERO) {
+            plane_roots(curve, range, &plane, band, &mut |s, crosses| {
+                let q = t.frame.coordinates(&curve.point(s));
+                let outward = (q.x.hypot(q.y) - t.major) * cos;
+                if outward.is_above_zero() {
+                    plain &= crosses;
+                    passes.entry(c).or_default().push(s);
+                }
+            });
+        }
+    }
+    plain.then_some(passes)
 }
 
 /// An angle amid the widest gap between angles.

@@ -109,12 +109,18 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
 }
 
 impl Behind {
-    /// Cuts the farther strand, where it is not cut yet.
+    /// Cuts the farther strand, where it is not cut yet; what a contour does that crosses it there is
+    /// not all that changes.
     fn cut(self, strand: &mut Strand<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
         let near = 2.0 * LOOSE * scene.band;
-        let p = strand.curve.point(self.t);
-        let here = |t: f64| (strand.curve.point(t) - p).norm().is_within(near);
-        if strand.junctions().any(|(_, t)| here(t)) {
+        let curve = strand.curve;
+        let p = curve.point(self.t);
+        let here = |t: f64| (curve.point(t) - p).norm().is_within(near);
+        let is_cut = strand.junctions().any(|(_, t)| here(t));
+        for split in strand.splits.iter_mut().filter(|split| here(split.t)) {
+            split.change = Change::Correct;
+        }
+        if is_cut {
             return;
         }
         let junction = junctions.add(JunctionKind::T, Site::Alone, &p);

@@ -211,3 +211,19 @@ fn what_is_nearly_zero_is_refused() {
         }
     }
 }
+
+/// Two cones of 45 degrees, the apex of one on a ruling of the other, the axes parallel but for a
+/// turn of 1.3e-10: next to k = 0 nothing may divide by it. The second lies in the first but for
+/// slivers of the power 3/2 of the turn, and half of its base stands out, by 2/3 of the turn.
+#[test]
+fn cones_of_one_angle_lie_nearly_along_a_ruling() {
+    let text = "PART = CON(R=2, H=2) AT (ROTX=0.0000000074505806, MOVX=1.5, MOVY=1.5, MOVZ=0.5)
+        UN CON(R=1, H=1) AT (MOVX=0.5, MOVY=1.5, MOVZ=0.5)";
+    let text = text.replace('\n', " ");
+    let part = read("cones", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let known = evaluated(&part.tree, Zeros::ByResolution);
+    let turn = 7.450_580_6e-9_f64.to_radians();
+    let volume = 8.0 * std::f64::consts::PI / 3.0 + 2.0 / 3.0 * turn;
+    assert!((known.mass().volume - volume).abs() < 1e-12 * volume);
+    assert_eq!(known.brep.topology.solids.len(), 1);
+}

@@ -2,7 +2,9 @@
 //!
 //! Sheets start in directions that angles tell, and where they touch, bends. Within the resolution
 //! neither may: there carriers lie next to a piece rather than on it, or along one another as far as
-//! the piece reaches. Then the surfaces as they are tell the order, just out of the resolution.
+//! the piece reaches. Then the surfaces as they are tell the order, just out of the resolution: two
+//! that are one there need not touch in the piece, and how they bend in it says nothing of where they
+//! part.
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;
@@ -147,9 +149,10 @@ impl<N: Number> Spot<'_, N> {
                 a.direction.dot(&b.direction).is_above_zero() && sine.is_short_of(N::of(SHALLOW));
             let gap = (a.bend - b.bend) * reach * reach;
             let is_one = a.angle.is_exactly(b.angle);
+            let both = [a, b].map(|s| self.piece.carriers[s.carrier]);
             if a.carrier == b.carrier || !is_shallow {
                 Some(false)
-            } else if is_one && !self.judge.within(gap) {
+            } else if is_one && self.is_told_to_touch(both) && !self.judge.within(gap) {
                 Some(gap.is_above_zero())
             } else {
                 self.lies_beyond([a, b], is_one)
@@ -185,12 +188,13 @@ impl<N: Number> Spot<'_, N> {
             -out * second.distance(&q)
         };
         let band = self.judge.band::<N>();
+        let rounding = N::ROUNDING * (reach + self.point.coords.length());
         let steps = std::iter::successors(Some(band), |step| Some(N::TWO * *step));
         let mut offsets = steps
             .take_while(|step| step.is_exactly(band) || step.is_short_of(farthest))
             .map(offset);
         offsets
-            .find(|away| away.abs().is_beyond(N::ROUNDING * reach))
+            .find(|away| away.abs().is_beyond(rounding))
             .map(N::is_above_zero)
     }
 
@@ -203,9 +207,7 @@ impl<N: Number> Spot<'_, N> {
         direction: &Vector3<N>,
         rise: impl Fn(&Vector3<N>) -> N,
     ) -> bool {
-        let both = [axis.carrier, carrier];
-        let mut told = self.piece.tangent.iter();
-        let told = told.any(|t| *t == both || *t == [carrier, axis.carrier]);
+        let told = self.is_told_to_touch([axis.carrier, carrier]);
         // What meets in the piece alone crosses there, however little, unless it is told to touch.
         if told || self.piece.carriers.len() == 2 {
             return told;
@@ -214,6 +216,12 @@ impl<N: Number> Spot<'_, N> {
         let bend = (rise(&axis.direction) - axis.rise).abs();
         self.judge.within(sine * self.piece.reach(self.arrangement))
             || self.judge.within(sine * sine / (N::TWO * bend))
+    }
+
+    /// Whether two carriers touch all along the piece, by the curve in which they meet.
+    fn is_told_to_touch(&self, [a, b]: [usize; 2]) -> bool {
+        let mut told = self.piece.tangent.iter();
+        told.any(|t| *t == [a, b] || *t == [b, a])
     }
 
     fn surface(&self, carrier: usize) -> &Surface<N> {

@@ -139,7 +139,7 @@ fn unlike_rays(tree: &Tree, evaluation: &Evaluation) -> Vec<String> {
     let checker = Checker::new(tree, evaluation);
     let seen = views::around(&evaluation.bounds);
     let checks = seen.iter().flat_map(|v| checker.view(&v.name, &v.camera));
-    let failed = checks.filter(|c| !c.holds);
+    let failed = checks.filter(|c| !c.holds());
     failed.map(|c| c.to_string()).collect()
 }
 

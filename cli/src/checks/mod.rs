@@ -42,13 +42,24 @@ pub enum Subject {
     Contours(String),
 }
 
+/// What a check finds.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Finding {
+    /// It holds.
+    Holds,
+    /// Something is wrong.
+    Fails,
+    /// Too little could be looked at to tell, and nothing of that is wrong.
+    Untold,
+}
+
 /// The outcome of one check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What it is about.
     pub subject: Subject,
-    /// Whether it holds.
-    pub holds: bool,
+    /// What it finds.
+    pub finding: Finding,
     /// The figures, or what is wrong.
     pub detail: String,
 }
@@ -72,12 +83,34 @@ pub struct Checker<'a> {
 impl Report {
     /// Whether all checks hold.
     pub fn holds(&self) -> bool {
-        self.checks.iter().all(|c| c.holds)
+        self.checks.iter().all(Check::holds)
     }
 
-    /// The checks that do not hold.
+    /// The checks that find one thing.
+    pub fn of(&self, finding: Finding) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(move |c| c.finding == finding)
+    }
+
+    /// The checks that do not hold: they fail, or do not tell.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|c| !c.holds)
+        self.checks.iter().filter(|c| !c.holds())
+    }
+}
+
+impl Check {
+    /// Whether it holds.
+    pub fn holds(&self) -> bool {
+        self.finding == Finding::Holds
+    }
+}
+
+impl Finding {
+    /// Of a check that always tells.
+    fn of(holds: bool) -> Self {
+        match holds {
+            true => Self::Holds,
+            false => Self::Fails,
+        }
     }
 }
 
@@ -115,7 +148,7 @@ impl<'a> Checker<'a> {
         let texts: Vec<String> = violations.iter().map(ToString::to_string).collect();
         Check {
             subject: Subject::Topology,
-            holds: texts.is_empty(),
+            finding: Finding::of(texts.is_empty()),
             detail: if texts.is_empty() {
                 "no violation".to_owned()
             } else {
@@ -140,7 +173,7 @@ impl<'a> Checker<'a> {
         } = estimate;
         Check {
             subject: Subject::Volume,
-            holds: off <= DEVIATIONS,
+            finding: Finding::of(off <= DEVIATIONS),
             detail: format!(
                 "{volume} of the boundary, {value} ± {standard_error:.1e} by rays: {off:.1} standard errors"
             ),
@@ -155,7 +188,7 @@ impl<'a> Checker<'a> {
         let off = (0..3).map(beyond).fold(f64::NEG_INFINITY, f64::max);
         Check {
             subject: Subject::Bounds,
-            holds: off <= slack || met == Box3::EMPTY,
+            finding: Finding::of(off <= slack || met == Box3::EMPTY),
             detail: if off <= slack || met == Box3::EMPTY {
                 format!("{AROUND} rays meet nothing outside the box")
             } else {
@@ -178,7 +211,7 @@ impl<'a> Checker<'a> {
         let Some(resolution) = self.evaluation.resolution_of_views() else {
             return vec![Check {
                 subject,
-                holds: true,
+                finding: Finding::Holds,
                 detail: "refused: surfaces lie closer together than doubles tell".to_owned(),
             }];
         };
@@ -187,7 +220,7 @@ impl<'a> Checker<'a> {
             Err(error) => {
                 return vec![Check {
                     subject,
-                    holds: false,
+                    finding: Finding::Fails,
                     detail: error.to_string(),
                 }];
             }
@@ -198,12 +231,12 @@ impl<'a> Checker<'a> {
         vec![
             Check {
                 subject,
-                holds: counted.holds(),
+                finding: counted.finding(),
                 detail: counted.to_string(),
             },
             Check {
                 subject: Subject::Contours(name.to_owned()),
-                holds: outlines.missing.is_empty(),
+                finding: Finding::of(outlines.missing.is_empty()),
                 detail: outlines.to_string(),
             },
         ]
@@ -239,7 +272,11 @@ impl fmt::Display for Subject {
 
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let outcome = if self.holds { "ok" } else { "FAILED" };
+        let outcome = match self.finding {
+            Finding::Holds => "ok",
+            Finding::Fails => "FAILED",
+            Finding::Untold => "UNTOLD",
+        };
         write!(f, "{outcome:<6} {}: {}", self.subject, self.detail)
     }
 }
@@ -249,10 +286,12 @@ impl fmt::Display for Report {
         for check in &self.checks {
             writeln!(f, "{check}")?;
         }
-        let (all, failed) = (self.checks.len(), self.failures().count());
-        match failed {
-            0 => writeln!(f, "all {all} checks hold"),
-            _ => writeln!(f, "{failed} of {all} checks failed"),
+        let all = self.checks.len();
+        let [failed, untold] = [Finding::Fails, Finding::Untold].map(|k| self.of(k).count());
+        match (failed, untold) {
+            (0, 0) => writeln!(f, "all {all} checks hold"),
+            (_, 0) => writeln!(f, "{failed} of {all} checks failed"),
+            _ => writeln!(f, "{failed} of {all} checks failed, {untold} do not tell"),
         }
     }
 }

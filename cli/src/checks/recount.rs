@@ -1,5 +1,6 @@
 //! The quantitative invisibility of pieces, counted again by rays on the tree.
 
+use super::Finding;
 use nalgebra::{Point3, Vector3};
 use premio_csg::rays::{Clearance, Evidence, Material};
 use premio_kernel::number::sign::ROUNDING;
@@ -57,9 +58,13 @@ pub struct Recount {
 }
 
 impl Recount {
-    /// Whether enough samples could be counted, and none is wrong.
-    pub fn holds(&self) -> bool {
-        self.wrong.is_empty() && self.suffices()
+    /// Whether none is wrong, of enough samples that could be counted.
+    pub fn finding(&self) -> Finding {
+        match (self.wrong.is_empty(), self.suffices()) {
+            (false, _) => Finding::Fails,
+            (true, true) => Finding::Holds,
+            (true, false) => Finding::Untold,
+        }
     }
 
     /// Whether the samples that could be counted say something about the view.
@@ -223,11 +228,12 @@ mod tests {
             ambiguous,
             wrong: Vec::new(),
         };
-        assert!(Recount::default().holds());
-        assert!(of(7, 21).holds());
-        assert!(of(40, 80).holds());
-        assert!(of(216, 588).holds());
-        assert!(!of(40, 120).holds() && !of(40, 106).holds());
+        for told in [Recount::default(), of(7, 21), of(40, 80), of(216, 588)] {
+            assert_eq!(told.finding(), Finding::Holds, "{told}");
+        }
+        for untold in [of(40, 120), of(40, 106)] {
+            assert_eq!(untold.finding(), Finding::Untold, "{untold}");
+        }
         assert!(of(40, 120).to_string().ends_with("too few to tell"));
     }
 }

@@ -352,6 +352,7 @@ mod tests {
             Ok(Some(Outcome {
                 verdict,
                 close_calls: 1,
+                untold: Vec::new(),
             }))
         }
     }

@@ -73,6 +73,9 @@ pub struct Tally {
     pub refusals: BTreeMap<String, Finds>,
     /// The wrong ones, by kind; one tree may be of several.
     pub faults: BTreeMap<Wrong, Finds>,
+    /// Those of which a check does not tell.
+    #[serde(default)]
+    pub untold: Finds,
     /// How many trees had close calls.
     pub close_trees: u64,
     /// How many close calls there were.
@@ -144,6 +147,9 @@ impl Tally {
                     finds.entry(seed).or_insert_with(|| find(fault.text));
                 }
             }
+        }
+        if !outcome.untold.is_empty() {
+            self.untold.insert(seed, find(outcome.untold.join("; ")));
         }
         self.close_trees += u64::from(outcome.close_calls > 0);
         self.close_calls += outcome.close_calls as u64;
@@ -252,6 +258,7 @@ mod tests {
             1 => Outcome {
                 verdict: Verdict::Refused(format!("near ({number}, 1, 2)")),
                 close_calls: 2,
+                untold: Vec::new(),
             },
             _ => Outcome::wrong(Wrong::Time, "none"),
         }

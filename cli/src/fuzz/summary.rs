@@ -35,6 +35,8 @@ struct Part {
     wrong: u64,
     refusals: Vec<Kind>,
     faults: Vec<Kind>,
+    /// The trees of which a check does not tell; none is there where all tell.
+    untold: Vec<Kind>,
     close_calls: CloseCalls,
 }
 
@@ -106,6 +108,8 @@ impl Part {
     fn of(tally: &Tally) -> Self {
         let refusals = tally.refusals.iter().map(|(k, f)| Kind::of(k, f));
         let faults = tally.faults.iter().map(|(k, f)| Kind::of(k.name(), f));
+        let untold = Some(&tally.untold).filter(|finds| !finds.is_empty());
+        let untold = untold.into_iter().map(|f| Kind::of("too few samples", f));
         Self {
             trees: tally.trees(),
             right: tally.right,
@@ -113,6 +117,7 @@ impl Part {
             wrong: tally.wrong,
             refusals: refusals.collect(),
             faults: faults.collect(),
+            untold: untold.collect(),
             close_calls: CloseCalls {
                 trees: tally.close_trees,
                 decisions: tally.close_calls,
@@ -172,6 +177,7 @@ impl fmt::Display for Summary {
         for (profile, part) in &self.profiles {
             list(f, *profile, "wrong", &part.faults)?;
             list(f, *profile, "refused", &part.refusals)?;
+            list(f, *profile, "untold", &part.untold)?;
         }
         for (profile, times) in &self.seconds.profiles {
             for Timed { seed, seconds } in times.slow.iter().take(LISTED) {

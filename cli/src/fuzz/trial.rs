@@ -4,7 +4,7 @@
 
 use super::model::{Kind, Model, Operation};
 use super::write::{Format, read, write};
-use crate::checks::{Checker, Report, Subject, views};
+use crate::checks::{Check, Checker, Finding, Report, Subject, views};
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
 use premio_csg::tree::Tree;
@@ -127,6 +127,9 @@ pub struct Outcome {
     pub verdict: Verdict,
     /// How many decisions were close.
     pub close_calls: usize,
+    /// The checks that do not tell.
+    #[serde(default)]
+    pub untold: Vec<String>,
 }
 
 impl Outcome {
@@ -136,6 +139,7 @@ impl Outcome {
         Self {
             verdict: Verdict::Wrong(vec![Fault { kind, text }]),
             close_calls: 0,
+            untold: Vec::new(),
         }
     }
 }
@@ -209,9 +213,11 @@ pub fn examine(model: &Model, terms: &Terms) -> Outcome {
         true => Verdict::Right(measures(&evaluation)),
         false => Verdict::Wrong(faults),
     };
+    let untold = report.of(Finding::Untold).map(text).collect();
     Outcome {
         verdict,
         close_calls,
+        untold,
     }
 }
 
@@ -219,6 +225,7 @@ fn refused(text: String, close_calls: usize) -> Outcome {
     Outcome {
         verdict: Verdict::Refused(text),
         close_calls,
+        untold: Vec::new(),
     }
 }
 
@@ -230,7 +237,7 @@ fn options(terms: &Terms) -> EvaluationOptions {
 }
 
 fn faults(report: &Report) -> Vec<Fault> {
-    let fault = |check: &crate::checks::Check| {
+    let fault = |check: &Check| {
         let kind = match check.subject {
             Subject::Topology => Wrong::Topology,
             Subject::Volume => Wrong::Volume,
@@ -238,10 +245,14 @@ fn faults(report: &Report) -> Vec<Fault> {
             Subject::View(_) => Wrong::View,
             Subject::Contours(_) => Wrong::Contours,
         };
-        let text = format!("{}: {}", check.subject, check.detail);
+        let text = text(check);
         Fault { kind, text }
     };
-    report.failures().map(fault).collect()
+    report.of(Finding::Fails).map(fault).collect()
+}
+
+fn text(check: &Check) -> String {
+    format!("{}: {}", check.subject, check.detail)
 }
 
 fn measures(evaluation: &Evaluation) -> Measures {

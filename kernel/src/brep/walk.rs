@@ -7,6 +7,8 @@
 //! along the walk, D its direction, N the outward normal of the face, T the direction of an arc; the
 //! face lies to the left, towards N × T, so the walk enters the face where D·(N × T) > 0.
 
+mod reach;
+
 use super::Brep;
 use super::topology::{CoedgeId, Sense};
 use crate::geometry::bounds::Box3;
@@ -14,10 +16,12 @@ use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::section::{line_meets, section_roots, surface_roots};
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
+use crate::geometry::toric::Axis;
 use crate::geometry::vector::Length;
 use crate::number::precision::Number;
 use crate::number::sign::Sign;
 use nalgebra::{Point3, Vector3};
+use reach::Reach;
 
 /// A piece of a face's boundary: the face lies to the left of its sense, seen from the side the
 /// face's outward normal points to.
@@ -107,8 +111,7 @@ pub struct Walk<N: Number = f64> {
     track: Track<N>,
     branch: Branch<N>,
     length: N,
-    /// What holds a straight walk of a given length; else without bounds.
-    extent: Box3,
+    reach: Reach,
 }
 
 impl<N: Number> Walk<N> {
@@ -125,7 +128,7 @@ impl<N: Number> Walk<N> {
             track,
             branch,
             length,
-            extent: Box3::ALL,
+            reach: Reach::of((start, &normal), &track, &branch, length),
         }
     }
 
@@ -257,23 +260,13 @@ impl<N: Number> Walk<N> {
             Track::Line(d) => Track::Line(-d),
             Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),
         };
-        Self { track, ..self }.upto(self.length)
+        Self::new(&self.start, self.normal, track, self.branch, self.length)
     }
 
     /// The same walk, no longer than `length`.
     pub fn upto(self, length: N) -> Self {
         let length = self.length.min(length);
-        let extent = match &self.track {
-            Track::Line(d) if length.is_finite() => {
-                Box3::of(&self.start).hull(&Box3::of(&(self.start + d * length)))
-            }
-            _ => Box3::ALL,
-        };
-        Self {
-            length,
-            extent,
-            ..self
-        }
+        Self::new(&self.start, self.normal, self.track, self.branch, length)
     }
 
     /// How long it is.
@@ -332,45 +325,7 @@ impl<N: Number> Walk<N> {
 
     /// Whether the walk may pass through a box.
     pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: N) -> bool {
-        let Box3 { min, max } = &self.extent;
-        let reach = band.above();
-        let is_beside =
-            |i: usize| (lo[i] - reach).is_beyond(max[i]) || (hi[i] + reach).is_short_of(min[i]);
-        if (0..3).any(is_beside) {
-            return false;
-        }
-        let half = |i: usize| N::of(0.5 * (hi[i] - lo[i]));
-        let middle = |i: usize| N::of(0.5 * (lo[i] + hi[i]));
-        let sides = Vector3::new(half(0), half(1), half(2));
-        let centre = Point3::new(middle(0), middle(1), middle(2));
-        let above = |o: &Point3<N>, n: &Vector3<N>| {
-            let half = n.x.abs() * sides.x + n.y.abs() * sides.y + n.z.abs() * sides.z;
-            (n.dot(&(centre - o)), half + band)
-        };
-        let (mid, half) = above(&self.start, &self.normal);
-        if mid.abs().is_beyond(half) {
-            return false;
-        }
-        let (mid, half) = match &self.branch {
-            Branch::Whole => (N::ZERO, band),
-            Branch::Half(o, side) => above(o, side),
-            Branch::Parallel(t, side) => {
-                let q = t.frame.coordinates(&centre);
-                let beyond = (q.x.hypot(q.y) - t.major) * *side;
-                (beyond, sides.length() + band)
-            }
-            Branch::Level(c, side) => above(&c.frame.origin, &(c.frame.z * *side)),
-        };
-        if mid.is_short_of(-half) {
-            return false;
-        }
-        match &self.track {
-            Track::Line(d) => {
-                let (mid, half) = above(&self.start, d);
-                mid.reaches(-half) && (mid - half).is_at_most(self.length)
-            }
-            Track::Circle(..) => true,
-        }
+        self.reach.may_meet(lo, hi, band.above())
     }
 
     /// [`Self::may_meet`] of a box.
@@ -454,6 +409,14 @@ impl<N: Number> Walk<N> {
         {
             return;
         }
+        if !ranges.is_empty()
+            && let Some(all) = self.met_on_torus(surface, arc.curve, band)
+        {
+            let all = all.into_iter().map(|t| arc.curve.in_cycle(t, lo));
+            return all
+                .filter(|t| t.lies_in(arc.range))
+                .for_each(|t| root(t, true));
+        }
         for &range in ranges {
             match self.branch {
                 Branch::Level(c, _) => {
@@ -465,6 +428,21 @@ impl<N: Number> Walk<N> {
                 }
             }
         }
+    }
+
+    /// Where a walk along a circle of a torus plainly crosses a curve through that torus's angles, of
+    /// the whole curve; none where that is not plain, and of other walks and curves.
+    fn met_on_torus(&self, surface: &Surface<N>, curve: &Curve<N>, band: N) -> Option<Vec<N>> {
+        let (Surface::Torus(torus), Curve::Toric(curve)) = (surface, curve) else {
+            return None;
+        };
+        let [theta, phi] = surface.parameters(&self.start);
+        let (fixed, angle) = match self.branch {
+            Branch::Half(..) => (Axis::Around, theta),
+            Branch::Parallel(..) | Branch::Level(..) => (Axis::Tube, phi),
+            Branch::Whole => return None,
+        };
+        (curve.torus == *torus).then(|| curve.across(fixed, angle, band))?
     }
 
     /// The distance of a point from what cuts the walk out of its surface.

@@ -5,6 +5,8 @@
 //! rectangle where the slope is bounded, so that every point is one well-conditioned root. Next to
 //! a singular point the graph is that of κ over σ in a [`Chart`].
 
+mod across;
+
 use super::bitrig::{BiTrig, Partials, Section};
 use super::chart::{Chart, DEGREE};
 use super::surface::Torus;

@@ -102,22 +102,36 @@ impl<N: Number> Function<N> for Trigonometric<N> {
 /// The zeros of a trigonometric polynomial in [0, 2π), in order, and whether it changes sign there.
 pub(super) fn zeros_of<N: Number>(k: &Trig2<N>) -> Vec<(N, bool)> {
     let scale: N = k.iter().map(|c| c.abs()).sum();
-    let f = Trigonometric::new(k);
+    let zeros = zeros_once(k, N::ROUNDING * scale).unwrap_or_default();
+    let changes = |contact: Contact| contact != Contact::Touching;
+    zeros.into_iter().map(|(u, c)| (u, changes(c))).collect()
+}
+
+/// The same where all are simple, of a polynomial that is off by `band`; else none.
+pub(super) fn simple_zeros<N: Number>(k: &Trig2<N>, band: N) -> Option<Vec<N>> {
+    let zeros = zeros_once(k, band)?.into_iter();
+    zeros
+        .map(|(u, contact)| (contact == Contact::Simple).then_some(u))
+        .collect()
+}
+
+/// The zeros over one turn; none of what vanishes everywhere.
+fn zeros_once<N: Number>(k: &Trig2<N>, band: N) -> Option<Vec<(N, Contact)>> {
     // Started off the axes, where symmetric polynomials have their zeros.
     let start = N::of(0.1);
     let breaks: Vec<N> = (0..=8)
         .map(|i| start + N::TAU * N::whole(i) / N::of(8.0))
         .collect();
-    let Zeros::At { roots, .. } = isolate(&f, &breaks, N::ROUNDING * scale) else {
-        return Vec::new();
+    let Zeros::At { roots, .. } = isolate(&Trigonometric::new(k), &breaks, band) else {
+        return None;
     };
-    let mut zeros: Vec<(N, bool)> = roots
+    let mut zeros: Vec<(N, Contact)> = roots
         .iter()
-        .map(|r| (r.t.rem_euclid(N::TAU), r.contact != Contact::Touching))
+        .map(|r| (r.t.rem_euclid(N::TAU), r.contact))
         .collect();
     zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
     zeros.dedup_by(|a, b| (a.0 - b.0).abs() <= N::ROUNDING * N::TAU);
-    zeros
+    Some(zeros)
 }
 
 /// B and C divided by sin((u - u0)/2), a zero of both, in half angles.

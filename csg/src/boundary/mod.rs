@@ -24,6 +24,7 @@ mod proof;
 mod sheets;
 mod tapers;
 mod wings;
+mod witness;
 
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
@@ -278,6 +279,15 @@ pub enum EvaluationError {
     /// The boundary breaks one of its own rules: something was told wrongly, and it would be wrong.
     #[error("the boundary that was found is unsound: {0}")]
     Unsound(Violation),
+    /// The tree itself contradicts a face: something was told wrongly, and it would be wrong.
+    #[error(
+        "the boundary that was found has a face near ({:.6}, {:.6}, {:.6}) where the description has none",
+        place[0], place[1], place[2]
+    )]
+    Contradiction {
+        /// A point of the face.
+        place: [f64; 3],
+    },
 }
 
 impl EvaluationError {
@@ -290,6 +300,7 @@ impl EvaluationError {
             | Self::Assembly(_)
             | Self::Vague { .. }
             | Self::Unsound(_)
+            | Self::Contradiction { .. }
             | Self::Taper { .. }
             | Self::Resolution { .. } => true,
             Self::Size | Self::Far { .. } | Self::Doubt { .. } | Self::Large { .. } => false,
@@ -419,6 +430,9 @@ fn evaluated<N: Number>(
             },
             None => EvaluationError::Unsound(broken),
         });
+    }
+    if let Some(place) = concern.contradiction(&brep) {
+        return Err(EvaluationError::Contradiction { place });
     }
     let decisions = judge.decisions();
     Ok(Evaluated {

@@ -4,6 +4,8 @@
 //! it crosses decides by its orientation. Faces are bounded, so a walk without end that meets
 //! nothing lies outside. An unclear meeting is never decided: another walk is taken.
 
+mod interior;
+
 use super::Brep;
 use super::arcs::Arcs;
 use super::topology::{FaceId, Sense};

@@ -227,3 +227,23 @@ fn cones_of_one_angle_lie_nearly_along_a_ruling() {
     assert!((known.mass().volume - volume).abs() < 1e-12 * volume);
     assert_eq!(known.brep.topology.solids.len(), 1);
 }
+
+/// A cone whose apex is where a ring touches a ball, but for the decimals of its angle: slivers of
+/// 1e-16 are all that is left there of either. Their edges end within the resolution of a vertex,
+/// farther apart than rounding, and what looked from far passed between them: the sliver was the whole
+/// ring but for itself. By the resolution of doubles there is nothing of it.
+#[test]
+fn a_sliver_at_an_apex_is_not_the_whole_ring() {
+    let text = "PART = ((SPH(R=2) AT (MOVZ=-2, ROTZ=90, ROTX=180)
+        UN TOR(RMAJ=3, RMIN=1) AT (MOVX=-2, ROTY=90))
+        INT CON(R=1, H=1.5) AT (MOVX=-0.25, MOVZ=-1.125, ROTY=-56.309932474020215, ROTZ=90))
+        AT (ROTX=17, ROTZ=31, MOVX=0.3, MOVY=0.7, MOVZ=-0.2)";
+    let text = text.replace('\n', " ");
+    let part = read("sliver", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let measures = [Zeros::ByResolution, Zeros::Exact].map(|zeros| {
+        let known = evaluated(&part.tree, zeros).mass();
+        [known.volume, known.area]
+    });
+    let off = [0, 1].map(|k| (measures[0][k] - measures[1][k]).abs());
+    assert!(off.iter().all(|off| *off < 1e-11), "{measures:?}");
+}

@@ -110,7 +110,7 @@ fn is_accounted<N: Number>(distance: N, band: N) -> bool {
 }
 
 /// The ends of an edge: the vertex, the place on the edge, and how far they are apart.
-fn gaps_at_ends<N: Number>(
+pub(super) fn gaps_at_ends<N: Number>(
     brep: &Brep<N>,
     id: EdgeId,
 ) -> impl Iterator<Item = (VertexId, Point3<N>, N)> {

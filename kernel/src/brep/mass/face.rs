@@ -5,6 +5,7 @@ use super::outline::boundary_sum;
 use super::{Amid, Moments};
 use crate::brep::Brep;
 use crate::brep::arcs::Arcs;
+use crate::brep::check::gaps_at_ends;
 use crate::brep::locate::{FaceLocator, Place};
 use crate::brep::topology::{CoedgeId, FaceId, Sense};
 use crate::brep::walk::{DirectedArc, Walk};
@@ -86,11 +87,8 @@ pub(super) fn moments<N: Number>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
             let sum = boundary_sum(brep, face, &d, &|_| Vec::new());
             let whole = d.between(base, N::PI / N::TWO);
             let opposite = s.frame.point(N::ZERO, N::ZERO, s.radius);
-            if holds_far(brep, face, amid, sum[0] / whole[0], &opposite) {
-                add(sum, whole)
-            } else {
-                sum
-            }
+            let holds = holds_far(brep, face, amid, sum[0] / whole[0], &opposite);
+            with_far(sum, whole, holds)
         }
         Surface::Torus(t) => torus_moments(brep, face, &coedges, t, &d),
     }
@@ -151,22 +149,30 @@ fn amid_edges<N: Number>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId
 
 /// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
 /// the face's part of the whole surface all or nothing is missing, so its sign tells, unless next to
-/// nothing is left.
+/// nothing is left. Then walks do, which may not pass between edges where these end apart.
 fn holds_far<N: Number>(
     brep: &Brep<N>,
     face: FaceId,
     amid: &Amid<N>,
     part: N,
     far: &Point3<N>,
-) -> bool {
+) -> Option<bool> {
     if brep.topology.face(face).loops.is_empty() {
-        return true;
+        return Some(true);
     }
     if part.abs().is_beyond(N::of(FEW) * amid.part()) {
-        return part.is_below_zero();
+        return Some(part.is_below_zero());
     }
-    let locator = FaceLocator::of(brep, face, amid.size * N::of(BAND) * N::ROUNDING);
-    locator.place(far) != Place::Outside
+    let edges = brep.topology.edges_of(face);
+    let apart = edges.flat_map(|edge| gaps_at_ends(brep, edge));
+    let apart = apart.map(|(_, _, gap)| gap).fold(N::ZERO, N::max);
+    let rounding = amid.size * N::of(BAND) * N::ROUNDING;
+    let locator = FaceLocator::of(brep, face, rounding + N::TWO * apart);
+    match locator.place(far) {
+        Place::Inside => Some(true),
+        Place::Outside => Some(false),
+        Place::On => None,
+    }
 }
 
 /// Of areas below this part of the whole surface, in terms of rounding, the sign may be rounding.
@@ -297,10 +303,17 @@ fn torus_moments<N: Number>(
     let whole = d.between(along[0], along[1]);
     let u = amid_gap(passes.iter().map(|&(u, _)| u).collect());
     let far = d.ground.surface.point(u, d.ground.middle.angle + base);
-    if holds_far(brep, face, d.amid, sum[0] / whole[0], &far) {
-        add(sum, whole)
-    } else {
-        sum
+    let holds = holds_far(brep, face, d.amid, sum[0] / whole[0], &far);
+    with_far(sum, whole, holds)
+}
+
+/// What the edges of a face of a closed surface tell, with the whole of that where the face holds what
+/// is far from them; no number where that is not known.
+fn with_far<N: Number>(sum: Moments<N>, whole: Moments<N>, holds: Option<bool>) -> Moments<N> {
+    match holds {
+        Some(true) => add(sum, whole),
+        Some(false) => sum,
+        None => [N::NAN; 5],
     }
 }
 

@@ -244,7 +244,8 @@ impl<N: Number> Arrangement<N> {
         }
     }
 
-    /// Makes every curve know the corners that its carriers know.
+    /// Makes every curve know the corners that its carriers know, and every corner the carriers of the
+    /// curves that pass it: each cut was found by two of them and a third.
     pub(super) fn share_corners(&mut self, judge: &Judge) {
         let mut by_pair: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
         for (i, m) in self.meetings.iter().enumerate() {
@@ -254,22 +255,44 @@ impl<N: Number> Arrangement<N> {
                 }
             }
         }
-        for (v, corner) in self.corners.iter().enumerate() {
+        for v in 0..self.corners.len() {
             let mut asked: Vec<usize> = Vec::new();
-            for (k, &a) in corner.carriers.iter().enumerate() {
-                for &b in &corner.carriers[k + 1..] {
-                    asked.extend(by_pair.get(&(a, b)).into_iter().flatten());
+            // What a corner learns may lead it to other curves.
+            loop {
+                let carriers = &self.corners[v].carriers;
+                let mut ask: Vec<usize> = Vec::new();
+                for (k, &a) in carriers.iter().enumerate() {
+                    for &b in &carriers[k + 1..] {
+                        ask.extend(by_pair.get(&(a, b)).into_iter().flatten());
+                    }
                 }
-            }
-            asked.sort_unstable();
-            asked.dedup();
-            for i in asked {
-                let m = &mut self.meetings[i];
-                if m.bounds.grown(judge.band::<N>()).holds(&corner.point) {
-                    m.pass(v, &corner.point, judge);
+                ask.sort_unstable();
+                ask.dedup();
+                ask.retain(|i| !asked.contains(i));
+                if !self.pass_all(&ask, v, judge) {
+                    break;
                 }
+                asked.extend(ask);
             }
         }
+    }
+
+    /// Makes curves know a corner that they pass; whether it knows another carrier by them.
+    fn pass_all(&mut self, meetings: &[usize], v: usize, judge: &Judge) -> bool {
+        let corner = &mut self.corners[v];
+        let known = corner.carriers.len();
+        for &i in meetings {
+            let m = &mut self.meetings[i];
+            if m.bounds.grown(judge.band::<N>()).holds(&corner.point) {
+                m.pass(v, &corner.point, judge);
+            }
+            if m.cuts.iter().any(|cut| cut.vertex == v) {
+                corner.carriers.extend(&m.carriers);
+            }
+        }
+        corner.carriers.sort_unstable();
+        corner.carriers.dedup();
+        corner.carriers.len() > known
     }
 }
 

@@ -7,7 +7,7 @@ use crate::geometry::bounds::{Box3, tight_bounds};
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::direction;
 use crate::number::precision::Number;
-use crate::number::sign::{RELATIVE_RESOLUTION, ROUNDING};
+use crate::number::sign::ROUNDING;
 use nalgebra::Vector3;
 
 /// The box of a boundary: of its edges, and of its faces where they bulge beyond them.
@@ -79,7 +79,7 @@ fn bulge<N: Number>(brep: &Brep<N>, face: FaceId, known: &Box3) -> Box3 {
         _ => points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p))),
     };
     let around = arcs.boxes().iter().fold(around, |a, b| a.hull(b));
-    let locator = FaceLocator::of(brep, face, N::of(RELATIVE_RESOLUTION * around.diagonal()));
+    let locator = FaceLocator::by_gaps(brep, face, N::of(around.diagonal()));
     points.retain(|p| locator.place(p) != Place::Outside);
     points.iter().fold(Box3::EMPTY, |b, p| b.hull(&Box3::of(p)))
 }

@@ -8,6 +8,7 @@ mod interior;
 
 use super::Brep;
 use super::arcs::Arcs;
+use super::check::gaps_at_ends;
 use super::topology::{FaceId, Sense};
 use super::walk::{DirectedArc, Passage, Walk};
 use crate::geometry::bounds::Box3;
@@ -47,6 +48,9 @@ pub struct FaceLocator<'a, N: Number = f64> {
     band: N,
 }
 
+/// How far edges are off, in terms of the part's size and of rounding.
+const OFF: f64 = 4096.0;
+
 /// The outcome of one walk.
 enum Outcome {
     Found(Place),
@@ -80,6 +84,16 @@ impl<'a, N: Number> FaceLocator<'a, N> {
         let coedges = brep.topology.coedges_of(face);
         let arcs = coedges.map(|c| DirectedArc::of(brep, c));
         Self::new(brep.surface(face), brep.sense(face), arcs.collect(), band)
+    }
+
+    /// The same where the resolution is not at hand: edges are off by the rounding of the part's
+    /// `size`, and no walk may pass between them where they end apart.
+    pub fn by_gaps(brep: &'a Brep<N>, face: FaceId, size: N) -> Self {
+        let edges = brep.topology.edges_of(face);
+        let gaps = edges.flat_map(|edge| gaps_at_ends(brep, edge));
+        let apart = gaps.map(|(_, _, gap)| gap).fold(N::ZERO, N::max);
+        let rounding = size * N::of(OFF) * N::ROUNDING;
+        Self::of(brep, face, rounding + N::TWO * apart)
     }
 
     /// The directed arcs of the boundary.

@@ -5,7 +5,6 @@ use super::outline::boundary_sum;
 use super::{Amid, Moments};
 use crate::brep::Brep;
 use crate::brep::arcs::Arcs;
-use crate::brep::check::gaps_at_ends;
 use crate::brep::locate::{FaceLocator, Place};
 use crate::brep::topology::{CoedgeId, FaceId, Sense};
 use crate::brep::walk::{DirectedArc, Walk};
@@ -149,7 +148,7 @@ fn amid_edges<N: Number>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId
 
 /// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
 /// the face's part of the whole surface all or nothing is missing, so its sign tells, unless next to
-/// nothing is left. Then walks do, which may not pass between edges where these end apart.
+/// nothing is left. Then walks do.
 fn holds_far<N: Number>(
     brep: &Brep<N>,
     face: FaceId,
@@ -163,12 +162,7 @@ fn holds_far<N: Number>(
     if part.abs().is_beyond(N::of(FEW) * amid.part()) {
         return Some(part.is_below_zero());
     }
-    let edges = brep.topology.edges_of(face);
-    let apart = edges.flat_map(|edge| gaps_at_ends(brep, edge));
-    let apart = apart.map(|(_, _, gap)| gap).fold(N::ZERO, N::max);
-    let rounding = amid.size * N::of(BAND) * N::ROUNDING;
-    let locator = FaceLocator::of(brep, face, rounding + N::TWO * apart);
-    match locator.place(far) {
+    match FaceLocator::by_gaps(brep, face, amid.size).place(far) {
         Place::Inside => Some(true),
         Place::Outside => Some(false),
         Place::On => None,
@@ -177,8 +171,7 @@ fn holds_far<N: Number>(
 
 /// Of areas below this part of the whole surface, in terms of rounding, the sign may be rounding.
 const FEW: f64 = 256.0;
-/// How far edges are off, in terms of the part's size and of rounding.
-const BAND: f64 = 4096.0;
+
 pub(super) fn add<N: Number>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
     std::array::from_fn(|i| a[i] + b[i])
 }

@@ -12,7 +12,7 @@ mod reach;
 use super::Brep;
 use super::topology::{CoedgeId, Sense};
 use crate::geometry::bounds::Box3;
-use crate::geometry::curve::Curve;
+use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::frame::Frame;
 use crate::geometry::section::{line_meets, section_roots, surface_roots};
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
@@ -430,19 +430,24 @@ impl<N: Number> Walk<N> {
         }
     }
 
-    /// Where a walk along a circle of a torus plainly crosses a curve through that torus's angles, of
-    /// the whole curve; none where that is not plain, and of other walks and curves.
+    /// Where a walk along a circle plainly crosses a curve through the angles of a torus, of the whole
+    /// curve: a circle of that torus, or of the curve's other surface. None where that is not plain,
+    /// and of other walks and curves.
     fn met_on_torus(&self, surface: &Surface<N>, curve: &Curve<N>, band: N) -> Option<Vec<N>> {
-        let (Surface::Torus(torus), Curve::Toric(curve)) = (surface, curve) else {
+        let (Track::Circle(frame, radius), Curve::Toric(curve)) = (&self.track, curve) else {
             return None;
         };
+        if *surface != Surface::Torus(curve.torus) {
+            let (frame, radius) = (*frame, *radius);
+            return curve.across_circle(&Circle { frame, radius }, surface, band);
+        }
         let [theta, phi] = surface.parameters(&self.start);
         let (fixed, angle) = match self.branch {
             Branch::Half(..) => (Axis::Around, theta),
             Branch::Parallel(..) | Branch::Level(..) => (Axis::Tube, phi),
             Branch::Whole => return None,
         };
-        (curve.torus == *torus).then(|| curve.across(fixed, angle, band))?
+        curve.across(fixed, angle, band)
     }
 
     /// The distance of a point from what cuts the walk out of its surface.

@@ -49,7 +49,8 @@ impl<N: Number> Restriction<N> {
         }
     }
 
-    fn circle(circle: &Circle<N>, surface: &Surface<N>) -> Self {
+    /// Of a circle.
+    pub(super) fn circle(circle: &Circle<N>, surface: &Surface<N>) -> Self {
         let mut coefficients = [N::ZERO; 5];
         let mut most = N::ZERO;
         for n in 0..POINTS {

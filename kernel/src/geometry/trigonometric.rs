@@ -107,11 +107,14 @@ pub(super) fn zeros_of<N: Number>(k: &Trig2<N>) -> Vec<(N, bool)> {
     zeros.into_iter().map(|(u, c)| (u, changes(c))).collect()
 }
 
-/// The same where all are simple, of a polynomial that is off by `band`; else none.
-pub(super) fn simple_zeros<N: Number>(k: &Trig2<N>, band: N) -> Option<Vec<N>> {
+/// The same where all are simple, of a polynomial that is off by `band`, each with how far it is off
+/// itself; else none.
+pub(super) fn simple_zeros<N: Number>(k: &Trig2<N>, band: N) -> Option<Vec<(N, N)>> {
+    let slope = harmonic_slope(k);
+    let off = |u: N| band / harmonic(&slope, u.sin_cos()).abs();
     let zeros = zeros_once(k, band)?.into_iter();
     zeros
-        .map(|(u, contact)| (contact == Contact::Simple).then_some(u))
+        .map(|(u, contact)| (contact == Contact::Simple).then(|| (u, off(u))))
         .collect()
 }
 

@@ -6,11 +6,21 @@
 //! circle, of very many.
 
 use super::{Axis, Segment, Toric, arrange, wrap};
+use crate::geometry::curve::Circle;
+use crate::geometry::restriction::Restriction;
+use crate::geometry::surface::Surface;
 use crate::geometry::trigonometric::simple_zeros;
+use crate::geometry::vector::Length;
 use crate::number::precision::Number;
 
-/// What lies so many times farther from a curve than the resolution is plainly beside it.
+/// What lies so many times farther from a curve than it may be off is plainly beside it.
 const BESIDE: f64 = 1024.0;
+
+/// Where on a curve, in parts of its length, its other surface is asked for.
+const PARTS: [f64; 3] = [0.13, 0.47, 0.86];
+
+/// How far a curve may be off its own surface, in roundings.
+const ROUNDINGS: f64 = 16.0;
 
 /// Where a point lies with respect to a segment.
 enum Place<N: Number> {
@@ -28,18 +38,52 @@ impl<N: Number> Toric<N> {
         let section = self.form.section(fixed == Axis::Around, angle);
         let zeros = simple_zeros(&section.0, self.form.bound() * N::ROUNDING)?;
         let mut crossed = Vec::new();
-        for other in zeros {
-            crossed.extend(self.passes(arrange(fixed, angle, other), band)?);
+        for (other, off) in zeros {
+            let slack = off + band / self.torus.minor;
+            crossed.extend(self.passes(arrange(fixed, angle, other), slack)?);
         }
         Some(crossed)
     }
 
-    /// Where the curve passes a point of F = 0: at most once, next to no singular point.
-    fn passes(&self, angles: [N; 2], band: N) -> Option<Option<N>> {
+    /// The same of a circle of another surface: where it meets the torus. None where that surface is
+    /// not the one in which the curve meets the torus, to rounding: one that holds the curve within
+    /// the resolution may meet the torus elsewhere.
+    pub fn across_circle(
+        &self,
+        circle: &Circle<N>,
+        surface: &Surface<N>,
+        band: N,
+    ) -> Option<Vec<N>> {
+        let holds = |part: f64| {
+            let p = self.point(self.length() * N::of(part));
+            let size = p.coords.length() + (surface.frame().origin - p).length();
+            surface.distance(&p).abs() <= N::of(ROUNDINGS) * N::ROUNDING * size
+        };
+        if !PARTS.into_iter().all(holds) {
+            return None;
+        }
+        let torus = Surface::Torus(self.torus);
+        let Restriction::Circle { coefficients, slop } = Restriction::circle(circle, &torus) else {
+            return None;
+        };
+        let mut crossed = Vec::new();
+        for (u, off) in simple_zeros(&coefficients, slop)? {
+            let (sin, cos) = u.sin_cos();
+            let frame = &circle.frame;
+            let p = frame.point(circle.radius * cos, circle.radius * sin, N::ZERO);
+            let slack = (off * circle.radius + band) / self.torus.minor;
+            crossed.extend(self.passes(torus.parameters(&p), slack)?);
+        }
+        Some(crossed)
+    }
+
+    /// Where the curve passes a point of F = 0, which is off by `slack` of an angle: at most once, next
+    /// to no singular point.
+    fn passes(&self, angles: [N; 2], slack: N) -> Option<Option<N>> {
         let count = self.segments.len();
         let mut passed: Option<(usize, N)> = None;
         for (i, s) in self.segments.iter().enumerate() {
-            let tau = match self.place(s, angles, band) {
+            let tau = match self.place(s, angles, slack) {
                 Place::On(tau) => tau,
                 Place::Beside => continue,
                 Place::Unclear => return None,
@@ -56,9 +100,10 @@ impl<N: Number> Toric<N> {
     }
 
     /// Where a point of F = 0 lies with respect to a segment.
-    fn place(&self, s: &Segment<N>, [theta, phi]: [N; 2], band: N) -> Place<N> {
+    fn place(&self, s: &Segment<N>, [theta, phi]: [N; 2], slack: N) -> Place<N> {
+        let slack = slack * (N::ONE + s.steep);
         let x = self.folded(s, theta, phi);
-        let (length, slack) = (s.to - s.from, band / self.torus.minor);
+        let length = s.to - s.from;
         if s.chart.is_some() {
             let [a, b] = [s.from.min(s.to), s.from.max(s.to)];
             let reach = b - a;
@@ -94,7 +139,7 @@ mod tests {
     use super::*;
     use crate::geometry::bitrig::BiTrig;
     use crate::geometry::frame::Frame;
-    use crate::geometry::surface::{Cylinder, Surface, Torus};
+    use crate::geometry::surface::{Cylinder, Torus};
     use crate::geometry::trace::trace;
     use nalgebra::{Point3, Vector3};
 
@@ -151,6 +196,41 @@ mod tests {
             }
         }
         assert!(crossed > 100, "{crossed}");
+    }
+
+    #[test]
+    fn circles_of_the_other_surface_are_crossed_where_their_planes_are() {
+        let axis = Vector3::new(0.1, 0.2, 1.0).normalize();
+        let frame = Frame::about(Point3::new(0.3, 0.1, 0.0), axis);
+        let radius = 2.1;
+        let other = Surface::Cylinder(Cylinder { frame, radius });
+        let beside = Surface::Cylinder(Cylinder {
+            frame,
+            radius: radius + 1e-9,
+        });
+        let mut crossed = 0;
+        for curve in branches(0.5, 0.3, radius) {
+            for k in 0..20 {
+                let up = -0.55 + 0.055 * f64::from(k);
+                let frame = frame.at(frame.origin + frame.z * up);
+                let circle = Circle { frame, radius };
+                let found = curve.across_circle(&circle, &other, 1e-11).unwrap();
+                let count = 200 * curve.segments.len();
+                let above = |k: usize| {
+                    let p = curve.point(curve.length() * (k as f64 / count as f64));
+                    frame.coordinates(&p).z > 0.0
+                };
+                let changes = (0..count).filter(|&k| above(k) != above(k + 1)).count();
+                assert_eq!(found.len(), changes, "{up}");
+                for t in &found {
+                    let away = frame.coordinates(&curve.point(*t)).z;
+                    assert!(away.abs() < 1e-10, "{up} at {t}: {away:e}");
+                }
+                crossed += found.len();
+                assert!(curve.across_circle(&circle, &beside, 1e-11).is_none());
+            }
+        }
+        assert!(crossed > 20, "{crossed}");
     }
 
     #[test]

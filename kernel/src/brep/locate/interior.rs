@@ -26,26 +26,25 @@ const SLANT: f64 = 0.1;
 /// As far as this from its start, in bands, a walk may meet its own arc.
 const NEXT: f64 = 64.0;
 
-/// A walk that is longer than this, in bands, leads to a point well away from the boundary.
+/// A point as far as this from the boundary, in bands, is well away from it: no other is looked for.
 const LONG: f64 = (1 << 20) as f64;
 
 impl<N: Number> FaceLocator<'_, N> {
     /// A point inside the face, at least `away` along a walk from its boundary; none of a face
     /// without a boundary, and where no walk tells one.
     pub fn interior(&self, away: N) -> Option<Point3<N>> {
-        let mut best: Option<(N, Point3<N>)> = None;
         let step = (self.arcs.all.len() / ARCS).max(1);
-        for part in STARTS {
-            for arc in self.arcs.all.iter().step_by(step).take(ARCS) {
-                for (length, point) in self.ways_from(arc, N::of(part)) {
-                    if best.as_ref().is_none_or(|b| length.is_beyond(b.0)) {
-                        best = Some((length, point));
-                    }
-                }
+        let starts = STARTS.into_iter().flat_map(|part| {
+            let arcs = self.arcs.all.iter().step_by(step).take(ARCS);
+            arcs.map(move |arc| (arc, N::of(part)))
+        });
+        let mut best: Option<(N, Point3<N>)> = None;
+        for (length, point) in starts.flat_map(|(arc, part)| self.ways_from(arc, part)) {
+            if best.as_ref().is_none_or(|b| length.is_beyond(b.0)) {
+                best = Some((length, point));
             }
-            // Mostly the first way is long enough.
-            let is_long = |b: &(N, Point3<N>)| b.0.is_beyond(N::of(LONG) * self.band);
-            if best.as_ref().is_some_and(is_long) {
+            // Mostly the first one is.
+            if length.is_beyond(N::of(LONG) * self.band) {
                 break;
             }
         }

@@ -250,3 +250,19 @@ fn a_sliver_at_an_apex_is_not_the_whole_ring() {
     let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(off < 1e-9, "{measures:?}");
 }
+
+/// A ring lies on a floor turned by 1e-3 degrees against it, so that they meet in a curve next to a
+/// circle, and but for rounding touches a wall. The box reaches to the ring's highest point: how far
+/// its middle is up, and the radii of its circles as seen from there.
+#[test]
+fn a_ring_that_nearly_touches_a_floor_and_a_wall_has_its_box() {
+    let text = "PART = (BLO(X=2.5, Y=4, Z=4)
+        UN TOR(RMAJ=2.5, RMIN=0.9999999999999432) AT (MOVX=1, MOVZ=1.5, ROTX=-0.0009765625)
+        UN BLO(X=2, Y=1, Z=0.5) AT (MOVX=1, MOVY=2)) AT (ROTY=45)";
+    let text = text.replace('\n', " ");
+    let part = read("ring", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let bounds = evaluated(&part.tree, Zeros::ByResolution).tight_bounds();
+    let (s, lean) = (0.5_f64.sqrt(), 0.0009765625_f64.to_radians().cos());
+    let top = s * (1.5 * lean - 1.0) + 2.5 * (1.0 - (s * lean).powi(2)).sqrt() + 1.0;
+    assert!((bounds.max[2] - top).abs() < 1e-9, "{bounds:?}, not {top}");
+}

@@ -2,12 +2,20 @@
 
 use super::precision::Number;
 
-/// The zero of `g` in [a, b] with opposite signs at the ends, to the last double.
+/// More halvings than a bracket has digits.
+fn halvings<N: Number>() -> u32 {
+    match N::IS_DOUBLE {
+        true => 200,
+        false => 512,
+    }
+}
+
+/// The zero of `g` in [a, b] with opposite signs at the ends, to the last digit.
 pub fn bisect<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
     if ga == N::ZERO {
         return a;
     }
-    for _ in 0..200 {
+    for _ in 0..halvings::<N>() {
         let m = N::HALF * (a + b);
         if m <= a || m >= b {
             break;
@@ -37,7 +45,7 @@ pub fn bisect_newton<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, 
     let mut t = N::HALF * (a + b);
     let mut last = b - a;
     let mut before: Option<(N, N)> = None;
-    for _ in 0..200 {
+    for _ in 0..halvings::<N>() {
         let (v, d) = g(t);
         if v == N::ZERO {
             return t;
@@ -49,6 +57,9 @@ pub fn bisect_newton<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, 
         }
         let step = v / d;
         let newton = t - step;
+        if newton == t {
+            return t;
+        }
         let inside = newton > a && newton < b;
         let left = before.map(|(t0, d0)| ((d - d0) / (t - t0) * step * step / (N::TWO * d)).abs());
         let done = |left: N| {
@@ -63,7 +74,8 @@ pub fn bisect_newton<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, 
             last = step.abs();
             newton
         } else {
-            last = N::HALF * (b - a);
+            // A step as long as what is left: to a zero that lies next to an end.
+            last = b - a;
             N::HALF * (a + b)
         };
         if next == t || !(next > a && next < b) || last <= t.abs() * N::EPSILON {
@@ -72,4 +84,39 @@ pub fn bisect_newton<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, 
         t = next;
     }
     t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::wide::Wide;
+    use std::cell::Cell;
+
+    /// The zeros of cos t - cos z for many z, found from a bracket that is not symmetric: the last
+    /// step may end on either side of the zero, or on it but for rounding.
+    fn zeros_to_the_last_digit<N: Number + std::fmt::Debug>() {
+        let [a, b] = [0.9, 2.2].map(N::of);
+        for k in 1..400 {
+            let z = a + (b - a) * N::whole(k) / N::whole(400);
+            let level = z.sin_cos().1;
+            let asked = Cell::new(0);
+            let g = |t: N| {
+                asked.set(asked.get() + 1);
+                let (sin, cos) = t.sin_cos();
+                (cos - level, -sin)
+            };
+            let ga = g(a).0;
+            let found = bisect_newton(a, b, ga, g);
+            assert!((found - z).abs() <= N::ROUNDING, "{z:?}: {found:?}");
+            assert!(asked.get() <= 20, "{z:?}: asked {} times", asked.get());
+            let found = bisect(a, b, ga, |t| g(t).0);
+            assert!((found - z).abs() <= N::ROUNDING, "{z:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn zeros_are_found_to_the_last_digit() {
+        zeros_to_the_last_digit::<f64>();
+        zeros_to_the_last_digit::<Wide>();
+    }
 }

@@ -14,7 +14,7 @@ use crate::geometry::vector::Length;
 use crate::number::precision::Number;
 
 /// What lies so many times farther from a curve than it may be off is plainly beside it.
-const BESIDE: f64 = 1024.0;
+const BESIDE: f64 = (1 << 20) as f64;
 
 /// Where on a curve, in parts of its length, its other surface is asked for.
 const PARTS: [f64; 3] = [0.13, 0.47, 0.86];

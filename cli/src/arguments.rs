@@ -35,7 +35,10 @@ pub enum Command {
     #[command(after_help = "Example: premio check part.padl")]
     Check(CheckOptions),
     /// The boundary, written in a format of choice
-    #[command(after_help = "Example: premio export part.padl --format json -o part.json")]
+    #[command(
+        after_help = "Examples: premio export part.padl --format step -o part.step
+          premio export part.padl --format json -o part.json"
+    )]
     Export(ExportOptions),
     /// Random trees by the thousand, each put to the self-checks
     #[command(
@@ -150,9 +153,46 @@ pub struct ExportOptions {
     /// What to write
     #[arg(long, value_enum)]
     pub format: ExportFormat,
+    /// How far splines may be from the curves they follow, in the part's unit (step) [default: 1e-6
+    /// of its size]
+    #[arg(long, value_name = "D", value_parser = positive)]
+    pub accuracy: Option<f64>,
+    /// What the part's unit is (step)
+    #[arg(long, value_enum, value_name = "UNIT", default_value = "mm")]
+    pub unit: LengthUnit,
+    /// The application protocol to name (step)
+    #[arg(long, value_enum, value_name = "AP", default_value = "ap242")]
+    pub protocol: StepProtocol,
+    /// What the product is called (step) [default: the file's name]
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
     /// Where to write [default: standard output]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+}
+
+/// The unit of lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LengthUnit {
+    /// Metres
+    M,
+    /// Centimetres
+    Cm,
+    /// Millimetres
+    Mm,
+    /// Micrometres
+    Um,
+    /// Inches
+    In,
+}
+
+/// The application protocol of a STEP file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StepProtocol {
+    /// Managed model-based 3D engineering
+    Ap242,
+    /// Automotive design
+    Ap214,
 }
 
 /// Options of `fuzz`.
@@ -282,6 +322,8 @@ pub enum ContoursFormat {
 pub enum ExportFormat {
     /// premio.object/1: the topological object model
     Json,
+    /// ISO 10303: an advanced boundary representation
+    Step,
 }
 
 fn positive(text: &str) -> Result<f64, String> {

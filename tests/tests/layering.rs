@@ -10,6 +10,12 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
     ("kernel", "premio-kernel", &[]),
     ("csg", "premio-csg", &["premio-kernel"]),
     ("visibility", "premio-visibility", &["premio-kernel"]),
+    // Its tests make boundaries of descriptions.
+    (
+        "exchange",
+        "premio-exchange",
+        &["premio-kernel", "premio-csg"],
+    ),
     (
         "predict",
         "premio-predict",
@@ -27,6 +33,7 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
             "premio-kernel",
             "premio-csg",
             "premio-visibility",
+            "premio-exchange",
             "premio-predict",
             "premio-matching",
         ],

@@ -1,0 +1,126 @@
+//! The parameters of a surface along a curve on it.
+
+use nalgebra::{Point2, Point3};
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::{Sphere, Surface, turn};
+use premio_kernel::number::jet::Jet;
+use premio_kernel::number::scalar::Scalar;
+use std::f64::consts::TAU;
+
+/// A surface with the window in which the parameters of a face of it lie: an angle from its start to
+/// a turn beyond it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// The surface.
+    pub surface: Surface,
+    /// Where the window of each parameter starts that is an angle with a period.
+    pub starts: [f64; 2],
+}
+
+/// atan2(y, x), with two derivatives.
+fn angle(y: Jet<f64>, x: Jet<f64>) -> Jet<f64> {
+    let square = x.v * x.v + y.v * y.v;
+    let d = (x.v * y.d - y.v * x.d) / square;
+    let twist = x.v * y.dd - y.v * x.dd;
+    Jet {
+        v: y.v.atan2(x.v),
+        d,
+        dd: (twist - 2.0 * d * (x.v * x.d + y.v * y.d)) / square,
+    }
+}
+
+impl Window {
+    /// The parameters of a point that moves on the surface, with two derivatives; not yet brought into
+    /// the window. None on the axis, where there is no angle.
+    pub fn along(&self, p: [Jet<f64>; 3]) -> Option<[Jet<f64>; 2]> {
+        let [x, y, z] = self.surface.frame().local(p);
+        if matches!(self.surface, Surface::Plane(_)) {
+            return Some([x, y]);
+        }
+        let rho = (x.square() + y.square()).root();
+        let about = angle(y, x);
+        let along = match &self.surface {
+            Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => z,
+            Surface::Sphere(_) => angle(z, rho),
+            Surface::Torus(s) => angle(z, rho - Jet::constant(s.major)),
+        };
+        (about.d.is_finite() && about.dd.is_finite()).then_some([about, along])
+    }
+
+    /// The parameters of a point, in the window; on the axis the angle is not a number.
+    pub fn of(&self, p: &Point3<f64>) -> Point2<f64> {
+        let q = self.surface.frame().coordinates(p);
+        let [u, v] = self.surface.parameters(p);
+        let on_axis = q.x.hypot(q.y) <= AXIS * q.norm();
+        let u = match self.surface {
+            Surface::Plane(_) => u,
+            _ if on_axis => f64::NAN,
+            _ => self.within(0, u),
+        };
+        Point2::new(u, self.within(1, v))
+    }
+
+    /// A parameter brought into the window.
+    fn within(&self, i: usize, x: f64) -> f64 {
+        match self.surface.periods()[i] {
+            Some(_) => self.starts[i] + turn(x - self.starts[i]),
+            None => x,
+        }
+    }
+
+    /// By how much parameters in order along a curve have to be shifted so that their middle lies in
+    /// the window.
+    pub fn shift(&self, i: usize, middle: f64) -> f64 {
+        self.within(i, middle) - middle
+    }
+
+    /// The point with the given parameters.
+    pub fn point(&self, uv: [f64; 2]) -> Point3<f64> {
+        self.surface.point(uv[0], uv[1])
+    }
+
+    /// The value that differs from `x` by whole periods and is nearest to `other`.
+    pub fn beside(&self, i: usize, x: f64, other: f64) -> f64 {
+        match self.surface.periods()[i] {
+            Some(_) => x + TAU * ((other - x) / TAU).round(),
+            None => x,
+        }
+    }
+}
+
+/// What is nearer to the axis than this part of its distance from the frame's origin is on it.
+const AXIS: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// The same surface with its angle counted from another ruling or meridian.
+pub fn turned(surface: &Surface, by: f64) -> Surface {
+    let (sin, cos) = by.sin_cos();
+    let f = surface.frame();
+    let x = f.x * cos + f.y * sin;
+    let frame = Frame {
+        x,
+        y: f.z.cross(&x),
+        ..*f
+    };
+    placed(surface, frame)
+}
+
+/// A sphere with another axis.
+pub fn with_axis(sphere: &Sphere, z: nalgebra::Vector3<f64>) -> Surface {
+    let frame = match z == sphere.frame.z {
+        true => sphere.frame,
+        false => Frame::about(sphere.frame.origin, z),
+    };
+    Surface::Sphere(Sphere { frame, ..*sphere })
+}
+
+fn placed(surface: &Surface, frame: Frame) -> Surface {
+    let mut placed = *surface;
+    match &mut placed {
+        Surface::Plane(s) => s.frame = frame,
+        Surface::Cylinder(s) => s.frame = frame,
+        Surface::Cone(s) => s.frame = frame,
+        Surface::Sphere(s) => s.frame = frame,
+        Surface::Torus(s) => s.frame = frame,
+    }
+    placed
+}

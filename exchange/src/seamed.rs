@@ -1,0 +1,89 @@
+//! A boundary as other kernels keep it: every edge has two faces and ends in vertices, and no face
+//! closes around its surface.
+//!
+//! An edge of four faces or more is taken apart into pairs of faces that enclose material between
+//! them, a vertex into its fans (`pairs`); so the solids that touch there are as many as before. A
+//! face that closes around its surface is cut along a ruling, a meridian or a circle of a torus, its
+//! seam, which it has on both sides (`seams`, `linked`).
+
+mod gaps;
+mod linked;
+mod pairs;
+mod seams;
+
+use crate::parameters::Window;
+use nalgebra::Point3;
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};
+use premio_kernel::geometry::curve::Curve;
+use std::borrow::Cow;
+
+/// An edge between two sides of faces.
+#[derive(Clone, Debug)]
+pub struct Edge<'a> {
+    /// The edge of the boundary that it is, or is a piece of; none for a seam.
+    pub source: Option<EdgeId>,
+    /// Its curve.
+    pub curve: Cow<'a, Curve>,
+    /// The range of the curve's parameter, increasing.
+    pub range: [f64; 2],
+    /// The vertices at the start and at the end.
+    pub ends: [usize; 2],
+}
+
+/// A face that does not close around its surface.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// The face of the boundary that it is, or is a piece of.
+    pub source: FaceId,
+    /// The surface, turned so that angles are counted from the seam, with the window of the face.
+    pub window: Window,
+    /// Whether the outward normal is the surface's own.
+    pub sense: Sense,
+    /// The loops, the outer one first: edges with the sense in which they are run, the face to the
+    /// left as seen from outside.
+    pub loops: Vec<Vec<(usize, Sense)>>,
+}
+
+/// A boundary with seams.
+#[derive(Clone, Debug, Default)]
+pub struct Seamed<'a> {
+    /// The vertices.
+    pub points: Vec<Point3<f64>>,
+    /// The edges.
+    pub edges: Vec<Edge<'a>>,
+    /// The faces.
+    pub faces: Vec<Face>,
+    /// The faces of each shell of each solid, the outer shell first.
+    pub solids: Vec<Vec<Vec<usize>>>,
+}
+
+/// Why a boundary cannot be given seams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SeamError {
+    /// Every seam that was tried runs along an edge, or through a vertex.
+    #[error("no seam could be laid through face {}", face.0)]
+    Blocked {
+        /// The face.
+        face: FaceId,
+    },
+    /// The pieces of a face do not tell which loop lies within which.
+    #[error("the loops of face {} do not tell which encloses which", face.0)]
+    Loops {
+        /// The face.
+        face: FaceId,
+    },
+}
+
+impl<'a> Seamed<'a> {
+    /// The boundary with seams; `band` is the part's resolution.
+    pub fn of(brep: &'a Brep, band: f64) -> Result<Self, SeamError> {
+        let pairs = pairs::Pairs::of(brep);
+        let cuts: Result<Vec<seams::Cut>, SeamError> = brep
+            .topology
+            .face_ids()
+            .map(|face| seams::Cut::of(brep, face, &pairs.rings[face.index()], band))
+            .collect();
+        linked::seamed(brep, &pairs, &cuts?)
+    }
+}

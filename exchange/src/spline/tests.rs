@@ -1,0 +1,112 @@
+use super::*;
+use nalgebra::Vector3;
+use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_kernel::geometry::curve::Circle;
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::Sphere;
+
+/// The point of a spline at a parameter, by de Boor's algorithm on the whole knot vector.
+fn point<const D: usize>(spline: &Spline<D>, s: f64) -> [f64; D] {
+    let counted = spline.knots.iter().zip(spline.multiplicities());
+    let knots: Vec<f64> = counted
+        .flat_map(|(k, n)| std::iter::repeat_n(*k, n))
+        .collect();
+    assert_eq!(knots.len(), spline.points.len() + DEGREE + 1);
+    let last = spline.points.len() - 1;
+    let span = (DEGREE..=last).rfind(|&k| knots[k] <= s).unwrap();
+    let mut d: Vec<[f64; D]> = (0..=DEGREE)
+        .map(|j| spline.points[j + span - DEGREE])
+        .collect();
+    for r in 1..=DEGREE {
+        for j in (r..=DEGREE).rev() {
+            let (a, b) = (knots[j + span - DEGREE], knots[j + 1 + span - r]);
+            let part = (s - a) / (b - a);
+            d[j] = std::array::from_fn(|i| (1.0 - part) * d[j - 1][i] + part * d[j][i]);
+        }
+    }
+    d[DEGREE]
+}
+
+fn window(surface: Surface) -> Window {
+    Window {
+        surface,
+        starts: [0.0; 2],
+    }
+}
+
+/// Both splines are within the accuracy of the surfaces, and of each other, all along.
+fn holds(curve: &Curve, range: [f64; 2], surfaces: &[Surface], pace: Pace, accuracy: f64) -> usize {
+    let windows: Vec<Window> = surfaces.iter().map(|s| window(*s)).collect();
+    let follow = Follow {
+        pace,
+        curve,
+        range,
+        windows: &windows,
+        accuracy,
+    };
+    let Course { space, on } = follow.course().unwrap();
+    let (first, last) = (space.knots[0], space.knots[space.knots.len() - 1]);
+    for k in 0..=1000 {
+        let s = first + (last - first) * f64::from(k) / 1000.0;
+        let p = Point3::from(point(&space, s));
+        for (window, on) in windows.iter().zip(&on) {
+            assert!(window.surface.distance(&p).abs() <= accuracy, "{s}");
+            let off = (window.point(point(on, s)) - p).norm();
+            assert!(off <= accuracy, "{off:e} at {s}");
+        }
+        if pace == Pace::Parameter {
+            assert!((curve.point(s) - p).norm() <= accuracy, "{s}");
+        }
+    }
+    space.knots.len()
+}
+
+#[test]
+fn a_tilted_circle_is_followed_on_its_sphere() {
+    let sphere = Sphere {
+        frame: Frame::world(),
+        radius: 10.0,
+    };
+    let z = Vector3::new(0.3, 0.9, 0.2).normalize();
+    let frame = Frame::about(Point3::from(z * 6.0), z);
+    let circle = Curve::Circle(Circle { frame, radius: 8.0 });
+    for pace in [Pace::Length, Pace::Parameter] {
+        let surfaces = [Surface::Sphere(sphere)];
+        let pieces = holds(&circle, [1.0, 7.0], &surfaces, pace, 1e-7);
+        assert!(pieces < 100, "{pieces}");
+    }
+}
+
+/// The edges of parts that have no conic of their own.
+#[test]
+fn edges_are_followed_on_the_faces_beside_them() {
+    let parts = [
+        "A = CYL(R=1, H=4) UN CYL(R=0.6, H=4) AT (MOVZ=-2, ROTX=80, MOVX=0.1, MOVZ=2)",
+        "A = TOR(RMAJ=3, RMIN=1) DIF CYL(R=0.7, H=9) AT (MOVX=2.5, MOVZ=-4, ROTY=20)",
+        "A = CON(R=2, H=3) INT SPH(R=1.5) AT (MOVX=0.6, MOVZ=1)",
+        "A = TOR(RMAJ=3, RMIN=1) UN TOR(RMAJ=3, RMIN=0.8) AT (ROTX=70, MOVX=1)",
+    ];
+    for text in parts {
+        let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+        let brep = evaluate(&part.tree, &EvaluationOptions::default())
+            .unwrap()
+            .brep;
+        for edge in brep.topology.edge_ids() {
+            let surfaces: Vec<Surface> = brep
+                .topology
+                .faces_of(edge)
+                .map(|f| *brep.surface(f))
+                .collect();
+            let mut pieces = Vec::new();
+            for accuracy in [1e-3, 1e-6, 1e-9] {
+                let (curve, range) = (brep.curve(edge), brep.range(edge));
+                if matches!(curve, Curve::Quartic(_) | Curve::Toric(_)) {
+                    pieces.push(holds(curve, range, &surfaces, Pace::Length, accuracy));
+                }
+            }
+            // A thousandth takes some four times as many pieces, for a sixth order.
+            assert!(pieces.windows(2).all(|p| p[1] < 8 * p[0]), "{pieces:?}");
+        }
+    }
+}

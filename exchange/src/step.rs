@@ -1,0 +1,85 @@
+//! STEP: ISO 10303, as AP242 or AP214, advanced boundary representations.
+//!
+//! Planes, cylinders, cones, spheres and tori are themselves, and so are lines, circles, ellipses,
+//! parabolas and hyperbolas; every other curve is a spline within a stated distance of the curve, with
+//! one in the parameters of each face beside it. The whole is one product, a solid for each solid,
+//! voids as voids. Of ISO 10303-42 no more is used than every application protocol with boundary
+//! representations has.
+
+mod part21;
+mod product;
+mod shape;
+
+use crate::seamed::{SeamError, Seamed};
+use crate::spline::SplineError;
+use part21::Exchange;
+use premio_kernel::brep::Brep;
+
+/// The application protocol that a file names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Protocol {
+    /// Managed model-based 3D engineering.
+    #[default]
+    Ap242,
+    /// Core data for automotive mechanical design.
+    Ap214,
+}
+
+/// The unit of lengths in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unit {
+    /// Metres.
+    Metre,
+    /// Centimetres.
+    Centimetre,
+    /// Millimetres.
+    #[default]
+    Millimetre,
+    /// Micrometres.
+    Micrometre,
+    /// Inches of 25.4 mm.
+    Inch,
+}
+
+/// What a file is to say.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What the product is called.
+    pub name: String,
+    /// The protocol.
+    pub protocol: Protocol,
+    /// What the part's unit is.
+    pub unit: Unit,
+    /// How far splines may be from the curves they follow, in the part's unit.
+    pub accuracy: f64,
+    /// The part's resolution.
+    pub resolution: f64,
+}
+
+/// Why a boundary is not written.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// There is no solid.
+    #[error("the part is empty: there is no solid to write")]
+    Empty,
+    /// A face closes around its surface and was not cut.
+    #[error(transparent)]
+    Seam(#[from] SeamError),
+    /// A curve was not followed.
+    #[error(transparent)]
+    Spline(#[from] SplineError),
+}
+
+/// The text of a file.
+pub fn write(brep: &Brep, options: &Options) -> Result<String, StepError> {
+    if brep.topology.solids.is_empty() {
+        return Err(StepError::Empty);
+    }
+    let seamed = Seamed::of(brep, options.resolution)?;
+    let mut exchange = Exchange::default();
+    let context = product::context(&mut exchange, options);
+    let mut shape = shape::Shape::new(&mut exchange, &seamed, options.accuracy / 64.0);
+    let solids = shape.solids()?;
+    product::product(&mut exchange, options, context, &solids);
+    Ok(exchange.finish(options))
+}

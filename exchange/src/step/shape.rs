@@ -1,0 +1,346 @@
+//! Surfaces, curves, edges, faces and solids.
+
+use super::StepError;
+use super::part21::{Exchange, Id, List, Real, Reals, Truth};
+use crate::parameters::Window;
+use crate::seamed::{Edge, Face, Seamed};
+use crate::spline::{Course, DEGREE, Follow, Pace, Spline};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::{Cone, Surface};
+
+/// Writes the shape of a part.
+pub(super) struct Shape<'s, 'e> {
+    exchange: &'e mut Exchange,
+    seamed: &'s Seamed<'s>,
+    accuracy: f64,
+    /// Of the curves in the parameters of surfaces.
+    parametric: Option<Id>,
+    vertices: Vec<Option<Id>>,
+    edges: Vec<Option<Id>>,
+    surfaces: Vec<Placed>,
+    /// The faces on both sides of each edge.
+    sides: Vec<Vec<usize>>,
+}
+
+/// A face's surface as it is written.
+#[derive(Clone, Copy)]
+struct Placed {
+    id: Id,
+    /// Height above the apex from which that of a cone is counted.
+    level: f64,
+}
+
+impl<'s, 'e> Shape<'s, 'e> {
+    pub fn new(exchange: &'e mut Exchange, seamed: &'s Seamed<'s>, accuracy: f64) -> Self {
+        let mut sides = vec![Vec::new(); seamed.edges.len()];
+        for (f, face) in seamed.faces.iter().enumerate() {
+            for (edge, _) in face.loops.iter().flatten() {
+                sides[*edge].push(f);
+            }
+        }
+        Self {
+            exchange,
+            seamed,
+            accuracy,
+            parametric: None,
+            vertices: vec![None; seamed.points.len()],
+            edges: vec![None; seamed.edges.len()],
+            surfaces: Vec::new(),
+            sides,
+        }
+    }
+
+    /// All solids.
+    pub fn solids(&mut self) -> Result<Vec<Id>, StepError> {
+        for face in &self.seamed.faces {
+            let placed = self.surface(face);
+            self.surfaces.push(placed);
+        }
+        let solids = &self.seamed.solids;
+        solids.iter().map(|shells| self.solid(shells)).collect()
+    }
+
+    fn solid(&mut self, shells: &[Vec<usize>]) -> Result<Id, StepError> {
+        let mut closed = Vec::with_capacity(shells.len());
+        for faces in shells {
+            let faces: Result<Vec<Id>, StepError> = faces.iter().map(|&f| self.face(f)).collect();
+            closed.push(
+                self.exchange
+                    .add(format_args!("CLOSED_SHELL('',{})", List(&faces?))),
+            );
+        }
+        let outer = closed[0];
+        if closed.len() == 1 {
+            return Ok(self
+                .exchange
+                .add(format_args!("MANIFOLD_SOLID_BREP('',{outer})")));
+        }
+        let oriented = closed[1..].iter().map(|shell| {
+            self.exchange
+                .add(format_args!("ORIENTED_CLOSED_SHELL('',*,{shell},.T.)"))
+        });
+        let voids: Vec<Id> = oriented.collect();
+        Ok(self
+            .exchange
+            .add(format_args!("BREP_WITH_VOIDS('',{outer},{})", List(&voids))))
+    }
+
+    fn face(&mut self, index: usize) -> Result<Id, StepError> {
+        let face = &self.seamed.faces[index];
+        let mut bounds = Vec::with_capacity(face.loops.len());
+        for (k, ring) in face.loops.iter().enumerate() {
+            let mut oriented = Vec::with_capacity(ring.len());
+            for (edge, sense) in ring {
+                let id = self.edge(*edge)?;
+                let along = Truth(*sense == Sense::Along);
+                oriented.push(
+                    self.exchange
+                        .add(format_args!("ORIENTED_EDGE('',*,*,{id},{along})")),
+                );
+            }
+            let ring = self
+                .exchange
+                .add(format_args!("EDGE_LOOP('',{})", List(&oriented)));
+            let kind = if k == 0 {
+                "FACE_OUTER_BOUND"
+            } else {
+                "FACE_BOUND"
+            };
+            bounds.push(self.exchange.add(format_args!("{kind}('',{ring},.T.)")));
+        }
+        let surface = self.surfaces[index].id;
+        let along = Truth(face.sense == Sense::Along);
+        Ok(self.exchange.add(format_args!(
+            "ADVANCED_FACE('',{},{surface},{along})",
+            List(&bounds)
+        )))
+    }
+
+    fn edge(&mut self, index: usize) -> Result<Id, StepError> {
+        if let Some(id) = self.edges[index] {
+            return Ok(id);
+        }
+        let edge = &self.seamed.edges[index];
+        let [from, to] = edge.ends.map(|v| self.vertex(v));
+        let curve = self.curve(index, edge)?;
+        let id = self
+            .exchange
+            .add(format_args!("EDGE_CURVE('',{from},{to},{curve},.T.)"));
+        self.edges[index] = Some(id);
+        Ok(id)
+    }
+
+    fn vertex(&mut self, index: usize) -> Id {
+        if let Some(id) = self.vertices[index] {
+            return id;
+        }
+        let point = self.point(&self.seamed.points[index]);
+        let id = self.exchange.add(format_args!("VERTEX_POINT('',{point})"));
+        self.vertices[index] = Some(id);
+        id
+    }
+
+    fn point(&mut self, p: &Point3<f64>) -> Id {
+        let place = Reals(p.coords.as_slice());
+        self.exchange
+            .add(format_args!("CARTESIAN_POINT('',{place})"))
+    }
+
+    fn direction(&mut self, d: &Vector3<f64>) -> Id {
+        let ratios = Reals(d.as_slice());
+        self.exchange.add(format_args!("DIRECTION('',{ratios})"))
+    }
+
+    fn placement(&mut self, frame: &Frame) -> Id {
+        let origin = self.point(&frame.origin);
+        let [z, x] = [&frame.z, &frame.x].map(|d| self.direction(d));
+        self.exchange
+            .add(format_args!("AXIS2_PLACEMENT_3D('',{origin},{z},{x})"))
+    }
+
+    fn surface(&mut self, face: &Face) -> Placed {
+        let mut level = 0.0;
+        let surface = &face.window.surface;
+        let mut frame = *surface.frame();
+        if let Surface::Cone(_) = surface {
+            level = self.top(face);
+            frame = frame.at(frame.point(0.0, 0.0, level));
+        }
+        let placement = self.placement(&frame);
+        let id = match surface {
+            Surface::Plane(_) => self.exchange.add(format_args!("PLANE('',{placement})")),
+            Surface::Cylinder(s) => self.exchange.add(format_args!(
+                "CYLINDRICAL_SURFACE('',{placement},{})",
+                Real(s.radius)
+            )),
+            Surface::Cone(s) => {
+                let (radius, angle) = (Real(level * s.sin / s.cos), Real(half_angle(s)));
+                self.exchange.add(format_args!(
+                    "CONICAL_SURFACE('',{placement},{radius},{angle})"
+                ))
+            }
+            Surface::Sphere(s) => self.exchange.add(format_args!(
+                "SPHERICAL_SURFACE('',{placement},{})",
+                Real(s.radius)
+            )),
+            Surface::Torus(s) => self.exchange.add(format_args!(
+                "TOROIDAL_SURFACE('',{placement},{},{})",
+                Real(s.major),
+                Real(s.minor)
+            )),
+        };
+        Placed { id, level }
+    }
+
+    /// The height of the highest vertex of a face above its cone's apex.
+    fn top(&self, face: &Face) -> f64 {
+        let edges = face.loops.iter().flatten();
+        let vertices = edges.flat_map(|(edge, _)| self.seamed.edges[*edge].ends);
+        let frame = face.window.surface.frame();
+        let heights = vertices.map(|v| frame.coordinates(&self.seamed.points[v]).z);
+        heights.fold(0.0, f64::max)
+    }
+
+    fn curve(&mut self, index: usize, edge: &Edge<'_>) -> Result<Id, StepError> {
+        let id = match &*edge.curve {
+            Curve::Line(c) => {
+                let origin = self.point(&c.origin);
+                let direction = self.direction(&c.direction);
+                let vector = self.exchange.add(format_args!("VECTOR('',{direction},1.)"));
+                return Ok(self
+                    .exchange
+                    .add(format_args!("LINE('',{origin},{vector})")));
+            }
+            Curve::Circle(c) => self.conic("CIRCLE", &c.frame, &[c.radius]),
+            Curve::Ellipse(c) => self.conic("ELLIPSE", &c.frame, &[c.a, c.b]),
+            Curve::Hyperbola(c) => self.conic("HYPERBOLA", &c.frame, &[c.a, c.b]),
+            Curve::Conic(c) if c.is_parabola() => {
+                self.conic("PARABOLA", &c.frame, &[0.5 / c.curvature])
+            }
+            Curve::Conic(_) | Curve::Quartic(_) | Curve::Toric(_) => {
+                let sides = self.sides[index].clone();
+                let Course { space, on } = self.course(edge, &sides, Pace::Length)?;
+                let space = self.spline(&space);
+                return Ok(self.surface_curve(space, &sides, on));
+            }
+        };
+        let mut sides = self.sides[index].clone();
+        sides.retain(|&f| bends(edge, &self.seamed.faces[f].window));
+        if sides.is_empty() {
+            return Ok(id);
+        }
+        let Course { on, .. } = self.course(edge, &sides, Pace::Parameter)?;
+        Ok(self.surface_curve(id, &sides, on))
+    }
+
+    fn conic(&mut self, name: &str, frame: &Frame, sizes: &[f64]) -> Id {
+        let placement = self.placement(frame);
+        let mut all = String::new();
+        for size in sizes {
+            all.push_str(&format!(",{}", Real(*size)));
+        }
+        self.exchange
+            .add(format_args!("{name}('',{placement}{all})"))
+    }
+
+    /// The splines that follow an edge, in space and on some of the faces beside it.
+    fn course(&self, edge: &Edge<'_>, sides: &[usize], pace: Pace) -> Result<Course, StepError> {
+        let windows: Vec<Window> = sides.iter().map(|&f| self.seamed.faces[f].window).collect();
+        let [lo, hi] = edge.range;
+        // Where a period starts is nobody's concern but of those who count from it.
+        let start = match (pace, edge.curve.period()) {
+            (Pace::Parameter, Some(period)) => lo.rem_euclid(period),
+            _ => lo,
+        };
+        let follow = Follow {
+            pace,
+            curve: &edge.curve,
+            range: [start, start + (hi - lo)],
+            windows: &windows,
+            accuracy: self.accuracy,
+        };
+        Ok(follow.course()?)
+    }
+
+    /// A curve with those that stand for it in the parameters of faces.
+    fn surface_curve(&mut self, curve: Id, sides: &[usize], on: Vec<Spline<2>>) -> Id {
+        let mut all = Vec::with_capacity(on.len());
+        for (face, mut on) in sides.iter().zip(on) {
+            let Placed { id, level } = self.surfaces[*face];
+            for p in &mut on.points {
+                p[1] -= level;
+            }
+            let on = self.spline(&on);
+            let context = self.parametric();
+            let representation = self.exchange.add(format_args!(
+                "DEFINITIONAL_REPRESENTATION('',({on}),{context})"
+            ));
+            all.push(
+                self.exchange
+                    .add(format_args!("PCURVE('',{id},{representation})")),
+            );
+        }
+        self.exchange.add(format_args!(
+            "SURFACE_CURVE('',{curve},{},.CURVE_3D.)",
+            List(&all)
+        ))
+    }
+
+    fn parametric(&mut self) -> Id {
+        let exchange = &mut self.exchange;
+        *self.parametric.get_or_insert_with(|| {
+            exchange.add(format_args!(
+                "(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()\
+                 REPRESENTATION_CONTEXT('2D SPACE',''))"
+            ))
+        })
+    }
+
+    fn spline<const D: usize>(&mut self, spline: &Spline<D>) -> Id {
+        let points = spline.points.iter().map(|p| {
+            self.exchange
+                .add(format_args!("CARTESIAN_POINT('',{})", Reals(p)))
+        });
+        let points: Vec<Id> = points.collect();
+        let counts: Vec<usize> = spline.multiplicities().collect();
+        self.exchange.add(format_args!(
+            "B_SPLINE_CURVE_WITH_KNOTS('',{DEGREE},{},.UNSPECIFIED.,.F.,.F.,{},{},.UNSPECIFIED.)",
+            List(&points),
+            List(&counts),
+            Reals(&spline.knots)
+        ))
+    }
+}
+
+fn half_angle(cone: &Cone) -> f64 {
+    cone.sin.atan2(cone.cos)
+}
+
+/// Whether an edge is more than a straight line, or a conic, in the parameters of a surface: whether
+/// both of them change, and one is an angle.
+fn bends(edge: &Edge<'_>, window: &Window) -> bool {
+    if let Surface::Plane(_) = window.surface {
+        return false;
+    }
+    let [lo, hi] = edge.range;
+    let on = |k: u32| window.of(&edge.curve.point(lo + (hi - lo) * f64::from(k) / 8.0));
+    let middle = on(4);
+    let size = |i: usize| {
+        if window.surface.periods()[i].is_some() {
+            1.0
+        } else {
+            middle[i].abs()
+        }
+    };
+    let changes = |i: usize| {
+        let away = |k: u32| (window.beside(i, on(k)[i], middle[i]) - middle[i]).abs();
+        (0..=8).any(|k| away(k) > LEVEL * size(i))
+    };
+    changes(0) && changes(1)
+}
+
+/// A parameter that changes by no more than this part is constant.
+const LEVEL: f64 = 1.0 / (1u64 << 36) as f64;

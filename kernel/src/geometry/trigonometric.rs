@@ -57,7 +57,9 @@ pub(super) fn between<N: Number>(a: N, b: N) -> Trig1<N> {
 
 /// A trigonometric polynomial of degree two with its derivatives, which are such, too.
 pub(super) struct Trigonometric<N: Number = f64> {
-    derivatives: [Trig2<N>; 3],
+    derivatives: [Trig2<N>; 4],
+    /// No value of the fourth derivative is greater.
+    most: N,
     /// The same in doubles, of one of more digits.
     doubles: Option<Box<Trigonometric>>,
 }
@@ -65,9 +67,13 @@ pub(super) struct Trigonometric<N: Number = f64> {
 impl<N: Number> Trigonometric<N> {
     pub(super) fn new(k: &Trig2<N>) -> Self {
         let slope = harmonic_slope(k);
+        let bend = harmonic_slope(&slope);
+        let derivatives = [*k, slope, bend, harmonic_slope(&bend)];
+        let fourth = harmonic_slope(&derivatives[3]);
         let doubles = || Trigonometric::new(&k.map(N::rounded));
         Self {
-            derivatives: [*k, slope, harmonic_slope(&slope)],
+            derivatives,
+            most: fourth.iter().map(|c| c.abs()).sum(),
             doubles: (!N::IS_DOUBLE).then(|| Box::new(doubles())),
         }
     }
@@ -79,9 +85,32 @@ impl<N: Number> Trigonometric<N> {
     }
 }
 
+/// Taylor's sum is tried on what is shorter than this, in radians.
+const SHORT: f64 = 0.5;
+
 impl<N: Number> Function<N> for Trigonometric<N> {
+    /// By Taylor's sum about the middle: next to a zero of order four the terms of the polynomial
+    /// cancel, and their own ranges tell nothing before they are as short as its square.
     fn over(&self, u: Interval<N>) -> Jet<Interval<N>> {
-        self.jet(u)
+        if u.width() > N::of(SHORT) {
+            return self.jet(u);
+        }
+        let middle = u.mid();
+        let at = Interval::point(middle).sin_cos();
+        let [v, d, dd, ddd] = [0, 1, 2, 3].map(|i| harmonic(&self.derivatives[i], at));
+        let run = u - Interval::point(middle);
+        let square = run.square();
+        // A little more than its due.
+        let rest = square.scale(self.most);
+        let six = Interval::plain(6.0);
+        Jet {
+            v: v + d * run
+                + (dd * square).times(0.5)
+                + (ddd * square * run).over(six)
+                + about_zero(rest * square).times(0.0625),
+            d: d + dd * run + (ddd * square).times(0.5) + about_zero(rest * run).times(0.25),
+            dd: dd + ddd * run + about_zero(rest),
+        }
     }
 
     fn roughly(&self, piece: [N; 2]) -> Option<Rough<'_>> {
@@ -97,6 +126,12 @@ impl<N: Number> Function<N> for Trigonometric<N> {
     fn value(&self, u: N) -> N {
         harmonic(&self.derivatives[0], u.sin_cos())
     }
+}
+
+/// The least interval about zero that holds another.
+fn about_zero<N: Number>(x: Interval<N>) -> Interval<N> {
+    let most = x.magnitude();
+    Interval::new(-most, most)
 }
 
 /// The zeros of a trigonometric polynomial in [0, 2π), in order, and whether it changes sign there.
@@ -160,4 +195,24 @@ pub(super) fn divide_half<N: Number>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 
     let fb = solution(nb.into(), rb.into()).unwrap_or([N::ZERO; 2]);
     let fc = solution(nc.into(), rc.into()).unwrap_or([N::ZERO; 4]);
     (fb, fc)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::wide::Wide;
+
+    /// (cos u + 4/3 sin u - 5/3)², which touches zero to the fourth order, but for rounding.
+    #[test]
+    fn a_fourfold_zero_is_one() {
+        let third = Wide::ONE / Wide::of(3.0);
+        let m = [Wide::of(-5.0) * third, Wide::ONE, Wide::of(4.0) * third];
+        let k = product(&m, &m);
+        let size: Wide = k.iter().map(|c| c.abs()).sum();
+        for by in [1.0, 16.0, 256.0, 4096.0] {
+            let zeros = zeros_once(&k, Wide::ROUNDING * size * Wide::of(by)).unwrap();
+            assert_eq!(zeros.len(), 1, "{zeros:?}");
+            assert_eq!(zeros[0].1, Contact::Touching);
+        }
+    }
 }

@@ -15,6 +15,8 @@ pub struct Window {
     pub surface: Surface,
     /// Where the window of each parameter starts that is an angle with a period.
     pub starts: [f64; 2],
+    /// How far the face reaches from the origin of the surface's frame.
+    pub reach: f64,
 }
 
 /// atan2(y, x), with two derivatives.
@@ -51,7 +53,7 @@ impl Window {
     pub fn of(&self, p: &Point3<f64>) -> Point2<f64> {
         let q = self.surface.frame().coordinates(p);
         let [u, v] = self.surface.parameters(p);
-        let on_axis = q.x.hypot(q.y) <= AXIS * q.norm();
+        let on_axis = q.x.hypot(q.y) <= AXIS * self.reach;
         let u = match self.surface {
             Surface::Plane(_) => u,
             _ if on_axis => f64::NAN,
@@ -88,7 +90,7 @@ impl Window {
     }
 }
 
-/// What is nearer to the axis than this part of its distance from the frame's origin is on it.
+/// What is nearer to the axis than this part of the face's reach is on it.
 const AXIS: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// The same surface with its angle counted from another ruling or meridian.

@@ -11,6 +11,8 @@ use std::f64::consts::{PI, TAU};
 #[derive(Debug)]
 pub(super) struct Samples {
     edges: Vec<Sampled>,
+    /// Where edges touch.
+    touches: Vec<Point3<f64>>,
 }
 
 #[derive(Debug)]
@@ -47,8 +49,12 @@ impl Samples {
                 closed: brep.topology.edge(edge).ends.is_none(),
             }
         };
+        let edges: Vec<EdgeId> = edges.collect();
+        let all = brep.topology.touches.iter().zip(&brep.geometry.touches);
+        let touches = all.filter(|(touch, _)| touch.edges.iter().any(|e| edges.contains(e)));
         Self {
-            edges: edges.map(sampled).collect(),
+            touches: touches.map(|(_, p)| *p).collect(),
+            edges: edges.into_iter().map(sampled).collect(),
         }
     }
 
@@ -56,11 +62,15 @@ impl Samples {
         self.edges.iter().flat_map(|e| &e.points)
     }
 
-    /// The values of the parameter `i`, which is an angle, at which edges end or turn back.
+    /// The values of the parameter `i`, which is an angle, at which edges end, turn back or touch.
     pub fn critical(&self, window: &Window, i: usize) -> Vec<f64> {
-        let mut critical: Vec<f64> = Vec::new();
+        let touches = self.touches.iter().map(|p| window.of(p)[i]);
+        let mut critical: Vec<f64> = touches.filter(|x| x.is_finite()).collect();
         for edge in &self.edges {
             edge.add_turns(window, i, &mut critical);
+        }
+        for angle in &mut critical {
+            *angle = turn(*angle);
         }
         critical.sort_by(f64::total_cmp);
         critical.dedup_by(|b, a| *b - *a <= SAME);
@@ -88,6 +98,9 @@ impl Samples {
     }
 }
 
+/// An angle that changes by more from one sample to the next leaps.
+const LEAP: f64 = 1.0;
+
 /// Angles that differ by no more are the same.
 pub(super) const SAME: f64 = 1.0 / (1u64 << 36) as f64;
 
@@ -112,6 +125,9 @@ impl Sampled {
         }
         let turns = steps.windows(2).filter(|s| s[0].1 * s[1].1 <= 0.0);
         found.extend(turns.map(|s| s[1].0));
+        // Through an apex the angle leaps.
+        let leaps = steps.iter().filter(|s| s.1.abs() > LEAP);
+        found.extend(leaps.flat_map(|s| [s.0, s.0 + s.1]));
     }
 }
 

@@ -123,7 +123,13 @@ impl Faced<'_> {
             other => *other,
         };
         let starts = [0.0; 2];
-        let whole = Window { surface, starts };
+        let origin = surface.frame().origin;
+        let away = self.samples.points().map(|p| (p - origin).norm());
+        let whole = Window {
+            surface,
+            starts,
+            reach: away.fold(0.0, f64::max),
+        };
         if let Surface::Plane(_) = surface {
             let seams = Vec::new();
             return Some(Cut {
@@ -135,7 +141,7 @@ impl Faced<'_> {
         let around = |u: f64| {
             let surface = turned(&surface, u);
             let seams = self.seams(&surface, 0, 0.0)?;
-            let window = Window { surface, starts };
+            let window = Window { surface, ..whole };
             Some(Cut { window, seams })
         };
         let mut cut = self.unless_parted(&whole, 0, least(candidates.into_iter().map(around)))?;
@@ -193,7 +199,12 @@ impl Faced<'_> {
     fn is_parted(&self, surface: &Surface, track: &Track) -> bool {
         let side = self.brep.sense(self.face);
         let crossings = track.walk.crossings(surface, side, &self.arcs, self.band);
-        if crossings.iter().any(|c| c.passage != Passage::Unclear) {
+        // Next to a vertex, and where edges touch, a passage says nothing.
+        let is_plain = |at: f64| {
+            let mut unclear = crossings.iter().filter(|c| c.passage == Passage::Unclear);
+            unclear.all(|c| (c.at - at).abs() > 2.0 * self.band)
+        };
+        if crossings.iter().any(|c| is_plain(c.at)) {
             return false;
         }
         let parameter = |p: &Point3<f64>| track.curve.parameter(p);
@@ -296,6 +307,7 @@ impl Faced<'_> {
                 let window = Window {
                     surface: *surface,
                     starts: [0.0; 2],
+                    reach: s.major + s.minor,
                 };
                 let mut from = self.samples.candidates(&window, 1 - across);
                 from.truncate(STARTS);

@@ -32,6 +32,7 @@ fn window(surface: Surface) -> Window {
     Window {
         surface,
         starts: [0.0; 2],
+        reach: 10.0,
     }
 }
 

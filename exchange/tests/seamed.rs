@@ -1,0 +1,172 @@
+//! What seams make of a boundary, on parts of every kind.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_exchange::seamed::Seamed;
+use premio_exchange::step;
+use premio_kernel::brep::topology::Sense;
+use std::collections::HashMap;
+
+/// Parts, with how many faces they have in the end, edges and vertices.
+const PARTS: &[(&str, &str, [usize; 3])] = &[
+    // A meridian from pole to pole.
+    ("ball", "A = SPH(R=2)", [1, 1, 2]),
+    // Two circles that cross in a vertex.
+    ("ring", "A = TOR(RMAJ=3, RMIN=1)", [1, 2, 1]),
+    // Two circles and a ruling between them.
+    ("cylinder", "A = CYL(R=1, H=3)", [3, 3, 2]),
+    // A circle and a ruling to the apex.
+    ("cone", "A = CON(R=1, H=2)", [2, 2, 2]),
+    // One half of the meridian, from one pole to the circle.
+    (
+        "cap",
+        "A = SPH(R=2) INT BLO(X=8, Y=8, Z=4) AT (MOVX=-4, MOVY=-4, MOVZ=1)",
+        [2, 2, 2],
+    ),
+    // A quarter of a ring: one circle, along the tube.
+    (
+        "elbow",
+        "A = TOR(RMAJ=3, RMIN=1) INT BLO(X=8, Y=8, Z=4) AT (MOVZ=-2)",
+        [3, 3, 2],
+    ),
+    // The block's edges, and nothing of the hole but its circles and a ruling.
+    (
+        "plate",
+        "A = BLO(X=4, Y=4, Z=1) DIF CYL(R=1, H=3) AT (MOVX=2, MOVY=2, MOVZ=-1)",
+        [7, 15, 10],
+    ),
+    // Two blocks that share an edge: each has one of its own.
+    (
+        "two",
+        "A = BLO(X=1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=1, MOVY=1)",
+        [12, 24, 16],
+    ),
+    // A ball on a table: the point of contact is nothing.
+    (
+        "touch",
+        "A = SPH(R=1) AT (MOVZ=1) UN BLO(X=4, Y=4, Z=1) AT (MOVX=-2, MOVY=-2, MOVZ=-1)",
+        [7, 13, 10],
+    ),
+    // A void.
+    (
+        "hollow",
+        "A = BLO(X=4, Y=4, Z=4) DIF SPH(R=1) AT (MOVX=2, MOVY=2, MOVZ=2)",
+        [7, 13, 10],
+    ),
+    // The ring touches itself along the circle of the ball, and is not cut there again: two copies of
+    // that circle, a seam along the ring, and a meridian of either half of the ball.
+    (
+        "inscribed",
+        "A = TOR(RMAJ=3, RMIN=1) DIF SPH(R=1) AT (MOVX=3)",
+        [3, 7, 6],
+    ),
+];
+
+fn part(text: &str) -> Evaluation {
+    let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    evaluate(&part.tree, &EvaluationOptions::default()).unwrap()
+}
+
+/// How many vertices edges end in.
+fn vertices(seamed: &Seamed<'_>) -> usize {
+    let mut used: Vec<usize> = seamed.edges.iter().flat_map(|e| e.ends).collect();
+    used.sort_unstable();
+    used.dedup();
+    used.len()
+}
+
+/// Every edge has two sides, run in opposite senses; loops close, and edges end in their vertices.
+fn is_sound(name: &str, seamed: &Seamed<'_>) {
+    let mut sides: HashMap<usize, Vec<Sense>> = HashMap::new();
+    for face in &seamed.faces {
+        assert!(!face.loops.is_empty(), "{name}");
+        for ring in &face.loops {
+            let ends = |(edge, sense): (usize, Sense)| {
+                let [a, b] = seamed.edges[edge].ends;
+                match sense {
+                    Sense::Along => [a, b],
+                    Sense::Against => [b, a],
+                }
+            };
+            let after = ring.iter().cycle().skip(1);
+            for (one, next) in ring.iter().zip(after) {
+                assert_eq!(ends(*one)[1], ends(*next)[0], "{name}");
+                sides.entry(one.0).or_default().push(one.1);
+            }
+        }
+    }
+    assert_eq!(sides.len(), seamed.edges.len(), "{name}");
+    for (edge, senses) in &sides {
+        let both = senses.len() == 2 && senses[0] != senses[1];
+        assert!(both, "{name}: edge {edge} is run {senses:?}");
+    }
+    for (k, edge) in seamed.edges.iter().enumerate() {
+        for (end, t) in edge.ends.iter().zip(edge.range) {
+            let off = (seamed.points[*end] - edge.curve.point(t)).norm();
+            assert!(off < 1e-9, "{name}: edge {k} ends {off:e} off");
+        }
+    }
+}
+
+#[test]
+fn seams_are_as_few_as_can_be() {
+    for (name, text, expected) in PARTS {
+        let known = part(text);
+        let seamed = Seamed::of(&known.brep, known.resolution).unwrap();
+        is_sound(name, &seamed);
+        let found = [seamed.faces.len(), seamed.edges.len(), vertices(&seamed)];
+        assert_eq!(found, *expected, "{name}");
+    }
+}
+
+/// Where it is a manifold, the characteristic of the whole stays the boundary's.
+#[test]
+fn seams_keep_the_characteristic() {
+    for (name, text, _) in PARTS {
+        let known = part(text);
+        let topology = &known.brep.topology;
+        let seamed = Seamed::of(&known.brep, known.resolution).unwrap();
+        let holes: usize = seamed.faces.iter().map(|f| f.loops.len() - 1).sum();
+        let cells = (vertices(&seamed) + seamed.faces.len()) as i64;
+        let euler = cells - (seamed.edges.len() + holes) as i64;
+        let shells = topology.shells.iter();
+        let expected: i64 = shells.map(|s| 2 - 2 * i64::from(s.genus)).sum();
+        assert_eq!(euler, expected, "{name}");
+    }
+}
+
+#[test]
+fn every_instance_of_a_file_is_written_before_it_is_named() {
+    for (name, text, _) in PARTS {
+        let known = part(text);
+        let options = step::Options {
+            name: (*name).to_owned(),
+            protocol: step::Protocol::Ap242,
+            unit: step::Unit::Millimetre,
+            accuracy: 1e-6,
+            resolution: known.resolution,
+        };
+        let file = step::write(&known.brep, &options).unwrap();
+        let data = file.split("DATA;\n").nth(1).unwrap();
+        let mut last = 0;
+        for line in data.lines().take_while(|l| l.starts_with('#')) {
+            let (number, entity) = line[1..].split_once('=').unwrap();
+            let number: u32 = number.parse().unwrap();
+            assert_eq!(number, last + 1, "{name}");
+            for named in entity.split('#').skip(1) {
+                let end = named.find(|c: char| !c.is_ascii_digit()).unwrap();
+                assert!(
+                    named[..end].parse::<u32>().unwrap() < number,
+                    "{name}: {line}"
+                );
+            }
+            last = number;
+        }
+        assert!(last > 30, "{name}");
+        let solids = known.brep.topology.solids.len();
+        let written = ["=MANIFOLD_SOLID_BREP(", "=BREP_WITH_VOIDS("];
+        let count: usize = written.iter().map(|s| data.matches(s).count()).sum();
+        assert_eq!(count, solids, "{name}");
+    }
+}

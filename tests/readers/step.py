@@ -1,0 +1,133 @@
+"""STEP files read back by OpenCASCADE: valid by its checker, of one volume with the boundary, of as
+many solids, and of as many faces after its own merging.
+
+On every named case, and on every file of the corpus if PREMIO_CORPUS names its folder. A known
+failure is listed with its reason; one that no longer fails has to be taken off the list.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Message import Message, Message_Gravity
+from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
+from OCP.STEPControl import STEPControl_Reader
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
+from OCP.TopExp import TopExp_Explorer
+
+CASES = Path(__file__).parent.parent / "cases"
+
+# A face that an edge of four faces parts is one face once that edge is two.
+PARTED = "faces that are parted where four meet are merged"
+KNOWN = {
+    "ball-between-two-races": PARTED,
+    "cylinder-in-a-hollow": PARTED,
+    "cylinder-touching-block-along-line": PARTED,
+    "ring-under-a-block-turned-within-the-resolution": PARTED,
+    "torus-lying-on-block": PARTED,
+    "bored-block-far-from-origin": "1e9 from the origin, the reader turns the solid inside out",
+    "cone-apex-1e-7-beside-a-cone": "slivers of the size of the reader's tolerance",
+    "cones-1e-9-apart": "slivers smaller than the reader's tolerance",
+    "cone-resting-on-top-of-torus": "a seam through a face that touches itself in a point",
+    "pipe-bend-along-a-floor": "a wall of no thickness along an arc: a loop of no area",
+}
+# Volumes may differ by this part.
+VOLUME = 1e-6
+# The program's status for what is refused, and for what is no description.
+REFUSED, UNREAD = 3, 2
+
+
+def count(shape, kind):
+    explorer = TopExp_Explorer(shape, kind)
+    number = 0
+    while explorer.More():
+        number += 1
+        explorer.Next()
+    return number
+
+
+def shape_in(path):
+    reader = STEPControl_Reader()
+    if reader.ReadFile(str(path)) != IFSelect_RetDone:
+        return None
+    reader.TransferRoots()
+    return reader.OneShape()
+
+
+def faults(premio, description, folder):
+    """What is wrong with a description's STEP file; none where the program has none to write."""
+    known = subprocess.run([premio, "info", description, "--json"], capture_output=True, text=True)
+    if known.returncode in (REFUSED, UNREAD):
+        return None
+    known = json.loads(known.stdout)
+    if known["solids"] == 0:
+        return None
+    out = Path(folder) / "out.step"
+    command = [premio, "export", description, "--format", "step", "-o", str(out)]
+    told = subprocess.run(command, capture_output=True, text=True)
+    if told.returncode != 0:
+        return [told.stderr.strip()]
+    shape = shape_in(out)
+    if shape is None:
+        return ["not read"]
+    found = []
+    if not BRepCheck_Analyzer(shape).IsValid():
+        found.append("not valid")
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties, 1e-6)
+    off = abs(properties.Mass() / known["volume"] - 1)
+    if off > VOLUME:
+        found.append(f"a volume off by {off:.2g}")
+    unifier = ShapeUpgrade_UnifySameDomain(shape)
+    unifier.Build()
+    sides = [
+        ("solids", count(shape, TopAbs_SOLID), known["solids"]),
+        ("faces", count(unifier.Shape(), TopAbs_FACE), known["faces"]),
+    ]
+    return found + [f"{n} {what}, not {m}" for what, n, m in sides if n != m]
+
+
+def descriptions(folder):
+    """Every description with its name; those of the corpus are trees in a table, and files."""
+    for case in sorted(CASES.iterdir()):
+        yield case.name, str(case / "model.padl")
+    corpus = os.environ.get("PREMIO_CORPUS")
+    if not corpus:
+        print("PREMIO_CORPUS is not set: the corpus is passed over")
+        return
+    for path in sorted(Path(corpus).glob("openscad/*.csg")):
+        yield path.name, str(path)
+    for case in json.loads((Path(corpus) / "cases.json").read_text()):
+        path = Path(folder) / f"{case['id']}.json"
+        path.write_text(json.dumps(case["tree"]))
+        yield case["id"], str(path)
+
+
+def main():
+    for printer in Message.DefaultMessenger_s().Printers():
+        printer.SetTraceLevel(Message_Gravity.Message_Fail)
+    premio = sys.argv[1]
+    read = left = wrong = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name, path in descriptions(folder):
+            found = faults(premio, path, folder)
+            if found is None:
+                left += 1
+                continue
+            read += 1
+            if bool(found) != (name in KNOWN):
+                wrong += 1
+                print(f"{name}: {'; '.join(found) or 'known to fail, and does not'}")
+    print(f"{read} read, {wrong} wrong, {len(KNOWN)} known to fail; {left} have nothing to write")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

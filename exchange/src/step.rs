@@ -70,6 +70,10 @@ pub enum StepError {
     Spline(#[from] SplineError),
 }
 
+/// Splines are this many times nearer to their curves than is asked for: what their distance makes of
+/// a volume goes with the area beside it, which of a slender part is much.
+const NEARER: f64 = 64.0;
+
 /// The text of a file.
 pub fn write(brep: &Brep, options: &Options) -> Result<String, StepError> {
     if brep.topology.solids.is_empty() {
@@ -78,7 +82,7 @@ pub fn write(brep: &Brep, options: &Options) -> Result<String, StepError> {
     let seamed = Seamed::of(brep, options.resolution)?;
     let mut exchange = Exchange::default();
     let context = product::context(&mut exchange, options);
-    let mut shape = shape::Shape::new(&mut exchange, &seamed, options.accuracy / 64.0);
+    let mut shape = shape::Shape::new(&mut exchange, &seamed, options.accuracy / NEARER);
     let solids = shape.solids()?;
     product::product(&mut exchange, options, context, &solids);
     Ok(exchange.finish(options))

@@ -3,6 +3,10 @@
 use super::part21::{Exchange, Id, List, Real, quoted};
 use super::{Options, Protocol, Unit};
 
+/// The uncertainty that a file states is this part of the accuracy: readers make up to within it what
+/// a file leaves to them, such as where circles run in the parameters of faces.
+const FINER: f64 = 1024.0;
+
 /// The context of the shape: three dimensions, its units, and how near points are that are one.
 pub(super) fn context(exchange: &mut Exchange, options: &Options) -> Id {
     let length = length_unit(exchange, options.unit);
@@ -14,7 +18,7 @@ pub(super) fn context(exchange: &mut Exchange, options: &Options) -> Id {
     ));
     let uncertainty = exchange.add(format_args!(
         "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE({}),{length},'distance_accuracy_value','')",
-        Real(options.accuracy / 1024.0)
+        Real(options.accuracy / FINER)
     ));
     exchange.add(format_args!(
         "(GEOMETRIC_REPRESENTATION_CONTEXT(3)\

@@ -5,7 +5,8 @@ use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::EdgeId;
 use premio_kernel::geometry::surface::{Sphere, turn};
-use std::f64::consts::{PI, TAU};
+use premio_kernel::geometry::toric::wrap;
+use std::f64::consts::TAU;
 
 /// Points along the edges of a face, edge by edge.
 #[derive(Debug)]
@@ -117,7 +118,7 @@ impl Sampled {
         };
         let mut steps: Vec<(f64, f64)> = known
             .windows(2)
-            .map(|w| (w[0][i], signed(w[1][i] - w[0][i])))
+            .map(|w| (w[0][i], wrap(w[1][i] - w[0][i])))
             .collect();
         match self.closed {
             false => found.extend([first[i], last[i]]),
@@ -129,12 +130,6 @@ impl Sampled {
         let leaps = steps.iter().filter(|s| s.1.abs() > LEAP);
         found.extend(leaps.flat_map(|s| [s.0, s.0 + s.1]));
     }
-}
-
-/// An angle brought between -pi and pi.
-fn signed(angle: f64) -> f64 {
-    let a = turn(angle);
-    if a > PI { a - TAU } else { a }
 }
 
 /// The axis of a sphere's parameters for a face: one that keeps well away from the edges, and to

@@ -37,7 +37,7 @@ pub struct DirectedArc<'a, N: Number = f64> {
 
 impl<'a, N: Number> DirectedArc<'a, N> {
     /// A coedge of a boundary representation.
-    pub(super) fn of(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
+    pub fn of(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
         let coedge = brep.topology.coedge(coedge);
         Self {
             curve: brep.curve(coedge.edge),

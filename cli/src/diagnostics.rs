@@ -91,6 +91,11 @@ pub fn notes(name: &str, text: &[u8], notes: &[Note]) {
     }
 }
 
+/// Tells what else there is to know of an output.
+pub fn note(name: &str, text: &str) {
+    say(&format!("note: {name}: {text}"));
+}
+
 /// A bar that shows how far some work is, on a terminal only.
 pub fn progress(of: u64) -> ProgressBar {
     let bar = ProgressBar::new(of);

@@ -59,8 +59,20 @@ pub struct Seamed<'a> {
 }
 
 /// Why a boundary cannot be given seams.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SeamError {
+    /// Material ends in a wall of no thickness: a face is cracked along an edge, and no loop of other
+    /// kernels runs twice through one place.
+    #[error(
+        "a wall without thickness at ({:.9}, {:.9}, {:.9}): no other kernel has such a face",
+        place[0],
+        place[1],
+        place[2]
+    )]
+    Crack {
+        /// A point of the edge.
+        place: [f64; 3],
+    },
     /// Every seam that was tried runs along an edge, or through a vertex.
     #[error("no seam could be laid through face {}", face.0)]
     Blocked {
@@ -79,6 +91,11 @@ impl<'a> Seamed<'a> {
     /// The boundary with seams; `band` is the part's resolution.
     pub fn of(brep: &'a Brep, band: f64) -> Result<Self, SeamError> {
         let pairs = pairs::Pairs::of(brep);
+        if let Some(edge) = pairs.crack(brep) {
+            let [lo, hi] = brep.range(edge);
+            let place = brep.curve(edge).point(0.5 * (lo + hi)).into();
+            return Err(SeamError::Crack { place });
+        }
         let cuts: Result<Vec<seams::Cut>, SeamError> = brep
             .topology
             .face_ids()

@@ -3,7 +3,7 @@
 
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_exchange::seamed::Seamed;
+use premio_exchange::seamed::{SeamError, Seamed};
 use premio_exchange::step;
 use premio_kernel::brep::topology::Sense;
 use std::collections::HashMap;
@@ -134,6 +134,39 @@ fn seams_keep_the_characteristic() {
         let expected: i64 = shells.map(|s| 2 - 2 * i64::from(s.genus)).sum();
         assert_eq!(euler, expected, "{name}");
     }
+}
+
+/// The edge of a pocket lies in the roof's plane: between the two is a wall without thickness.
+#[test]
+fn a_wall_without_thickness_is_refused() {
+    let known = part("A = WED(X=4, Y=4, Z=4) DIF BLO(X=1, Y=2, Z=1) AT (MOVX=1, MOVY=1, MOVZ=1)");
+    assert_eq!(known.brep.topology.edges_of_many_faces(), 1);
+    let error = Seamed::of(&known.brep, known.resolution).unwrap_err();
+    assert_eq!(
+        error,
+        SeamError::Crack {
+            place: [2.0, 2.0, 2.0]
+        }
+    );
+}
+
+/// A turned ball's meridian is a circle as it stands: no parameter curve is made up for it, though the
+/// longitude of its ends is chance.
+#[test]
+fn a_seam_has_no_splines() {
+    let known = part("A = SPH(R=2) AT (MOVX=0.3, ROTX=17, ROTZ=31)");
+    let options = step::Options {
+        name: "ball".to_owned(),
+        protocol: step::Protocol::Ap214,
+        unit: step::Unit::Inch,
+        accuracy: 1e-6,
+        resolution: known.resolution,
+    };
+    let file = step::write(&known.brep, &options).unwrap();
+    assert!(
+        !file.contains("B_SPLINE") && !file.contains("PCURVE"),
+        "{file}"
+    );
 }
 
 #[test]

@@ -36,7 +36,7 @@ KNOWN = {
     "cone-apex-1e-7-beside-a-cone": "slivers of the size of the reader's tolerance",
     "cones-1e-9-apart": "slivers smaller than the reader's tolerance",
     "cone-resting-on-top-of-torus": "a seam through a face that touches itself in a point",
-    "pipe-bend-along-a-floor": "a wall of no thickness along an arc: a loop of no area",
+    "pipe-bend-along-a-floor": "refused: a wall without thickness along an arc",
 }
 # Volumes may differ by this part.
 VOLUME = 1e-6

@@ -1,7 +1,7 @@
 //! `premio export`: the boundary in a format of choice.
 
 use crate::arguments::{ExportFormat, ExportOptions, LengthUnit, StepProtocol};
-use crate::diagnostics::Failure;
+use crate::diagnostics::{self, Failure, counted};
 use crate::input::Part;
 use crate::{input, output};
 use premio_csg::model::Model;
@@ -43,5 +43,13 @@ fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
         accuracy: options.accuracy.unwrap_or(ACCURACY * size),
         resolution: evaluation.resolution_of_doubles(),
     };
-    step::write(&evaluation.brep, &how).map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
+    let text = step::write(&evaluation.brep, &how)
+        .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))?;
+    let parted = evaluation.brep.topology.edges_of_many_faces();
+    if parted > 0 {
+        let edges = counted(parted, "edge");
+        let said = format!("{edges} of more than two faces: each pair of faces has its own");
+        diagnostics::note(&part.name, &said);
+    }
+    Ok(text)
 }

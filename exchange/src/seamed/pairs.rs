@@ -1,7 +1,7 @@
 //! Edges taken apart into pairs of faces that enclose material, vertices into fans.
 
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense, VertexId};
+use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
 use std::collections::{HashMap, HashSet};
 
 /// The edges and vertices of a boundary without seams, each edge between two sides of faces.
@@ -85,6 +85,19 @@ impl Pairs {
             rings.extend((!ring.is_empty()).then_some(ring));
         }
         rings
+    }
+
+    /// An edge of a loop that encloses nothing: it runs along the same edges there and back, with only
+    /// the face's outside between its two sides.
+    pub fn crack(&self, brep: &Brep) -> Option<EdgeId> {
+        let edge = |c: &CoedgeId| brep.topology.coedge(*c).edge;
+        let is_twice = |ring: &[CoedgeId], c: &CoedgeId| {
+            let mut others = ring.iter().filter(|other| *other != c);
+            others.any(|other| edge(other) == edge(c))
+        };
+        let rings = self.rings.iter().flatten();
+        let mut cracks = rings.filter(|ring| ring.iter().all(|c| is_twice(ring, c)));
+        cracks.find_map(|ring| ring.first()).map(edge)
     }
 
     /// Gives every edge its vertices: around a fan each edge's other side goes on to the next.

@@ -95,20 +95,12 @@ impl Cut {
         band: f64,
     ) -> Result<Self, SeamError> {
         let coedges: Vec<CoedgeId> = rings.iter().flatten().copied().collect();
-        let arc = |c: &CoedgeId| {
-            let coedge = brep.topology.coedge(*c);
-            DirectedArc {
-                curve: brep.curve(coedge.edge),
-                range: brep.range(coedge.edge),
-                sense: coedge.sense,
-            }
-        };
         let edges = coedges.iter().map(|c| brep.topology.coedge(*c).edge);
         let faced = Faced {
             brep,
             face,
             band,
-            arcs: coedges.iter().map(arc).collect(),
+            arcs: coedges.iter().map(|c| DirectedArc::of(brep, *c)).collect(),
             samples: Samples::of(brep, edges),
             coedges,
         };
@@ -238,14 +230,18 @@ impl Faced<'_> {
             };
             covered.push([a, b]);
         }
-        covered.sort_by(|x, y| x[0].total_cmp(&y[0]));
-        let Some(&first) = covered.first() else {
+        if covered.is_empty() {
             return false;
+        }
+        let poles = match track.course {
+            Course::Round => [None, None],
+            Course::Open { first, last } => [first, last],
         };
-        match track.course {
-            Course::Round => covered.push(first.map(|t| t + TAU)),
-            Course::Open { first: Some(_), .. } => return false,
-            Course::Open { first: None, .. } => {}
+        covered.extend(poles.into_iter().flatten().map(|t| [t, t]));
+        covered.sort_by(|x, y| x[0].total_cmp(&y[0]));
+        let first = covered[0];
+        if let Course::Round = track.course {
+            covered.push(first.map(|t| t + TAU));
         }
         let mut end = first[1];
         covered[1..].iter().all(|next| {

@@ -320,9 +320,9 @@ fn half_angle(cone: &Cone) -> f64 {
 }
 
 /// Whether an edge is more than a straight line, or a conic, in the parameters of a surface: whether
-/// both of them change, and one is an angle.
+/// both of them change, and one is an angle. A seam never is, whatever an angle does at a pole.
 fn bends(edge: &Edge<'_>, window: &Window) -> bool {
-    if let Surface::Plane(_) = window.surface {
+    if edge.source.is_none() || matches!(window.surface, Surface::Plane(_)) {
         return false;
     }
     let [lo, hi] = edge.range;

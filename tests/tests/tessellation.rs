@@ -8,6 +8,7 @@ use premio_kernel::tessellation::{Accuracy, tessellate};
 use premio_tests::cast::Cast;
 use premio_tests::random::tree;
 use premio_visibility::contours;
+use std::collections::HashSet;
 use std::fs;
 use std::path::Path;
 
@@ -44,7 +45,18 @@ fn fault(part: &Evaluation, deviation: f64) -> Option<String> {
     if far.is_nan() || far > 2.0 * deviation {
         return Some(format!("a triangle {far:e} off its surface"));
     }
-    (!mesh.is_watertight()).then(|| "not watertight".to_owned())
+    if !mesh.is_watertight() {
+        return Some("not watertight".to_owned());
+    }
+    // Where no edge has four faces, no side has four triangles.
+    let mut sides = HashSet::new();
+    let mut ends = mesh.triangles.iter().flat_map(|t| {
+        let [a, b, c] = t.corners;
+        [[a, b], [b, c], [c, a]]
+    });
+    let once = ends.all(|side| sides.insert(side));
+    let crowded = part.brep.topology.edges_of_many_faces() > 0;
+    (!once && !crowded).then(|| "a side of four triangles".to_owned())
 }
 
 /// Parts whose faces are narrow, or whose edges run through the middle of a chart.

@@ -69,6 +69,10 @@ impl Polylines {
         // A break that is an end but for rounding is none.
         let least = (hi - lo) * FINEST.sqrt();
         breaks.retain(|&t| t == lo || t == hi || (t - lo > least && hi - t > least));
+        // Where four faces meet, two and two of them may be given points of their own: between the ends.
+        if breaks.len() == 2 && brep.topology.edge(edge).coedges.len() > 2 {
+            breaks.insert(1, 0.5 * (lo + hi));
+        }
         let chord = Chord::new(brep, edge, accuracy);
         let mut at = vec![lo];
         for piece in breaks.windows(2) {

@@ -15,8 +15,8 @@ pub(super) struct Fit<'a> {
     pub accuracy: &'a Accuracy,
 }
 
-/// A vertex this near to an apex, as a part of the deviation, is at the apex.
-const APEX: f64 = 1.0 / (1 << 16) as f64;
+/// A vertex this near to an apex, as a part of the deviation or of a triangle, is at the apex.
+pub(super) const APEX: f64 = 1.0 / (1 << 16) as f64;
 
 impl Fit<'_> {
     /// Whether a side or a triangle with these corners is within the accuracy of the surface at the

@@ -15,10 +15,12 @@ mod refine;
 
 use crate::brep::Brep;
 use crate::brep::topology::FaceId;
+use crate::geometry::surface::Surface;
 use charts::Chart;
 use domain::{Division, Domain};
 use edges::Polylines;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
+use refine::Growth;
 use std::collections::HashMap;
 
 /// How near a mesh comes to the boundary.
@@ -50,13 +52,17 @@ pub struct Triangle {
     pub face: FaceId,
 }
 
-/// A mesh of triangles. Every side of a triangle is a side of another, run the other way.
+/// A mesh of triangles. Every side of a triangle is a side of exactly one other, run the other way,
+/// but along an edge of more than two faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// The corners.
     pub points: Vec<Point3<f64>>,
     /// The triangles, face by face.
     pub triangles: Vec<Triangle>,
+    /// The points along each edge of the boundary, in increasing order of its parameter; the first and
+    /// the last of a closed edge are one.
+    pub lines: Vec<Vec<u32>>,
 }
 
 /// Why a boundary cannot be followed by triangles.
@@ -124,30 +130,22 @@ pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, T
         }
         lines.divide(brep, divisions);
     }
-    let mut mesh = Mesh {
-        points: lines.points,
-        triangles: Vec::new(),
-    };
+    let mut growth = Growth::new(brep, accuracy, lines);
     for (face, domain) in brep.topology.face_ids().zip(domains.into_iter().flatten()) {
-        refine::triangles(
-            brep,
-            face,
-            &charts[face.index()],
-            domain,
-            accuracy,
-            &mut mesh,
-        )?;
+        growth.add(face, &charts[face.index()], domain)?;
     }
+    let mut mesh = growth.mesh;
     mesh.drop_unused();
     Ok(mesh)
 }
 
 impl Mesh {
-    /// Drops the points that no triangle has.
+    /// Drops the points that no triangle and no edge has.
     fn drop_unused(&mut self) {
         let mut used = vec![false; self.points.len()];
-        for corner in self.triangles.iter().flat_map(|t| t.corners) {
-            used[corner as usize] = true;
+        let corners = self.triangles.iter().flat_map(|t| t.corners);
+        for point in corners.chain(self.lines.iter().flatten().copied()) {
+            used[point as usize] = true;
         }
         let mut place = vec![0; self.points.len()];
         let mut kept = Vec::new();
@@ -155,10 +153,29 @@ impl Mesh {
             place[i] = kept.len() as u32;
             kept.push(p);
         }
-        for corner in self.triangles.iter_mut().flat_map(|t| &mut t.corners) {
-            *corner = place[*corner as usize];
+        let corners = self.triangles.iter_mut().flat_map(|t| &mut t.corners);
+        for point in corners.chain(self.lines.iter_mut().flatten()) {
+            *point = place[*point as usize];
         }
         self.points = kept;
+    }
+
+    /// The outward normals of the face at the corners of a triangle, as long as 1; at a cone's apex
+    /// that of the ruling through the middle of the side across.
+    pub fn normals(&self, brep: &Brep, triangle: &Triangle) -> [Vector3<f64>; 3] {
+        let corners = triangle.corners.map(|c| self.points[c as usize]);
+        [0, 1, 2].map(|k: usize| {
+            let across = nalgebra::center(&corners[(k + 1) % 3], &corners[(k + 2) % 3]);
+            let on = match brep.surface(triangle.face) {
+                Surface::Cone(cone) => {
+                    let from = |p: &Point3<f64>| (p - cone.frame.origin).norm();
+                    let is_apex = from(&corners[k]) <= from(&across) * fit::APEX;
+                    if is_apex { across } else { corners[k] }
+                }
+                _ => corners[k],
+            };
+            brep.outward(triangle.face, &on).normalize()
+        })
     }
 
     /// The enclosed volume, by the divergence theorem.

@@ -2,6 +2,7 @@
 
 use super::charts::Chart;
 use super::domain::{Corner, Domain, Side};
+use super::edges::Polylines;
 use super::fit::Fit;
 use super::{Accuracy, LIMIT, Mesh, TessellationError, Triangle};
 use crate::brep::Brep;
@@ -12,47 +13,78 @@ use spade::Triangulation;
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use std::collections::HashSet;
 
-/// Adds the triangles of a face to a mesh.
-pub(super) fn triangles(
-    brep: &Brep,
-    face: FaceId,
-    chart: &Chart,
-    mut domain: Domain,
-    accuracy: &Accuracy,
-    mesh: &mut Mesh,
-) -> Result<(), TessellationError> {
-    let mirrored = chart.is_mirrored(brep.sense(face));
-    loop {
-        let inside = inside(&domain, mirrored).ok_or(TessellationError::Sides { face })?;
-        let missing = missing(
-            brep.surface(face),
-            chart,
-            &domain,
-            &inside,
+/// A mesh as its faces are added.
+pub(super) struct Growth<'a> {
+    brep: &'a Brep,
+    accuracy: &'a Accuracy,
+    /// What is there of it.
+    pub mesh: Mesh,
+    /// Points from this one on are of one face only.
+    shared: u32,
+    /// The sides between shared points: chords of edges, and sides inside faces that were added.
+    taken: HashSet<[u32; 2]>,
+}
+
+impl<'a> Growth<'a> {
+    /// The points of the divided edges, and no triangle.
+    pub fn new(brep: &'a Brep, accuracy: &'a Accuracy, lines: Polylines) -> Self {
+        let along = |edge| lines.nodes(edge).iter().map(|n| n.point).collect();
+        let mesh = Mesh {
+            lines: brep.topology.edge_ids().map(along).collect(),
+            points: lines.points,
+            triangles: Vec::new(),
+        };
+        let chords = mesh.lines.iter().flat_map(|line| line.windows(2));
+        Self {
+            brep,
             accuracy,
-            &mesh.points,
-        );
-        if missing.is_empty() {
-            let inside = inside.into_iter().map(|triangle| {
-                let corners = domain.net.face(triangle).vertices();
-                corners.map(|v| v.data().point)
-            });
-            for mut corners in inside.chain(domain.cap) {
-                if mirrored {
-                    corners.swap(1, 2);
-                }
-                mesh.triangles.push(Triangle { corners, face });
-            }
-            return Ok(());
+            shared: mesh.points.len() as u32,
+            taken: chords.map(|pair| unordered([pair[0], pair[1]])).collect(),
+            mesh,
         }
+    }
+
+    /// Adds the triangles of a face.
+    pub fn add(
+        &mut self,
+        face: FaceId,
+        chart: &Chart,
+        mut domain: Domain,
+    ) -> Result<(), TessellationError> {
+        let mirrored = chart.is_mirrored(self.brep.sense(face));
+        loop {
+            let inside = inside(&domain, mirrored).ok_or(TessellationError::Sides { face })?;
+            let surface = self.brep.surface(face);
+            let points = &self.mesh.points;
+            let mut missing = missing(surface, chart, &domain, &inside, self.accuracy, points);
+            if missing.is_empty() {
+                missing = self.doubled(&domain, &inside);
+            }
+            if missing.is_empty() {
+                self.take(&domain, &inside);
+                self.finish(face, &domain, inside, mirrored);
+                return Ok(());
+            }
+            self.insert(face, chart, &mut domain, missing)?;
+        }
+    }
+
+    /// Adds points to a face.
+    fn insert(
+        &mut self,
+        face: FaceId,
+        chart: &Chart,
+        domain: &mut Domain,
+        missing: Vec<Point2<f64>>,
+    ) -> Result<(), TessellationError> {
         let before = domain.net.num_vertices();
         if before + missing.len() > LIMIT {
             return Err(TessellationError::TooMany { face, limit: LIMIT });
         }
+        let points = &mut self.mesh.points;
         for at in missing {
-            mesh.points.push(chart.lift(&at));
-            let point = mesh.points.len() as u32 - 1;
-            let added = domain.net.insert(Corner::new(at, point));
+            points.push(chart.lift(&at));
+            let added = domain.net.insert(Corner::new(at, points.len() as u32 - 1));
             if added.is_err() {
                 return Err(TessellationError::Sides { face });
             }
@@ -61,7 +93,59 @@ pub(super) fn triangles(
         if domain.net.num_vertices() == before {
             return Err(TessellationError::Crossing { face });
         }
+        Ok(())
     }
+
+    /// The sides inside a face between points that other faces have, too, with the places of their
+    /// ends.
+    fn between_shared(&self, domain: &Domain, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])> {
+        let free = inside.iter().flat_map(|&triangle| {
+            let edges = domain.net.face(triangle).adjacent_edges();
+            edges.into_iter().filter(|edge| {
+                let side = (edge.from().fix().index(), edge.to().fix().index());
+                !edge.is_constraint_edge() && !domain.glued.contains_key(&side)
+            })
+        });
+        let mut seen = HashSet::new();
+        let ends = free.filter(|edge| seen.insert(edge.as_undirected().fix()));
+        let ends = ends.map(|edge| edge.vertices().map(|v| *v.data()));
+        let sides = ends.map(|ends| (unordered(ends.map(|c| c.point)), ends));
+        sides.filter(|([_, last], _)| *last < self.shared).collect()
+    }
+
+    /// Points in the middle of the sides that are there already, of an edge or of a face: four
+    /// triangles would have one side, as two faces at the tip of a wedge do.
+    fn doubled(&self, domain: &Domain, inside: &[Inner]) -> Vec<Point2<f64>> {
+        let mut own = HashSet::new();
+        let sides = self.between_shared(domain, inside).into_iter();
+        let doubled = sides.filter(|(side, _)| self.taken.contains(side) || !own.insert(*side));
+        let middles = doubled.map(|(_, [a, b])| nalgebra::center(&a.at, &b.at));
+        middles.collect()
+    }
+
+    fn take(&mut self, domain: &Domain, inside: &[Inner]) {
+        let sides = self.between_shared(domain, inside);
+        self.taken.extend(sides.into_iter().map(|(side, _)| side));
+    }
+
+    /// Adds triangles that follow a face.
+    fn finish(&mut self, face: FaceId, domain: &Domain, inside: Vec<Inner>, mirrored: bool) {
+        let inside = inside.into_iter().map(|triangle| {
+            let corners = domain.net.face(triangle).vertices();
+            corners.map(|v| v.data().point)
+        });
+        for mut corners in inside.chain(domain.cap.iter().copied()) {
+            if mirrored {
+                corners.swap(1, 2);
+            }
+            self.mesh.triangles.push(Triangle { corners, face });
+        }
+    }
+}
+
+/// The two ends of a side, the lower first.
+fn unordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 type Inner = FixedFaceHandle<InnerTag>;

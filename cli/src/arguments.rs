@@ -157,13 +157,21 @@ pub struct ExportOptions {
     /// of its size]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub accuracy: Option<f64>,
-    /// What the part's unit is (step)
-    #[arg(long, value_enum, value_name = "UNIT", default_value = "mm")]
-    pub unit: LengthUnit,
-    /// The application protocol to name (step)
-    #[arg(long, value_enum, value_name = "AP", default_value = "ap242")]
-    pub protocol: StepProtocol,
-    /// What the product is called (step) [default: the file's name]
+    /// The application protocol to name (step) [default: ap242]
+    #[arg(long, value_enum, value_name = "AP")]
+    pub protocol: Option<StepProtocol>,
+    /// How far triangles may be from the boundary, in the part's unit (stl, obj, glb, 3mf) [default:
+    /// 1/2000 of its size]
+    #[arg(long, value_name = "D", value_parser = positive)]
+    pub deviation: Option<f64>,
+    /// How far normals may turn along a side of a triangle, in degrees (stl, obj, glb, 3mf)
+    /// [default: 15]
+    #[arg(long, value_name = "DEGREES", value_parser = positive)]
+    pub angle: Option<f64>,
+    /// What the part's unit is (step, glb, 3mf) [default: mm]
+    #[arg(long, value_enum, value_name = "UNIT")]
+    pub unit: Option<LengthUnit>,
+    /// What the part is called (step, obj, glb, 3mf) [default: the file's name]
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
     /// Where to write [default: standard output]
@@ -324,6 +332,29 @@ pub enum ExportFormat {
     Json,
     /// ISO 10303: an advanced boundary representation
     Step,
+    /// Binary STL: triangles
+    Stl,
+    /// Wavefront OBJ: triangles with normals
+    Obj,
+    /// Binary glTF: triangles with normals, and the edges as lines
+    Glb,
+    /// 3MF: triangles, with the unit
+    #[value(name = "3mf")]
+    ThreeMf,
+}
+
+impl ExportFormat {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Json => "json",
+            Self::Step => "step",
+            Self::Stl => "stl",
+            Self::Obj => "obj",
+            Self::Glb => "glb",
+            Self::ThreeMf => "3mf",
+        }
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -7,10 +7,10 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Writes a text to a file, or to standard output.
-pub fn write(text: &str, to: Option<&Path>) -> Result<(), Failure> {
+/// Writes a text, or bytes, to a file or to standard output.
+pub fn write(text: impl AsRef<[u8]>, to: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = to else {
-        return stdout(text);
+        return stdout(text.as_ref());
     };
     file(text, path).map_err(|e| Failure::input(format!("{}: {e}", path.display())))
 }
@@ -22,9 +22,9 @@ pub fn json(value: &impl Serialize, to: Option<&Path>) -> Result<(), Failure> {
     write(&text, to)
 }
 
-fn stdout(text: &str) -> Result<(), Failure> {
+fn stdout(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    let written = out.write_all(text).and_then(|()| out.flush());
     written.map_err(|e| match e.kind() {
         ErrorKind::BrokenPipe => Failure::BrokenPipe,
         _ => Failure::input(format!("standard output: {e}")),
@@ -32,7 +32,7 @@ fn stdout(text: &str) -> Result<(), Failure> {
 }
 
 /// Writes beside the file and renames: nobody ever sees half of it.
-pub fn file(text: &str, path: &Path) -> io::Result<()> {
+pub fn file(text: impl AsRef<[u8]>, path: &Path) -> io::Result<()> {
     let target = target(path)?;
     if fs::metadata(&target).is_ok_and(|m| !m.is_file()) {
         // A device or a pipe must not be replaced.
@@ -40,7 +40,7 @@ pub fn file(text: &str, path: &Path) -> io::Result<()> {
     }
     let folder = target.parent().filter(|p| !p.as_os_str().is_empty());
     let mut whole = temporary(folder.unwrap_or(Path::new(".")))?;
-    whole.write_all(text.as_bytes())?;
+    whole.write_all(text.as_ref())?;
     whole.as_file().sync_all()?;
     whole.persist(&target)?;
     Ok(())

@@ -132,6 +132,10 @@ fn wrong_input_ends_with_2() {
         "contours part.padl --format json --eye 0,0,0 --target 0,0,0",
         "contours part.padl --format json --eye 9,9,9 --target 0,0,0 --up 0,0,0",
         "export part.padl --format json -o no/such/folder/out.json",
+        "export part.padl --format stl --unit mm",
+        "export part.padl --format step --deviation 0.1",
+        "export part.padl --format glb --accuracy 0.1",
+        "export part.padl --format 3mf --angle 0",
     ] {
         let out = premio(folder.path(), words);
         assert_eq!(out.status.code(), Some(2), "{words}");

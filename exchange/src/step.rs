@@ -12,6 +12,7 @@ mod shape;
 
 use crate::seamed::{SeamError, Seamed};
 use crate::spline::SplineError;
+use crate::unit::Unit;
 use part21::Exchange;
 use premio_kernel::brep::Brep;
 
@@ -23,22 +24,6 @@ pub enum Protocol {
     Ap242,
     /// Core data for automotive mechanical design.
     Ap214,
-}
-
-/// The unit of lengths in a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unit {
-    /// Metres.
-    Metre,
-    /// Centimetres.
-    Centimetre,
-    /// Millimetres.
-    #[default]
-    Millimetre,
-    /// Micrometres.
-    Micrometre,
-    /// Inches of 25.4 mm.
-    Inch,
 }
 
 /// What a file is to say.

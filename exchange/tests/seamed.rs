@@ -5,6 +5,7 @@ use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_exchange::seamed::{SeamError, Seamed};
 use premio_exchange::step;
+use premio_exchange::unit::Unit;
 use premio_kernel::brep::topology::Sense;
 use std::collections::HashMap;
 
@@ -158,7 +159,7 @@ fn a_seam_has_no_splines() {
     let options = step::Options {
         name: "ball".to_owned(),
         protocol: step::Protocol::Ap214,
-        unit: step::Unit::Inch,
+        unit: Unit::Inch,
         accuracy: 1e-6,
         resolution: known.resolution,
     };
@@ -176,7 +177,7 @@ fn every_instance_of_a_file_is_written_before_it_is_named() {
         let options = step::Options {
             name: (*name).to_owned(),
             protocol: step::Protocol::Ap242,
-            unit: step::Unit::Millimetre,
+            unit: Unit::Millimetre,
             accuracy: 1e-6,
             resolution: known.resolution,
         };

@@ -1,17 +1,15 @@
 """STEP files read back by OpenCASCADE: valid by its checker, of one volume with the boundary, of as
 many solids, and of as many faces after its own merging.
 
-On every named case, and on every file of the corpus if PREMIO_CORPUS names its folder. A known
-failure is listed with its reason; one that no longer fails has to be taken off the list.
+A known failure is listed with its reason; one that no longer fails has to be taken off the list.
 """
 
-import json
-import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from descriptions import descriptions, measures
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
@@ -21,8 +19,6 @@ from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
-
-CASES = Path(__file__).parent.parent / "cases"
 
 # A face that an edge of four faces parts is one face once that edge is two.
 PARTED = "faces that are parted where four meet are merged"
@@ -40,8 +36,6 @@ KNOWN = {
 }
 # Volumes may differ by this part.
 VOLUME = 1e-6
-# The program's status for what is refused, and for what is no description.
-REFUSED, UNREAD = 3, 2
 
 
 def count(shape, kind):
@@ -63,11 +57,8 @@ def shape_in(path):
 
 def faults(premio, description, folder):
     """What is wrong with a description's STEP file; none where the program has none to write."""
-    known = subprocess.run([premio, "info", description, "--json"], capture_output=True, text=True)
-    if known.returncode in (REFUSED, UNREAD):
-        return None
-    known = json.loads(known.stdout)
-    if known["solids"] == 0:
+    known = measures(premio, description)
+    if known is None:
         return None
     out = Path(folder) / "out.step"
     command = [premio, "export", description, "--format", "step", "-o", str(out)]
@@ -92,22 +83,6 @@ def faults(premio, description, folder):
         ("faces", count(unifier.Shape(), TopAbs_FACE), known["faces"]),
     ]
     return found + [f"{n} {what}, not {m}" for what, n, m in sides if n != m]
-
-
-def descriptions(folder):
-    """Every description with its name; those of the corpus are trees in a table, and files."""
-    for case in sorted(CASES.iterdir()):
-        yield case.name, str(case / "model.padl")
-    corpus = os.environ.get("PREMIO_CORPUS")
-    if not corpus:
-        print("PREMIO_CORPUS is not set: the corpus is passed over")
-        return
-    for path in sorted(Path(corpus).glob("openscad/*.csg")):
-        yield path.name, str(path)
-    for case in json.loads((Path(corpus) / "cases.json").read_text()):
-        path = Path(folder) / f"{case['id']}.json"
-        path.write_text(json.dumps(case["tree"]))
-        yield case["id"], str(path)
 
 
 def main():

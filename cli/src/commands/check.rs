@@ -10,7 +10,7 @@ pub fn run(options: &CheckOptions) -> Result<(), Failure> {
     let part = input::part(&options.description)?;
     let checker = Checker::new(&part.description.tree, &part.evaluation);
     let report = checker.all(options.rays as usize);
-    output::write(&report.to_string(), None)?;
+    output::write(report.to_string(), None)?;
     if report.holds() {
         Ok(())
     } else {

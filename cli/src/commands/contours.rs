@@ -28,8 +28,8 @@ pub fn run(options: &ContoursOptions) -> Result<(), Failure> {
             }
             output::json(&seen, to)
         }
-        ContoursFormat::Svg => output::write(&svg::write(&drawing(&seen, options)), to),
-        ContoursFormat::Dxf => output::write(&dxf::write(&drawing(&seen, options)), to),
+        ContoursFormat::Svg => output::write(svg::write(&drawing(&seen, options)), to),
+        ContoursFormat::Dxf => output::write(dxf::write(&drawing(&seen, options)), to),
     }
 }
 

@@ -5,16 +5,52 @@ use crate::diagnostics::{self, Failure, counted};
 use crate::input::Part;
 use crate::{input, output};
 use premio_csg::model::Model;
-use premio_exchange::step::{self, Protocol, Unit};
+use premio_exchange::mesh::{Facets, MeshError, glb, obj, stl, threemf};
+use premio_exchange::step::{self, Protocol};
+use premio_exchange::unit::Unit;
+use premio_kernel::tessellation::Accuracy;
 
 /// Runs the command.
 pub fn run(options: &ExportOptions) -> Result<(), Failure> {
+    refuse_what_is_not_asked(options)?;
     let part = input::part(&options.description)?;
     let to = options.output.as_deref();
-    match options.format {
-        ExportFormat::Json => output::json(&Model::of(&part.evaluation.brep), to),
-        ExportFormat::Step => output::write(&as_step(&part, options)?, to),
+    let bytes = match options.format {
+        ExportFormat::Json => return output::json(&Model::of(&part.evaluation.brep), to),
+        ExportFormat::Step => as_step(&part, options)?.into_bytes(),
+        ExportFormat::Stl | ExportFormat::Obj | ExportFormat::Glb | ExportFormat::ThreeMf => {
+            let failed = |e| Failure::limit(format!("{}: {e}", part.name));
+            as_triangles(&part, options).map_err(failed)?
+        }
+    };
+    output::write(&bytes, to)?;
+    tell_parted(&part, options.format);
+    Ok(())
+}
+
+/// An option that says nothing in the format is a mistake.
+fn refuse_what_is_not_asked(options: &ExportOptions) -> Result<(), Failure> {
+    use ExportFormat::{Glb, Obj, Step, Stl, ThreeMf};
+    let meshes: &[ExportFormat] = &[Stl, Obj, Glb, ThreeMf];
+    let given: [(&str, bool, &[ExportFormat]); 6] = [
+        ("accuracy", options.accuracy.is_some(), &[Step]),
+        ("protocol", options.protocol.is_some(), &[Step]),
+        ("deviation", options.deviation.is_some(), meshes),
+        ("angle", options.angle.is_some(), meshes),
+        ("unit", options.unit.is_some(), &[Step, Glb, ThreeMf]),
+        ("name", options.name.is_some(), &[Step, Obj, Glb, ThreeMf]),
+    ];
+    for (option, is_given, formats) in given {
+        if is_given && !formats.contains(&options.format) {
+            let formats: Vec<&str> = formats.iter().map(|f| f.name()).collect();
+            let formats = formats.join(", ");
+            return Err(Failure::input(format!(
+                "`--{option}` does not go with `--format {}`, only with {formats}",
+                options.format.name()
+            )));
+        }
     }
+    Ok(())
 }
 
 /// Splines are within this part of the part's size of the curves they follow.
@@ -23,33 +59,77 @@ const ACCURACY: f64 = 1.0 / 1_000_000.0;
 fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
     let evaluation = &part.evaluation;
     let size = evaluation.tight_bounds().diagonal();
-    let stem = options.description.file.file_stem().unwrap_or_default();
     let how = step::Options {
-        name: match &options.name {
-            Some(name) => name.clone(),
-            None => stem.to_string_lossy().into_owned(),
-        },
+        name: name(options),
         protocol: match options.protocol {
-            StepProtocol::Ap242 => Protocol::Ap242,
-            StepProtocol::Ap214 => Protocol::Ap214,
+            None | Some(StepProtocol::Ap242) => Protocol::Ap242,
+            Some(StepProtocol::Ap214) => Protocol::Ap214,
         },
-        unit: match options.unit {
-            LengthUnit::M => Unit::Metre,
-            LengthUnit::Cm => Unit::Centimetre,
-            LengthUnit::Mm => Unit::Millimetre,
-            LengthUnit::Um => Unit::Micrometre,
-            LengthUnit::In => Unit::Inch,
-        },
+        unit: unit(options),
         accuracy: options.accuracy.unwrap_or(ACCURACY * size),
         resolution: evaluation.resolution_of_doubles(),
     };
-    let text = step::write(&evaluation.brep, &how)
-        .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))?;
-    let parted = evaluation.brep.topology.edges_of_many_faces();
-    if parted > 0 {
-        let edges = counted(parted, "edge");
-        let said = format!("{edges} of more than two faces: each pair of faces has its own");
-        diagnostics::note(&part.name, &said);
+    step::write(&evaluation.brep, &how).map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
+}
+
+/// Triangles are within this part of the part's size of the boundary.
+const DEVIATION: f64 = 1.0 / 2000.0;
+
+/// How many degrees normals turn along a triangle's side.
+const ANGLE: f64 = 15.0;
+
+fn as_triangles(part: &Part, options: &ExportOptions) -> Result<Vec<u8>, MeshError> {
+    let evaluation = &part.evaluation;
+    let size = evaluation.tight_bounds().diagonal();
+    let accuracy = Accuracy {
+        deviation: options.deviation.unwrap_or(DEVIATION * size),
+        angle: options.angle.unwrap_or(ANGLE).to_radians(),
+    };
+    let band = evaluation.resolution_of_doubles();
+    let facets = Facets::of(&evaluation.brep, &accuracy, band)?;
+    let name = name(options);
+    match options.format {
+        ExportFormat::Obj => Ok(obj::write(&facets, &name).into_bytes()),
+        ExportFormat::Glb => glb::write(&facets, &name, unit(options)),
+        ExportFormat::ThreeMf => threemf::write(&facets, &name, unit(options)),
+        ExportFormat::Stl | ExportFormat::Step | ExportFormat::Json => stl::write(&facets),
     }
-    Ok(text)
+}
+
+/// What the part is called.
+fn name(options: &ExportOptions) -> String {
+    let stem = options.description.file.file_stem().unwrap_or_default();
+    match &options.name {
+        Some(name) => name.clone(),
+        None => stem.to_string_lossy().into_owned(),
+    }
+}
+
+fn unit(options: &ExportOptions) -> Unit {
+    match options.unit {
+        Some(LengthUnit::M) => Unit::Metre,
+        Some(LengthUnit::Cm) => Unit::Centimetre,
+        None | Some(LengthUnit::Mm) => Unit::Millimetre,
+        Some(LengthUnit::Um) => Unit::Micrometre,
+        Some(LengthUnit::In) => Unit::Inch,
+    }
+}
+
+/// Says what became of edges of more than two faces.
+fn tell_parted(part: &Part, format: ExportFormat) {
+    let parted = part.evaluation.brep.topology.edges_of_many_faces();
+    if parted == 0 {
+        return;
+    }
+    let edges = counted(parted, "edge");
+    let became = match format {
+        ExportFormat::Json => return,
+        ExportFormat::Step => "each pair of faces has its own",
+        ExportFormat::Obj | ExportFormat::ThreeMf => "each pair of faces has points of its own",
+        ExportFormat::Stl | ExportFormat::Glb => {
+            "readers that make one of points in one place find more than two triangles there"
+        }
+    };
+    let said = format!("{edges} of more than two faces: {became}");
+    diagnostics::note(&part.name, &said);
 }

@@ -68,7 +68,7 @@ fn tell(options: &FuzzOptions, summary: &Summary, stopped: bool) -> Result<(), F
     let to = options.output.as_deref();
     match options.json {
         true => output::json(summary, to)?,
-        false => output::write(&summary.to_string(), to)?,
+        false => output::write(summary.to_string(), to)?,
     }
     match (stopped, summary.wrong) {
         (true, _) => Err(Failure::Interrupted),

@@ -70,7 +70,7 @@ pub fn run(options: &InfoOptions) -> Result<(), Failure> {
     if options.json {
         output::json(&info, None)
     } else {
-        output::write(&info.to_string(), None)
+        output::write(info.to_string(), None)
     }
 }
 

@@ -1,0 +1,100 @@
+//! Triangles for other programs: STL, OBJ, glTF and 3MF.
+//!
+//! The kernel's mesh follows the boundary; here every side of a triangle gets two triangles, no more
+//! (`parted`), triangles that rounding leaves without an area are taken out (`sound`), and what is left
+//! is written, by the crates that keep to the formats: binary STL, OBJ (which no crate writes in
+//! doubles), binary glTF and 3MF.
+
+pub mod glb;
+pub mod obj;
+mod parted;
+mod single;
+mod sound;
+pub mod stl;
+pub mod threemf;
+
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::topology::FaceId;
+use premio_kernel::tessellation::{Accuracy, TessellationError, tessellate};
+
+/// A triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    /// Its corners among the points, counterclockwise as seen from outside.
+    pub corners: [u32; 3],
+    /// The outward normals of the face's surface at the corners.
+    pub normals: [Vector3<f64>; 3],
+    /// The face it follows.
+    pub face: FaceId,
+    /// The number of the solid that it is of.
+    pub solid: usize,
+}
+
+/// The triangles of a part: every side of one is a side of exactly one other, run the other way, and
+/// none is without an area.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Facets {
+    /// The corners. Where solids or pieces of one touch, each has its own.
+    pub points: Vec<Point3<f64>>,
+    /// The triangles, solid by solid, face by face.
+    pub facets: Vec<Facet>,
+    /// The points along each edge that is not smooth.
+    pub lines: Vec<Vec<Point3<f64>>>,
+    /// The greatest distance from a triangle to the surface.
+    pub deviation: f64,
+}
+
+/// Why a part is not written as triangles.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// There is no solid.
+    #[error("the part is empty: there is no solid to write")]
+    Empty,
+    /// The boundary is not followed.
+    #[error(transparent)]
+    Tessellation(#[from] TessellationError),
+    /// More than two triangles share a side, and it is not told which belong together.
+    #[error("triangles touch at ({:.9}, {:.9}, {:.9}), and it is not told which belong together", place[0], place[1], place[2])]
+    Touching {
+        /// An end of the side.
+        place: [f64; 3],
+    },
+    /// Numbers of the format cannot tell the points apart.
+    #[error("the format's numbers are too coarse for triangles at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
+    Coarse {
+        /// A point there.
+        place: [f64; 3],
+    },
+    /// The format cannot hold so much.
+    #[error("{triangles} triangles are more than the format holds")]
+    TooMany {
+        /// How many there are.
+        triangles: usize,
+    },
+}
+
+impl Facets {
+    /// The triangles of a boundary; `band` is the part's resolution.
+    pub fn of(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Self, MeshError> {
+        if brep.topology.solids.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        let mesh = tessellate(brep, accuracy, band)?;
+        let mut facets = parted::facets(brep, &mesh)?;
+        facets.deviation = accuracy.deviation;
+        facets.facets.sort_by_key(|f| f.solid);
+        sound::mend(&facets.points, &mut facets.facets)?;
+        Ok(facets)
+    }
+
+    /// The triangles of each solid.
+    pub fn solids(&self) -> impl Iterator<Item = &[Facet]> {
+        self.facets.chunk_by(|a, b| a.solid == b.solid)
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, facet: &Facet) -> [Point3<f64>; 3] {
+        facet.corners.map(|c| self.points[c as usize])
+    }
+}

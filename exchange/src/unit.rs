@@ -1,0 +1,30 @@
+//! What a length of 1 is.
+
+/// The unit of lengths in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unit {
+    /// Metres.
+    Metre,
+    /// Centimetres.
+    Centimetre,
+    /// Millimetres.
+    #[default]
+    Millimetre,
+    /// Micrometres.
+    Micrometre,
+    /// Inches of 25.4 mm.
+    Inch,
+}
+
+impl Unit {
+    /// How long it is, in millimetres.
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Metre => 1000.0,
+            Self::Centimetre => 10.0,
+            Self::Millimetre => 1.0,
+            Self::Micrometre => 0.001,
+            Self::Inch => 25.4,
+        }
+    }
+}

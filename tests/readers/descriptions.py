@@ -1,0 +1,35 @@
+"""What is exported and read back: every named case, and the corpus if PREMIO_CORPUS names its folder."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+CASES = Path(__file__).parent.parent / "cases"
+# The program's status for what is refused, and for what is no description.
+REFUSED, UNREAD = 3, 2
+
+
+def descriptions(folder):
+    """Every description with its name; those of the corpus are trees in a table, and files."""
+    for case in sorted(CASES.iterdir()):
+        yield case.name, str(case / "model.padl")
+    corpus = os.environ.get("PREMIO_CORPUS")
+    if not corpus:
+        print("PREMIO_CORPUS is not set: the corpus is passed over")
+        return
+    for path in sorted(Path(corpus).glob("openscad/*.csg")):
+        yield path.name, str(path)
+    for case in json.loads((Path(corpus) / "cases.json").read_text()):
+        path = Path(folder) / f"{case['id']}.json"
+        path.write_text(json.dumps(case["tree"]))
+        yield case["id"], str(path)
+
+
+def measures(premio, description):
+    """What the program tells of a description; none where it has no solid to write."""
+    known = subprocess.run([premio, "info", description, "--json"], capture_output=True, text=True)
+    if known.returncode in (REFUSED, UNREAD):
+        return None
+    known = json.loads(known.stdout)
+    return known if known["solids"] > 0 else None

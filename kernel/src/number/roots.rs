@@ -136,7 +136,11 @@ pub fn probes<N: Number>() -> impl Iterator<Item = N> {
     (1..=PROBES).map(|k| (N::whole(k) * N::of(0.618_033_988_749_895)).fract())
 }
 
-/// From so many halvings of a piece on a polynomial is tried.
+/// After so many halvings of a piece, and again after twice as many, a polynomial is tried for all that
+/// is left of it.
+const SOME: u32 = 8;
+
+/// From so many halvings of a piece on a polynomial is tried for each of its parts.
 const MANY: u32 = 64;
 
 /// How far a polynomial may be off, as a part of the band: less than half of the fringe, so that
@@ -263,6 +267,10 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
                 continue;
             }
             halved += 1;
+            let all = halved >= SOME && halved.is_power_of_two();
+            if all && !N::IS_DOUBLE && self.interpolated(a, whole.1) {
+                return;
+            }
             if halved > MANY && !N::IS_DOUBLE && self.interpolated(a, b) {
                 continue;
             }

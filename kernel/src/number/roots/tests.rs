@@ -1,4 +1,6 @@
 use super::*;
+use crate::number::wide::Wide;
+use std::cell::Cell;
 
 fn roots(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<Root> {
     match isolate(&|t| f(Jet::variable(t)), breaks, 1e-11) {
@@ -149,4 +151,33 @@ fn what_rounding_hides_is_told_in_few_pieces() {
     assert_eq!(roots[0].contact, Contact::Touching);
     assert!(roots[0].t.abs() < 6e-3, "{roots:?}");
     assert!(asked.get() < 10_000, "{}", asked.get());
+}
+
+/// Along a curve that is solved for ranges are far wider than values. What runs along zero by 1e-20 all
+/// over a piece is told from the polynomial that it is, not by halving down to where it starts.
+#[test]
+fn what_runs_along_zero_is_told_at_once() {
+    struct Along<'a>(&'a Cell<usize>);
+    impl Function<Wide> for Along<'_> {
+        fn over(&self, t: Interval<Wide>) -> Jet<Interval<Wide>> {
+            self.0.set(self.0.get() + 1);
+            let wave = Jet::variable(t).times(3.0).sin_cos().0.times(1e-20);
+            let width = t.width();
+            let around = |v: Interval<Wide>| v + Interval::new(-width, width);
+            Jet {
+                v: around(wave.v),
+                d: around(wave.d),
+                dd: Interval::ENTIRE,
+            }
+        }
+    }
+    let asked = Cell::new(0);
+    let ends = [Wide::of(0.5), Wide::of(1.5)];
+    let zeros = isolate(&Along(&asked), &ends, Wide::of(1e-45));
+    let Zeros::At { roots, .. } = zeros else {
+        panic!("everywhere");
+    };
+    let found: Vec<f64> = roots.iter().map(|r| r.t.rounded()).collect();
+    assert_eq!(found, [std::f64::consts::FRAC_PI_3]);
+    assert!(asked.get() < 200, "{}", asked.get());
 }

@@ -3,6 +3,8 @@
 use crate::fuzz::profile::Profile;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use premio_kernel::unit::Unit;
+use premio_visibility::drawing::sheet::Scale;
 use std::path::PathBuf;
 
 /// From a description of a solid to its exact boundary and to what a camera sees of it.
@@ -28,7 +30,8 @@ pub enum Command {
     /// What a camera sees: contours with their visibility
     #[command(
         after_help = "Examples: premio contours part.padl --eye 30,-40,25 --target 0,0,0 --format svg -o part.svg
-          premio contours part.padl --camera view.json --format json --samples 5"
+          premio contours part.padl --camera view.json --format json --samples 5
+          premio contours part.padl --views front,top,right,iso --hidden --format dxf -o part.dxf"
     )]
     Contours(ContoursOptions),
     /// Every self-check there is, on one description
@@ -76,6 +79,14 @@ pub struct DescriptionOptions {
     pub smooth: bool,
 }
 
+impl DescriptionOptions {
+    /// The file's name, without its folder and its ending.
+    pub fn stem(&self) -> String {
+        let stem = self.file.file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    }
+}
+
 /// Options of `info`.
 #[derive(Debug, Args)]
 pub struct InfoOptions {
@@ -93,6 +104,8 @@ pub struct ContoursOptions {
     pub description: DescriptionOptions,
     #[command(flatten)]
     pub camera: CameraOptions,
+    #[command(flatten)]
+    pub sheet: SheetOptions,
     /// What to write
     #[arg(long, value_enum)]
     pub format: ContoursFormat,
@@ -115,7 +128,7 @@ pub struct ContoursOptions {
 pub struct CameraOptions {
     /// A file with the camera as JSON
     #[arg(long, value_name = "CAM.json", conflicts_with_all = ["eye", "target", "up", "focal", "ortho"],
-          required_unless_present = "eye")]
+          required_unless_present_any = ["eye", "views"])]
     pub camera: Option<PathBuf>,
     /// Where the eye is
     #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true, requires = "target")]
@@ -133,6 +146,74 @@ pub struct CameraOptions {
     /// Parallel instead of central projection
     #[arg(long)]
     pub ortho: bool,
+}
+
+/// A sheet of paper with a frame and a title block; any of these asks for it.
+#[derive(Debug, Args)]
+pub struct SheetOptions {
+    /// Views beside one another on a sheet, in place of a camera (svg, dxf)
+    #[arg(long, value_enum, value_name = "VIEWS", value_delimiter = ',',
+          conflicts_with_all = ["camera", "eye", "target", "up", "focal", "ortho"])]
+    pub views: Vec<ViewName>,
+    /// The paper, lying (svg, dxf) [default: a3]
+    #[arg(long, value_enum, value_name = "PAPER")]
+    pub paper: Option<PaperSize>,
+    /// How long on paper what length of the part is, as 1:2 (svg, dxf) [default: the greatest of 1, 2,
+    /// 5, 10 and so on that has room]
+    #[arg(long, value_name = "A:B", value_parser = scale)]
+    pub scale: Option<Scale>,
+    /// What stands in the title block (svg, dxf) [default: the file's name]
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
+    /// What the part's unit is (svg, dxf) [default: mm]
+    #[arg(long, value_enum, value_name = "UNIT")]
+    pub unit: Option<LengthUnit>,
+    /// Where views stand: across from where they are seen from, or there (svg, dxf) [default: first]
+    #[arg(long, value_enum, value_name = "ANGLE")]
+    pub projection: Option<ProjectionAngle>,
+}
+
+/// The views of a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ViewName {
+    /// Along y: x to the right, z up
+    Front,
+    /// Against y
+    Back,
+    /// Along x
+    Left,
+    /// Against x: y to the right, z up
+    Right,
+    /// From above: x to the right, y up
+    Top,
+    /// From below
+    Bottom,
+    /// Front, right and top at once
+    Iso,
+}
+
+/// The papers of a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PaperSize {
+    /// 1189 mm by 841 mm
+    A0,
+    /// 841 mm by 594 mm
+    A1,
+    /// 594 mm by 420 mm
+    A2,
+    /// 420 mm by 297 mm
+    A3,
+    /// 297 mm by 210 mm
+    A4,
+}
+
+/// Where views stand around the front view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProjectionAngle {
+    /// The view from above stands below
+    First,
+    /// The view from above stands above
+    Third,
 }
 
 /// Options of `check`.
@@ -192,6 +273,18 @@ pub enum LengthUnit {
     Um,
     /// Inches
     In,
+}
+
+impl From<LengthUnit> for Unit {
+    fn from(unit: LengthUnit) -> Self {
+        match unit {
+            LengthUnit::M => Self::Metre,
+            LengthUnit::Cm => Self::Centimetre,
+            LengthUnit::Mm => Self::Millimetre,
+            LengthUnit::Um => Self::Micrometre,
+            LengthUnit::In => Self::Inch,
+        }
+    }
 }
 
 /// The application protocol of a STEP file.
@@ -364,6 +457,17 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A scale: two positive numbers with a colon between.
+fn scale(text: &str) -> Result<Scale, String> {
+    let wrong = || "expected two positive numbers, as in `1:2`".to_owned();
+    let (drawn, of) = text.split_once(':').ok_or_else(wrong)?;
+    let number = |text: &str| positive(text.trim()).map_err(|_| wrong());
+    Ok(Scale {
+        drawn: number(drawn)?,
+        of: number(of)?,
+    })
+}
+
 /// A length of time that a clock can wait for.
 fn seconds(text: &str) -> Result<f64, String> {
     positive(text).and_then(|value| match value < 1e6 {
@@ -420,6 +524,12 @@ mod tests {
         assert!(!parse("--eye 1,2,nan --target 0,0,0"));
         assert!(!parse("--eye 1,2,3 --target 0,0,0 --focal 2 --ortho"));
         assert!(!parse("--camera c.json --ortho"));
+        assert!(parse("--views front,iso --paper a4 --scale 1:2.5"));
+        assert!(!parse("--views front --camera c.json"));
+        assert!(!parse("--views front --eye 1,2,3 --target 0,0,0"));
+        assert!(!parse("--views side"));
+        assert!(!parse("--views front --scale 2"));
+        assert!(!parse("--views front --scale 1:0"));
         assert!(!parse("--camera c.json --samples 0"));
     }
 }

@@ -88,6 +88,14 @@ fn contours() {
 }
 
 #[test]
+fn sheets() {
+    let words = "contours part.padl --views front,top,right,iso --hidden --title 5<6 --format";
+    let written = |format: &str| said(BLOCK, &format!("{words} {format}"));
+    insta::assert_snapshot!("sheet_block_svg", written("svg"));
+    insta::assert_snapshot!("sheet_block_dxf", dxf(&written("dxf")));
+}
+
+#[test]
 fn export() {
     insta::assert_snapshot!(
         "export_block",

@@ -10,4 +10,3 @@ mod parameters;
 pub mod seamed;
 pub mod spline;
 pub mod step;
-pub mod unit;

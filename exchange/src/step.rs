@@ -12,9 +12,9 @@ mod shape;
 
 use crate::seamed::{SeamError, Seamed};
 use crate::spline::SplineError;
-use crate::unit::Unit;
 use part21::Exchange;
 use premio_kernel::brep::Brep;
+use premio_kernel::unit::Unit;
 
 /// The application protocol that a file names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

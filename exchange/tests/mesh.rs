@@ -7,9 +7,9 @@ use nalgebra::{Point3, Vector3};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_exchange::mesh::{Facets, MeshError, glb, obj, stl};
-use premio_exchange::unit::Unit;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::tessellation::Accuracy;
+use premio_kernel::unit::Unit;
 use std::collections::HashSet;
 use std::io::Cursor;
 

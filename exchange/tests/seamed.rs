@@ -5,8 +5,8 @@ use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_exchange::seamed::{SeamError, Seamed};
 use premio_exchange::step;
-use premio_exchange::unit::Unit;
 use premio_kernel::brep::topology::Sense;
+use premio_kernel::unit::Unit;
 use std::collections::HashMap;
 
 /// Parts, with how many faces they have in the end, edges and vertices.

@@ -7,3 +7,4 @@ pub mod motion;
 pub mod number;
 pub mod proof;
 pub mod tessellation;
+pub mod unit;

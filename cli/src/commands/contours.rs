@@ -1,10 +1,15 @@
 //! `premio contours`: what a camera sees.
 
-use crate::arguments::{ContoursFormat, ContoursOptions};
+use crate::arguments::{ContoursFormat, ContoursOptions, PaperSize, ProjectionAngle};
+use crate::arguments::{SheetOptions, ViewName};
 use crate::diagnostics::Failure;
+use crate::input::Part;
 use crate::{input, output};
+use nalgebra::Point3;
+use premio_kernel::unit::Unit;
+use premio_visibility::drawing::sheet::{self, Angle, Paper, Sheet, View};
 use premio_visibility::drawing::{self, Drawing, dxf, svg};
-use premio_visibility::{Contours, contours};
+use premio_visibility::{Camera, Contours, contours};
 
 /// Why there is no view of some parts.
 const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do not tell them apart: \
@@ -12,15 +17,13 @@ const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do n
 
 /// Runs the command.
 pub fn run(options: &ContoursOptions) -> Result<(), Failure> {
+    let to = options.output.as_deref();
+    if options.sheet.is_asked() {
+        return output::write(on_sheet(options)?, to);
+    }
     let camera = input::camera(&options.camera)?;
     let part = input::part(&options.description)?;
-    let evaluation = &part.evaluation;
-    let Some(resolution) = evaluation.resolution_of_views() else {
-        return Err(Failure::limit(format!("{}: {UNSEEN}", part.name)));
-    };
-    let mut seen = contours(&evaluation.brep, &camera, resolution)
-        .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))?;
-    let to = options.output.as_deref();
+    let mut seen = seen(&part, &camera)?;
     match options.format {
         ContoursFormat::Json => {
             if let Some(n) = options.samples {
@@ -33,6 +36,15 @@ pub fn run(options: &ContoursOptions) -> Result<(), Failure> {
     }
 }
 
+fn seen(part: &Part, camera: &Camera) -> Result<Contours, Failure> {
+    let evaluation = &part.evaluation;
+    let Some(resolution) = evaluation.resolution_of_views() else {
+        return Err(Failure::limit(format!("{}: {UNSEEN}", part.name)));
+    };
+    contours(&evaluation.brep, camera, resolution)
+        .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
+}
+
 fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
     let how = drawing::Options {
         hidden: options.hidden,
@@ -40,4 +52,109 @@ fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
         ..drawing::Options::default()
     };
     Drawing::new(seen, &how)
+}
+
+/// The views, or that of the camera, on a sheet.
+fn on_sheet(options: &ContoursOptions) -> Result<String, Failure> {
+    let write = match options.format {
+        ContoursFormat::Json => {
+            return Err(Failure::input(
+                "a sheet goes with --format svg and dxf only",
+            ));
+        }
+        ContoursFormat::Svg => svg::write_sheet,
+        ContoursFormat::Dxf => dxf::write_sheet,
+    };
+    let asked = &options.sheet;
+    let alone = match asked.views.is_empty() {
+        true => Some(input::camera(&options.camera)?),
+        false => None,
+    };
+    let part = input::part(&options.description)?;
+    let cameras = match alone {
+        Some(camera) => vec![(None, camera)],
+        None => cameras(&part, &asked.views)?,
+    };
+    let mut views = Vec::new();
+    for (view, camera) in cameras {
+        views.push((view, drawing(&seen(&part, &camera)?, options)));
+    }
+    let title = asked.title.clone();
+    let how = sheet::Options {
+        title: title.unwrap_or_else(|| options.description.stem()),
+        unit: asked.unit.map(Unit::from).unwrap_or_default(),
+        paper: asked.paper.map(Paper::from).unwrap_or_default(),
+        scale: asked.scale,
+        angle: asked.projection.map(Angle::from).unwrap_or_default(),
+    };
+    let sheet = Sheet::of(views, how).map_err(|e| Failure::input(e.to_string()))?;
+    Ok(write(&sheet))
+}
+
+/// The cameras of views of a part about its middle, each once.
+fn cameras(part: &Part, names: &[ViewName]) -> Result<Vec<(Option<View>, Camera)>, Failure> {
+    let evaluation = &part.evaluation;
+    let (middle, size) = match evaluation.brep.topology.faces.is_empty() {
+        true => (Point3::origin(), 1.0),
+        false => {
+            let bounds = evaluation.tight_bounds();
+            (bounds.centre(), bounds.diagonal())
+        }
+    };
+    let mut cameras: Vec<(Option<View>, Camera)> = Vec::new();
+    for &name in names {
+        let view = View::from(name);
+        if !cameras.iter().any(|(known, _)| *known == Some(view)) {
+            let camera = view.camera(middle, size);
+            let camera = camera.map_err(|e| Failure::limit(e.to_string()))?;
+            cameras.push((Some(view), camera));
+        }
+    }
+    Ok(cameras)
+}
+
+impl SheetOptions {
+    fn is_asked(&self) -> bool {
+        !self.views.is_empty()
+            || self.paper.is_some()
+            || self.scale.is_some()
+            || self.title.is_some()
+            || self.unit.is_some()
+            || self.projection.is_some()
+    }
+}
+
+impl From<ViewName> for View {
+    fn from(name: ViewName) -> Self {
+        match name {
+            ViewName::Front => Self::Front,
+            ViewName::Back => Self::Back,
+            ViewName::Left => Self::Left,
+            ViewName::Right => Self::Right,
+            ViewName::Top => Self::Top,
+            ViewName::Bottom => Self::Bottom,
+            ViewName::Iso => Self::Isometric,
+        }
+    }
+}
+
+impl From<PaperSize> for Paper {
+    fn from(size: PaperSize) -> Self {
+        match size {
+            PaperSize::A0 => Self::A0,
+            PaperSize::A1 => Self::A1,
+            PaperSize::A2 => Self::A2,
+            PaperSize::A3 => Self::A3,
+            PaperSize::A4 => Self::A4,
+        }
+    }
+}
+
+impl From<ProjectionAngle> for Angle {
+    fn from(angle: ProjectionAngle) -> Self {
+        match angle {
+            ProjectionAngle::First => Self::First,
+            ProjectionAngle::Third => Self::Third,
+        }
+    }
 }

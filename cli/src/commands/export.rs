@@ -1,14 +1,14 @@
 //! `premio export`: the boundary in a format of choice.
 
-use crate::arguments::{ExportFormat, ExportOptions, LengthUnit, StepProtocol};
+use crate::arguments::{ExportFormat, ExportOptions, StepProtocol};
 use crate::diagnostics::{self, Failure, counted};
 use crate::input::Part;
 use crate::{input, output};
 use premio_csg::model::Model;
 use premio_exchange::mesh::{Facets, MeshError, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
-use premio_exchange::unit::Unit;
 use premio_kernel::tessellation::Accuracy;
+use premio_kernel::unit::Unit;
 
 /// Runs the command.
 pub fn run(options: &ExportOptions) -> Result<(), Failure> {
@@ -98,21 +98,12 @@ fn as_triangles(part: &Part, options: &ExportOptions) -> Result<Vec<u8>, MeshErr
 
 /// What the part is called.
 fn name(options: &ExportOptions) -> String {
-    let stem = options.description.file.file_stem().unwrap_or_default();
-    match &options.name {
-        Some(name) => name.clone(),
-        None => stem.to_string_lossy().into_owned(),
-    }
+    let given = options.name.clone();
+    given.unwrap_or_else(|| options.description.stem())
 }
 
 fn unit(options: &ExportOptions) -> Unit {
-    match options.unit {
-        Some(LengthUnit::M) => Unit::Metre,
-        Some(LengthUnit::Cm) => Unit::Centimetre,
-        None | Some(LengthUnit::Mm) => Unit::Millimetre,
-        Some(LengthUnit::Um) => Unit::Micrometre,
-        Some(LengthUnit::In) => Unit::Inch,
-    }
+    options.unit.map(Unit::from).unwrap_or_default()
 }
 
 /// Says what became of edges of more than two faces.

@@ -5,7 +5,6 @@
 
 use super::single::{Single, rounded};
 use super::{Facets, MeshError};
-use crate::unit::Unit;
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::buffer::{Buffer, Target, View};
@@ -14,6 +13,7 @@ use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Accessor, Asset, Extras, Index, Material, Mesh, Node, Root, Scene, serialize};
 use nalgebra::Point3;
+use premio_kernel::unit::Unit;
 use std::collections::{BTreeMap, HashMap};
 
 /// The colours of faces and of edges.

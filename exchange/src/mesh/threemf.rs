@@ -1,7 +1,7 @@
 //! 3MF: points in doubles, an object for each solid, the unit.
 
 use super::{Facet, Facets, MeshError};
-use crate::unit::Unit;
+use premio_kernel::unit::Unit;
 use std::collections::HashMap;
 use std::io::Cursor;
 use threemf2::model::builder::{MeshObjectBuilder, ModelBuilder, ObjectType, Unit as Length};

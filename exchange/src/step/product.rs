@@ -2,7 +2,7 @@
 
 use super::part21::{Exchange, Id, List, Real, quoted};
 use super::{Options, Protocol};
-use crate::unit::Unit;
+use premio_kernel::unit::Unit;
 
 /// The uncertainty that a file states is this part of the accuracy: readers make up to within it what
 /// a file leaves to them, such as where circles run in the parameters of faces.

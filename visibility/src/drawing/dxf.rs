@@ -1,7 +1,13 @@
 //! Drawings as DXF, release 2000, in text: LINE, CIRCLE, ARC, ELLIPSE and LWPOLYLINE, one layer
-//! for each kind and visibility.
+//! for each kind and visibility, with its line weight.
+//!
+//! On a sheet the part has its true size, in its own unit, and paper, frame and title block are as much
+//! larger as the scale makes it smaller.
 
+use super::sheet::{Mark, Sheet, Weight};
 use super::{Drawing, Layer, Shape, Stroke};
+use nalgebra::{Point2, Vector2};
+use premio_kernel::unit::Unit;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -77,19 +83,108 @@ fn layer_name(layer: Layer, visible: bool) -> String {
     format!("{}_{seen}", layer.name().to_uppercase())
 }
 
+/// How image units become those of the document.
+#[derive(Clone, Copy)]
+struct Placing {
+    scale: f64,
+    at: Vector2<f64>,
+}
+
+impl Placing {
+    fn point(&self, p: &Point2<f64>) -> Point2<f64> {
+        p * self.scale + self.at
+    }
+}
+
 /// The drawing as a DXF document.
 pub fn write(drawing: &Drawing) -> String {
+    let [lo, hi] = drawing.extent;
+    let head = Head {
+        // Millimetres where the image is in the part's unit, else none.
+        units: if drawing.to_scale { 4 } else { 0 },
+        extent: [lo, hi],
+        // Dashes that fit the drawing, whatever its size.
+        dashes: (hi - lo).norm().max(f64::MIN_POSITIVE) / 1000.0,
+    };
+    let placing = Placing {
+        scale: 1.0,
+        at: Vector2::zeros(),
+    };
+    document(&head, &[], |g, space| {
+        for stroke in &drawing.strokes {
+            entity(g, stroke, placing, space);
+        }
+    })
+}
+
+/// Twelve units of a line type's dash are 3 mm on paper.
+const DASH: f64 = 0.25;
+
+/// The sheet as a DXF document.
+pub fn write_sheet(sheet: &Sheet) -> String {
+    // Document units for a millimetre on paper, and for an image unit.
+    let (paper, image, units) = match sheet.scale {
+        Some(_) => (1.0 / sheet.factor, 1.0, code(sheet.options.unit)),
+        None => (1.0, sheet.factor, code(Unit::Millimetre)),
+    };
+    let head = Head {
+        units,
+        extent: [Point2::origin(), Point2::from(sheet.size * paper)],
+        dashes: DASH * paper,
+    };
+    document(&head, &[FRAME, TITLE], |g, space| {
+        for view in &sheet.views {
+            let placing = Placing {
+                scale: image,
+                at: view.at.coords * paper,
+            };
+            for stroke in &view.drawing.strokes {
+                entity(g, stroke, placing, space);
+            }
+        }
+        for mark in &sheet.marks {
+            furniture(g, mark, paper, space);
+        }
+    })
+}
+
+/// The number of a unit in `$INSUNITS`.
+fn code(unit: Unit) -> u32 {
+    match unit {
+        Unit::Inch => 1,
+        Unit::Millimetre => 4,
+        Unit::Centimetre => 5,
+        Unit::Metre => 6,
+        Unit::Micrometre => 13,
+    }
+}
+
+/// What differs between the heads of documents.
+struct Head {
+    units: u32,
+    extent: [Point2<f64>; 2],
+    dashes: f64,
+}
+
+/// The layers of a sheet's frame and of what else is in its title block, with their line weights in
+/// hundredths of a millimetre.
+const FRAME: (&str, u32) = ("FRAME", 70);
+const TITLE: (&str, u32) = ("TITLE", 25);
+
+fn document(
+    head: &Head,
+    layers: &[(&str, u32)],
+    entities: impl FnOnce(&mut Groups, u32),
+) -> String {
     let mut g = Groups {
         text: String::new(),
         next: 0x10,
     };
-    header(&mut g, drawing);
-    let spaces = tables(&mut g);
+    header(&mut g, head);
+    let spaces = tables(&mut g, layers);
     blocks(&mut g, spaces);
     g.section("ENTITIES");
-    for stroke in &drawing.strokes {
-        entity(&mut g, stroke, spaces[0]);
-    }
+    entities(&mut g, spaces[0]);
     g.put(0, "ENDSEC");
     g.section("OBJECTS");
     let root = g.object("DICTIONARY", 0, &["AcDbDictionary"]);
@@ -102,30 +197,28 @@ pub fn write(drawing: &Drawing) -> String {
     g.text
 }
 
-fn header(g: &mut Groups, drawing: &Drawing) {
+fn header(g: &mut Groups, head: &Head) {
     g.section("HEADER");
     g.put(9, "$ACADVER");
     g.put(1, "AC1015");
     g.put(9, "$HANDSEED");
     g.put(5, "FFFFFFF");
-    // Millimetres where the image is in the part's unit, else none.
     g.put(9, "$INSUNITS");
-    g.put(70, if drawing.to_scale { 4 } else { 0 });
+    g.put(70, head.units);
     g.put(9, "$MEASUREMENT");
     g.put(70, 1);
-    let [lo, hi] = drawing.extent;
+    let [lo, hi] = head.extent;
     g.put(9, "$EXTMIN");
     g.point(10, lo.x, lo.y);
     g.put(9, "$EXTMAX");
     g.point(10, hi.x, hi.y);
-    // Dashes that fit the drawing, whatever its size.
     g.put(9, "$LTSCALE");
-    g.number(40, (hi - lo).norm().max(f64::MIN_POSITIVE) / 1000.0);
+    g.number(40, head.dashes);
     g.put(0, "ENDSEC");
 }
 
 /// Writes the tables; gives the records of the model's and the paper's space.
-fn tables(g: &mut Groups) -> [u32; 2] {
+fn tables(g: &mut Groups, more: &[(&str, u32)]) -> [u32; 2] {
     g.section("TABLES");
     g.table("VPORT", 0);
     g.put(0, "ENDTAB");
@@ -135,12 +228,19 @@ fn tables(g: &mut Groups) -> [u32; 2] {
     }
     line_type(g, t, "DASHED", &[12.0, -6.0]);
     g.put(0, "ENDTAB");
-    let t = g.table("LAYER", 7);
-    layer(g, t, "0", true);
+    let t = g.table("LAYER", 7 + more.len());
+    layer(g, t, "0", true, SEEN);
     for l in Layer::ALL {
         for visible in [true, false] {
-            layer(g, t, &layer_name(l, visible), visible);
+            let weight = match l {
+                Layer::Boundary | Layer::Limb if visible => SEEN,
+                _ => SEEN / 2,
+            };
+            layer(g, t, &layer_name(l, visible), visible, weight);
         }
+    }
+    for (name, weight) in more {
+        layer(g, t, name, true, *weight);
     }
     g.put(0, "ENDTAB");
     let t = g.table("STYLE", 1);
@@ -187,11 +287,15 @@ fn line_type(g: &mut Groups, table: u32, name: &str, dashes: &[f64]) {
     }
 }
 
-fn layer(g: &mut Groups, table: u32, name: &str, visible: bool) {
+/// The line weight of what is seen, in hundredths of a millimetre; what is not seen, and smooth
+/// boundaries, have half of it (ISO 128).
+const SEEN: u32 = 50;
+
+fn layer(g: &mut Groups, table: u32, name: &str, visible: bool, weight: u32) {
     g.record("LAYER", table, "AcDbLayerTableRecord", name);
     g.put(62, if visible { 7 } else { 8 });
     g.put(6, if visible { "Continuous" } else { "DASHED" });
-    g.put(370, if visible { 35 } else { 18 });
+    g.put(370, weight);
 }
 
 fn blocks(g: &mut Groups, spaces: [u32; 2]) {
@@ -212,26 +316,73 @@ fn blocks(g: &mut Groups, spaces: [u32; 2]) {
     g.put(0, "ENDSEC");
 }
 
-fn entity(g: &mut Groups, stroke: &Stroke, owner: u32) {
-    let layer = layer_name(stroke.layer, stroke.visible);
-    let mut start = |name: &str, classes: &[&str]| {
-        g.object(name, owner, &["AcDbEntity"]);
-        g.put(8, &layer);
-        for class in classes {
-            g.put(100, class);
+/// Starts an entity on a layer.
+fn start(g: &mut Groups, name: &str, class: &str, layer: &str, owner: u32) {
+    g.object(name, owner, &["AcDbEntity"]);
+    g.put(8, layer);
+    g.put(100, class);
+}
+
+/// A part of a sheet's frame or title block; `paper` is how long a millimetre on paper is.
+fn furniture(g: &mut Groups, mark: &Mark, paper: f64, owner: u32) {
+    match mark {
+        Mark::Line([a, b], weight) => {
+            let (layer, _) = match weight {
+                Weight::Thick => FRAME,
+                Weight::Thin => TITLE,
+            };
+            start(g, "LINE", "AcDbLine", layer, owner);
+            g.point(10, a.x * paper, a.y * paper);
+            g.point(11, b.x * paper, b.y * paper);
         }
-    };
+        Mark::Circle(centre, radius) => {
+            start(g, "CIRCLE", "AcDbCircle", TITLE.0, owner);
+            g.point(10, centre.x * paper, centre.y * paper);
+            g.number(40, radius * paper);
+        }
+        Mark::Text(at, height, text) => {
+            start(g, "TEXT", "AcDbText", TITLE.0, owner);
+            g.point(10, at.x * paper, at.y * paper);
+            g.number(40, height * paper);
+            g.put(1, plain(text));
+            g.put(7, "Standard");
+            g.put(100, "AcDbText");
+        }
+    }
+}
+
+/// A text in one line, of letters that every code page has.
+fn plain(text: &str) -> String {
+    let mut out = String::new();
+    for letter in text.chars() {
+        match letter {
+            letter if letter.is_control() => out.push(' '),
+            letter if letter.is_ascii() => out.push(letter),
+            letter => {
+                // Letters beyond the first 65,536 are two.
+                for half in letter.encode_utf16(&mut [0; 2]) {
+                    let _ = write!(out, "\\U+{half:04X}");
+                }
+            }
+        }
+    }
+    out
+}
+
+fn entity(g: &mut Groups, stroke: &Stroke, placing: Placing, owner: u32) {
+    let layer = &layer_name(stroke.layer, stroke.visible);
     match &stroke.shape {
-        Shape::Line([a, b]) => {
-            start("LINE", &["AcDbLine"]);
+        Shape::Line(ends) => {
+            let [a, b] = ends.map(|p| placing.point(&p));
+            start(g, "LINE", "AcDbLine", layer, owner);
             g.point(10, a.x, a.y);
             g.point(11, b.x, b.y);
         }
         Shape::Path(points) => {
-            start("LWPOLYLINE", &["AcDbPolyline"]);
+            start(g, "LWPOLYLINE", "AcDbPolyline", layer, owner);
             g.put(90, points.len());
             g.put(70, 0);
-            for p in points {
+            for p in points.iter().map(|p| placing.point(p)) {
                 g.number(10, p.x);
                 g.number(20, p.y);
             }
@@ -244,9 +395,10 @@ fn entity(g: &mut Groups, stroke: &Stroke, owner: u32) {
             sweep,
         } => {
             let whole = *sweep >= TAU;
+            let (centre, major) = (placing.point(centre), major * placing.scale);
             let radius = major.norm();
             if 1.0 - ratio > ROUND {
-                start("ELLIPSE", &["AcDbEllipse"]);
+                start(g, "ELLIPSE", "AcDbEllipse", layer, owner);
                 g.point(10, centre.x, centre.y);
                 g.point(11, major.x, major.y);
                 g.number(40, *ratio);
@@ -256,7 +408,7 @@ fn entity(g: &mut Groups, stroke: &Stroke, owner: u32) {
                 return;
             }
             let name = if whole { "CIRCLE" } else { "ARC" };
-            start(name, &["AcDbCircle"]);
+            start(g, name, "AcDbCircle", layer, owner);
             g.point(10, centre.x, centre.y);
             g.number(40, radius);
             if !whole {

@@ -1,9 +1,11 @@
 //! Line drawings of contours: lines, circles and ellipses as such, the rest as polylines within a
 //! stated distance.
 //!
-//! A drawing is kept in the camera's image units with y up; a camera with y down is turned over.
+//! A drawing is kept in the camera's image units with y up; a camera with y down is turned over. It is
+//! a page of its own, or one of the views on a sheet.
 
 pub mod dxf;
+pub mod sheet;
 pub mod svg;
 
 use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece};

@@ -1,7 +1,8 @@
 //! Drawings as SVG: readable by a browser, lines and ellipses exact.
 
+use super::sheet::{Mark, Placed, Sheet, Weight};
 use super::{Drawing, Layer, Shape, Stroke};
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -14,17 +15,26 @@ const STYLE: &str = "svg{background:#fff}path{fill:none;stroke:#000;stroke-linec
 .boundary{stroke-width:2}.limb{stroke-width:2}.smooth{stroke-width:1;stroke:#888}\
 .hidden{stroke-width:1;stroke-dasharray:7 5;stroke:#777}";
 
-struct Page<'d> {
-    drawing: &'d Drawing,
+/// Line weights in millimetres after ISO 128: 0.5 for what is seen, half of it for what is not, for
+/// smooth boundaries and within the title block.
+const SHEET_STYLE: &str = "svg{background:#fff}path,circle{fill:none;stroke:#000;stroke-linecap:round;stroke-linejoin:round}\
+text{font-family:sans-serif}\
+.boundary,.limb{stroke-width:.5}.smooth{stroke-width:.25;stroke:#888}\
+.hidden{stroke-width:.25;stroke-dasharray:3 .75}.thick{stroke-width:.7}.thin{stroke-width:.25}";
+
+/// How image units come onto the page, whose y is down.
+struct Page {
+    /// Where the origin of the image lies.
+    origin: Vector2<f64>,
+    /// How long an image unit is.
     scale: f64,
 }
 
-impl Page<'_> {
+impl Page {
     fn at(&self, p: &Point2<f64>) -> (f64, f64) {
-        let [lo, hi] = &self.drawing.extent;
         (
-            MARGIN + (p.x - lo.x) * self.scale,
-            MARGIN + (hi.y - p.y) * self.scale,
+            self.origin.x + p.x * self.scale,
+            self.origin.y - p.y * self.scale,
         )
     }
 
@@ -93,22 +103,19 @@ fn short(x: f64) -> String {
     }
 }
 
-/// The drawing as an SVG document.
-pub fn write(drawing: &Drawing) -> String {
-    let [lo, hi] = &drawing.extent;
-    let (w, h) = (hi.x - lo.x, hi.y - lo.y);
-    let size = w.max(h);
-    let scale = if size > 0.0 { PAGE / size } else { 1.0 };
-    let page = Page { drawing, scale };
-    let (w, h) = (w * scale + 2.0 * MARGIN, h * scale + 2.0 * MARGIN);
-    let mut out = String::new();
+/// The head of a document of a size, in user units and written with a unit.
+fn head([width, height]: [f64; 2], unit: &str, style: &str, out: &mut String) {
+    let [width, height] = [short(width), short(height)];
     let _ = writeln!(
         out,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" \
-         width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n<style>{STYLE}</style>",
-        short(w),
-        short(h)
+         width=\"{width}{unit}\" height=\"{height}{unit}\" viewBox=\"0 0 {width} {height}\">\n\
+         <style>{style}</style>"
     );
+}
+
+/// The strokes of a drawing, in a group for each layer, named with a prefix.
+fn layers(page: &Page, drawing: &Drawing, prefix: &str, out: &mut String) {
     for visible in [false, true] {
         for layer in Layer::ALL {
             let mine = |s: &&Stroke| s.visible == visible && s.layer == layer;
@@ -117,13 +124,111 @@ pub fn write(drawing: &Drawing) -> String {
                 continue;
             }
             let seen = if visible { "visible" } else { "hidden" };
-            let _ = writeln!(out, "<g id=\"{}-{seen}\">", layer.name());
+            let _ = writeln!(out, "<g id=\"{prefix}{}-{seen}\">", layer.name());
             for stroke in strokes {
-                page.stroke(stroke, &mut out);
+                page.stroke(stroke, out);
             }
             out.push_str("</g>\n");
         }
     }
+}
+
+/// The drawing as an SVG document.
+pub fn write(drawing: &Drawing) -> String {
+    let [lo, hi] = &drawing.extent;
+    let (w, h) = (hi.x - lo.x, hi.y - lo.y);
+    let size = w.max(h);
+    let scale = if size > 0.0 { PAGE / size } else { 1.0 };
+    let page = Page {
+        origin: Vector2::new(MARGIN - lo.x * scale, MARGIN + hi.y * scale),
+        scale,
+    };
+    let mut out = String::new();
+    let size = [w, h].map(|x| x * scale + 2.0 * MARGIN);
+    head(size, "", STYLE, &mut out);
+    layers(&page, drawing, "", &mut out);
     out.push_str("</svg>\n");
+    out
+}
+
+/// The sheet as an SVG document, in millimetres.
+pub fn write_sheet(sheet: &Sheet) -> String {
+    let mut out = String::new();
+    head(sheet.size.into(), "mm", SHEET_STYLE, &mut out);
+    let _ = writeln!(out, "<title>{}</title>", escaped(&sheet.options.title));
+    let down = |p: &Point2<f64>| Vector2::new(p.x, sheet.size.y - p.y);
+    for Placed { name, drawing, at } in &sheet.views {
+        let page = Page {
+            origin: down(at),
+            scale: sheet.factor,
+        };
+        let _ = writeln!(out, "<g id=\"{name}\">");
+        layers(&page, drawing, &format!("{name}-"), &mut out);
+        out.push_str("</g>\n");
+    }
+    out.push_str("<g id=\"frame\">\n");
+    let paper = Page {
+        origin: Vector2::new(0.0, sheet.size.y),
+        scale: 1.0,
+    };
+    for mark in &sheet.marks {
+        paper.mark(mark, &mut out);
+    }
+    out.push_str("</g>\n</svg>\n");
+    out
+}
+
+/// Capital letters of most typefaces are so high, as a part of the type size.
+const CAPITAL: f64 = 0.72;
+
+impl Page {
+    fn mark(&self, mark: &Mark, out: &mut String) {
+        let at = |p: &Point2<f64>| {
+            let (x, y) = self.at(p);
+            (short(x), short(y))
+        };
+        let _ = match mark {
+            Mark::Line([a, b], weight) => {
+                let weight = match weight {
+                    Weight::Thick => "thick",
+                    Weight::Thin => "thin",
+                };
+                let ((x, y), (to_x, to_y)) = (at(a), at(b));
+                writeln!(
+                    out,
+                    "<path class=\"{weight}\" d=\"M{x} {y}L{to_x} {to_y}\"/>"
+                )
+            }
+            Mark::Circle(centre, radius) => {
+                let ((x, y), radius) = (at(centre), short(*radius));
+                writeln!(
+                    out,
+                    "<circle class=\"thin\" cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>"
+                )
+            }
+            Mark::Text(start, height, text) => {
+                let ((x, y), size) = (at(start), short(height / CAPITAL));
+                let text = escaped(text);
+                writeln!(
+                    out,
+                    "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\">{text}</text>"
+                )
+            }
+        };
+    }
+}
+
+/// A text without what has a meaning in XML, or no place in it.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for letter in text.chars() {
+        match letter {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            letter if letter.is_control() => out.push(' '),
+            letter => out.push(letter),
+        }
+    }
     out
 }

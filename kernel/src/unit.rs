@@ -1,6 +1,6 @@
-//! What a length of 1 is.
+//! What a length of 1 is, which matters to files only.
 
-/// The unit of lengths in a file.
+/// A unit of lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unit {
     /// Metres.
@@ -17,6 +17,17 @@ pub enum Unit {
 }
 
 impl Unit {
+    /// Its symbol.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+            Self::Micrometre => "µm",
+            Self::Inch => "in",
+        }
+    }
+
     /// How long it is, in millimetres.
     pub fn millimetres(self) -> f64 {
         match self {

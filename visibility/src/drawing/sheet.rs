@@ -1,0 +1,564 @@
+//! Sheets: views side by side on paper, as ISO 5456-2 places them, with a frame and a title block.
+//!
+//! Lengths are millimetres on the paper, from its lower left corner, y up.
+
+use super::Drawing;
+use crate::camera::{Camera, CameraError};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
+use premio_kernel::unit::Unit;
+use std::collections::BTreeMap;
+
+/// A view along an axis of the part's frame, z up, or the isometric one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum View {
+    /// Along y: x to the right.
+    Front,
+    /// Against y.
+    Back,
+    /// Along x.
+    Left,
+    /// Against x: y to the right.
+    Right,
+    /// From above: x to the right, y up.
+    Top,
+    /// From below.
+    Bottom,
+    /// Front, right and top at once, the three axes of one length.
+    Isometric,
+}
+
+impl View {
+    /// The name used in outputs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Back => "back",
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Top => "top",
+            Self::Bottom => "bottom",
+            Self::Isometric => "iso",
+        }
+    }
+
+    /// The camera of the view of a part about its middle, which is the origin of the image; `size` is
+    /// any length of the part's order.
+    pub fn camera(self, middle: Point3<f64>, size: f64) -> Result<Camera, CameraError> {
+        let (from, up) = match self {
+            Self::Front => (-Vector3::y(), Vector3::z()),
+            Self::Back => (Vector3::y(), Vector3::z()),
+            Self::Left => (-Vector3::x(), Vector3::z()),
+            Self::Right => (Vector3::x(), Vector3::z()),
+            Self::Top => (Vector3::z(), Vector3::y()),
+            Self::Bottom => (-Vector3::z(), -Vector3::y()),
+            Self::Isometric => (Vector3::new(1.0, -1.0, 1.0), Vector3::z()),
+        };
+        Camera::orthographic(middle + from * size, middle, up)
+    }
+}
+
+/// On which side of the front view another stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Angle {
+    /// Across from where it is seen from: the view from above stands below.
+    #[default]
+    First,
+    /// Where it is seen from: the view from above stands above.
+    Third,
+}
+
+impl Angle {
+    /// The column and the row of a view, from the front view on, to the right and up.
+    fn cell(self, view: View) -> [i32; 2] {
+        let side = match self {
+            Self::First => -1,
+            Self::Third => 1,
+        };
+        match view {
+            View::Front => [0, 0],
+            View::Right => [side, 0],
+            View::Left => [-side, 0],
+            View::Top => [0, side],
+            View::Bottom => [0, -side],
+            View::Back => [2, 0],
+            View::Isometric => [side, side],
+        }
+    }
+}
+
+/// A paper of ISO 216, lying.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Paper {
+    /// 1189 mm by 841 mm.
+    A0,
+    /// 841 mm by 594 mm.
+    A1,
+    /// 594 mm by 420 mm.
+    A2,
+    /// 420 mm by 297 mm.
+    #[default]
+    A3,
+    /// 297 mm by 210 mm.
+    A4,
+}
+
+impl Paper {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::A0 => "A0",
+            Self::A1 => "A1",
+            Self::A2 => "A2",
+            Self::A3 => "A3",
+            Self::A4 => "A4",
+        }
+    }
+
+    /// Its width and height.
+    pub fn size(self) -> Vector2<f64> {
+        let [width, height] = match self {
+            Self::A0 => [1189.0, 841.0],
+            Self::A1 => [841.0, 594.0],
+            Self::A2 => [594.0, 420.0],
+            Self::A3 => [420.0, 297.0],
+            Self::A4 => [297.0, 210.0],
+        };
+        Vector2::new(width, height)
+    }
+}
+
+/// How long on the paper what length of the part is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// On the paper.
+    pub drawn: f64,
+    /// Of the part.
+    pub of: f64,
+}
+
+impl Scale {
+    /// The quotient.
+    pub fn ratio(self) -> f64 {
+        self.drawn / self.of
+    }
+
+    /// The greatest scale of ISO 5455 (1, 2 and 5, and their tenfolds) that is at most a ratio.
+    fn at_most(ratio: f64) -> Self {
+        let steps = |ten: i32| [1.0, 2.0, 5.0].map(|step| step * 10f64.powi(ten));
+        let tens = |range: std::ops::Range<i32>| range.flat_map(steps);
+        let enlarging = tens(0..DECADES).rfind(|n| *n <= ratio);
+        match enlarging {
+            Some(drawn) => Self { drawn, of: 1.0 },
+            None => {
+                let least = tens(0..DECADES).find(|n| 1.0 <= ratio * n);
+                let of = least.unwrap_or(f64::INFINITY);
+                Self { drawn: 1.0, of }
+            }
+        }
+    }
+}
+
+/// Over how many powers of ten a scale is looked for, either way.
+const DECADES: i32 = 16;
+
+impl std::fmt::Display for Scale {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}:{}", self.drawn, self.of)
+    }
+}
+
+/// What stands on a sheet beside its views.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The title.
+    pub title: String,
+    /// The part's unit.
+    pub unit: Unit,
+    /// The paper.
+    pub paper: Paper,
+    /// The scale; none for the greatest that has room.
+    pub scale: Option<Scale>,
+    /// How views stand around the front view.
+    pub angle: Angle,
+}
+
+/// Why views are not put on a sheet.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SheetError {
+    /// There is no room for them.
+    #[error("at {scale} the views take {width:.0} mm by {height:.0} mm, and {paper} has {room_width:.0} mm by {room_height:.0} mm for them: a greater `--paper`, a smaller `--scale`, or none, helps", paper = paper.name())]
+    Room {
+        /// The scale.
+        scale: Scale,
+        /// What the views take.
+        width: f64,
+        /// What the views take.
+        height: f64,
+        /// The paper.
+        paper: Paper,
+        /// What there is.
+        room_width: f64,
+        /// What there is.
+        room_height: f64,
+    },
+    /// A view in perspective has a scale.
+    #[error("a view in perspective has no scale")]
+    Perspective,
+    /// Nothing is as large as a line on paper, or everything is larger.
+    #[error("no scale brings what is {size:e} mm large onto paper")]
+    Size {
+        /// The size of the views.
+        size: f64,
+    },
+}
+
+/// What a line of the frame is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weight {
+    /// The frame.
+    Thick,
+    /// Between the cells of the title block, and in its symbol.
+    Thin,
+}
+
+/// What is neither view nor paper.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// A straight line.
+    Line([Point2<f64>; 2], Weight),
+    /// A circle, by centre and radius.
+    Circle(Point2<f64>, f64),
+    /// A line of text, from the left end of its base line, as high as a capital letter.
+    Text(Point2<f64>, f64, String),
+}
+
+/// A view in its place.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// What it is called.
+    pub name: &'static str,
+    /// Its strokes.
+    pub drawing: Drawing,
+    /// Where the origin of its image lies on the paper.
+    pub at: Point2<f64>,
+}
+
+/// Views on a paper.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// The width and height of the paper.
+    pub size: Vector2<f64>,
+    /// The views.
+    pub views: Vec<Placed>,
+    /// Frame and title block.
+    pub marks: Vec<Mark>,
+    /// The millimetres on paper of one image unit.
+    pub factor: f64,
+    /// The scale; none where the views are in perspective.
+    pub scale: Option<Scale>,
+    /// What was asked for.
+    pub options: Options,
+}
+
+/// How far the frame is from the left edge of the paper, to file it, and from the others (ISO 5457).
+const FILING: f64 = 20.0;
+const MARGIN: f64 = 10.0;
+/// The title block.
+const TITLE: [f64; 2] = [180.0, 24.0];
+/// The least distance between views, and between them and the frame.
+const GAP: f64 = 12.0;
+
+/// The extent of columns, or of rows: how far what stands in each reaches on both sides of the origins.
+type Bands = BTreeMap<i32, [f64; 2]>;
+
+impl Sheet {
+    /// Views on a paper. A view without a name among them stands alone.
+    pub fn of(views: Vec<(Option<View>, Drawing)>, options: Options) -> Result<Self, SheetError> {
+        let cell = |view: Option<View>| view.map_or([0, 0], |v| options.angle.cell(v));
+        let mut bands: [Bands; 2] = Default::default();
+        for (view, drawing) in &views {
+            let [low, high] = drawing.extent;
+            for (axis, bands) in bands.iter_mut().enumerate() {
+                let nothing = [f64::NEG_INFINITY; 2];
+                let reach = bands.entry(cell(*view)[axis]).or_insert(nothing);
+                reach[0] = reach[0].max(-low[axis]);
+                reach[1] = reach[1].max(high[axis]);
+            }
+        }
+        let [low, high] = room(options.paper);
+        let to_scale = views.iter().all(|(_, drawing)| drawing.to_scale);
+        let taken = bands.each_ref().map(|b| b.values().flatten().sum());
+        let gaps = bands.each_ref().map(|b| (b.len() + 1) as f64 * GAP);
+        let (factor, scale) = fitted(taken, gaps, high - low, to_scale, &options)?;
+        let places = [0, 1].map(|axis: usize| {
+            let free = (high - low)[axis] - taken[axis] * factor;
+            let gap = free / (bands[axis].len() + 1) as f64;
+            origins(&bands[axis], low[axis], gap, factor)
+        });
+        let placed = views.into_iter().map(|(view, drawing)| {
+            let [column, row] = cell(view);
+            Placed {
+                name: view.map_or("view", View::name),
+                drawing,
+                at: Point2::new(places[0][&column], places[1][&row]),
+            }
+        });
+        Ok(Self {
+            size: options.paper.size(),
+            views: placed.collect(),
+            marks: marks(&options, scale),
+            factor,
+            scale,
+            options,
+        })
+    }
+}
+
+/// The lower left and the upper right corner of where views may stand.
+fn room(paper: Paper) -> [Vector2<f64>; 2] {
+    let low = Vector2::new(FILING, MARGIN + TITLE[1]);
+    [low, paper.size() - Vector2::new(MARGIN, MARGIN)]
+}
+
+/// How many millimetres an image unit takes, and the scale that this is.
+fn fitted(
+    taken: [f64; 2],
+    gaps: [f64; 2],
+    room: Vector2<f64>,
+    to_scale: bool,
+    options: &Options,
+) -> Result<(f64, Option<Scale>), SheetError> {
+    let fits = |axis: usize| (room[axis] - gaps[axis]) / taken[axis];
+    let most = fits(0).min(fits(1));
+    let size = taken[0].max(taken[1]) * options.unit.millimetres();
+    if !(most > 0.0 && most.is_finite()) {
+        return Err(SheetError::Size { size });
+    }
+    if !to_scale {
+        return match options.scale {
+            Some(_) => Err(SheetError::Perspective),
+            None => Ok((most, None)),
+        };
+    }
+    let scale = match options.scale {
+        Some(scale) => scale,
+        None => Scale::at_most(most / options.unit.millimetres()),
+    };
+    let factor = scale.ratio() * options.unit.millimetres();
+    if !(factor > 0.0 && factor.is_finite()) {
+        return Err(SheetError::Size { size });
+    }
+    if factor > most {
+        return Err(SheetError::Room {
+            scale,
+            width: taken[0] * factor + gaps[0],
+            height: taken[1] * factor + gaps[1],
+            paper: options.paper,
+            room_width: room.x,
+            room_height: room.y,
+        });
+    }
+    Ok((factor, Some(scale)))
+}
+
+/// Where the origins of columns lie, or of rows: one after the other, the gap before and between them.
+fn origins(bands: &Bands, start: f64, gap: f64, factor: f64) -> BTreeMap<i32, f64> {
+    let mut at = start;
+    let mut places = BTreeMap::new();
+    for (&number, [before, after]) in bands {
+        at += gap + before * factor;
+        places.insert(number, at);
+        at += after * factor;
+    }
+    places
+}
+
+/// The widths of the title block's cells: title, scale, unit, paper, projection.
+const CELLS: [f64; 5] = [96.0, 24.0, 18.0, 18.0, 24.0];
+/// How high capital letters are: of labels, of what they are labels of, of the title at the most.
+const LABEL: f64 = 1.8;
+const VALUE: f64 = 3.5;
+const NAME: f64 = 5.0;
+/// How far text is from the lines around it.
+const INSET: f64 = 2.0;
+/// How wide a letter is, as a part of its height, at the most.
+const WIDE: f64 = 0.9;
+
+/// The frame and the title block.
+fn marks(options: &Options, scale: Option<Scale>) -> Vec<Mark> {
+    let [left, bottom] = [FILING, MARGIN];
+    let corner = options.paper.size() - Vector2::new(MARGIN, MARGIN);
+    let (right, top) = (corner.x, corner.y);
+    let mut marks = Vec::new();
+    let mut line = |from: [f64; 2], to: [f64; 2], weight| {
+        marks.push(Mark::Line([from.into(), to.into()], weight));
+    };
+    line([left, bottom], [right, bottom], Weight::Thick);
+    line([right, bottom], [right, top], Weight::Thick);
+    line([right, top], [left, top], Weight::Thick);
+    line([left, top], [left, bottom], Weight::Thick);
+    let ceiling = bottom + TITLE[1];
+    let mut x = right - TITLE[0];
+    line([x, ceiling], [right, ceiling], Weight::Thick);
+    line([x, bottom], [x, ceiling], Weight::Thick);
+    let scale = scale.map_or("none".to_owned(), |s| s.to_string());
+    let values = [
+        ("TITLE", options.title.clone()),
+        ("SCALE", scale),
+        ("UNIT", options.unit.symbol().to_owned()),
+        ("PAPER", options.paper.name().to_owned()),
+    ];
+    for ((label, value), width) in values.into_iter().zip(CELLS) {
+        let highest = if label == "TITLE" { NAME } else { VALUE };
+        let letters = value.chars().count().max(1) as f64;
+        let height = highest.min((width - 2.0 * INSET) / (letters * WIDE));
+        let text =
+            |up: f64, height, text| Mark::Text([x + INSET, bottom + up].into(), height, text);
+        marks.push(text(TITLE[1] - INSET - LABEL, LABEL, label.to_owned()));
+        marks.push(text((TITLE[1] - highest) / 2.0, height, value));
+        x += width;
+        let divider = [[x, bottom].into(), [x, ceiling].into()];
+        marks.push(Mark::Line(divider, Weight::Thin));
+    }
+    let middle = Point2::new(x + CELLS[4] / 2.0, bottom + TITLE[1] / 2.0);
+    marks.extend(symbol(middle, options.angle));
+    marks
+}
+
+/// The symbol of the projection: a truncated cone from the side, and from its small end. That view
+/// stands beside the small end in the third angle, and beside the large end in the first.
+fn symbol(middle: Point2<f64>, angle: Angle) -> Vec<Mark> {
+    const SMALL: f64 = 2.0;
+    const LARGE: f64 = 4.0;
+    const LONG: f64 = 8.0;
+    const APART: f64 = 5.5;
+    let side = match angle {
+        Angle::First => -APART,
+        Angle::Third => APART,
+    };
+    let cone = middle + Vector2::new(side, 0.0);
+    let corner = |x: f64, y: f64| cone + Vector2::new(x * LONG / 2.0, y);
+    let corners = [
+        corner(-1.0, SMALL),
+        corner(1.0, LARGE),
+        corner(1.0, -LARGE),
+        corner(-1.0, -SMALL),
+    ];
+    let lines = (0..4).map(|i| Mark::Line([corners[i], corners[(i + 1) % 4]], Weight::Thin));
+    let end = middle - Vector2::new(side, 0.0);
+    let circles = [SMALL, LARGE].map(|radius| Mark::Circle(end, radius));
+    lines.chain(circles).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A drawing of a box about the origin, with no strokes.
+    fn drawing(width: f64, height: f64) -> Drawing {
+        let high = Point2::new(width / 2.0, height / 2.0);
+        Drawing {
+            strokes: Vec::new(),
+            extent: [-high, high],
+            distance: 1.0,
+            to_scale: true,
+        }
+    }
+
+    /// The views of a block of 60 by 40 by 20.
+    fn views() -> Vec<(Option<View>, Drawing)> {
+        vec![
+            (Some(View::Front), drawing(60.0, 20.0)),
+            (Some(View::Top), drawing(60.0, 40.0)),
+            (Some(View::Right), drawing(40.0, 20.0)),
+        ]
+    }
+
+    fn options(angle: Angle) -> Options {
+        Options {
+            title: "block".to_owned(),
+            unit: Unit::Millimetre,
+            paper: Paper::A3,
+            scale: None,
+            angle,
+        }
+    }
+
+    fn place(sheet: &Sheet, name: &str) -> Point2<f64> {
+        let mut views = sheet.views.iter();
+        views
+            .find(|v| v.name == name)
+            .map(|v| v.at)
+            .unwrap_or_default()
+    }
+
+    #[test]
+    fn views_stand_where_the_angle_has_them() {
+        for (angle, side) in [(Angle::First, -1.0), (Angle::Third, 1.0)] {
+            let sheet = Sheet::of(views(), options(angle)).unwrap();
+            let [front, top, right] = ["front", "top", "right"].map(|n| place(&sheet, n));
+            assert_eq!(front.x, top.x);
+            assert_eq!(front.y, right.y);
+            assert!((top.y - front.y) * side > 30.0 * sheet.factor);
+            assert!((right.x - front.x) * side > 50.0 * sheet.factor);
+        }
+    }
+
+    /// 390 mm have room for 100 mm and three gaps of 12 mm 3.5 times, 253 mm for 60 mm 3.6 times.
+    #[test]
+    fn the_scale_is_the_greatest_with_room() {
+        let sheet = Sheet::of(views(), options(Angle::First)).unwrap();
+        assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("2:1"));
+        assert_eq!(sheet.factor, 2.0);
+        let metres = Options {
+            unit: Unit::Metre,
+            ..options(Angle::First)
+        };
+        let sheet = Sheet::of(views(), metres.clone()).unwrap();
+        assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("1:500"));
+        let too_large = Options {
+            scale: Some(Scale {
+                drawn: 1.0,
+                of: 200.0,
+            }),
+            ..metres
+        };
+        let error = Sheet::of(views(), too_large).unwrap_err();
+        assert!(matches!(error, SheetError::Room { width, .. } if width == 536.0));
+    }
+
+    /// What the optical axis does not pass stands in the middle of the paper all the same.
+    #[test]
+    fn a_view_beside_its_axis_has_the_paper_for_itself() {
+        let beside = Drawing {
+            extent: [Point2::new(1000.0, 0.0), Point2::new(1100.0, 10.0)],
+            ..drawing(0.0, 0.0)
+        };
+        let sheet = Sheet::of(vec![(None, beside)], options(Angle::First)).unwrap();
+        assert_eq!(sheet.factor, 2.0);
+        let middle = sheet.views[0].at.x + 1050.0 * sheet.factor;
+        assert_eq!(middle, (FILING + 410.0) / 2.0);
+    }
+
+    #[test]
+    fn scales_are_those_of_the_standard() {
+        for (ratio, expected) in [
+            (1.0, "1:1"),
+            (1.99, "1:1"),
+            (7.0, "5:1"),
+            (99.0, "50:1"),
+            (0.99, "1:2"),
+            (0.2, "1:5"),
+            (0.0011, "1:1000"),
+        ] {
+            assert_eq!(Scale::at_most(ratio).to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn what_has_no_size_has_no_scale() {
+        let point = vec![(Some(View::Front), drawing(0.0, 0.0))];
+        let error = Sheet::of(point, options(Angle::First)).unwrap_err();
+        assert_eq!(error, SheetError::Size { size: 0.0 });
+    }
+}

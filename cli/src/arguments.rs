@@ -3,6 +3,7 @@
 use crate::fuzz::profile::Profile;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use premio_kernel::unit::Unit;
 use premio_visibility::drawing::sheet::Scale;
 use std::path::PathBuf;
@@ -51,6 +52,14 @@ pub enum Command {
 Exit status: 0 no answer is wrong; 1 some are; 130 interrupted."
     )]
     Fuzz(FuzzOptions),
+    /// The manual page of the program, or of one of its commands
+    #[command(after_help = "Example: premio man contours | man -l -")]
+    Man(ManOptions),
+    /// Completions of the command line for a shell
+    #[command(
+        after_help = "Example: premio completions bash -o ~/.local/share/bash-completion/completions/premio"
+    )]
+    Completions(CompletionsOptions),
 }
 
 /// What is described, and how it is read and evaluated.
@@ -394,6 +403,28 @@ impl ValueEnum for ProfileChoice {
             Self::One(profile) => profile.to_possible_value(),
         }
     }
+}
+
+/// Options of `man`.
+#[derive(Debug, Args)]
+pub struct ManOptions {
+    /// The command that the page is of [default: the program]
+    #[arg(value_name = "COMMAND")]
+    pub command: Option<String>,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// Options of `completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsOptions {
+    /// The shell
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: Shell,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
 }
 
 /// The formats of models.

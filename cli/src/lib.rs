@@ -27,6 +27,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(options) => commands::check::run(options),
         Command::Export(options) => commands::export::run(options),
         Command::Fuzz(options) => commands::fuzz::run(options),
+        Command::Man(options) => commands::manual::man(options),
+        Command::Completions(options) => commands::manual::completions(options),
     };
     outcome.map_or_else(Failure::report, |()| ExitCode::SUCCESS)
 }

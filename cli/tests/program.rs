@@ -135,6 +135,8 @@ fn wrong_input_ends_with_2() {
         "contours part.padl --views front --format json",
         "contours part.padl --views front --scale 1000:1 --format svg",
         "contours part.padl --eye 9,9,9 --target 0,0,0 --scale 1:1 --format svg",
+        "man nothing",
+        "completions tcsh",
         "export part.padl --format stl --unit mm",
         "export part.padl --format step --deviation 0.1",
         "export part.padl --format glb --accuracy 0.1",
@@ -212,4 +214,23 @@ fn nobody_has_to_read_to_the_end() {
     let out = child.wait_with_output().unwrap();
     assert!(!String::from_utf8_lossy(&out.stderr).contains("panicked"));
     assert!(out.status.code().is_some());
+}
+
+#[test]
+fn manual_pages_and_completions_are_of_the_commands() {
+    let folder = folder();
+    let said = |words: &str| {
+        let out = premio(folder.path(), words);
+        assert!(out.status.success(), "{words}");
+        String::from_utf8(out.stdout).unwrap()
+    };
+    assert!(said("man").contains(".TH premio 1"));
+    let page = said("man contours");
+    assert!(page.contains(".TH premio-contours 1") && page.contains("views"));
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(
+            said(&format!("completions {shell}")).contains("contours"),
+            "{shell}"
+        );
+    }
 }

@@ -5,3 +5,4 @@ pub mod contours;
 pub mod export;
 pub mod fuzz;
 pub mod info;
+pub mod manual;

@@ -1,0 +1,45 @@
+//! `premio man` and `premio completions`: what the command line says of itself, for the shell.
+
+use crate::arguments::{Arguments, CompletionsOptions, ManOptions};
+use crate::diagnostics::Failure;
+use crate::output;
+use clap::{Command, CommandFactory};
+use clap_mangen::Man;
+
+/// Writes the manual page of the program, or of one of its commands.
+pub fn man(options: &ManOptions) -> Result<(), Failure> {
+    let program = built();
+    let page = match &options.command {
+        None => Man::new(program),
+        Some(name) => Man::new(command(&program, name)?).title(format!("premio-{name}")),
+    };
+    let mut text = Vec::new();
+    let rendered = page.render(&mut text);
+    rendered.map_err(|e| Failure::input(e.to_string()))?;
+    output::write(text, options.output.as_deref())
+}
+
+/// Writes the completions of a shell.
+pub fn completions(options: &CompletionsOptions) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(options.shell, &mut built(), "premio", &mut text);
+    output::write(text, options.output.as_deref())
+}
+
+fn built() -> Command {
+    let mut program = Arguments::command();
+    program.build();
+    program
+}
+
+/// A command of the program.
+fn command(program: &Command, name: &str) -> Result<Command, Failure> {
+    let found = program.find_subcommand(name).cloned();
+    found.ok_or_else(|| {
+        let names: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
+        let names = names.join(", ");
+        Failure::input(format!(
+            "found no command `{name}`, expected one of {names}"
+        ))
+    })
+}

@@ -89,6 +89,25 @@ fn sides_are_of_two_triangles_where_faces_come_together() {
     }
 }
 
+/// A ring so coarse that a side leads from a point of its seam to one across the tube, and another from
+/// there to the same point of the seam, round the other way.
+#[test]
+fn a_coarse_ring_is_closed() {
+    let ring = "A = TOR(RMAJ=2, RMIN=1)";
+    let cut = "DIF BLO(X=4, Y=4, Z=4) AT (MOVX=-2, MOVY=0.5, MOVZ=-3)";
+    for text in [ring.to_owned(), format!("{ring} {cut}")] {
+        let part = part(&text);
+        for deviation in [0.1, 0.5, 1.0, 2.0] {
+            let accuracy = Accuracy {
+                deviation,
+                angle: 2.0,
+            };
+            let facets = Facets::of(&part.brep, &accuracy, part.resolution).unwrap();
+            assert!(is_closed(&facets), "{text}: {deviation}");
+        }
+    }
+}
+
 /// Normals point away from the axis of a cone, at its apex, too.
 #[test]
 fn normals_are_the_surfaces() {

@@ -96,36 +96,26 @@ impl<'a> Growth<'a> {
         Ok(())
     }
 
-    /// The sides inside a face between points that other faces have, too, with the places of their
-    /// ends.
-    fn between_shared(&self, domain: &Domain, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])> {
-        let free = inside.iter().flat_map(|&triangle| {
-            let edges = domain.net.face(triangle).adjacent_edges();
-            edges.into_iter().filter(|edge| {
-                let side = (edge.from().fix().index(), edge.to().fix().index());
-                !edge.is_constraint_edge() && !domain.glued.contains_key(&side)
-            })
-        });
-        let mut seen = HashSet::new();
-        let ends = free.filter(|edge| seen.insert(edge.as_undirected().fix()));
-        let ends = ends.map(|edge| edge.vertices().map(|v| *v.data()));
-        let sides = ends.map(|ends| (unordered(ends.map(|c| c.point)), ends));
-        sides.filter(|([_, last], _)| *last < self.shared).collect()
-    }
-
-    /// Points in the middle of the sides that are there already, of an edge or of a face: four
-    /// triangles would have one side, as two faces at the tip of a wedge do.
+    /// Points in the middle of the sides that are there already, of an edge, of another face or on
+    /// the other side of a seam: four triangles would have one side, as they do at the tip of a wedge
+    /// of two faces.
     fn doubled(&self, domain: &Domain, inside: &[Inner]) -> Vec<Point2<f64>> {
-        let mut own = HashSet::new();
-        let sides = self.between_shared(domain, inside).into_iter();
-        let doubled = sides.filter(|(side, _)| self.taken.contains(side) || !own.insert(*side));
+        // Without seams a point of the face has one place in its chart.
+        let mut own: HashSet<[u32; 2]> = on_seams(domain).collect();
+        let has_seams = !domain.glued.is_empty();
+        let sides = free_sides(domain, inside).into_iter();
+        let doubled = sides
+            .filter(|(side, _)| self.taken.contains(side) || (has_seams && !own.insert(*side)));
         let middles = doubled.map(|(_, [a, b])| nalgebra::center(&a.at, &b.at));
         middles.collect()
     }
 
+    /// Notes the sides between points that other faces may have, too.
     fn take(&mut self, domain: &Domain, inside: &[Inner]) {
-        let sides = self.between_shared(domain, inside);
-        self.taken.extend(sides.into_iter().map(|(side, _)| side));
+        let free = free_sides(domain, inside).into_iter().map(|(side, _)| side);
+        let all = free.chain(on_seams(domain));
+        let shared = self.shared;
+        self.taken.extend(all.filter(|[_, last]| *last < shared));
     }
 
     /// Adds triangles that follow a face.
@@ -146,6 +136,32 @@ impl<'a> Growth<'a> {
 /// The two ends of a side, the lower first.
 fn unordered([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
+}
+
+/// The sides inside a face that may be divided, with the places of their ends.
+fn free_sides(domain: &Domain, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])> {
+    let free = inside.iter().flat_map(|&triangle| {
+        let edges = domain.net.face(triangle).adjacent_edges();
+        edges.into_iter().filter(|edge| {
+            let side = (edge.from().fix().index(), edge.to().fix().index());
+            !edge.is_constraint_edge() && !domain.glued.contains_key(&side)
+        })
+    });
+    let mut seen = HashSet::new();
+    let once = free.filter(|edge| seen.insert(edge.as_undirected().fix()));
+    let ends = once.map(|edge| edge.vertices().map(|v| *v.data()));
+    ends.map(|ends| (unordered(ends.map(|c| c.point)), ends))
+        .collect()
+}
+
+/// The sides of a face's seams.
+fn on_seams(domain: &Domain) -> impl Iterator<Item = [u32; 2]> {
+    let point = |i: usize| {
+        let vertex = domain.net.vertex(FixedVertexHandle::from_index(i));
+        vertex.data().point
+    };
+    let sides = domain.glued.keys();
+    sides.map(move |&(from, to)| unordered([point(from), point(to)]))
 }
 
 type Inner = FixedFaceHandle<InnerTag>;

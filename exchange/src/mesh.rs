@@ -84,8 +84,15 @@ impl Facets {
         let mut facets = parted::facets(brep, &mesh)?;
         facets.deviation = accuracy.deviation;
         facets.facets.sort_by_key(|f| f.solid);
-        sound::mend(&facets.points, &mut facets.facets)?;
+        let mended = sound::mend(&facets.points, &mut facets.facets);
+        mended.map_err(|corner| facets.coarse(corner))?;
         Ok(facets)
+    }
+
+    /// That the format's numbers are too coarse at a corner.
+    fn coarse(&self, corner: u32) -> MeshError {
+        let place = self.points[corner as usize].into();
+        MeshError::Coarse { place }
     }
 
     /// The triangles of each solid.

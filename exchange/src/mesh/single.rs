@@ -21,25 +21,19 @@ impl Single {
     /// The triangles, where rounding does not take points farther than triangles may be off.
     pub fn of(facets: &Facets, origin: &Point3<f64>) -> Result<Self, MeshError> {
         let points: Vec<[f32; 3]> = facets.points.iter().map(|p| rounded(p, origin)).collect();
-        let moved: Vec<Point3<f64>> = points
-            .iter()
-            .map(|p| origin + nalgebra::Vector3::from(p.map(f64::from)))
-            .collect();
-        let far = |(p, q): &(&Point3<f64>, &Point3<f64>)| (*p - *q).norm() > facets.deviation;
-        if let Some((place, _)) = facets.points.iter().zip(&moved).find(far) {
-            let place = (*place).into();
-            return Err(MeshError::Coarse { place });
+        let exact: Vec<Point3<f64>> = points.iter().map(|p| p.map(f64::from).into()).collect();
+        let is_far = |(p, q): (&Point3<f64>, &Point3<f64>)| {
+            let moved = (p - origin) - q.coords;
+            moved.norm() > facets.deviation
+        };
+        if let Some(corner) = facets.points.iter().zip(&exact).position(is_far) {
+            return Err(facets.coarse(corner as u32));
         }
         let mut single = Self {
             facets: facets.facets.clone(),
             points,
         };
-        let exact: Vec<Point3<f64>> = single
-            .points
-            .iter()
-            .map(|p| p.map(f64::from).into())
-            .collect();
-        sound::mend(&exact, &mut single.facets)?;
+        sound::mend(&exact, &mut single.facets).map_err(|corner| facets.coarse(corner))?;
         Ok(single)
     }
 

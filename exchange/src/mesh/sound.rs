@@ -1,16 +1,16 @@
 //! Triangles without an area, which rounding makes, taken out: a side of no length is drawn together,
 //! and a triangle whose corners lie in a line gives way to the one across its longest side.
 
-use super::{Facet, MeshError};
+use super::Facet;
 use nalgebra::Point3;
 use robust::{Coord, orient2d};
 use std::collections::HashMap;
 
-/// Takes out the triangles without an area. What is left has two triangles at every side, or it is an
-/// error.
-pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<(), MeshError> {
+/// Takes out the triangles without an area. What is left has two triangles at every side; else the
+/// corner where it has not is told.
+pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<(), u32> {
     draw_together(points, facets);
-    let mut sides = sides(points, facets)?;
+    let mut sides = sides(facets)?;
     let mut waiting: Vec<usize> = (0..facets.len()).collect();
     waiting.retain(|&f| is_flat(points, &facets[f]));
     // Each takes one turn as a rule; those that never end are told by the count.
@@ -19,9 +19,9 @@ pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<()
         if !is_flat(points, &facets[flat]) {
             continue;
         }
-        let coarse = || coarse(points, facets[flat].corners[0]);
-        turns = turns.checked_sub(1).ok_or_else(coarse)?;
-        let pair = turned(points, facets, &sides, flat).ok_or_else(coarse)?;
+        let [corner, ..] = facets[flat].corners;
+        turns = turns.checked_sub(1).ok_or(corner)?;
+        let pair = turned(points, facets, &sides, flat).ok_or(corner)?;
         for (at, facet) in pair {
             facets[at] = facet;
             sides.extend(sides_of(&facet).map(|side| (side, at)));
@@ -29,11 +29,6 @@ pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<()
         }
     }
     Ok(())
-}
-
-fn coarse(points: &[Point3<f64>], corner: u32) -> MeshError {
-    let place = points[corner as usize].into();
-    MeshError::Coarse { place }
 }
 
 fn sides_of(facet: &Facet) -> [[u32; 2]; 3] {
@@ -68,17 +63,18 @@ fn draw_together(points: &[Point3<f64>], facets: &mut Vec<Facet>) {
 }
 
 /// The triangle of each side. Each is there once, and the other way round, too.
-fn sides(points: &[Point3<f64>], facets: &[Facet]) -> Result<HashMap<[u32; 2], usize>, MeshError> {
+fn sides(facets: &[Facet]) -> Result<HashMap<[u32; 2], usize>, u32> {
     let mut sides = HashMap::with_capacity(3 * facets.len());
     for (number, facet) in facets.iter().enumerate() {
         for side in sides_of(facet) {
             if sides.insert(side, number).is_some() {
-                return Err(coarse(points, side[0]));
+                return Err(side[0]);
             }
         }
     }
-    match sides.keys().find(|[a, b]| !sides.contains_key(&[*b, *a])) {
-        Some(&[a, _]) => Err(coarse(points, a)),
+    let mut all = facets.iter().flat_map(sides_of);
+    match all.find(|[a, b]| !sides.contains_key(&[*b, *a])) {
+        Some([a, _]) => Err(a),
         None => Ok(sides),
     }
 }
@@ -182,7 +178,7 @@ mod tests {
         mend(&points, &mut facets).unwrap();
         assert_eq!(facets.len(), 6);
         assert!(facets.iter().all(|f| !is_flat(&points, f)));
-        assert!(sides(&points, &facets).is_ok());
+        assert!(sides(&facets).is_ok());
         // Side 3 of the fifth point is of the face that it was in the middle of.
         assert!(facets.iter().all(|f| f.corners != [0, 4, 1]));
         assert_eq!(facets.iter().filter(|f| f.face == FaceId(1)).count(), 2);
@@ -201,10 +197,7 @@ mod tests {
     fn what_is_left_open_is_an_error() {
         let (points, mut facets) = tetrahedron();
         facets.pop();
-        assert!(matches!(
-            mend(&points, &mut facets),
-            Err(MeshError::Coarse { .. })
-        ));
+        assert!(mend(&points, &mut facets).is_err());
         let (mut points, mut facets) = tetrahedron();
         // All in a plane, and nothing is left but triangles without an area.
         points[3] = points[0];

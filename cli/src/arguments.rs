@@ -1,11 +1,13 @@
 //! The command line.
 
+mod sheet;
+
 use crate::fuzz::profile::Profile;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use premio_kernel::unit::Unit;
-use premio_visibility::drawing::sheet::Scale;
+pub use sheet::{SheetOptions, ViewName};
 use std::path::PathBuf;
 
 /// From a description of a solid to its exact boundary and to what a camera sees of it.
@@ -155,74 +157,6 @@ pub struct CameraOptions {
     /// Parallel instead of central projection
     #[arg(long)]
     pub ortho: bool,
-}
-
-/// A sheet of paper with a frame and a title block; any of these asks for it.
-#[derive(Debug, Args)]
-pub struct SheetOptions {
-    /// Views beside one another on a sheet, in place of a camera (svg, dxf)
-    #[arg(long, value_enum, value_name = "VIEWS", value_delimiter = ',',
-          conflicts_with_all = ["camera", "eye", "target", "up", "focal", "ortho"])]
-    pub views: Vec<ViewName>,
-    /// The paper, lying (svg, dxf) [default: a3]
-    #[arg(long, value_enum, value_name = "PAPER")]
-    pub paper: Option<PaperSize>,
-    /// How long on paper what length of the part is, as 1:2 (svg, dxf) [default: the greatest of 1, 2,
-    /// 5, 10 and so on that has room]
-    #[arg(long, value_name = "A:B", value_parser = scale)]
-    pub scale: Option<Scale>,
-    /// What stands in the title block (svg, dxf) [default: the file's name]
-    #[arg(long, value_name = "TEXT")]
-    pub title: Option<String>,
-    /// What the part's unit is (svg, dxf) [default: mm]
-    #[arg(long, value_enum, value_name = "UNIT")]
-    pub unit: Option<LengthUnit>,
-    /// Where views stand: across from where they are seen from, or there (svg, dxf) [default: first]
-    #[arg(long, value_enum, value_name = "ANGLE")]
-    pub projection: Option<ProjectionAngle>,
-}
-
-/// The views of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ViewName {
-    /// Along y: x to the right, z up
-    Front,
-    /// Against y
-    Back,
-    /// Along x
-    Left,
-    /// Against x: y to the right, z up
-    Right,
-    /// From above: x to the right, y up
-    Top,
-    /// From below
-    Bottom,
-    /// Front, right and top at once
-    Iso,
-}
-
-/// The papers of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PaperSize {
-    /// 1189 mm by 841 mm
-    A0,
-    /// 841 mm by 594 mm
-    A1,
-    /// 594 mm by 420 mm
-    A2,
-    /// 420 mm by 297 mm
-    A3,
-    /// 297 mm by 210 mm
-    A4,
-}
-
-/// Where views stand around the front view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ProjectionAngle {
-    /// The view from above stands below
-    First,
-    /// The view from above stands above
-    Third,
 }
 
 /// Options of `check`.
@@ -486,17 +420,6 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a positive number".to_owned()),
     }
-}
-
-/// A scale: two positive numbers with a colon between.
-fn scale(text: &str) -> Result<Scale, String> {
-    let wrong = || "expected two positive numbers, as in `1:2`".to_owned();
-    let (drawn, of) = text.split_once(':').ok_or_else(wrong)?;
-    let number = |text: &str| positive(text.trim()).map_err(|_| wrong());
-    Ok(Scale {
-        drawn: number(drawn)?,
-        of: number(of)?,
-    })
 }
 
 /// A length of time that a clock can wait for.

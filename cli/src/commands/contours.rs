@@ -1,7 +1,6 @@
 //! `premio contours`: what a camera sees.
 
-use crate::arguments::{ContoursFormat, ContoursOptions, PaperSize, ProjectionAngle};
-use crate::arguments::{SheetOptions, ViewName};
+use crate::arguments::{ContoursFormat, ContoursOptions, ViewName};
 use crate::diagnostics::Failure;
 use crate::input::Part;
 use crate::{input, output};
@@ -111,50 +110,4 @@ fn cameras(part: &Part, names: &[ViewName]) -> Result<Vec<(Option<View>, Camera)
         }
     }
     Ok(cameras)
-}
-
-impl SheetOptions {
-    fn is_asked(&self) -> bool {
-        !self.views.is_empty()
-            || self.paper.is_some()
-            || self.scale.is_some()
-            || self.title.is_some()
-            || self.unit.is_some()
-            || self.projection.is_some()
-    }
-}
-
-impl From<ViewName> for View {
-    fn from(name: ViewName) -> Self {
-        match name {
-            ViewName::Front => Self::Front,
-            ViewName::Back => Self::Back,
-            ViewName::Left => Self::Left,
-            ViewName::Right => Self::Right,
-            ViewName::Top => Self::Top,
-            ViewName::Bottom => Self::Bottom,
-            ViewName::Iso => Self::Isometric,
-        }
-    }
-}
-
-impl From<PaperSize> for Paper {
-    fn from(size: PaperSize) -> Self {
-        match size {
-            PaperSize::A0 => Self::A0,
-            PaperSize::A1 => Self::A1,
-            PaperSize::A2 => Self::A2,
-            PaperSize::A3 => Self::A3,
-            PaperSize::A4 => Self::A4,
-        }
-    }
-}
-
-impl From<ProjectionAngle> for Angle {
-    fn from(angle: ProjectionAngle) -> Self {
-        match angle {
-            ProjectionAngle::First => Self::First,
-            ProjectionAngle::Third => Self::Third,
-        }
-    }
 }

@@ -46,6 +46,10 @@ pub enum Command {
           premio export part.padl --format json -o part.json"
     )]
     Export(ExportOptions),
+    /// A description in another language
+    #[command(after_help = "Examples: premio convert part.padl part.json
+          premio convert model.asc --part all.g model.padl")]
+    Convert(ConvertOptions),
     /// Random trees by the thousand, each put to the self-checks
     #[command(
         after_help = "Examples: premio fuzz --profile grid,near --count 10000 --state run.json --shrink
@@ -67,7 +71,8 @@ Exit status: 0 no answer is wrong; 1 some are; 130 interrupted."
 /// What is described, and how it is read and evaluated.
 #[derive(Debug, Args)]
 pub struct DescriptionOptions {
-    /// The description: .padl, .csg (OpenSCAD's flattened output) or .json
+    /// The description: .padl, .csg (OpenSCAD's flattened output), .json, .asc (BRL-CAD's database as
+    /// text) or .pov (POV-Ray's scene)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// What lies nearer than this coincides, in the part's unit [default: 1e-11 of its size]
@@ -82,7 +87,8 @@ pub struct DescriptionOptions {
     /// Decide nothing in doubles: the same boundary from numbers of 237 bits, some hundred times slower
     #[arg(long)]
     pub unfiltered: bool,
-    /// The part of a .padl file to take [default: the last solid assigned]
+    /// The part of a .padl, .asc or .pov file to take [default: the last solid assigned, the object
+    /// that no other holds, the whole scene]
     #[arg(long, value_name = "NAME")]
     pub part: Option<String>,
     /// Read a .csg primitive with a small $fn as the smooth one
@@ -237,6 +243,27 @@ pub enum StepProtocol {
     Ap242,
     /// Automotive design
     Ap214,
+}
+
+/// Options of `convert`.
+#[derive(Debug, Args)]
+pub struct ConvertOptions {
+    /// The description: .padl, .csg, .json, .asc or .pov
+    #[arg(value_name = "IN")]
+    pub file: PathBuf,
+    /// Where to write it: .padl, .csg or .json
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+    /// Refuse what the other language cannot hold exactly, in place of writing the nearest
+    #[arg(long)]
+    pub exact: bool,
+    /// The part of a .padl, .asc or .pov file to take [default: the last solid assigned, the object
+    /// that no other holds, the whole scene]
+    #[arg(long, value_name = "NAME")]
+    pub part: Option<String>,
+    /// Read a .csg primitive with a small $fn as the smooth one
+    #[arg(long)]
+    pub smooth: bool,
 }
 
 /// Options of `fuzz`.

@@ -62,11 +62,7 @@ pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
 }
 
 fn description(name: &str, options: &DescriptionOptions) -> Result<Description, Failure> {
-    let format = Format::from_path(&options.file).ok_or_else(|| {
-        Failure::input(format!(
-            "{name}: found a file of an unknown kind, expected one that ends in .padl, .csg or .json"
-        ))
-    })?;
+    let format = format(&options.file)?;
     let text = bytes(&options.file)?;
     let how = Options {
         smooth: options.smooth,
@@ -78,7 +74,19 @@ fn description(name: &str, options: &DescriptionOptions) -> Result<Description, 
     Ok(description)
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+/// The language of a file, which its ending says.
+pub fn format(path: &Path) -> Result<Format, Failure> {
+    Format::from_path(path).ok_or_else(|| {
+        let name = path.display();
+        Failure::input(format!(
+            "{name}: found a file of an unknown kind, expected one that ends in .padl, .csg, .json, \
+             .asc or .pov"
+        ))
+    })
+}
+
+/// The content of a file.
+pub fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(path).map_err(|e| Failure::input(format!("{}: {e}", path.display())))
 }
 

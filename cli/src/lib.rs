@@ -26,6 +26,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Contours(options) => commands::contours::run(options),
         Command::Check(options) => commands::check::run(options),
         Command::Export(options) => commands::export::run(options),
+        Command::Convert(options) => commands::convert::run(options),
         Command::Fuzz(options) => commands::fuzz::run(options),
         Command::Man(options) => commands::manual::man(options),
         Command::Completions(options) => commands::manual::completions(options),

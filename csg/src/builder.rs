@@ -6,7 +6,9 @@
 use std::rc::Rc;
 
 use premio_kernel::motion::Motion;
+use premio_kernel::number::rational::{Rational, bits};
 
+use crate::moves::{Moves, Step};
 use crate::primitive::Primitive;
 use crate::tree::{Node, NodeId, Operation, Placed, Tree};
 
@@ -51,30 +53,67 @@ impl Part {
 
 /// What a part is made of. Children come before their parents.
 #[derive(Debug)]
-enum Draft {
+pub(crate) enum Draft {
     Leaf(Primitive),
-    Operation { op: Operation, children: Vec<usize> },
-    Moved { child: usize, placement: Placement },
+    Operation {
+        op: Operation,
+        children: Vec<usize>,
+    },
+    Moved {
+        child: usize,
+        placement: Placement,
+        /// The last entry of [`Builder::entry`] that made the placement.
+        entry: usize,
+    },
 }
 
-/// `p -> M S p`, with `M` a motion and `S` the mirror `y -> -y` or the identity.
+/// How a part was placed, as it was asked for.
 #[derive(Debug, Clone)]
-struct Placement {
+pub(crate) enum Placing {
+    Steps(Vec<Step>),
+    MirrorY,
+    Scale(Rational),
+}
+
+/// A placing, and the one before it of the same part.
+#[derive(Debug)]
+pub(crate) struct Entry {
+    pub(crate) placing: Placing,
+    pub(crate) before: Option<usize>,
+}
+
+/// `p -> M S k p`, with `M` a motion, `S` the mirror `y -> -y` or the identity, and `k` a factor
+/// greater than zero, or none for one.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Placement {
     motion: Motion,
     mirrored: bool,
+    factor: Option<Rational>,
 }
 
 impl Placement {
     fn then(&self, outer: &Self) -> Self {
-        let inner = if outer.mirrored {
+        let mut inner = if outer.mirrored {
             self.motion.mirrored_y()
         } else {
             self.motion.clone()
         };
+        if let Some(factor) = &outer.factor {
+            inner = inner.scaled(factor);
+        }
         Self {
             motion: inner.then(&outer.motion),
             mirrored: self.mirrored != outer.mirrored,
+            factor: match (&self.factor, &outer.factor) {
+                (Some(a), Some(b)) => Some(a * b),
+                (one, other) => one.clone().or_else(|| other.clone()),
+            },
         }
+    }
+
+    fn bits(&self) -> usize {
+        let factor = self.factor.as_ref().map_or(0, bits);
+        self.motion.bits().max(factor)
     }
 }
 
@@ -84,6 +123,7 @@ pub struct Builder {
     drafts: Vec<Draft>,
     /// The number of leaves of each draft, with every use counted.
     leaves: Vec<u64>,
+    entries: Vec<Entry>,
 }
 
 impl Builder {
@@ -128,46 +168,82 @@ impl Builder {
     }
 
     /// A part, moved.
-    pub fn moved(&mut self, part: Part, motion: Motion) -> Part {
-        self.place(
-            part,
-            Placement {
-                motion,
-                mirrored: false,
-            },
-        )
+    pub fn moved(&mut self, part: Part, moves: Moves) -> Part {
+        if moves.motion().is_identity() {
+            return part;
+        }
+        let (steps, motion) = moves.into_parts();
+        let placement = Placement {
+            motion,
+            ..Placement::default()
+        };
+        self.place(part, placement, Placing::Steps(steps))
     }
 
     /// The image of a part in the mirror `y -> -y`.
     pub fn mirrored_y(&mut self, part: Part) -> Part {
-        let motion = Motion::identity();
-        self.place(
-            part,
-            Placement {
-                motion,
-                mirrored: true,
-            },
-        )
+        let placement = Placement {
+            mirrored: true,
+            ..Placement::default()
+        };
+        self.place(part, placement, Placing::MirrorY)
     }
 
-    fn place(&mut self, part: Part, placement: Placement) -> Part {
+    /// A part, about the origin `factor` times as large; `factor` must be greater than zero.
+    pub fn scaled(&mut self, part: Part, factor: Rational) -> Part {
+        if factor.is_one() {
+            return part;
+        }
+        let placement = Placement {
+            factor: Some(factor.clone()),
+            ..Placement::default()
+        };
+        self.place(part, placement, Placing::Scale(factor))
+    }
+
+    fn place(&mut self, part: Part, placement: Placement, placing: Placing) -> Part {
         let Some(child) = part.0 else {
             return Part::EMPTY;
         };
         // Placements in a row become one, so that the cost of a use is that of its leaves.
-        let (child, placement) = match &self.drafts[child] {
+        let (child, placement, before) = match &self.drafts[child] {
             // Beyond the limit for good: finishing it is an error, wherever it is put.
-            Draft::Moved { placement, .. } if placement.motion.bits() > MAX_MOTION_BITS => {
+            Draft::Moved { placement, .. } if placement.bits() > MAX_MOTION_BITS => {
                 return part;
             }
             Draft::Moved {
                 child,
                 placement: inner,
-            } => (*child, inner.then(&placement)),
-            Draft::Leaf(_) | Draft::Operation { .. } => (child, placement),
+                entry,
+            } => (*child, inner.then(&placement), Some(*entry)),
+            Draft::Leaf(_) | Draft::Operation { .. } => (child, placement, None),
         };
+        self.entries.push(Entry { placing, before });
         let leaves = self.leaves[child];
-        self.add(Draft::Moved { child, placement }, leaves)
+        let draft = Draft::Moved {
+            child,
+            placement,
+            entry: self.entries.len() - 1,
+        };
+        self.add(draft, leaves)
+    }
+
+    /// How many leaves a part has, with every use counted.
+    pub(crate) fn leaves(&self, part: Part) -> u64 {
+        part.0.map_or(0, |draft| self.leaves[draft])
+    }
+
+    /// What a part is made of; `None` for the empty part.
+    pub(crate) fn draft_of(&self, part: Part) -> Option<usize> {
+        part.0
+    }
+
+    pub(crate) fn draft(&self, index: usize) -> &Draft {
+        &self.drafts[index]
+    }
+
+    pub(crate) fn entry(&self, index: usize) -> &Entry {
+        &self.entries[index]
     }
 
     /// The tree of one part.
@@ -210,13 +286,9 @@ impl<'a> Expansion<'a> {
     }
 
     fn run(&mut self, top: usize) -> Result<(), TreeError> {
-        let motion = Motion::identity();
         self.tasks.push(Task {
             draft: top,
-            placement: Rc::new(Placement {
-                motion,
-                mirrored: false,
-            }),
+            placement: Rc::new(Placement::default()),
             parent: None,
             minuend: false,
         });
@@ -230,9 +302,11 @@ impl<'a> Expansion<'a> {
         match &self.builder.drafts[task.draft] {
             Draft::Leaf(primitive) => self.expand_leaf(primitive, &task),
             Draft::Operation { op, children } => self.expand_operation(*op, children, &task),
-            Draft::Moved { child, placement } => {
+            Draft::Moved {
+                child, placement, ..
+            } => {
                 let outer = placement.then(&task.placement);
-                let bits = outer.motion.bits().max(placement.motion.bits());
+                let bits = outer.bits().max(placement.bits());
                 if bits > MAX_MOTION_BITS {
                     return Err(TreeError::NumbersTooLong { bits });
                 }
@@ -247,13 +321,20 @@ impl<'a> Expansion<'a> {
     }
 
     fn expand_leaf(&mut self, primitive: &Primitive, task: &Task) {
-        let Placement { motion, mirrored } = &*task.placement;
+        let Placement {
+            motion,
+            mirrored,
+            factor,
+        } = &*task.placement;
+        let primitive = match factor {
+            Some(factor) => primitive.scaled(factor),
+            None => primitive.clone(),
+        };
         let motion = if *mirrored {
             primitive.mirror_y().then(motion)
         } else {
             motion.clone()
         };
-        let primitive = primitive.clone();
         self.attach(Node::Leaf(Placed { primitive, motion }), task.parent);
     }
 
@@ -310,10 +391,9 @@ impl<'a> Expansion<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use premio_kernel::number::rational::Rational;
 
-    fn shift(x: i32, y: i32, z: i32) -> Motion {
-        Motion::translation([x, y, z].map(Rational::from))
+    fn shift(x: i32, y: i32, z: i32) -> Moves {
+        Moves::shift([x, y, z].map(Rational::from))
     }
 
     fn ball(b: &mut Builder) -> Part {
@@ -393,10 +473,27 @@ mod tests {
         let mirrored = b.mirrored_y(at);
         let tree = b.finish(mirrored).unwrap();
         let (_, placed) = tree.leaves().next().unwrap();
-        assert_eq!(placed.motion, shift(1, -13, 1));
+        assert_eq!(&placed.motion, shift(1, -13, 1).motion());
         let twice = b.mirrored_y(mirrored);
         let tree = b.finish(twice).unwrap();
-        assert_eq!(tree.leaves().next().unwrap().1.motion, shift(1, 10, 1));
+        let (_, placed) = tree.leaves().next().unwrap();
+        assert_eq!(&placed.motion, shift(1, 10, 1).motion());
+    }
+
+    #[test]
+    fn what_is_scaled_is_larger_where_it_lies() {
+        let mut b = Builder::new();
+        let size = [2, 3, 4].map(Rational::from);
+        let block = b.primitive(Primitive::block(size).unwrap());
+        let at = b.moved(block, shift(1, 10, 1));
+        let twice = b.scaled(at, 2.into());
+        let mirrored = b.mirrored_y(twice);
+        let part = b.moved(mirrored, shift(0, 0, 7));
+        let tree = b.finish(part).unwrap();
+        let (_, placed) = tree.leaves().next().unwrap();
+        let expected = Primitive::block([4, 6, 8].map(Rational::from)).unwrap();
+        assert_eq!(placed.primitive, expected);
+        assert_eq!(&placed.motion, shift(2, -26, 9).motion());
     }
 
     #[test]
@@ -435,8 +532,9 @@ mod tests {
     fn numbers_have_a_limit() {
         let mut b = Builder::new();
         let mut part = ball(&mut b);
-        let axis = [0, 0, 1].map(Rational::from);
-        let turn = Motion::rotation(axis, &Rational::from(7)).unwrap();
+        let mut turn = Moves::new();
+        let (axis, degrees) = ([0, 0, 1].map(Rational::from), 7.into());
+        turn.push(Step::Turn { axis, degrees }).unwrap();
         for _ in 0..2000 {
             part = b.moved(part, turn.clone());
         }

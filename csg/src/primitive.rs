@@ -183,6 +183,44 @@ impl Primitive {
         Ok(Self::Torus { major, minor })
     }
 
+    /// Its lengths, in the order of its fields.
+    pub fn lengths(&self) -> Vec<&Rational> {
+        match self {
+            Self::Block { size } | Self::Wedge { size } => size.iter().collect(),
+            Self::Cylinder { radius, height } => vec![radius, height],
+            Self::Frustum { base, top, height } => vec![base, top, height],
+            Self::Sphere { radius } => vec![radius],
+            Self::Torus { major, minor } => vec![major, minor],
+        }
+    }
+
+    /// This primitive, all lengths `factor` times as large; `factor` must be greater than zero.
+    pub fn scaled(&self, factor: &Rational) -> Self {
+        let by = |length: &Rational| length * factor;
+        match self {
+            Self::Block { size } => Self::Block {
+                size: size.each_ref().map(by),
+            },
+            Self::Wedge { size } => Self::Wedge {
+                size: size.each_ref().map(by),
+            },
+            Self::Cylinder { radius, height } => Self::Cylinder {
+                radius: by(radius),
+                height: by(height),
+            },
+            Self::Frustum { base, top, height } => Self::Frustum {
+                base: by(base),
+                top: by(top),
+                height: by(height),
+            },
+            Self::Sphere { radius } => Self::Sphere { radius: by(radius) },
+            Self::Torus { major, minor } => Self::Torus {
+                major: by(major),
+                minor: by(minor),
+            },
+        }
+    }
+
     /// The rigid motion that gives the image of this primitive in the mirror `y -> -y`.
     ///
     /// Every primitive is symmetric about a plane of constant y: its mirror image is itself, shifted.

@@ -3,6 +3,7 @@
 use std::ops::Index;
 
 use premio_kernel::motion::Motion;
+use premio_kernel::number::rational::to_f64;
 
 use crate::primitive::Primitive;
 
@@ -35,6 +36,38 @@ pub struct Placed {
     pub primitive: Primitive,
     /// Where it is put.
     pub motion: Motion,
+}
+
+/// How a tree departs from one of the same operations.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Departure {
+    /// How many primitives are others, or elsewhere.
+    pub leaves: usize,
+    /// How far points of theirs are away, at the most.
+    pub furthest: f64,
+}
+
+impl Placed {
+    /// How far points of a primitive are from those of another of its kind, at the most; `None` of
+    /// another kind.
+    fn distance(&self, other: &Self) -> Option<f64> {
+        let (ours, theirs) = (self.primitive.lengths(), other.primitive.lengths());
+        let kinds = [self, other].map(|placed| std::mem::discriminant(&placed.primitive));
+        if kinds[0] != kinds[1] {
+            return None;
+        }
+        let size: f64 = ours.iter().map(|length| to_f64(length)).sum();
+        let pairs = ours.iter().zip(&theirs);
+        let longer: f64 = pairs.map(|(a, b)| to_f64(&(*a - *b)).abs()).sum();
+        let moved = |i: usize| &self.motion.offset()[i] - &other.motion.offset()[i];
+        let moved: f64 = (0..3).map(|i| to_f64(&moved(i)).abs()).sum();
+        let [a, b] = [self, other].map(|placed| placed.motion.rotation_matrix());
+        let pairs = a.iter().flatten().zip(b.iter().flatten());
+        let turned = pairs
+            .map(|(a, b)| to_f64(&(a - b)).abs())
+            .fold(0.0, f64::max);
+        Some(longer + moved + size * turned)
+    }
 }
 
 /// A node of a tree.
@@ -90,6 +123,26 @@ impl Tree {
             Node::Leaf(placed) => Some((NodeId(index), placed)),
             Node::Operation { .. } => None,
         })
+    }
+
+    /// How another tree of the same operations departs from this one; `None` of another shape.
+    pub fn departure(&self, other: &Self) -> Option<Departure> {
+        let mut departure = Departure::default();
+        if self.nodes.len() != other.nodes.len() {
+            return None;
+        }
+        for (a, b) in self.nodes.iter().zip(&other.nodes) {
+            match (a, b) {
+                (Node::Leaf(a), Node::Leaf(b)) if a == b => {}
+                (Node::Leaf(a), Node::Leaf(b)) => {
+                    departure.leaves += 1;
+                    departure.furthest = departure.furthest.max(a.distance(b)?);
+                }
+                (Node::Operation { .. }, Node::Operation { .. }) if a == b => {}
+                _ => return None,
+            }
+        }
+        Some(departure)
     }
 
     /// The same tree with other primitives at the same places, where `other` gives any; none where it

@@ -39,7 +39,9 @@ fuzz_target!(|bytes: &[u8]| {
             assert!(
                 check.finding != Finding::Fails,
                 "{}: {}\n{}",
-                check.subject, check.detail, part.text
+                check.subject,
+                check.detail,
+                part.text
             );
         }
     }

@@ -1,16 +1,58 @@
-//! Any bytes, to each of the readers: none may panic, overflow the stack or hang.
+//! Any bytes, to each of the readers: none may panic, overflow the stack or hang. What is read is
+//! written, and must be read again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::reader::{Format, Options, parse, read};
+use premio_csg::writer::{WriteError, write};
+
+const FORMATS: [Format; 5] = [
+    Format::Padl,
+    Format::Csg,
+    Format::Json,
+    Format::Asc,
+    Format::Pov,
+];
 
 fuzz_target!(|bytes: &[u8]| {
     for smooth in [false, true] {
         let options = Options { smooth, part: None };
-        for format in [Format::Padl, Format::Csg, Format::Json] {
-            if let Err(error) = read("input", bytes, format, &options) {
-                assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());
+        for format in FORMATS {
+            match parse("input", bytes, format, &options) {
+                Err(error) => {
+                    assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());
+                }
+                // Smooth or not, what is read is written alike.
+                Ok(source) if !smooth => again(&source.builder, source.part),
+                Ok(_) => {}
             }
         }
     }
 });
+
+/// Writes a part in each language; what can hold it means the same tree.
+fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::Part) {
+    let Ok(tree) = builder.finish(part) else {
+        return;
+    };
+    if tree.leaves().count() > 1000 {
+        return;
+    }
+    for format in [Format::Csg, Format::Json] {
+        // What these cannot hold is rounded, and may then be no solid.
+        if let Ok(text) = write(builder, part, format) {
+            let _ = read("again", text.as_bytes(), format, &Options::default());
+        }
+    }
+    match write(builder, part, Format::Padl) {
+        Err(WriteError::Empty) => {}
+        // Numbers of a thousand digits are rounded, too.
+        Ok(text) if text.len() > 1000 => {}
+        written => {
+            let text = written.expect("a small part is written");
+            let other = read("again", text.as_bytes(), Format::Padl, &Options::default());
+            let other = other.unwrap_or_else(|error| panic!("{error}\n{text}")).tree;
+            assert!(tree.departure(&other).is_some(), "{text}");
+        }
+    }
+}

@@ -163,6 +163,14 @@ impl Motion {
         }
     }
 
+    /// This motion where all lengths are `factor` times as large: the same turn, another shift.
+    pub fn scaled(&self, factor: &Rational) -> Self {
+        Self {
+            rotation: self.rotation.clone(),
+            translation: self.translation.each_ref().map(|x| x * factor),
+        }
+    }
+
     /// The image of a point.
     pub fn apply_point(&self, point: &[Rational; 3]) -> [Rational; 3] {
         let [x, y, z] = self.apply_vector(point);

@@ -38,6 +38,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ),
     ("csg/src/rays", "a measurement that no result rests on"),
     ("csg/src/reader", "whether a text says what it may"),
+    ("csg/src/writer", "how a text is written"),
     ("csg/src/primitive.rs", "whether lengths are what they may"),
     ("visibility/src/drawing", "it draws what is decided"),
 ];

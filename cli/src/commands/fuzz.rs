@@ -10,7 +10,7 @@ use crate::fuzz::state::{Plan, State, Writing};
 use crate::fuzz::summary::Summary;
 use crate::fuzz::trial::Terms;
 use crate::fuzz::worker::{Worker, serve};
-use crate::fuzz::write::{Format, ending};
+use crate::fuzz::write::Format;
 use crate::output;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -114,7 +114,7 @@ fn plan(options: &FuzzOptions) -> Result<Plan, Failure> {
             folder: folder.clone(),
             formats: formats(options)
                 .iter()
-                .map(|&f| ending(f).to_owned())
+                .map(|f| f.ending().to_owned())
                 .collect(),
         }),
     })

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod contours;
+pub mod convert;
 pub mod export;
 pub mod fuzz;
 pub mod info;

@@ -4,7 +4,7 @@ use super::Error;
 use super::model::Model;
 use super::state::{Item, State};
 use super::trial::{Measures, Outcome, Verdict};
-use super::write::{Format, ending, read, write};
+use super::write::{Format, read, write};
 use crate::output;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -55,7 +55,7 @@ impl Archive {
         let exact = tree(&write(model, Format::Json), Format::Json);
         let mut files = Vec::new();
         for &format in &self.formats {
-            let file = format!("{}-{}.{}", item.profile, item.seed, ending(format));
+            let file = format!("{}-{}.{}", item.profile, item.seed, format.ending());
             let path = self.folder.join(&file);
             let text = write(model, format);
             output::file(&text, &path).map_err(|e| Error::file(&path, e))?;

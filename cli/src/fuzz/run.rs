@@ -411,10 +411,10 @@ mod tests {
             let small = wrong.values().filter_map(|find| find.shrunk.as_deref());
             let small: Vec<&str> = small.collect();
             assert_eq!(small.len(), SHRUNK.min(wrong.len()));
-            assert!(small.iter().all(|text| text.starts_with("PART = (TOR(")));
+            assert!(small.iter().all(|text| text.starts_with("PART = TOR(")));
             let refused = tally.refusals.values().next().unwrap();
             let text = refused.values().next().unwrap().shrunk.as_deref();
-            assert_eq!(text, Some("PART = (SPH(R=1))\n"));
+            assert_eq!(text, Some("PART = SPH(R=1)\n"));
         }
     }
 

@@ -206,7 +206,7 @@ mod tests {
                 asked += 1;
                 planted(model)
             });
-            assert_eq!(write(&small, Format::Padl), "PART = (SPH(R=1))\n");
+            assert_eq!(write(&small, Format::Padl), "PART = SPH(R=1)\n");
         }
         assert!(asked > 0);
     }
@@ -225,7 +225,7 @@ mod tests {
         });
         assert_eq!(
             write(&small, Format::Padl),
-            "PART = ((SPH(R=1)\n DIF SPH(R=1)))\n"
+            "PART = (\n  SPH(R=1)\n  DIF SPH(R=1)\n)\n"
         );
         assert!(asked < 400, "{asked}");
     }

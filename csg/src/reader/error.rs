@@ -57,7 +57,7 @@ impl fmt::Display for ReadError {
 impl std::error::Error for ReadError {}
 
 /// An error before its line is known.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Fault {
     kind: ErrorKind,
     span: Range<usize>,

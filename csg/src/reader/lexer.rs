@@ -1,4 +1,4 @@
-//! The words of the three languages, each with its place in the text.
+//! The words of the languages, each with its place in the text.
 
 use std::ops::Range;
 
@@ -19,6 +19,8 @@ pub(super) enum Dialect {
     Scad,
     /// No comments.
     Json,
+    /// `//` comments and `/* */` comments, also one inside another; more symbols.
+    Pov,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,7 +95,34 @@ fn comment<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<()> {
         ))
         .parse_next(input),
         Dialect::Json => winnow::combinator::fail.parse_next(input),
+        Dialect::Pov => alt((
+            preceded("//", take_till(0.., ['\n'])).void(),
+            nested_comment,
+        ))
+        .parse_next(input),
     }
+}
+
+/// A comment that may have comments in it.
+fn nested_comment(input: &mut &str) -> Plain<()> {
+    let rest = "/*".parse_next(input).map(|_| *input)?;
+    let mut depth = 1usize;
+    let marks = rest.match_indices(['*', '/']).map(|(at, _)| at);
+    let mut after = 0;
+    for at in marks.filter(|&at| at + 1 < rest.len()) {
+        match &rest.as_bytes()[at..at + 2] {
+            _ if at < after => continue,
+            b"/*" => depth += 1,
+            b"*/" => depth -= 1,
+            _ => continue,
+        }
+        after = at + 2;
+        if depth == 0 {
+            *input = &rest[after..];
+            return Ok(());
+        }
+    }
+    winnow::combinator::fail.parse_next(input)
 }
 
 fn skipped<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<()> {
@@ -104,7 +133,8 @@ fn skipped<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<()> {
     }
 }
 
-fn word(input: &mut &str) -> Plain<Token> {
+fn word(dialect: Dialect, input: &mut &str) -> Plain<Token> {
+    let more = |c: char| dialect == Dialect::Pov && matches!(c, '<' | '>' | '.' | '?' | '&' | '|');
     alt((
         number.value(Token::Number),
         name.value(Token::Name),
@@ -114,6 +144,7 @@ fn word(input: &mut &str) -> Plain<Token> {
             '(', ')', '[', ']', '{', '}', '=', ',', ';', ':', '+', '-', '*', '/', '%', '#', '!',
         ])
         .map(Token::Symbol),
+        one_of(more).map(Token::Symbol),
     ))
     .parse_next(input)
 }
@@ -134,7 +165,12 @@ fn lex(source: &str, dialect: Dialect) -> Result<Vec<Lexeme>, Fault> {
             });
             return Ok(lexemes);
         }
-        match word.parse_next(&mut rest) {
+        // What is left of a comment has no end; its first two characters are symbols, too.
+        let comments = matches!(dialect, Dialect::Scad | Dialect::Pov);
+        if comments && rest.starts_with("/*") {
+            return Err(unreadable(source, start));
+        }
+        match word(dialect, &mut rest) {
             Ok(token) => {
                 let end = source.len() - rest.len();
                 lexemes.push(Lexeme { token, start, end });

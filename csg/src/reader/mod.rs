@@ -3,11 +3,16 @@
 //! Nothing here touches files. Every error has its place in the text, and no text, however deep
 //! its brackets, makes a reader overflow the stack.
 
+mod brlcad;
 mod error;
+mod frame;
 mod json;
 mod lexer;
+mod notes;
 mod number;
 mod padl;
+mod placement;
+mod pov;
 mod scad;
 #[cfg(test)]
 mod tests;
@@ -30,6 +35,10 @@ pub enum Format {
     Csg,
     /// `.json`, the tree.
     Json,
+    /// `.asc`, BRL-CAD's database as text; it is read only.
+    Asc,
+    /// `.pov` and `.inc`, POV-Ray's scene description language; it is read only.
+    Pov,
 }
 
 impl Format {
@@ -40,7 +49,20 @@ impl Format {
             "padl" => Some(Self::Padl),
             "csg" => Some(Self::Csg),
             "json" => Some(Self::Json),
+            "asc" => Some(Self::Asc),
+            "pov" | "inc" => Some(Self::Pov),
             _ => None,
+        }
+    }
+
+    /// The ending of its files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Padl => "padl",
+            Self::Csg => "csg",
+            Self::Json => "json",
+            Self::Asc => "asc",
+            Self::Pov => "pov",
         }
     }
 }
@@ -50,7 +72,8 @@ impl Format {
 pub struct Options {
     /// Reads a `.csg` primitive with a small `$fn` as the smooth one.
     pub smooth: bool,
-    /// The part to read from a `.padl` text; the last solid assigned if absent.
+    /// The part to read from a text in which parts have names; if absent, of `.padl` the last
+    /// solid assigned, of `.asc` the one object that no other holds, of `.pov` the whole scene.
     pub part: Option<String>,
 }
 
@@ -75,6 +98,36 @@ pub struct Description {
     pub notes: Vec<Note>,
 }
 
+/// A part as it was written: by its operations and motions, with nothing copied.
+#[derive(Debug)]
+pub struct Source {
+    /// The parts of the text.
+    pub builder: Builder,
+    /// The one that was asked for.
+    pub part: Part,
+    /// The noise of the coordinates; see [`Description::digits`].
+    pub digits: Option<f64>,
+    /// What the author may want to know.
+    pub notes: Vec<Note>,
+    /// Where the part stands in the text.
+    span: Range<usize>,
+}
+
+impl Source {
+    /// The tree of the part; a tree beyond its limits is pointed at as a whole.
+    fn description(self) -> Result<Description, Fault> {
+        let tree = self.builder.finish(self.part).map_err(|error| {
+            let expected = "a description within the limits";
+            Fault::limit(self.span, error.to_string(), expected)
+        })?;
+        Ok(Description {
+            tree,
+            digits: self.digits,
+            notes: self.notes,
+        })
+    }
+}
+
 /// Reads a description. `name` is what messages call it.
 pub fn read(
     name: &str,
@@ -82,10 +135,22 @@ pub fn read(
     format: Format,
     options: &Options,
 ) -> Result<Description, ReadError> {
-    read_bytes(bytes, format, options).map_err(|fault| fault.locate(name, bytes))
+    parse_bytes(bytes, format, options)
+        .and_then(Source::description)
+        .map_err(|fault| fault.locate(name, bytes))
 }
 
-fn read_bytes(bytes: &[u8], format: Format, options: &Options) -> Result<Description, Fault> {
+/// Reads a description as far as it is written again. `name` is what messages call it.
+pub fn parse(
+    name: &str,
+    bytes: &[u8],
+    format: Format,
+    options: &Options,
+) -> Result<Source, ReadError> {
+    parse_bytes(bytes, format, options).map_err(|fault| fault.locate(name, bytes))
+}
+
+fn parse_bytes(bytes: &[u8], format: Format, options: &Options) -> Result<Source, Fault> {
     let source = std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         let byte = bytes.get(at).copied().unwrap_or_default();
@@ -95,24 +160,16 @@ fn read_bytes(bytes: &[u8], format: Format, options: &Options) -> Result<Descrip
             "a text in UTF-8",
         )
     })?;
-    if options.part.is_some() && format != Format::Padl {
+    if options.part.is_some() && matches!(format, Format::Csg | Format::Json) {
         let found = "a part asked for by name";
-        return Err(Fault::input(
-            0..0,
-            found,
-            "a `.padl` file, in which parts have names",
-        ));
+        let expected = "a `.padl`, `.asc` or `.pov` file, in which parts have names";
+        return Err(Fault::input(0..0, found, expected));
     }
     match format {
         Format::Padl => padl::read(source, options),
         Format::Csg => scad::read(source, options),
         Format::Json => json::read(source),
+        Format::Asc => brlcad::read(source, options),
+        Format::Pov => pov::read(source, options),
     }
-}
-
-/// The tree of a part; a tree beyond its limits is pointed at as a whole.
-fn finish(builder: &Builder, part: Part, span: Range<usize>) -> Result<Tree, Fault> {
-    builder
-        .finish(part)
-        .map_err(|error| Fault::limit(span, error.to_string(), "a description within the limits"))
 }

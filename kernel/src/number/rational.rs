@@ -86,6 +86,66 @@ pub fn to_f64(value: &Rational) -> f64 {
     value.to_f64().value()
 }
 
+/// The exact decimal of a number, without an exponent; `None` where it does not end, or has more
+/// than [`MAX_DIGITS`] digits.
+pub fn to_decimal(value: &Rational) -> Option<String> {
+    // With a denominator of 2^a 5^b there are max(a, b) digits after the point.
+    let mut rest = value.denominator().clone();
+    let twos = rest.trailing_zeros().unwrap_or(0);
+    rest >>= twos;
+    let five = UBig::from(5u8);
+    let mut fives = 0;
+    while rest.is_multiple_of(&five) && fives <= MAX_DIGITS {
+        rest /= &five;
+        fives += 1;
+    }
+    let places = twos.max(fives);
+    if !rest.is_one() || places > MAX_DIGITS {
+        return None;
+    }
+    let scaled = value * Rational::from(UBig::from(10u8).pow(places));
+    let (numerator, _) = scaled.into_parts();
+    let (sign, digits) = numerator.into_parts();
+    let digits = format!("{:0>1$}", digits.to_string(), places + 1);
+    if digits.len() > MAX_DIGITS {
+        return None;
+    }
+    let (before, after) = digits.split_at(digits.len() - places);
+    let minus = if sign == dashu::base::Sign::Negative {
+        "-"
+    } else {
+        ""
+    };
+    let point = if after.is_empty() { "" } else { "." };
+    Some(format!("{minus}{before}{point}{after}"))
+}
+
+/// Numbers in the same proportion, whole and without a common divisor; zeros stay zeros.
+pub fn whole<const N: usize>(values: &[Rational; N]) -> [Rational; N] {
+    use dashu::base::Gcd;
+    let mut common = UBig::ONE;
+    for value in values {
+        let denominator = value.denominator();
+        common = &common / common.clone().gcd(denominator) * denominator;
+    }
+    let scaled = values
+        .each_ref()
+        .map(|value| value * Rational::from(common.clone()));
+    let mut divisor = UBig::ZERO;
+    for value in &scaled {
+        let (_, magnitude) = value.numerator().clone().into_parts();
+        divisor = match (divisor.is_zero(), magnitude.is_zero()) {
+            (_, true) => divisor,
+            (true, false) => magnitude,
+            (false, false) => divisor.gcd(magnitude),
+        };
+    }
+    match divisor.is_zero() {
+        true => scaled,
+        false => scaled.map(|value| value / Rational::from(divisor.clone())),
+    }
+}
+
 /// The length of the numerator and the denominator together, in bits: what a number costs.
 pub fn bits(value: &Rational) -> usize {
     value.numerator().bit_len() + value.denominator().bit_len()
@@ -145,6 +205,32 @@ mod tests {
     }
 
     #[test]
+    fn decimals_that_end() {
+        let written = |n, d| to_decimal(&ratio(n, d));
+        assert_eq!(written(-15, 10_000).as_deref(), Some("-0.0015"));
+        assert_eq!(written(1, 8).as_deref(), Some("0.125"));
+        assert_eq!(written(120, 1).as_deref(), Some("120"));
+        assert_eq!(written(0, 1).as_deref(), Some("0"));
+        assert_eq!(written(123, 20).as_deref(), Some("6.15"));
+        assert_eq!(written(1, 3), None);
+        assert_eq!(written(1, 15), None);
+        let long = Rational::from_parts(1.into(), UBig::ONE << (MAX_DIGITS + 1));
+        assert_eq!(to_decimal(&long), None);
+    }
+
+    #[test]
+    fn whole_numbers_in_proportion() {
+        let values = [ratio(1, 6), ratio(-3, 4), ratio(0, 1), ratio(2, 1)];
+        assert_eq!(whole(&values), [2, -9, 0, 24].map(Rational::from));
+        let values = [ratio(12, 1), ratio(-18, 1)];
+        assert_eq!(whole(&values), [2, -3].map(Rational::from));
+        assert_eq!(
+            whole(&[ratio(0, 1), ratio(0, 1)]),
+            [0, 0].map(Rational::from)
+        );
+    }
+
+    #[test]
     fn doubles_out_of_range() {
         assert_eq!(from_f64(f64::NAN), None);
         assert_eq!(from_f64(f64::INFINITY), None);
@@ -161,6 +247,16 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn decimals_are_read_again(x in any::<f64>().prop_filter("finite", |x| x.is_finite())) {
+            let exact = from_f64(x).unwrap();
+            if let Some(decimal) = to_decimal(&exact) {
+                prop_assert_eq!(from_decimal(&decimal), Ok(exact));
+            } else {
+                prop_assert!(x.abs() < 1e-290);
+            }
+        }
+
         #[test]
         fn a_double_survives(value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
             prop_assert_eq!(to_f64(&from_f64(value).unwrap()), value);

@@ -4,18 +4,18 @@ mod value;
 
 use std::ops::Range;
 
-use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use self::value::{Content, Document, Member, Value, ValueId, parse};
+use super::Source;
 use super::error::{Fault, quote};
 use super::number::{bad_length, literal};
-use super::{Description, finish};
 use crate::builder::{Builder, MAX_MOTION_BITS, Part};
+use crate::moves::{self, Moves};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::tree::Operation;
 
-pub(super) fn read(source: &str) -> Result<Description, Fault> {
+pub(super) fn read(source: &str) -> Result<Source, Fault> {
     let document = parse(source)?;
     let mut builder = Builder::new();
     let part = Reader {
@@ -24,11 +24,12 @@ pub(super) fn read(source: &str) -> Result<Description, Fault> {
     }
     .solid(document.root)?;
     let span = document.value(document.root).span.clone();
-    let tree = finish(&builder, part, span)?;
-    Ok(Description {
-        tree,
+    Ok(Source {
+        builder,
+        part,
         digits: None,
         notes: Vec::new(),
+        span,
     })
 }
 
@@ -55,7 +56,7 @@ enum Step {
     Combine {
         op: Operation,
         count: usize,
-        motion: Motion,
+        moves: Moves,
     },
 }
 
@@ -75,22 +76,14 @@ impl<'a> Reader<'a> {
                         parts.push(part);
                     }
                 }
-                Step::Combine { op, count, motion } => {
+                Step::Combine { op, count, moves } => {
                     let children = parts.split_off(parts.len().saturating_sub(count));
                     let part = self.builder.operation(op, &children);
-                    parts.push(self.moved(part, motion));
+                    parts.push(self.builder.moved(part, moves));
                 }
             }
         }
         Ok(parts.pop().unwrap_or(Part::EMPTY))
-    }
-
-    fn moved(&mut self, part: Part, motion: Motion) -> Part {
-        if motion.is_identity() {
-            part
-        } else {
-            self.builder.moved(part, motion)
-        }
     }
 
     /// Makes a primitive, or plans the children of an operation.
@@ -137,11 +130,11 @@ impl<'a> Reader<'a> {
         fields.check_known(&["op", "children", "transform"])?;
         let op = choice(self.document.value(name.value), &OPERATIONS)?;
         let children = fields.array(fields.require("children")?, "an array of solids")?;
-        let motion = fields.motion()?;
+        let moves = fields.moves()?;
         steps.push(Step::Combine {
             op,
             count: children.len(),
-            motion,
+            moves,
         });
         steps.extend(children.iter().rev().map(|&child| Step::Enter(child)));
         Ok(())
@@ -155,13 +148,13 @@ impl<'a> Reader<'a> {
             return Err(fields.neither());
         };
         let lengths = fields.lengths(keys)?;
-        let motion = fields.motion()?;
+        let moves = fields.moves()?;
         let primitive = make(name, &lengths).map_err(|error| {
             let length = &lengths[length_index(error.dimension(), lengths.len())];
             bad_length(error, Some(&length.value), length.span.clone())
         })?;
         let part = self.builder.primitive(primitive);
-        Ok(self.moved(part, motion))
+        Ok(self.builder.moved(part, moves))
     }
 }
 
@@ -277,25 +270,29 @@ impl<'a> Fields<'a> {
     fn lengths(&self, keys: &[&str]) -> Result<Vec<Length>, Fault> {
         if keys == ["size"] {
             let member = self.require("size")?;
-            return Ok(triple(self.document, member.value)?.into());
+            return Ok(lengths::<3>(self.document, member.value, TRIPLE)?.into());
         }
         keys.iter()
             .map(|key| number(self.document, self.require(key)?.value))
             .collect()
     }
 
-    /// The optional transform, as one motion.
-    fn motion(&self) -> Result<Motion, Fault> {
+    /// The steps of the optional transform.
+    fn moves(&self) -> Result<Moves, Fault> {
+        let mut moves = Moves::new();
         let Some(member) = self.find("transform") else {
-            return Ok(Motion::identity());
+            return Ok(moves);
         };
-        let mut motion = Motion::identity();
-        for &step in self.array(member, "an array of steps")? {
-            motion = motion.then(&self.step(step)?);
-            let bits = motion.bits();
+        for &id in self.array(member, "an array of steps")? {
+            let (step, turned) = self.step(id)?;
+            moves.push(step).map_err(|error| {
+                let span = self.document.value(turned).span.clone();
+                Fault::input(span, error.to_string(), "an axis with a direction")
+            })?;
+            let bits = moves.motion().bits();
             if bits > MAX_MOTION_BITS {
                 let found = format!("a transform whose exact numbers take {bits} bits");
-                let span = self.document.value(step).span.clone();
+                let span = self.document.value(id).span.clone();
                 return Err(Fault::limit(
                     span,
                     found,
@@ -303,12 +300,14 @@ impl<'a> Fields<'a> {
                 ));
             }
         }
-        Ok(motion)
+        Ok(moves)
     }
 
-    fn step(&self, id: ValueId) -> Result<Motion, Fault> {
+    /// A step, and the value that says about what it turns.
+    fn step(&self, id: ValueId) -> Result<(moves::Step, ValueId), Fault> {
         let value = self.document.value(id);
-        let expected = "a step: {\"translate\":[x,y,z]} or {\"rotate\":[[x,y,z],degrees]}";
+        let expected = "a step: {\"translate\":[x,y,z]}, {\"rotate\":[[x,y,z],degrees]} or \
+                        {\"quaternion\":[w,x,y,z]}";
         let wrong = || Fault::input(value.span.clone(), value.content.describe(), expected);
         let Content::Object(members) = &value.content else {
             return Err(wrong());
@@ -318,29 +317,32 @@ impl<'a> Fields<'a> {
             members,
             span: value.span.clone(),
         };
-        step.check_known(&["translate", "rotate"])?;
-        match members.as_slice() {
-            [member] if member.key == "translate" => {
-                let offset = triple(self.document, member.value)?;
-                Ok(Motion::translation(offset.map(|length| length.value)))
+        step.check_known(&["translate", "rotate", "quaternion"])?;
+        let [member] = members.as_slice() else {
+            return Err(wrong());
+        };
+        match member.key.as_str() {
+            "translate" => {
+                let offset = numbers(self.document, member.value, TRIPLE)?;
+                Ok((moves::Step::Shift(offset), member.value))
             }
-            [member] => self.rotation(member.value),
-            _ => Err(wrong()),
+            "quaternion" => {
+                let quaternion = numbers(self.document, member.value, "an array of four numbers")?;
+                Ok((moves::Step::Quaternion(quaternion), member.value))
+            }
+            _ => self.rotation(member.value),
         }
     }
 
-    fn rotation(&self, id: ValueId) -> Result<Motion, Fault> {
+    fn rotation(&self, id: ValueId) -> Result<(moves::Step, ValueId), Fault> {
         let expected = "an axis and an angle: [[x,y,z],degrees]";
         let &[axis_id, degrees] = items(self.document, id, expected)? else {
             let span = self.document.value(id).span.clone();
             return Err(Fault::input(span, "an array of another length", expected));
         };
-        let axis = triple(self.document, axis_id)?.map(|length| length.value);
+        let axis = numbers(self.document, axis_id, TRIPLE)?;
         let degrees = number(self.document, degrees)?.value;
-        Motion::rotation(axis, &degrees).map_err(|error| {
-            let span = self.document.value(axis_id).span.clone();
-            Fault::input(span, error.to_string(), "an axis with a direction")
-        })
+        Ok((moves::Step::Turn { axis, degrees }, axis_id))
     }
 }
 
@@ -366,15 +368,29 @@ fn number(document: &Document, id: ValueId) -> Result<Length, Fault> {
     }
 }
 
-fn triple(document: &Document, id: ValueId) -> Result<[Length; 3], Fault> {
-    let expected = "an array of three numbers";
-    let &[x, y, z] = items(document, id, expected)? else {
-        let span = document.value(id).span.clone();
-        return Err(Fault::input(span, "an array of another length", expected));
+/// What three coordinates are expected as.
+const TRIPLE: &str = "an array of three numbers";
+
+fn lengths<const N: usize>(
+    document: &Document,
+    id: ValueId,
+    expected: &str,
+) -> Result<[Length; N], Fault> {
+    let all = items(document, id, expected)?;
+    let all: Result<Vec<Length>, Fault> = match all.len() == N {
+        true => all.iter().map(|&item| number(document, item)).collect(),
+        false => Ok(Vec::new()),
     };
-    Ok([
-        number(document, x)?,
-        number(document, y)?,
-        number(document, z)?,
-    ])
+    all?.try_into().map_err(|_| {
+        let span = document.value(id).span.clone();
+        Fault::input(span, "an array of another length", expected)
+    })
+}
+
+fn numbers<const N: usize>(
+    document: &Document,
+    id: ValueId,
+    expected: &str,
+) -> Result<[Rational; N], Fault> {
+    Ok(lengths(document, id, expected)?.map(|length| length.value))
 }

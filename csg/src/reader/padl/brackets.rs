@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::{Fault, quote};
@@ -11,6 +10,7 @@ use super::super::number::bad_length;
 use super::expression::Operand;
 use super::words::{MOTIONS, Shape};
 use crate::builder::{Builder, MAX_MOTION_BITS, Part};
+use crate::moves::{Moves, Step};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 
 /// What is around an expression.
@@ -89,7 +89,7 @@ impl<'a> Bracket<'a> {
                     return Err(Fault::input(close.span(), "`)`", expected));
                 }
                 Ok(Some((
-                    builder.moved(placing.part, placing.motion),
+                    builder.moved(placing.part, placing.moves),
                     placing.start,
                 )))
             }
@@ -209,7 +209,7 @@ pub(super) struct Placing {
     part: Part,
     start: usize,
     open: Lexeme,
-    motion: Motion,
+    moves: Moves,
     any: bool,
     /// The index among [`MOTIONS`] of the motion being read.
     current: usize,
@@ -217,12 +217,11 @@ pub(super) struct Placing {
 
 impl Placing {
     pub(super) fn new(part: Part, start: usize, open: Lexeme) -> Self {
-        let motion = Motion::identity();
         Self {
             part,
             start,
             open,
-            motion,
+            moves: Moves::new(),
             any: false,
             current: 0,
         }
@@ -233,17 +232,17 @@ impl Placing {
         let name = MOTIONS.get(self.current).copied().unwrap_or_default();
         let value = operand.number(&format!("for `{name}`"))?;
         let step = match self.current {
-            axis @ 0..3 => Motion::translation(along(axis, value)),
-            turn => {
-                let axis = along(turn - 3, Rational::ONE);
-                Motion::rotation(axis, &value).map_err(|error| {
-                    Fault::input(span.clone(), error.to_string(), "an angle in degrees")
-                })?
-            }
+            axis @ 0..3 => Step::Shift(along(axis, value)),
+            turn => Step::Turn {
+                axis: along(turn - 3, Rational::ONE),
+                degrees: value,
+            },
         };
-        self.motion = self.motion.then(&step);
+        self.moves.push(step).map_err(|error| {
+            Fault::input(span.clone(), error.to_string(), "an angle in degrees")
+        })?;
         self.any = true;
-        let bits = self.motion.bits();
+        let bits = self.moves.motion().bits();
         if bits > MAX_MOTION_BITS {
             let found = format!("motions whose exact numbers take {bits} bits");
             return Err(Fault::limit(

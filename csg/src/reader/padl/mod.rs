@@ -16,18 +16,19 @@ use self::words::{KEYWORDS, Keyword};
 use super::error::{Fault, line_and_column, quote};
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::number::literal;
-use super::{Description, Options, finish};
+use super::{Options, Source};
 use crate::builder::{Builder, Part};
 
-pub(super) fn read(source: &str, options: &Options) -> Result<Description, Fault> {
+pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
     let mut parser = Parser::new(source)?;
     while parser.statement()? {}
     let (part, span) = parser.part(options.part.as_deref())?;
-    let tree = finish(&parser.builder, part, span)?;
-    Ok(Description {
-        tree,
+    Ok(Source {
+        builder: parser.builder,
+        part,
         digits: None,
         notes: Vec::new(),
+        span,
     })
 }
 

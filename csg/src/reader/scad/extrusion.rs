@@ -3,12 +3,12 @@
 //! Raising a figure commutes with moving it in its plane and with set operations, so each figure
 //! becomes a solid by itself.
 
-use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::Fault;
 use super::arguments::{Argument, Arguments, Value};
 use super::shapes::{Shape, check_smooth, checked, length, radius};
+use crate::moves::Moves;
 use crate::primitive::Primitive;
 
 /// How high a figure is raised, and from where.
@@ -39,8 +39,8 @@ impl Raise {
         Ok(Self { height, bottom })
     }
 
-    fn at(&self, x: Rational, y: Rational) -> Motion {
-        Motion::translation([x, y, self.bottom.clone()])
+    fn at(&self, x: Rational, y: Rational) -> Moves {
+        Moves::shift([x, y, self.bottom.clone()])
     }
 }
 
@@ -87,8 +87,8 @@ pub(super) fn circle(
     }
     check_smooth(arguments, smooth)?;
     let cylinder = Primitive::cylinder(radius, raise.height.clone());
-    let motion = raise.at(Rational::ZERO, Rational::ZERO);
-    Ok(Some((checked(cylinder, &arguments.span)?, motion)))
+    let moves = raise.at(Rational::ZERO, Rational::ZERO);
+    Ok(Some((checked(cylinder, &arguments.span)?, moves)))
 }
 
 pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, Fault> {
@@ -103,13 +103,13 @@ pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, 
     if x.is_zero() || y.is_zero() || raise.height.is_zero() {
         return Ok(None);
     }
-    let motion = if arguments.flag("center")? {
+    let moves = if arguments.flag("center")? {
         raise.at(-half(&x), -half(&y))
     } else {
         raise.at(Rational::ZERO, Rational::ZERO)
     };
     let block = Primitive::block([x, y, raise.height.clone()]);
-    Ok(Some((checked(block, &arguments.span)?, motion)))
+    Ok(Some((checked(block, &arguments.span)?, moves)))
 }
 
 /// A triangle with a right angle between legs along the axes: a wedge.
@@ -181,7 +181,7 @@ fn wedge(
     corner: &Point,
     leg_x: Rational,
     leg_y: Rational,
-) -> Result<(Primitive, Motion), Fault> {
+) -> Result<(Primitive, Moves), Fault> {
     let sign = |leg: &Rational| if *leg > Rational::ZERO { 1i32 } else { -1 };
     let (u, v) = (sign(&leg_x), sign(&leg_y));
     // Columns (u,0,0), (0,0,w), (0,v,0): the determinant is -u v w.
@@ -197,8 +197,6 @@ fn wedge(
     let offset = [corner[0].clone(), corner[1].clone(), &raise.bottom + lift];
     let size = [leg_x * Rational::from(u), height, leg_y * Rational::from(v)];
     let wedge = checked(Primitive::wedge(size), &arguments.span)?;
-    Ok((
-        wedge,
-        Motion::from_matrix(matrix, offset).unwrap_or_default(),
-    ))
+    let turn = Moves::quarter_turns(&matrix).unwrap_or_default();
+    Ok((wedge, turn.then(Moves::shift(offset))))
 }

@@ -6,28 +6,32 @@
 mod arguments;
 mod extrusion;
 mod nodes;
-mod placement;
 mod shapes;
 
 use self::arguments::Arguments;
 use self::nodes::{Around, Kind, Node};
 use super::error::Fault;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
-use super::{Description, Note, Options, finish};
+use super::notes::Notes;
+use super::{Options, Source};
 use crate::builder::{Builder, Part};
 
-pub(super) fn read(source: &str, options: &Options) -> Result<Description, Fault> {
+pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
     let cursor = Cursor::new(source, Dialect::Scad)?;
     let mut reader = Reader::new(cursor, options.smooth);
     let part = reader.file()?;
-    let tree = finish(&reader.builder, part, 0..source.len())?;
     let (digits, notes) = reader.notes.finish();
-    Ok(Description {
-        tree,
+    Ok(Source {
+        builder: reader.builder,
+        part,
         digits,
         notes,
+        span: 0..source.len(),
     })
 }
+
+/// The rounding of the six digits that OpenSCAD writes.
+const SIX_DIGITS: f64 = 1e-6;
 
 /// A block that is not closed yet.
 struct Frame {
@@ -68,7 +72,7 @@ impl<'a> Reader<'a> {
             builder: Builder::new(),
             smooth,
             frames: Vec::new(),
-            notes: Notes::default(),
+            notes: Notes::of_digits(SIX_DIGITS),
             marked_root: None,
         }
     }
@@ -217,15 +221,11 @@ impl<'a> Reader<'a> {
     }
 
     fn place(&mut self, shape: shapes::Shape) -> Part {
-        let Some((primitive, motion)) = shape else {
+        let Some((primitive, moves)) = shape else {
             return Part::EMPTY;
         };
         let part = self.builder.primitive(primitive);
-        if motion.is_identity() {
-            part
-        } else {
-            self.builder.moved(part, motion)
-        }
+        self.builder.moved(part, moves)
     }
 
     fn open_block(
@@ -256,42 +256,5 @@ impl<'a> Reader<'a> {
             root,
         });
         Ok(())
-    }
-}
-
-/// What the author may want to know, and how much the file's numbers had to be changed.
-#[derive(Default)]
-struct Notes {
-    notes: Vec<Note>,
-    passed_over: usize,
-    digits: Option<f64>,
-}
-
-impl Notes {
-    /// More than this many notes of one kind nobody reads.
-    const MOST: usize = 100;
-
-    /// A matrix was replaced by an exact one, entries changing by up to `residual`.
-    fn snapped(&mut self, residual: f64, span: std::ops::Range<usize>) {
-        // The six digits that OpenSCAD writes.
-        const SIX_DIGITS: f64 = 1e-6;
-        let digits = self.digits.unwrap_or(SIX_DIGITS);
-        self.digits = Some(digits.max(residual));
-        if self.notes.len() == Self::MOST {
-            self.passed_over += 1;
-            return;
-        }
-        let text =
-            format!("read as the nearest exact rotation; entries change by up to {residual:.1e}");
-        self.notes.push(Note { text, span });
-    }
-
-    fn finish(mut self) -> (Option<f64>, Vec<Note>) {
-        if let (Some(last), 1..) = (self.notes.last(), self.passed_over) {
-            let text = format!("{} more matrices were read so", self.passed_over);
-            let span = last.span.clone();
-            self.notes.push(Note { text, span });
-        }
-        (self.digits, self.notes)
     }
 }

@@ -6,10 +6,10 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::{Fault, quote};
 use super::super::lexer::Lexeme;
-use super::Notes;
+use super::super::notes::Notes;
+use super::super::placement::{NotRigid, Placement, placement};
 use super::arguments::{Argument, Arguments};
 use super::extrusion::{self, Raise};
-use super::placement::{NotRigid, Placement, placement};
 use super::shapes::{self, Shape};
 use crate::builder::{Builder, Part};
 use crate::tree::Operation;
@@ -38,11 +38,7 @@ impl Kind {
         } else {
             part
         };
-        if placement.motion.is_identity() {
-            part
-        } else {
-            builder.moved(part, placement.motion)
-        }
+        builder.moved(part, placement.moves)
     }
 }
 
@@ -142,7 +138,7 @@ fn figure(
             Err(Fault::input(place.span(), found, "a solid"))
         }
         ("circle", Around::Revolved(placing)) => {
-            shapes::revolved_circle(arguments, &placing.motion, smooth)
+            shapes::revolved_circle(arguments, placing.moves.motion(), smooth)
         }
         (_, Around::Revolved(_)) => Err(not_in_revolution(place, name)),
         ("circle", Around::Raised(raise)) => extrusion::circle(arguments, raise, smooth),
@@ -221,7 +217,7 @@ fn matrix(arguments: &mut Arguments, around: &Around, notes: &mut Notes) -> Resu
     let ((a, x), (b, y), (c, z)) = (split(a), split(b), split(c));
     let placement = placement(&[a, b, c], [x, y, z])
         .map_err(|reason| not_rigid(reason, argument.span.clone()))?;
-    if placement.residual > 0.0 {
+    if placement.replaces() {
         notes.snapped(placement.residual, argument.span.clone());
     }
     match around {
@@ -250,8 +246,9 @@ fn matrix(arguments: &mut Arguments, around: &Around, notes: &mut Notes) -> Resu
 
 /// In an extrusion only motions in the plane make sense.
 fn check_plane(placement: &Placement, span: &Range<usize>) -> Result<(), Fault> {
-    let matrix = placement.motion.rotation_matrix();
-    if matrix[2][2].is_one() && placement.motion.offset()[2].is_zero() {
+    let motion = placement.moves.motion();
+    let matrix = motion.rotation_matrix();
+    if matrix[2][2].is_one() && motion.offset()[2].is_zero() {
         return Ok(());
     }
     let found = "a matrix that leaves the plane, inside an extrusion";

@@ -9,10 +9,11 @@ use super::super::error::Fault;
 use super::super::number::{bad_length, show};
 use super::arguments::{Argument, Arguments};
 use super::extrusion::half;
+use crate::moves::Moves;
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 
 /// A primitive at its place; `None` for one of size zero, which adds nothing.
-pub(super) type Shape = Option<(Primitive, Motion)>;
+pub(super) type Shape = Option<(Primitive, Moves)>;
 
 /// A length of zero or more.
 pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, Fault> {
@@ -24,8 +25,8 @@ pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, Fault>
     Ok(value.clone())
 }
 
-fn shift_z(z: Rational) -> Motion {
-    Motion::translation([Rational::ZERO, Rational::ZERO, z])
+fn shift_z(z: Rational) -> Moves {
+    Moves::shift([Rational::ZERO, Rational::ZERO, z])
 }
 
 /// Lengths that were checked already: an error here points at the whole node.
@@ -70,14 +71,14 @@ pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, Fault> {
     if size.iter().any(Rational::is_zero) {
         return Ok(None);
     }
-    let motion = if arguments.flag("center")? {
-        Motion::translation(std::array::from_fn(|i| -half(&size[i])))
+    let moves = if arguments.flag("center")? {
+        Moves::shift(std::array::from_fn(|i| -half(&size[i])))
     } else {
-        Motion::identity()
+        Moves::new()
     };
     Ok(Some((
         checked(Primitive::block(size), &arguments.span)?,
-        motion,
+        moves,
     )))
 }
 
@@ -113,7 +114,7 @@ pub(super) fn sphere(arguments: &mut Arguments, smooth: bool) -> Result<Shape, F
     }
     check_smooth(arguments, smooth)?;
     let sphere = checked(Primitive::sphere(radius), &arguments.span)?;
-    Ok(Some((sphere, Motion::identity())))
+    Ok(Some((sphere, Moves::new())))
 }
 
 pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape, Fault> {

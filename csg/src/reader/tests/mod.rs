@@ -1,10 +1,12 @@
 //! Tests of the readers.
 
+mod brlcad;
 mod corpus;
 mod csg;
 mod json;
 mod messages;
 mod padl;
+mod pov;
 mod robustness;
 
 use super::*;

@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 
-const SEEDS: [(&str, Format); 3] = [
+const SEEDS: [(&str, Format); 5] = [
     (
         "L = 6\nA = BLO(X=L, Y=4*2, Z=2e0) # c\nP = (A DIF CYL(R=1, H=3) AT (MOVX=L/2, ROTZ=-30)) UN A\n",
         Format::Padl,
@@ -16,9 +16,23 @@ const SEEDS: [(&str, Format); 3] = [
         r#"{"op":"union","children":[{"prim":"block","size":[1,2,3],"transform":[{"translate":[1,2,3]},{"rotate":[[0,0,1],30]}]},{"prim":"torus","R":3,"r":1}]}"#,
         Format::Json,
     ),
+    (
+        "title {t}\nput {a b} ell V {0 0 0} A {5 0 0} B {0 5 0} C {0 0 5}\nput r tgc V {0 0 -9} H {0 0 18} A {2 0 0} B {0 2 0} C {2 0 0} D {0 2 0}\nput w arb8 V1 {0 0 0} V2 {6 0 0} V3 {6 4 0} V4 {0 4 0} V5 {0 0 3} V6 {6 0 3} V7 {6 0 3} V8 {0 0 3}\nput t tor V {0 0 5} H {0 1 0} r_a 7 r_h 2\nput c comb region yes tree {u {- {l {a b}} {l r {1 0 0 1  0 1 0 0  0 0 1 0  0 0 0 1}}} {n {l t} {l w}}}\n",
+        Format::Asc,
+    ),
+    (
+        "#include \"a.inc\" #declare R = 2 + .5; /* c */ camera { location 0 }\n#declare B = box { 0, 1 scale <1,2,3> }\ndifference { sphere { <1,2,3>*R, R } object { B rotate 30*y } cylinder { -x, x, 1 inverse } torus { 3, 1 } texture { pigment { color rgb 1 } } translate R*y }",
+        Format::Pov,
+    ),
 ];
 
-const FORMATS: [Format; 3] = [Format::Padl, Format::Csg, Format::Json];
+const FORMATS: [Format; 5] = [
+    Format::Padl,
+    Format::Csg,
+    Format::Json,
+    Format::Asc,
+    Format::Pov,
+];
 
 /// Reads, and checks that an error's place is in the text.
 fn check(bytes: &[u8], format: Format) {
@@ -42,6 +56,8 @@ proptest! {
         "A", "=", "BLO", "SPH", "AT", "UN", "DIF", "(", ")", ",", "X", "R", "ROTX", "1", "-", "*", "/", "\n",
         "cube", "group", "{", "}", ";", "[", "]", "multmatrix", "%", "!", "$fn", "circle", "undef", "nan",
         "\"op\"", "\"prim\"", "\"union\"", ":", "null", "\"", "#", "0", "1e400", "1e999999999999",
+        "put", "tor", "comb", "tree", "{l A}", " ", "V {0 0 0}", "<", ">", "object", "sphere", "#declare", "scale",
+        "difference", "inverse", ".x",
     ]), 0..60)) {
         let text = words.concat();
         for format in FORMATS {
@@ -51,7 +67,7 @@ proptest! {
 
     #[test]
     fn changed_files(
-        seed in 0usize..3,
+        seed in 0usize..5,
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0u8..3, any::<u8>()), 1..8),
     ) {
         let (text, format) = SEEDS[seed];
@@ -124,8 +140,48 @@ fn deep_json() {
 }
 
 #[test]
+fn deep_asc() {
+    let solid = "put s ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\n";
+    let deep = nested("{u {l s} ", "{l s}", "}");
+    let text = format!("{solid}put c comb tree {deep}\n");
+    assert!(
+        read_text(&text, Format::Asc).is_err(),
+        "copies have a limit"
+    );
+    let text = format!("{solid}put c comb tree {}\n", "{".repeat(DEEP));
+    assert!(read_text(&text, Format::Asc).is_err());
+    // A combination of one member for each level.
+    let chain = (1..LEVELS).map(|k| format!("put c{k} comb tree {{l c{}}}\n", k - 1));
+    let text = format!(
+        "{solid}put c0 comb tree {{l s}}\n{}",
+        chain.collect::<String>()
+    );
+    assert_eq!(tree(&text, Format::Asc).leaves().count(), 1);
+}
+
+#[test]
+fn deep_pov() {
+    let text = nested("union{", "sphere{0,1}", "}");
+    assert_eq!(tree(&text, Format::Pov).leaves().count(), 1);
+    for open in [
+        "union{",
+        "(",
+        "sphere{(",
+        "object{",
+        "/*",
+        "sphere{<",
+        "#declare A=union{",
+    ] {
+        assert!(read_text(&open.repeat(DEEP), Format::Pov).is_err());
+    }
+    let text = format!("sphere{{0,{}1}}", "-".repeat(2 * DEEP));
+    assert_eq!(tree(&text, Format::Pov).leaves().count(), 1);
+}
+
+const LEVELS: usize = 100_000;
+
+#[test]
 fn deep_trees_of_alternating_operations() {
-    const LEVELS: usize = 100_000;
     let open = "union(){cube(1);intersection(){cube(2);multmatrix([[1,0,0,1],[0,1,0,0],[0,0,1,0],[0,0,0,1]]){";
     let text = [
         open.repeat(LEVELS).as_str(),

@@ -1,0 +1,63 @@
+//! `premio convert`: a description in another language.
+
+use crate::arguments::ConvertOptions;
+use crate::diagnostics::{self, Failure, counted};
+use crate::{input, output};
+use premio_csg::reader::{self, Format, Options, Source};
+use premio_csg::tree::Tree;
+use premio_csg::writer;
+
+/// Runs the command.
+pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
+    let name = options.file.display().to_string();
+    let target = input::format(&options.output)?;
+    let source = source(&name, options)?;
+    let failed = |e: &dyn std::fmt::Display| Failure::limit(format!("{name}: {e}"));
+    let tree = source.builder.finish(source.part).map_err(|e| failed(&e))?;
+    let text = match writer::write(&source.builder, source.part, target) {
+        Err(e @ writer::WriteError::ReadOnly) => {
+            let file = options.output.display();
+            return Err(Failure::input(format!("{file}: {e}")));
+        }
+        written => written.map_err(|e| failed(&e))?,
+    };
+    // What was written is read again: only that tells what the language could not hold.
+    let read = reader::read(&name, text.as_bytes(), target, &Options::default());
+    let again = read.map_err(|e| Failure::limit(format!("what was written is not read: {e}")))?;
+    if let Some(told) = lost(&tree, &again.tree, target) {
+        if options.exact {
+            return Err(Failure::limit(format!("{name}: {told}")));
+        }
+        diagnostics::note(&name, &told);
+    }
+    output::write(&text, Some(&options.output))
+}
+
+fn source(name: &str, options: &ConvertOptions) -> Result<Source, Failure> {
+    let format = input::format(&options.file)?;
+    let text = input::bytes(&options.file)?;
+    let how = Options {
+        smooth: options.smooth,
+        part: options.part.clone(),
+    };
+    let source = reader::parse(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
+    diagnostics::notes(name, &text, &source.notes);
+    Ok(source)
+}
+
+/// What a language could not hold of a tree.
+fn lost(tree: &Tree, again: &Tree, target: Format) -> Option<String> {
+    if tree == again {
+        return None;
+    }
+    let what = target.ending();
+    Some(match tree.departure(again) {
+        Some(off) => format!(
+            "{} of {} cannot be held exactly by .{what}: written within {:.1e}",
+            counted(off.leaves, "primitive"),
+            tree.leaves().count(),
+            off.furthest
+        ),
+        None => format!("the part cannot be held exactly by .{what}"),
+    })
+}

@@ -1,0 +1,73 @@
+//! The matrix of a member: rigid, perhaps mirrored, perhaps the same scale in all directions.
+
+use premio_kernel::motion::RationalMatrix;
+use premio_kernel::number::rational::Rational;
+
+use super::super::error::Fault;
+use super::super::frame::length;
+use super::super::placement::{NotRigid, placement};
+use super::number;
+use super::words::Word;
+use crate::moves::Moves;
+
+/// `p -> M S k p`, with `M` the moves, `S` the mirror `y -> -y` or the identity, `k` the factor.
+#[derive(Debug)]
+pub(super) struct Placed {
+    pub(super) moves: Moves,
+    pub(super) mirrored: bool,
+    pub(super) factor: Rational,
+    /// How far entries are from those written.
+    pub(super) residual: f64,
+}
+
+impl Placed {
+    /// The placement of sixteen numbers by rows; the last divides all others.
+    pub(super) fn of(word: &Word<'_>) -> Result<Self, Fault> {
+        let numbers: Result<Vec<Rational>, Fault> = word.list()?.iter().map(number).collect();
+        let wrong = |_| word.unexpected("a matrix of sixteen numbers");
+        let m: [Rational; 16] = numbers?.try_into().map_err(wrong)?;
+        let last = m[12..15].iter().all(Rational::is_zero) && m[15] > Rational::ZERO;
+        if !last {
+            let expected = "a last row of three zeros and a number greater than zero";
+            let found = "a matrix that is no motion";
+            return Err(Fault::input(word.span.clone(), found, expected));
+        }
+        let matrix: RationalMatrix = [0, 4, 8].map(|row| [0, 1, 2].map(|j| m[row + j].clone()));
+        let offset = [3, 7, 11].map(|at| &m[at] / &m[15]);
+        let (factor, found) = match placement(&matrix, offset.clone()) {
+            Err(NotRigid::Scaled(_)) => scaled(&matrix, offset),
+            found => (Rational::ONE, found),
+        };
+        let found = found.map_err(|_| {
+            let found = "a matrix that changes proportions or angles";
+            let expected =
+                "a rigid motion, perhaps mirrored, perhaps the same scale in all directions";
+            Fault::input(word.span.clone(), found, expected)
+        })?;
+        Ok(Self {
+            moves: found.moves,
+            mirrored: found.mirrored,
+            factor: factor / &m[15],
+            residual: found.residual,
+        })
+    }
+}
+
+/// The factor by which a matrix makes larger, and what is left of it.
+fn scaled(
+    matrix: &RationalMatrix,
+    offset: [Rational; 3],
+) -> (
+    Rational,
+    Result<super::super::placement::Placement, NotRigid>,
+) {
+    let column = [0, 1, 2].map(|i| matrix[i][0].clone());
+    let Some(factor) = length(&column) else {
+        return (Rational::ONE, Err(NotRigid::Distorted));
+    };
+    let rigid = matrix
+        .each_ref()
+        .map(|row| row.each_ref().map(|entry| entry / &factor));
+    let found = placement(&rigid, offset);
+    (factor, found)
+}

@@ -1,0 +1,357 @@
+//! `.pov`: POV-Ray's scene description language, as far as it has declared numbers, vectors and
+//! objects, and solids that are exact here.
+//!
+//! Coordinates are kept as they are written. What is no solid of ours is told where the part is
+//! made of it, and not where it is only declared.
+
+mod expression;
+mod object;
+mod solid;
+mod words;
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use premio_kernel::number::rational::Rational;
+
+use self::solid::Object;
+use self::words::{PASSED_OVER, SOLIDS};
+use super::error::{Fault, line_and_column, quote};
+use super::lexer::{Cursor, Dialect, Lexeme, Token};
+use super::notes::Notes;
+use super::{Options, Source};
+use crate::builder::{Builder, Part};
+use crate::tree::Operation;
+
+/// What is told of every scene.
+const LEFT_HANDED: &str = "POV-Ray's axes are left-handed: coordinates are kept as they are \
+    written, so that the solid is the mirror image of what POV-Ray shows";
+
+pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
+    let mut reader = Reader {
+        cursor: Cursor::new(source, Dialect::Pov)?,
+        builder: Builder::new(),
+        names: HashMap::new(),
+        scene: Vec::new(),
+        notes: Notes::of_digits(0.0),
+        included: Vec::new(),
+        inside: 0,
+    };
+    reader.scene()?;
+    let (part, span) = match &options.part {
+        Some(name) => reader.declared(name)?,
+        None => (reader.whole()?, 0..source.len()),
+    };
+    reader.notes.add(LEFT_HANDED, span.start..span.start);
+    let (digits, notes) = reader.notes.finish();
+    Ok(Source {
+        builder: reader.builder,
+        part,
+        digits,
+        notes,
+        span,
+    })
+}
+
+/// What helps where a macro is used.
+const NO_MACROS: &str = "macros are not read";
+
+/// What a name stands for.
+#[derive(Debug, Clone)]
+enum Value {
+    Number(Rational),
+    Vector(Vec<Rational>),
+    Object(Object, Range<usize>),
+    /// Nothing that is understood here; told where it is used.
+    Refused(Box<Fault>),
+    /// A texture, a colour, a camera.
+    Other,
+}
+
+impl Value {
+    fn describe(&self) -> &'static str {
+        match self {
+            Self::Number(_) => "a number",
+            Self::Vector(_) => "a vector",
+            Self::Object(..) => "an object",
+            Self::Refused(_) | Self::Other => "neither a number nor an object",
+        }
+    }
+}
+
+struct Reader<'a> {
+    cursor: Cursor<'a>,
+    builder: Builder,
+    names: HashMap<&'a str, Value>,
+    scene: Vec<(Object, Range<usize>)>,
+    notes: Notes,
+    /// The files that are not read.
+    included: Vec<&'a str>,
+    /// How many objects are being read, each inside the one before by a declaration.
+    inside: usize,
+}
+
+impl<'a> Reader<'a> {
+    /// Reads all statements.
+    fn scene(&mut self) -> Result<(), Fault> {
+        loop {
+            let lexeme = self.cursor.next();
+            let text = self.cursor.text(lexeme);
+            match lexeme.token {
+                Token::End => return Ok(()),
+                Token::Symbol(';') => {}
+                Token::Symbol('#') => self.directive()?,
+                Token::Name if words::is_object(text) => {
+                    let object = self.object(lexeme)?;
+                    self.scene.push((object, lexeme.span()));
+                }
+                Token::Name if PASSED_OVER.contains(&text) => self.pass_over_block(lexeme)?,
+                _ => return Err(self.statement_expected(lexeme)),
+            }
+        }
+    }
+
+    fn statement_expected(&self, lexeme: Lexeme) -> Fault {
+        let text = self.cursor.text(lexeme);
+        let expected = format!("an object, one of `{}`, or `#declare`", SOLIDS.join("`, `"));
+        let fault = self.cursor.unexpected(lexeme, expected);
+        match self.cursor.peek().is('(') {
+            true => fault.help(NO_MACROS),
+            false => fault.suggest(text, SOLIDS),
+        }
+    }
+
+    /// A statement that begins with `#`.
+    fn directive(&mut self) -> Result<(), Fault> {
+        let word = self.cursor.next();
+        match self.cursor.text(word) {
+            "declare" | "local" => self.declare(),
+            "undef" => {
+                let name = self.cursor.next();
+                self.names.remove(self.cursor.text(name));
+                Ok(())
+            }
+            "include" => {
+                let file = self.cursor.next();
+                if file.token != Token::Text {
+                    return Err(self.cursor.unexpected(file, "the name of a file in quotes"));
+                }
+                let name = self.cursor.text(file);
+                self.included.push(name);
+                self.notes.add(format!("{name} is not read"), file.span());
+                Ok(())
+            }
+            "version" => {
+                self.pass_over_value();
+                Ok(())
+            }
+            "default" => self.pass_over_block(word),
+            "debug" | "warning" | "render" | "statistics" => self.pass_over_message(),
+            _ => {
+                let expected = "`#declare`, `#local`, `#include` or `#version`";
+                let help = "loops, conditions and macros are not read";
+                Err(self.cursor.unexpected(word, expected).help(help))
+            }
+        }
+    }
+
+    /// The text of `#debug` and the like.
+    fn pass_over_message(&mut self) -> Result<(), Fault> {
+        let text = self.cursor.next();
+        match text.token {
+            Token::Text => Ok(()),
+            Token::Name if self.cursor.peek().is('(') => {
+                let open = self.cursor.next();
+                self.pass_over_to_end_of(open)
+            }
+            _ => Err(self.cursor.unexpected(text, "a text")),
+        }
+    }
+
+    /// A name and its value; the old value is gone.
+    fn declare(&mut self) -> Result<(), Fault> {
+        let name = self.cursor.next();
+        if name.token != Token::Name {
+            return Err(self.cursor.unexpected(name, "a name to declare"));
+        }
+        let known = self.cursor.text(name);
+        if words::is_object(known) || ["x", "y", "z"].contains(&known) {
+            return Err(self.cursor.unexpected(name, "a name that is not a keyword"));
+        }
+        self.cursor.expect('=', "after the name that is declared")?;
+        let value = self.declared_value()?;
+        self.names.insert(known, value);
+        if self.cursor.peek().is(';') {
+            self.cursor.next();
+        }
+        Ok(())
+    }
+
+    fn declared_value(&mut self) -> Result<Value, Fault> {
+        let first = self.cursor.peek();
+        let text = self.cursor.text(first);
+        if first.token == Token::Name && words::is_object(text) {
+            self.cursor.next();
+            let object = self.object(first)?;
+            return Ok(Value::Object(object, first.span()));
+        }
+        if first.token == Token::Name && PASSED_OVER.contains(&text) {
+            self.cursor.next();
+            self.pass_over_block(first)?;
+            return Ok(Value::Other);
+        }
+        let number = matches!(
+            first.token,
+            Token::Number | Token::Symbol('<' | '(' | '-' | '+')
+        );
+        let known = ["x", "y", "z"].contains(&text)
+            || words::truth(text).is_some()
+            || self.names.contains_key(text);
+        if !number && !known {
+            // A colour, a function, a text, or a name of a file that is not read.
+            let fault = self.unknown(first);
+            self.pass_over_value();
+            return Ok(Value::Refused(Box::new(fault)));
+        }
+        if let Some(value @ (Value::Object(..) | Value::Other)) = self.names.get(text) {
+            let value = value.clone();
+            self.pass_over_value();
+            return Ok(value);
+        }
+        match self.expression() {
+            Ok(operand) => Ok(operand.value()),
+            Err(fault) => {
+                self.pass_over_value();
+                Ok(Value::Refused(Box::new(fault)))
+            }
+        }
+    }
+
+    /// The error at a name that stands for nothing here.
+    fn unknown(&self, lexeme: Lexeme) -> Fault {
+        let text = self.cursor.text(lexeme);
+        let found = match lexeme.token {
+            Token::Name => format!("the unknown name {}", quote(text)),
+            _ => quote(text),
+        };
+        let expected = "an exact number, or a name that is declared above";
+        let mut known: Vec<&str> = self.names.keys().copied().collect();
+        known.sort_unstable();
+        let fault = Fault::input(lexeme.span(), found, expected);
+        match self.included.as_slice() {
+            [] => fault.suggest(text, known),
+            files => {
+                let files = files.join(", ");
+                let help = format!("what is declared in {files} is not read");
+                fault.help(help).suggest(text, known)
+            }
+        }
+    }
+
+    /// Passes over a value to its `;`, or to what cannot be part of it.
+    fn pass_over_value(&mut self) {
+        let mut depth = 0usize;
+        loop {
+            let next = self.cursor.peek();
+            let text = self.cursor.text(next);
+            match next.token {
+                Token::End => return,
+                Token::Symbol('#' | ';') if depth == 0 => return,
+                Token::Name if depth == 0 && begins_statement(text) => return,
+                Token::Symbol('{' | '(' | '[') => depth += 1,
+                Token::Symbol('}' | ')' | ']') if depth == 0 => return,
+                Token::Symbol('}' | ')' | ']') => depth -= 1,
+                _ => {}
+            }
+            self.cursor.next();
+        }
+    }
+
+    /// Passes over a block in braces.
+    fn pass_over_block(&mut self, word: Lexeme) -> Result<(), Fault> {
+        let what_for = format!("after `{}`", self.cursor.text(word));
+        let open = self.cursor.expect('{', &what_for)?;
+        self.pass_over_to_end_of(open)
+    }
+
+    /// Passes over all to the bracket that closes one.
+    fn pass_over_to_end_of(&mut self, open: Lexeme) -> Result<(), Fault> {
+        let mut depth = 1usize;
+        while depth > 0 {
+            let next = self.cursor.next();
+            match next.token {
+                Token::End => return Err(self.unclosed(next, open)),
+                Token::Symbol('{' | '(' | '[') => depth += 1,
+                Token::Symbol('}' | ')' | ']') => depth -= 1,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn unclosed(&self, end: Lexeme, open: Lexeme) -> Fault {
+        let source = self.cursor.source().as_bytes();
+        let line = line_and_column(source, open.span().start).0;
+        let fault = self.cursor.unexpected(end, "a closing bracket");
+        fault.help(format!("the bracket opened on line {line} is not closed"))
+    }
+
+    /// A comma, which may be left out.
+    fn comma(&mut self) {
+        if self.cursor.peek().is(',') {
+            self.cursor.next();
+        }
+    }
+
+    /// An object by the name that it is declared with, and its place.
+    fn declared(&mut self, name: &str) -> Result<(Part, Range<usize>), Fault> {
+        let end = self.cursor.source().len();
+        match self.names.get(name).cloned() {
+            Some(Value::Object(object, span)) => {
+                let part = object.solid(&mut self.builder, span.clone())?;
+                Ok((part, span))
+            }
+            Some(other) => {
+                let found = format!("{}, which is {}", quote(name), other.describe());
+                Err(Fault::input(end..end, found, "the name of an object"))
+            }
+            None => {
+                let found = format!("no object called {}", quote(name));
+                let fault = Fault::input(end..end, found, "the name of an object in the file");
+                Err(fault.suggest(name, self.objects()))
+            }
+        }
+    }
+
+    /// The names of objects, in their order.
+    fn objects(&self) -> Vec<&'a str> {
+        let objects = self.names.iter();
+        let objects = objects.filter(|(_, value)| matches!(value, Value::Object(..)));
+        let mut names: Vec<&str> = objects.map(|(name, _)| *name).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// All objects of the scene.
+    fn whole(&mut self) -> Result<Part, Fault> {
+        if self.scene.is_empty() {
+            let end = self.cursor.source().len();
+            let fault = Fault::input(end..end, "no object in the scene", "one at least");
+            let names = self.objects();
+            return Err(match names.is_empty() {
+                true => fault,
+                false => fault.help(format!("`--part` reads one of {}", names.join(", "))),
+            });
+        }
+        let mut parts = Vec::new();
+        for (object, span) in std::mem::take(&mut self.scene) {
+            parts.push(object.solid(&mut self.builder, span)?);
+        }
+        Ok(self.builder.operation(Operation::Union, &parts))
+    }
+}
+
+/// Whether a word cannot be part of a value.
+fn begins_statement(word: &str) -> bool {
+    words::is_object(word) || PASSED_OVER.contains(&word)
+}

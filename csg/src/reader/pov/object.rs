@@ -1,0 +1,277 @@
+//! Objects as they stand in a text: a word, braces, what the object is made of, and modifiers.
+
+use super::super::error::{Fault, quote};
+use super::super::lexer::{Lexeme, Token};
+use super::solid::{self, Object};
+use super::words::{self, FLAGS, NOT_OURS, REFUSED, SOLIDS, SURFACES};
+use super::{NO_MACROS, Reader, Value};
+use crate::builder::Part;
+use crate::tree::Operation;
+
+/// Objects are declared inside objects at most so deep.
+const MAX_INSIDE: usize = 100;
+
+/// An object whose brace is not closed yet.
+struct Frame {
+    /// The word that it begins with.
+    word: Lexeme,
+    kind: Kind,
+    /// What is combined, as far as it has been read.
+    children: Vec<Object>,
+    /// The object itself, when all that it is made of has been read.
+    object: Option<Object>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Operation(Operation),
+    /// One object, by its name or as it is.
+    Single,
+}
+
+impl Reader<'_> {
+    /// Reads an object from after its first word.
+    pub(super) fn object(&mut self, first: Lexeme) -> Result<Object, Fault> {
+        if self.inside == MAX_INSIDE {
+            let found = "declarations of objects inside objects";
+            let expected = format!("at most {MAX_INSIDE} of them");
+            return Err(Fault::limit(first.span(), found, expected));
+        }
+        self.inside += 1;
+        let mut frames = Vec::new();
+        let mut done = self.begin(first, &mut frames)?;
+        let object = loop {
+            match (done.take(), frames.last_mut()) {
+                (Some(object), None) => break object,
+                (Some(object), Some(frame)) => frame.children.push(object),
+                (None, _) => done = self.inner(&mut frames)?,
+            }
+        };
+        self.inside -= 1;
+        Ok(object)
+    }
+
+    /// Reads the beginning of an object; gives it where it is whole.
+    fn begin(&mut self, word: Lexeme, frames: &mut Vec<Frame>) -> Result<Option<Object>, Fault> {
+        let text = self.cursor.text(word);
+        if NOT_OURS.contains(&text) {
+            self.pass_over_block(word)?;
+            let found = format!("the object {}", quote(text));
+            let expected = format!("one that is exact here: `{}`", SOLIDS.join("`, `"));
+            return Ok(Some(Fault::input(word.span(), found, expected).into()));
+        }
+        self.cursor.expect('{', &format!("after `{text}`"))?;
+        let mut frame = Frame {
+            word,
+            kind: Kind::Single,
+            children: Vec::new(),
+            object: None,
+        };
+        match text {
+            "union" | "merge" => frame.kind = Kind::Operation(Operation::Union),
+            "intersection" => frame.kind = Kind::Operation(Operation::Intersection),
+            "difference" => frame.kind = Kind::Operation(Operation::Difference),
+            _ => {
+                let name = self.cursor.peek();
+                let known = self.names.get(self.cursor.text(name));
+                let begins = words::is_object(self.cursor.text(name));
+                match known {
+                    Some(Value::Object(object, _)) if name.token == Token::Name => {
+                        frame.object = Some(object.clone());
+                        self.cursor.next();
+                    }
+                    _ if text == "object" && begins => {}
+                    _ if text == "object" => {
+                        frame.object = Some(self.no_object(name)?.into());
+                    }
+                    _ => frame.object = Some(self.primitive(word)?),
+                }
+            }
+        }
+        frames.push(frame);
+        Ok(None)
+    }
+
+    /// The error at a name that stands for no object, to be told where that is used.
+    fn no_object(&mut self, name: Lexeme) -> Result<Fault, Fault> {
+        self.cursor.next();
+        let text = self.cursor.text(name);
+        if self.cursor.peek().is('(') {
+            return Err(self.cursor.unexpected(name, "an object").help(NO_MACROS));
+        }
+        Ok(match self.names.get(text) {
+            Some(Value::Refused(fault)) => Fault::clone(fault),
+            Some(other) => {
+                let found = format!("{}, which is {}", quote(text), other.describe());
+                Fault::input(name.span(), found, "an object")
+            }
+            None => self.unknown(name),
+        })
+    }
+
+    fn primitive(&mut self, word: Lexeme) -> Result<Object, Fault> {
+        let text = self.cursor.text(word);
+        let made = match text {
+            "box" => {
+                let (a, _) = self.vector()?;
+                self.comma();
+                let (b, span) = self.vector()?;
+                solid::block(a, b, span)
+            }
+            "sphere" => {
+                let (middle, _) = self.vector()?;
+                self.comma();
+                let radius = self.number()?;
+                solid::sphere(&mut self.builder, middle, radius)
+            }
+            "torus" => {
+                let (major, _) = self.number()?;
+                self.comma();
+                let minor = self.number()?;
+                solid::torus(&mut self.builder, major, minor)
+            }
+            _ => {
+                let (base, _) = self.vector()?;
+                self.comma();
+                let first = if text == "cone" {
+                    Some(self.number()?.0)
+                } else {
+                    None
+                };
+                self.comma();
+                let (top, _) = self.vector()?;
+                self.comma();
+                let (last, span) = self.number()?;
+                let radii = [first.unwrap_or_else(|| last.clone()), last];
+                solid::cone(&mut self.builder, [base, top], radii, span)
+            }
+        };
+        // A wrong length is told where the object is used.
+        Ok(made.unwrap_or_else(Object::from))
+    }
+
+    /// Reads what comes next in the innermost object; gives one that is whole.
+    fn inner(&mut self, frames: &mut Vec<Frame>) -> Result<Option<Object>, Fault> {
+        let Some(frame) = frames.last_mut() else {
+            return Ok(Some(Part::EMPTY.into()));
+        };
+        let lexeme = self.cursor.next();
+        let text = self.cursor.text(lexeme);
+        match lexeme.token {
+            Token::End => Err(self.unclosed(lexeme, frame.word)),
+            Token::Symbol('}') => {
+                let object = self.made(frame);
+                frames.pop();
+                Ok(Some(object))
+            }
+            Token::Symbol('#') => self.directive().map(|()| None),
+            Token::Name if frame.object.is_none() && words::is_object(text) => {
+                let taken = frame.kind == Kind::Single && !frame.children.is_empty();
+                match taken {
+                    true => Err(self.cursor.unexpected(lexeme, "a modifier or `}`")),
+                    false => self.begin(lexeme, frames),
+                }
+            }
+            // A lamp among solids.
+            Token::Name if text == "light_source" => self.pass_over_block(lexeme).map(|()| None),
+            Token::Name => {
+                let object = self.made(frame);
+                frame.object = Some(self.modified(object, lexeme)?);
+                Ok(None)
+            }
+            _ => {
+                let expected = "an object, a modifier or `}`";
+                Err(self.cursor.unexpected(lexeme, expected))
+            }
+        }
+    }
+
+    /// What a frame's object is, now that all that it is made of has been read.
+    fn made(&mut self, frame: &mut Frame) -> Object {
+        if let Some(object) = frame.object.take() {
+            return object;
+        }
+        let children = std::mem::take(&mut frame.children);
+        let op = match frame.kind {
+            Kind::Operation(op) => op,
+            Kind::Single => Operation::Union,
+        };
+        match (frame.kind, <[Object; 1]>::try_from(children)) {
+            (Kind::Single, Ok([object])) => object,
+            (_, Ok(one)) => solid::combined(&mut self.builder, op, one.into(), frame.word.span()),
+            (_, Err(all)) => solid::combined(&mut self.builder, op, all, frame.word.span()),
+        }
+    }
+
+    fn modified(&mut self, mut object: Object, word: Lexeme) -> Result<Object, Fault> {
+        let text = self.cursor.text(word);
+        match text {
+            "translate" => {
+                let (by, _) = self.vector()?;
+                Ok(object.translated(&mut self.builder, by))
+            }
+            "rotate" => {
+                let (degrees, _) = self.vector()?;
+                Ok(object.rotated(&mut self.builder, degrees))
+            }
+            "scale" => {
+                let (by, span) = self.vector()?;
+                Ok(object.scaled(&mut self.builder, by, span))
+            }
+            "inverse" => {
+                object.inverse ^= self.switch().unwrap_or(true);
+                Ok(object)
+            }
+            _ if SURFACES.contains(&text) => {
+                self.pass_over_block(word)?;
+                Ok(object)
+            }
+            _ if FLAGS.contains(&text) => {
+                self.switch();
+                Ok(object)
+            }
+            _ if REFUSED.contains(&text) => {
+                self.pass_over_argument(text)?;
+                let found = format!("the modifier {}", quote(text));
+                let expected = "`translate`, `rotate`, or `scale` the same in all directions";
+                Ok(Fault::input(word.span(), found, expected).into())
+            }
+            _ => {
+                let known = ["translate", "rotate", "scale", "inverse"];
+                let expected = "an object, a modifier or `}`";
+                Err(self.cursor.unexpected(word, expected).suggest(text, known))
+            }
+        }
+    }
+
+    /// What stands after a modifier that is refused.
+    fn pass_over_argument(&mut self, modifier: &str) -> Result<(), Fault> {
+        let next = self.cursor.peek();
+        match (modifier, next.token) {
+            (_, Token::Symbol('{')) => {
+                let open = self.cursor.next();
+                self.pass_over_to_end_of(open)
+            }
+            ("matrix", _) => self.expression().map(|_| ()),
+            ("transform", _) => {
+                self.cursor.next();
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// `on` or `off`, if it stands here.
+    fn switch(&mut self) -> Option<bool> {
+        let next = self.cursor.peek();
+        let value = match next.token {
+            Token::Name => words::truth(self.cursor.text(next)),
+            Token::Number => Some(!self.cursor.text(next).trim_matches(['0', '.']).is_empty()),
+            _ => None,
+        };
+        if value.is_some() {
+            self.cursor.next();
+        }
+        value
+    }
+}

@@ -1,0 +1,276 @@
+//! Objects: primitives, operations on them, and where they are put.
+
+use std::ops::Range;
+
+use premio_kernel::number::rational::Rational;
+
+use super::super::error::{Fault, quote};
+use super::super::frame::{Axis, Vector, difference};
+use super::super::number::bad_length;
+use crate::builder::{Builder, Part};
+use crate::moves::{Moves, Step};
+use crate::primitive::{Primitive, PrimitiveError};
+use crate::tree::Operation;
+
+/// What an object is.
+#[derive(Debug, Clone)]
+pub(super) enum Shape {
+    /// A box along the axes, from its least corner to its greatest: it may be scaled differently
+    /// along them.
+    Box(Box<[Vector; 2]>),
+    Part(Part),
+    /// Nothing that is exact here; told where it is used.
+    Refused(Box<Fault>),
+}
+
+/// An object, or what is outside it.
+#[derive(Debug, Clone)]
+pub(super) struct Object {
+    pub(super) shape: Shape,
+    pub(super) inverse: bool,
+}
+
+impl From<Shape> for Object {
+    fn from(shape: Shape) -> Self {
+        let inverse = false;
+        Self { shape, inverse }
+    }
+}
+
+impl From<Part> for Object {
+    fn from(part: Part) -> Self {
+        Shape::Part(part).into()
+    }
+}
+
+impl From<Fault> for Object {
+    fn from(fault: Fault) -> Self {
+        Shape::Refused(Box::new(fault)).into()
+    }
+}
+
+/// A primitive with its place, or why its lengths, of which `last` is the last, make none.
+fn placed(
+    builder: &mut Builder,
+    made: Result<Primitive, PrimitiveError>,
+    (last, span): (Option<&Rational>, &Range<usize>),
+    moves: Moves,
+) -> Result<Part, Fault> {
+    let primitive = made.map_err(|error| bad_length(error, last, span.clone()))?;
+    let part = builder.primitive(primitive);
+    Ok(builder.moved(part, moves))
+}
+
+/// A box between two opposite corners.
+pub(super) fn block(a: Vector, b: Vector, span: Range<usize>) -> Result<Object, Fault> {
+    let (mut least, mut greatest) = (a, b);
+    for (x, y) in least.iter_mut().zip(&mut greatest) {
+        if *x > *y {
+            std::mem::swap(x, y);
+        }
+        if *x == *y {
+            let expected = "two corners that differ along x, y and z";
+            return Err(Fault::input(span, "a box without volume", expected));
+        }
+    }
+    Ok(Shape::Box(Box::new([least, greatest])).into())
+}
+
+pub(super) fn sphere(
+    builder: &mut Builder,
+    middle: Vector,
+    (radius, span): (Rational, Range<usize>),
+) -> Result<Object, Fault> {
+    let moves = Moves::shift(middle);
+    let made = Primitive::sphere(radius.clone());
+    placed(builder, made, (Some(&radius), &span), moves).map(Object::from)
+}
+
+/// A cone from the middle of its base to that of its top; a cylinder where the radii are equal.
+pub(super) fn cone(
+    builder: &mut Builder,
+    [base, top]: [Vector; 2],
+    [radius, end]: [Rational; 2],
+    span: Range<usize>,
+) -> Result<Object, Fault> {
+    let Some(axis) = Axis::of(&difference(&top, &base)) else {
+        let expected = "two points that differ";
+        return Err(Fault::input(span, "an axis without length", expected));
+    };
+    let moves = axis.turn.then(Moves::shift(base));
+    let made = Primitive::frustum(radius, end, axis.length);
+    placed(builder, made, (None, &span), moves).map(Object::from)
+}
+
+/// A torus about the y axis.
+pub(super) fn torus(
+    builder: &mut Builder,
+    major: Rational,
+    (minor, span): (Rational, Range<usize>),
+) -> Result<Object, Fault> {
+    let axis = Axis::of(&[0, 1, 0].map(Rational::from));
+    let moves = axis.map_or_else(Moves::new, |axis| axis.turn);
+    let made = Primitive::torus(major, minor.clone());
+    placed(builder, made, (Some(&minor), &span), moves).map(Object::from)
+}
+
+impl Object {
+    /// The solid of an object that is not turned inside out.
+    pub(super) fn solid(self, builder: &mut Builder, span: Range<usize>) -> Result<Part, Fault> {
+        if self.inverse {
+            let expected = "a solid, or `inverse` in an intersection or a difference";
+            return Err(Fault::input(span, "what is outside of a solid", expected));
+        }
+        self.shape.part(builder)
+    }
+
+    /// Changes the object where it is one of ours.
+    fn changed(self, change: impl FnOnce(Shape) -> Object) -> Self {
+        match self.shape {
+            Shape::Refused(_) => self,
+            shape => Self {
+                inverse: self.inverse,
+                ..change(shape)
+            },
+        }
+    }
+
+    pub(super) fn translated(self, builder: &mut Builder, by: Vector) -> Self {
+        self.changed(|shape| match shape {
+            Shape::Box(corners) => {
+                let add = |corner: Vector| super::super::frame::sum(&corner, &by);
+                Shape::Box(Box::new(corners.map(add))).into()
+            }
+            shape => moved(builder, shape, Moves::shift(by)),
+        })
+    }
+
+    /// Turned about x, then about y, then about z, by degrees.
+    pub(super) fn rotated(self, builder: &mut Builder, degrees: Vector) -> Self {
+        let mut moves = Moves::new();
+        for (axis, degrees) in degrees.into_iter().enumerate() {
+            if !degrees.is_zero() {
+                let axis = std::array::from_fn(|i| Rational::from(u8::from(i == axis)));
+                // A coordinate axis has a direction.
+                let _ = moves.push(Step::Turn { axis, degrees });
+            }
+        }
+        match moves.steps() {
+            [] => self,
+            _ => self.changed(|shape| moved(builder, shape, moves)),
+        }
+    }
+
+    pub(super) fn scaled(self, builder: &mut Builder, by: Vector, span: Range<usize>) -> Self {
+        if by.iter().any(Rational::is_zero) {
+            let found = "a scale of zero";
+            return Fault::input(span, found, "factors other than zero").into();
+        }
+        self.changed(|shape| match shape {
+            Shape::Box(corners) => {
+                let [a, b] = *corners;
+                let scale = |corner: Vector| std::array::from_fn(|i| &corner[i] * &by[i]);
+                block(scale(a), scale(b), span).unwrap_or_else(Object::from)
+            }
+            shape => whole_scale(builder, shape, &by, span),
+        })
+    }
+}
+
+fn moved(builder: &mut Builder, shape: Shape, moves: Moves) -> Object {
+    match shape.part(builder) {
+        Ok(part) => builder.moved(part, moves).into(),
+        Err(fault) => fault.into(),
+    }
+}
+
+/// The same scale in all directions, along some of them perhaps mirrored.
+fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usize>) -> Object {
+    let size = |x: &Rational| if *x < Rational::ZERO { -x } else { x.clone() };
+    let factor = size(&by[0]);
+    if by.iter().any(|x| size(x) != factor) {
+        let [x, y, z] = by;
+        let found = format!("a scale of {}", quote(&format!("<{x}, {y}, {z}>")));
+        let expected = "the same in all directions, but for a box along the axes";
+        return Fault::input(span, found, expected).into();
+    }
+    let part = match shape.part(builder) {
+        Ok(part) => builder.scaled(part, factor),
+        Err(fault) => return fault.into(),
+    };
+    let mut signs = by
+        .each_ref()
+        .map(|x| if *x < Rational::ZERO { -1 } else { 1 });
+    let mirrored = signs.iter().product::<i32>() < 0;
+    let part = if mirrored {
+        builder.mirrored_y(part)
+    } else {
+        part
+    };
+    if mirrored {
+        signs[1] = -signs[1];
+    }
+    // Two of three signs are a half turn about the third axis.
+    let turn = std::array::from_fn(|i| {
+        std::array::from_fn(|j| Rational::from(if i == j { signs[i] } else { 0 }))
+    });
+    let moves = Moves::quarter_turns(&turn).unwrap_or_default();
+    builder.moved(part, moves).into()
+}
+
+impl Shape {
+    fn part(self, builder: &mut Builder) -> Result<Part, Fault> {
+        match self {
+            Self::Part(part) => Ok(part),
+            Self::Refused(fault) => Err(*fault),
+            Self::Box(corners) => {
+                let [least, greatest] = *corners;
+                let made = Primitive::block(difference(&greatest, &least));
+                placed(builder, made, (None, &(0..0)), Moves::shift(least))
+            }
+        }
+    }
+}
+
+/// An operation on objects, of which some may be turned inside out.
+pub(super) fn combined(
+    builder: &mut Builder,
+    op: Operation,
+    objects: Vec<Object>,
+    span: Range<usize>,
+) -> Object {
+    operation(builder, op, objects, span).unwrap_or_else(Object::from)
+}
+
+fn operation(
+    builder: &mut Builder,
+    op: Operation,
+    objects: Vec<Object>,
+    span: Range<usize>,
+) -> Result<Object, Fault> {
+    let mut kept = Vec::new();
+    let mut taken = Vec::new();
+    for (index, object) in objects.into_iter().enumerate() {
+        // What is taken from the first is kept of it where it is inside out.
+        let subtracted = op == Operation::Difference && index > 0;
+        let part = object.shape.part(builder)?;
+        match object.inverse != subtracted {
+            true => taken.push(part),
+            false => kept.push(part),
+        }
+    }
+    let part = match op {
+        Operation::Union if taken.is_empty() => builder.operation(Operation::Union, &kept),
+        Operation::Intersection | Operation::Difference if !kept.is_empty() => {
+            let common = builder.operation(Operation::Intersection, &kept);
+            let all: Vec<Part> = std::iter::once(common).chain(taken).collect();
+            builder.operation(Operation::Difference, &all)
+        }
+        _ if taken.is_empty() => Part::EMPTY,
+        _ => {
+            let expected = "an operation that leaves a solid";
+            return Err(Fault::input(span, "what is outside of a solid", expected));
+        }
+    };
+    Ok(part.into())
+}

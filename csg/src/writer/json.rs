@@ -1,0 +1,122 @@
+//! `.json`: the tree as it is.
+
+use premio_kernel::number::rational::{Rational, whole};
+
+use super::number::decimal;
+use super::{Language, Use, WriteError, indent, push, walk};
+use crate::builder::Builder;
+use crate::moves::Step;
+use crate::primitive::Primitive;
+use crate::tree::Operation;
+
+pub(super) fn write(builder: &Builder, top: Option<Use>) -> Result<String, WriteError> {
+    let mut json = Json::default();
+    match top {
+        Some(top) => walk(builder, top, |_| None, &mut json)?,
+        None => json.text.push_str(r#"{"op":"union","children":[]}"#),
+    }
+    json.text.push('\n');
+    Ok(json.text)
+}
+
+#[derive(Default)]
+struct Json {
+    text: String,
+    depth: usize,
+}
+
+fn list(values: &[Rational]) -> String {
+    let all: Vec<String> = values.iter().map(decimal).collect();
+    format!("[{}]", all.join(","))
+}
+
+fn step(step: &Step) -> String {
+    match step {
+        Step::Shift(offset) => format!(r#"{{"translate":{}}}"#, list(offset)),
+        Step::Turn { axis, degrees } => {
+            format!(r#"{{"rotate":[{},{}]}}"#, list(axis), decimal(degrees))
+        }
+        Step::Quaternion(quaternion) => {
+            format!(r#"{{"quaternion":{}}}"#, list(&whole(quaternion)))
+        }
+    }
+}
+
+impl Json {
+    /// The transform, where there is one, and the end of the object.
+    fn place(&mut self, steps: &[Step]) {
+        if !steps.is_empty() {
+            let all: Vec<String> = steps.iter().map(step).collect();
+            push(
+                &mut self.text,
+                format_args!(r#","transform":[{}]"#, all.join(",")),
+            );
+        }
+        self.text.push('}');
+    }
+}
+
+impl Language for Json {
+    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]) {
+        push(
+            &mut self.text,
+            format_args!(r#"{{"prim":{}"#, members(primitive)),
+        );
+        self.place(steps);
+    }
+
+    /// Nothing has a name here.
+    fn name(&mut self, _: usize, _: &[Step]) {}
+
+    fn open(&mut self, op: Operation, _: &[Step]) {
+        let name = match op {
+            Operation::Union => "union",
+            Operation::Intersection => "intersection",
+            Operation::Difference => "difference",
+        };
+        self.depth += 1;
+        let blanks = indent(self.depth);
+        push(
+            &mut self.text,
+            format_args!("{{\"op\":\"{name}\",\"children\":[\n{blanks}"),
+        );
+    }
+
+    fn between(&mut self, _: Operation) {
+        push(&mut self.text, format_args!(",\n{}", indent(self.depth)));
+    }
+
+    fn close(&mut self, steps: &[Step]) {
+        self.depth -= 1;
+        push(&mut self.text, format_args!("\n{}]", indent(self.depth)));
+        self.place(steps);
+    }
+
+    fn length(&self) -> usize {
+        self.text.len()
+    }
+}
+
+fn members(primitive: &Primitive) -> String {
+    match primitive {
+        Primitive::Block { size } => format!(r#""block","size":{}"#, list(size)),
+        Primitive::Wedge { size } => format!(r#""wedge","size":{}"#, list(size)),
+        Primitive::Cylinder { radius, height } => {
+            let [r, h] = [radius, height].map(decimal);
+            format!(r#""cylinder","r":{r},"h":{h}"#)
+        }
+        Primitive::Frustum { base, top, height } if top.is_zero() => {
+            let [r, h] = [base, height].map(decimal);
+            format!(r#""cone","r":{r},"h":{h}"#)
+        }
+        Primitive::Frustum { base, top, height } => {
+            let [r1, r2, h] = [base, top, height].map(decimal);
+            format!(r#""frustum","r1":{r1},"r2":{r2},"h":{h}"#)
+        }
+        Primitive::Sphere { radius } => format!(r#""sphere","r":{}"#, decimal(radius)),
+        Primitive::Torus { major, minor } => {
+            let [major, minor] = [major, minor].map(decimal);
+            format!(r#""torus","R":{major},"r":{minor}"#)
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Writers of the description languages: a part, text out.
+//!
+//! A part is written by the steps and operations that it was read with, so that the text means the
+//! same tree wherever the language can hold its numbers. Mirrors and scales are written at the
+//! primitives. Nothing here recurses.
+
+mod json;
+mod number;
+mod padl;
+mod scad;
+#[cfg(test)]
+mod tests;
+mod turns;
+
+use premio_kernel::number::rational::Rational;
+
+use crate::builder::{Builder, Draft, MAX_LEAVES, Part, Placing};
+use crate::moves::Step;
+use crate::primitive::Primitive;
+use crate::reader::Format;
+use crate::tree::Operation;
+
+/// The longest text that is written, in bytes.
+pub const MAX_TEXT: usize = 1 << 30;
+
+/// Why a part was not written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum WriteError {
+    /// A `.padl` text needs a primitive.
+    #[error("`.padl` has no word for the empty solid")]
+    Empty,
+    /// Only what is read is understood of a language, and not written.
+    #[error("this language is read, and not written: expected padl, csg or json")]
+    ReadOnly,
+    /// Parts used many times are copied where a language has no names, and there are too many.
+    #[error("{leaves} primitives, with every use of a part counted; the limit is {MAX_LEAVES}")]
+    TooManyLeaves {
+        /// How many primitives there would be.
+        leaves: u64,
+    },
+    /// The text would be too long.
+    #[error("a text of more than {MAX_TEXT} bytes")]
+    TooLong,
+}
+
+/// The description of a part.
+///
+/// Numbers are written with all their digits. What a language cannot hold is written as near as
+/// doubles are: in `.padl` turns about another than a coordinate axis, in `.csg` turns by other
+/// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers that are no
+/// decimals.
+pub fn write(builder: &Builder, part: Part, format: Format) -> Result<String, WriteError> {
+    let leaves = builder.leaves(part);
+    if leaves > MAX_LEAVES {
+        return Err(WriteError::TooManyLeaves { leaves });
+    }
+    let top = builder.draft_of(part).map(Use::of);
+    match format {
+        Format::Padl => padl::write(builder, top.ok_or(WriteError::Empty)?),
+        Format::Csg => scad::write(builder, top),
+        Format::Json => json::write(builder, top),
+        Format::Asc | Format::Pov => Err(WriteError::ReadOnly),
+    }
+}
+
+/// A part as it is used: perhaps in the mirror `y -> -y`, and perhaps larger.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Use {
+    draft: usize,
+    mirrored: bool,
+    /// How much larger; none for one.
+    factor: Option<Rational>,
+}
+
+impl Use {
+    fn of(draft: usize) -> Self {
+        Self {
+            draft,
+            mirrored: false,
+            factor: None,
+        }
+    }
+
+    /// A part in its place.
+    fn with(&self, draft: usize) -> Self {
+        let factor = self.factor.clone();
+        Self {
+            draft,
+            factor,
+            ..*self
+        }
+    }
+
+    fn step(&self, step: &Step) -> Step {
+        let step = match &self.factor {
+            Some(factor) => step.scaled(factor),
+            None => step.clone(),
+        };
+        if self.mirrored {
+            step.mirrored_y()
+        } else {
+            step
+        }
+    }
+
+    /// What is moved, as it is used inside the motion, and the steps that move it.
+    fn resolved(mut self, builder: &Builder) -> (Self, Vec<Step>) {
+        let mut steps = Vec::new();
+        if let Draft::Moved { child, entry, .. } = builder.draft(self.draft) {
+            // From the last placing to the first: those outside act on the steps inside.
+            let mut next = Some(*entry);
+            while let Some(entry) = next.map(|index| builder.entry(index)) {
+                match &entry.placing {
+                    Placing::Steps(inner) => {
+                        steps.extend(inner.iter().rev().map(|step| self.step(step)));
+                    }
+                    Placing::MirrorY => self.mirrored = !self.mirrored,
+                    Placing::Scale(factor) => {
+                        self.factor = Some(match &self.factor {
+                            Some(outer) => outer * factor,
+                            None => factor.clone(),
+                        });
+                    }
+                }
+                next = entry.before;
+            }
+            steps.reverse();
+            self.draft = *child;
+        }
+        (self, steps)
+    }
+
+    /// A primitive as it is used, and the shift that a mirror makes of it.
+    fn primitive(&self, primitive: &Primitive) -> (Primitive, Option<Step>) {
+        let primitive = match &self.factor {
+            Some(factor) => primitive.scaled(factor),
+            None => primitive.clone(),
+        };
+        let shift = self.mirrored.then(|| primitive.mirror_y());
+        let shift = shift.filter(|motion| !motion.is_identity());
+        let shift = shift.map(|motion| Step::Shift(motion.offset().clone()));
+        (primitive, shift)
+    }
+}
+
+/// How a language is written.
+trait Language {
+    /// A primitive, moved.
+    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]);
+    /// A part with a name, moved.
+    fn name(&mut self, name: usize, steps: &[Step]);
+    /// The beginning of an operation.
+    fn open(&mut self, op: Operation, steps: &[Step]);
+    /// What stands between two operands.
+    fn between(&mut self, op: Operation);
+    /// The end of an operation, moved.
+    fn close(&mut self, steps: &[Step]);
+    /// How long the text is.
+    fn length(&self) -> usize;
+}
+
+/// What is still to be written.
+enum Task {
+    Enter(Use),
+    Between(Operation),
+    Close(Vec<Step>),
+}
+
+/// Writes a part; what `name` gives a name to is written by it.
+fn walk(
+    builder: &Builder,
+    top: Use,
+    name: impl Fn(&Use) -> Option<usize>,
+    language: &mut impl Language,
+) -> Result<(), WriteError> {
+    let mut tasks = vec![Task::Enter(top)];
+    while let Some(task) = tasks.pop() {
+        match task {
+            Task::Enter(part) => enter(builder, part, &name, language, &mut tasks),
+            Task::Between(op) => language.between(op),
+            Task::Close(steps) => language.close(&steps),
+        }
+        if language.length() > MAX_TEXT {
+            return Err(WriteError::TooLong);
+        }
+    }
+    Ok(())
+}
+
+fn enter(
+    builder: &Builder,
+    part: Use,
+    name: &impl Fn(&Use) -> Option<usize>,
+    language: &mut impl Language,
+    tasks: &mut Vec<Task>,
+) {
+    let (part, mut steps) = part.resolved(builder);
+    if let Some(name) = name(&part) {
+        language.name(name, &steps);
+        return;
+    }
+    match builder.draft(part.draft) {
+        Draft::Leaf(primitive) => {
+            let (primitive, shift) = part.primitive(primitive);
+            steps.splice(0..0, shift);
+            language.leaf(&primitive, &steps);
+        }
+        Draft::Operation { op, children } => {
+            language.open(*op, &steps);
+            tasks.push(Task::Close(steps));
+            let operands = operands(builder, &part, *op, children, name);
+            for (index, operand) in operands.into_iter().enumerate().rev() {
+                tasks.push(Task::Enter(operand));
+                if index > 0 {
+                    tasks.push(Task::Between(*op));
+                }
+            }
+        }
+        // Placements in a row are one.
+        Draft::Moved { .. } => {}
+    }
+}
+
+/// What an operation is on: in place of an operand that is the same operation, its own, where that
+/// changes nothing.
+fn operands(
+    builder: &Builder,
+    part: &Use,
+    op: Operation,
+    children: &[usize],
+    name: &impl Fn(&Use) -> Option<usize>,
+) -> Vec<Use> {
+    let below = |part: &Use, children: &[usize]| {
+        let uses = children.iter().rev().map(|&child| part.with(child));
+        uses.collect::<Vec<Use>>()
+    };
+    let mut ahead = below(part, children);
+    let mut operands = Vec::new();
+    while let Some(operand) = ahead.pop() {
+        // (A - B) - C is A - B - C, while A - (B - C) stays.
+        if op != Operation::Difference || operands.is_empty() {
+            let (inner, steps) = operand.clone().resolved(builder);
+            if let Draft::Operation { op: same, children } = builder.draft(inner.draft)
+                && *same == op
+                && steps.is_empty()
+                && name(&inner).is_none()
+            {
+                ahead.extend(below(&inner, children));
+                continue;
+            }
+        }
+        operands.push(operand);
+    }
+    operands
+}
+
+/// Blanks before a line at some depth.
+fn indent(depth: usize) -> &'static str {
+    const BLANKS: &str = "                                ";
+    &BLANKS[..(2 * depth).min(BLANKS.len())]
+}
+
+/// Adds to a text.
+fn push(text: &mut String, written: std::fmt::Arguments<'_>) {
+    // A string takes everything.
+    let _ = std::fmt::Write::write_fmt(text, written);
+}

@@ -1,0 +1,141 @@
+//! `.padl`: a statement for each part that is used more than once, and one for the whole.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use premio_kernel::number::rational::Rational;
+
+use super::number::quotient;
+use super::turns::about_axes;
+use super::{Language, Use, WriteError, indent, push, walk};
+use crate::builder::{Builder, Draft};
+use crate::moves::Step;
+use crate::primitive::Primitive;
+use crate::tree::Operation;
+
+pub(super) fn write(builder: &Builder, top: Use) -> Result<String, WriteError> {
+    let named = named(builder, &top);
+    let mut padl = Padl::default();
+    for (part, &name) in &named {
+        push(&mut padl.text, format_args!("P{name} = "));
+        let others = |other: &Use| named.get(other).copied().filter(|_| other != part);
+        walk(builder, part.clone(), others, &mut padl)?;
+        padl.text.push('\n');
+    }
+    padl.text.push_str("PART = ");
+    walk(builder, top, |part| named.get(part).copied(), &mut padl)?;
+    padl.text.push('\n');
+    Ok(padl.text)
+}
+
+/// The operations that are used more than once, in an order in which they can be written: what
+/// they are made of has smaller numbers.
+fn named(builder: &Builder, top: &Use) -> BTreeMap<Use, usize> {
+    let mut met: BTreeSet<Use> = BTreeSet::new();
+    let mut again: BTreeSet<Use> = BTreeSet::new();
+    let mut ahead = vec![top.clone()];
+    while let Some(part) = ahead.pop() {
+        let (part, _) = part.resolved(builder);
+        let Draft::Operation { children, .. } = builder.draft(part.draft) else {
+            continue;
+        };
+        if met.contains(&part) {
+            again.insert(part);
+            continue;
+        }
+        ahead.extend(children.iter().map(|&child| part.with(child)));
+        met.insert(part);
+    }
+    again.into_iter().zip(1..).collect()
+}
+
+#[derive(Default)]
+struct Padl {
+    text: String,
+    depth: usize,
+}
+
+impl Padl {
+    fn place(&mut self, steps: &[Step]) {
+        let mut words = Vec::new();
+        for step in steps {
+            match step {
+                Step::Shift(offset) => {
+                    let moved = offset.iter().zip(["MOVX", "MOVY", "MOVZ"]);
+                    let moved = moved.filter(|(by, _)| !by.is_zero());
+                    words.extend(moved.map(|(by, word)| format!("{word}={}", quotient(by))));
+                }
+                Step::Turn { .. } | Step::Quaternion(_) => {
+                    let turns = about_axes(step).into_iter();
+                    words.extend(turns.map(|(axis, degrees)| {
+                        format!("{}={}", ["ROTX", "ROTY", "ROTZ"][axis], quotient(&degrees))
+                    }));
+                }
+            }
+        }
+        if !words.is_empty() {
+            push(&mut self.text, format_args!(" AT ({})", words.join(", ")));
+        }
+    }
+}
+
+impl Language for Padl {
+    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]) {
+        self.text.push_str(&call(primitive));
+        self.place(steps);
+    }
+
+    fn name(&mut self, name: usize, steps: &[Step]) {
+        push(&mut self.text, format_args!("P{name}"));
+        self.place(steps);
+    }
+
+    fn open(&mut self, _: Operation, _: &[Step]) {
+        self.depth += 1;
+        push(&mut self.text, format_args!("(\n{}", indent(self.depth)));
+    }
+
+    fn between(&mut self, op: Operation) {
+        let word = match op {
+            Operation::Union => "UN",
+            Operation::Intersection => "INT",
+            Operation::Difference => "DIF",
+        };
+        push(
+            &mut self.text,
+            format_args!("\n{}{word} ", indent(self.depth)),
+        );
+    }
+
+    fn close(&mut self, steps: &[Step]) {
+        self.depth -= 1;
+        push(&mut self.text, format_args!("\n{})", indent(self.depth)));
+        self.place(steps);
+    }
+
+    fn length(&self) -> usize {
+        self.text.len()
+    }
+}
+
+fn call(primitive: &Primitive) -> String {
+    let with = |name: &str, arguments: &[(&str, &Rational)]| {
+        let all = arguments.iter();
+        let all: Vec<String> = all
+            .map(|(key, x)| format!("{key}={}", quotient(x)))
+            .collect();
+        format!("{name}({})", all.join(", "))
+    };
+    match primitive {
+        Primitive::Block { size: [x, y, z] } => with("BLO", &[("X", x), ("Y", y), ("Z", z)]),
+        Primitive::Wedge { size: [x, y, z] } => with("WED", &[("X", x), ("Y", y), ("Z", z)]),
+        Primitive::Cylinder { radius, height } => with("CYL", &[("R", radius), ("H", height)]),
+        Primitive::Frustum { base, top, height } if top.is_zero() => {
+            with("CON", &[("R", base), ("H", height)])
+        }
+        Primitive::Frustum { base, top, height } => {
+            with("CON", &[("R", base), ("H", height), ("R2", top)])
+        }
+        Primitive::Sphere { radius } => with("SPH", &[("R", radius)]),
+        Primitive::Torus { major, minor } => with("TOR", &[("RMAJ", major), ("RMIN", minor)]),
+    }
+}

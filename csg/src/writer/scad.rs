@@ -1,0 +1,145 @@
+//! `.csg`: as OpenSCAD flattens, so that it reads it, too.
+
+use premio_kernel::motion::Motion;
+use premio_kernel::number::rational::to_f64;
+
+use super::number::decimal;
+use super::{Language, Use, WriteError, indent, push, walk};
+use crate::builder::Builder;
+use crate::moves::Step;
+use crate::primitive::Primitive;
+use crate::tree::Operation;
+
+pub(super) fn write(builder: &Builder, top: Option<Use>) -> Result<String, WriteError> {
+    let mut scad = Scad::default();
+    match top {
+        Some(top) => walk(builder, top, |_| None, &mut scad)?,
+        None => scad.text.push_str("group();"),
+    }
+    scad.text.push('\n');
+    Ok(scad.text)
+}
+
+#[derive(Default)]
+struct Scad {
+    text: String,
+    depth: usize,
+}
+
+/// As OpenSCAD writes a smooth surface.
+const SMOOTH: &str = "$fn = 0, $fa = 12, $fs = 2";
+
+impl Scad {
+    /// Opens a matrix for each turn with the shifts after it, the last of them outermost: a matrix
+    /// of one turn is known by its angle.
+    fn begin(&mut self, steps: &[Step]) {
+        for motion in motions(steps).iter().rev() {
+            push(
+                &mut self.text,
+                format_args!("multmatrix({}) {{ ", matrix(motion)),
+            );
+        }
+    }
+
+    fn end(&mut self, steps: &[Step]) {
+        self.text.push_str(&" }".repeat(motions(steps).len()));
+    }
+}
+
+/// The motions that are written as a matrix each, in the order in which they are made.
+fn motions(steps: &[Step]) -> Vec<Motion> {
+    let mut motions: Vec<Motion> = Vec::new();
+    for step in steps {
+        // A step was made when it was read, so that it has a motion.
+        let motion = step.motion().unwrap_or_default();
+        match (step, motions.last_mut()) {
+            (Step::Shift(_), Some(last)) => *last = last.then(&motion),
+            _ => motions.push(motion),
+        }
+    }
+    motions
+}
+
+fn matrix(motion: &Motion) -> String {
+    let turn = motion.rotation_matrix();
+    let row = |i: usize| {
+        // What is no short decimal is rounded to a double; the reader finds the nearest turn.
+        let [a, b, c] = turn[i].each_ref().map(to_f64);
+        format!("[{a}, {b}, {c}, {}]", decimal(&motion.offset()[i]))
+    };
+    format!("[{}, {}, {}, [0, 0, 0, 1]]", row(0), row(1), row(2))
+}
+
+impl Language for Scad {
+    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]) {
+        self.begin(steps);
+        self.text.push_str(&node(primitive));
+        self.end(steps);
+    }
+
+    /// Nothing has a name here.
+    fn name(&mut self, _: usize, _: &[Step]) {}
+
+    fn open(&mut self, op: Operation, steps: &[Step]) {
+        self.begin(steps);
+        let name = match op {
+            Operation::Union => "union",
+            Operation::Intersection => "intersection",
+            Operation::Difference => "difference",
+        };
+        self.depth += 1;
+        push(
+            &mut self.text,
+            format_args!("{name}() {{\n{}", indent(self.depth)),
+        );
+    }
+
+    fn between(&mut self, _: Operation) {
+        push(&mut self.text, format_args!("\n{}", indent(self.depth)));
+    }
+
+    fn close(&mut self, steps: &[Step]) {
+        self.depth -= 1;
+        push(&mut self.text, format_args!("\n{}}}", indent(self.depth)));
+        self.end(steps);
+    }
+
+    fn length(&self) -> usize {
+        self.text.len()
+    }
+}
+
+fn node(primitive: &Primitive) -> String {
+    match primitive {
+        Primitive::Block { size } => {
+            let [x, y, z] = size.each_ref().map(decimal);
+            format!("cube(size = [{x}, {y}, {z}], center = false);")
+        }
+        Primitive::Wedge { size } => {
+            // Raised along z from a triangle in x and y: turned, z becomes -y and y becomes z.
+            let [x, y, z] = size.each_ref().map(decimal);
+            format!(
+                "multmatrix([[1, 0, 0, 0], [0, 0, -1, {y}], [0, 1, 0, 0], [0, 0, 0, 1]]) {{ \
+                 linear_extrude(height = {y}, center = false) {{ \
+                 polygon(points = [[0, 0], [{x}, 0], [0, {z}]]); }} }}"
+            )
+        }
+        Primitive::Cylinder { radius, height } => {
+            let [r, h] = [radius, height].map(decimal);
+            format!("cylinder({SMOOTH}, h = {h}, r1 = {r}, r2 = {r}, center = false);")
+        }
+        Primitive::Frustum { base, top, height } => {
+            let [r1, r2, h] = [base, top, height].map(decimal);
+            format!("cylinder({SMOOTH}, h = {h}, r1 = {r1}, r2 = {r2}, center = false);")
+        }
+        Primitive::Sphere { radius } => format!("sphere({SMOOTH}, r = {});", decimal(radius)),
+        Primitive::Torus { major, minor } => {
+            let [major, minor] = [major, minor].map(decimal);
+            format!(
+                "rotate_extrude(angle = 360, {SMOOTH}) {{ \
+                 multmatrix([[1, 0, 0, {major}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {{ \
+                 circle({SMOOTH}, r = {minor}); }} }}"
+            )
+        }
+    }
+}

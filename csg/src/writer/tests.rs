@@ -1,0 +1,217 @@
+//! Tests of the writers: what is written is read as the same tree.
+
+use super::*;
+use crate::reader::{Options, Source, parse, read};
+use crate::tree::Tree;
+use insta::assert_snapshot;
+
+fn parsed(text: &str, format: Format) -> Source {
+    parse("part", text.as_bytes(), format, &Options::default()).unwrap()
+}
+
+fn written(text: &str, from: Format, to: Format) -> String {
+    let source = parsed(text, from);
+    write(&source.builder, source.part, to).unwrap()
+}
+
+fn tree(text: &str, format: Format) -> Tree {
+    match read("part", text.as_bytes(), format, &Options::default()) {
+        Ok(description) => description.tree,
+        Err(error) => panic!("{error}\n{text}"),
+    }
+}
+
+/// Asserts that a text in one language means the same tree in another, and there again.
+fn assert_same(text: &str, from: Format, to: Format) {
+    let other = written(text, from, to);
+    let original = tree(text, from);
+    assert!(tree(&other, to) == original, "{text}\n{other}");
+    let back = written(&other, to, from);
+    assert!(tree(&back, from) == original, "{text}\n{other}\n{back}");
+}
+
+const PADL: &str = "L = 60
+BASE = BLO(X=L, Y=40, Z=20/3)
+BORE = CYL(R=8, H=30) AT (MOVX=L/4, MOVY=20, MOVZ=-5, ROTX=12.5)
+TWO = BORE UN BORE AT (MOVX=30, ROTZ=-31.7)
+RING = TOR(RMAJ=9, RMIN=1e-3) AT (ROTY=90)
+PART = (BASE DIF TWO DIF TWO AT (ROTZ=180)) UN (RING INT WED(X=1, Y=2, Z=3)) AT (ROTX=7, ROTZ=8)
+";
+
+const PLAIN: &str = "PART = (BLO(X=1, Y=2, Z=3) AT (ROTX=30, MOVX=1.5, ROTZ=-90)
+ DIF CON(R=2, H=1) AT (MOVZ=-1) UN CON(R=1, H=1, R2=0.5) INT SPH(R=2) AT (ROTY=-12.25, MOVY=3)) AT (ROTZ=45)
+";
+
+#[test]
+fn padl_and_json_hold_the_same() {
+    assert_same(PLAIN, Format::Padl, Format::Json);
+    assert_same(PADL, Format::Padl, Format::Padl);
+    // Two thirds are no decimal.
+    let json = written(PADL, Format::Padl, Format::Json);
+    assert!(tree(&json, Format::Json) != tree(PADL, Format::Padl));
+    let halves = PADL.replace("20/3", "20/8");
+    assert_same(&halves, Format::Padl, Format::Json);
+}
+
+#[test]
+fn csg_holds_quarters_of_degrees() {
+    assert_same(PLAIN, Format::Padl, Format::Csg);
+    assert_same(PLAIN, Format::Padl, Format::Csg);
+}
+
+#[test]
+fn a_part_used_twice_has_a_name() {
+    assert_snapshot!(written(PADL, Format::Padl, Format::Padl), @"
+    P1 = (
+      CYL(R=8, H=30) AT (MOVX=15, MOVY=20, MOVZ=-5, ROTX=12.5)
+      UN CYL(R=8, H=30) AT (MOVX=15, MOVY=20, MOVZ=-5, ROTX=12.5, MOVX=30, ROTZ=-31.7)
+    )
+    PART = (
+      (
+        BLO(X=60, Y=40, Z=20/3)
+        DIF P1
+        DIF P1 AT (ROTZ=180)
+      )
+      UN (
+        TOR(RMAJ=9, RMIN=0.001) AT (ROTY=90)
+        INT WED(X=1, Y=2, Z=3)
+      ) AT (ROTX=7, ROTZ=8)
+    )
+    ");
+}
+
+#[test]
+fn languages() {
+    assert_snapshot!(written(PLAIN, Format::Padl, Format::Json), @r#"
+    {"op":"intersection","children":[
+      {"op":"union","children":[
+        {"op":"difference","children":[
+          {"prim":"block","size":[1,2,3],"transform":[{"rotate":[[1,0,0],30]},{"translate":[1.5,0,0]},{"rotate":[[0,0,1],-90]}]},
+          {"prim":"cone","r":2,"h":1,"transform":[{"translate":[0,0,-1]}]}
+        ]},
+        {"prim":"frustum","r1":1,"r2":0.5,"h":1}
+      ]},
+      {"prim":"sphere","r":2,"transform":[{"rotate":[[0,1,0],-12.25]},{"translate":[0,3,0]}]}
+    ],"transform":[{"rotate":[[0,0,1],45]}]}
+    "#);
+    assert_snapshot!(written(PLAIN, Format::Padl, Format::Csg), @"
+    multmatrix([[0.7071067811865476, -0.7071067811865475, 0, 0], [0.7071067811865475, 0.7071067811865476, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { intersection() {
+      union() {
+        difference() {
+          multmatrix([[0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { multmatrix([[1, 0, 0, 1.5], [0, 0.8660254037844387, -0.5, 0], [0, 0.5, 0.8660254037844387, 0], [0, 0, 0, 1]]) { cube(size = [1, 2, 3], center = false); } }
+          multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -1], [0, 0, 0, 1]]) { cylinder($fn = 0, $fa = 12, $fs = 2, h = 1, r1 = 2, r2 = 0, center = false); }
+        }
+        cylinder($fn = 0, $fa = 12, $fs = 2, h = 1, r1 = 1, r2 = 0.5, center = false);
+      }
+      multmatrix([[0.9772311064626789, 0, -0.21217767215644626, 0], [0, 1, 0, 3], [0.21217767215644626, 0, 0.9772311064626789, 0], [0, 0, 0, 1]]) { sphere($fn = 0, $fa = 12, $fs = 2, r = 2); }
+    } }
+    ");
+}
+
+#[test]
+fn mirrors_and_scales_are_written_at_the_primitives() {
+    let mut b = Builder::new();
+    let block = Primitive::block([2, 3, 4].map(Rational::from)).unwrap();
+    let mut moves = crate::moves::Moves::shift([1, 10, 1].map(Rational::from));
+    let turn = Step::Turn {
+        axis: [1, 0, 0].map(Rational::from),
+        degrees: 30.into(),
+    };
+    moves.push(turn).unwrap();
+    let part = b.primitive(block);
+    let part = b.moved(part, moves);
+    let part = b.scaled(part, Rational::from(2));
+    let part = b.mirrored_y(part);
+    let part = b.moved(
+        part,
+        crate::moves::Moves::shift([0, 0, 7].map(Rational::from)),
+    );
+    let both = b.operation(Operation::Union, &[part, part]);
+    let expected = b.finish(both).unwrap();
+    for format in [Format::Padl, Format::Csg, Format::Json] {
+        let text = write(&b, both, format).unwrap();
+        assert!(tree(&text, format) == expected, "{text}");
+    }
+    assert_snapshot!(write(&b, part, Format::Padl).unwrap(), @"PART = BLO(X=4, Y=6, Z=8) AT (MOVY=-6, MOVX=2, MOVY=-20, MOVZ=2, ROTX=-30, MOVZ=7)");
+}
+
+#[test]
+fn any_turn_is_held_by_json() {
+    let text = r#"{"prim":"block","size":[1,2,3],"transform":[
+        {"quaternion":[3,-1,0.25,7]},{"translate":[1,2,3]},{"rotate":[[1,2,3],17.5]}]}"#;
+    assert_same(text, Format::Json, Format::Json);
+    assert_snapshot!(written(text, Format::Json, Format::Json), @r#"{"prim":"block","size":[1,2,3],"transform":[{"quaternion":[12,-4,1,28]},{"translate":[1,2,3]},{"rotate":[[1,2,3],17.5]}]}"#);
+    // Turns about other axes are written by their nearest angles.
+    let padl = written(text, Format::Json, Format::Padl);
+    let (near, exact) = (tree(&padl, Format::Padl), tree(text, Format::Json));
+    let matrix = |tree: &Tree| tree.leaves().next().unwrap().1.motion.rotation_f64();
+    assert!((matrix(&near) - matrix(&exact)).amax() < 1e-15, "{padl}");
+}
+
+#[test]
+fn turns_by_decimals_about_three_axes_are_found_again() {
+    let text = "P = BLO(X=1, Y=2, Z=3) AT (ROTX=12.5, ROTY=-3.75, ROTZ=100.125)";
+    let [w, x, y, z] = quaternion(text);
+    let json = format!(
+        r#"{{"prim":"block","size":[1,2,3],"transform":[{{"quaternion":[{w},{x},{y},{z}]}}]}}"#
+    );
+    assert!(tree(&json, Format::Json) == tree(text, Format::Padl));
+    let padl = written(&json, Format::Json, Format::Padl);
+    assert!(
+        padl.contains("ROTX=12.5, ROTY=-3.75, ROTZ=100.125"),
+        "{padl}"
+    );
+}
+
+/// The quaternion of the turn of a text's one primitive, in whole numbers.
+fn quaternion(text: &str) -> [Rational; 4] {
+    let matrix = tree(text, Format::Padl)
+        .leaves()
+        .next()
+        .unwrap()
+        .1
+        .motion
+        .rotation_matrix();
+    let m = |i: usize, j: usize| matrix[i][j].clone();
+    let w = Rational::ONE + m(0, 0) + m(1, 1) + m(2, 2);
+    let all = [w, m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)];
+    premio_kernel::number::rational::whole(&all)
+}
+
+#[test]
+fn the_empty_solid() {
+    let empty = r#"{"op":"union","children":[]}"#;
+    for format in [Format::Json, Format::Csg] {
+        assert!(tree(&written(empty, Format::Json, format), format).is_empty());
+    }
+    let source = parsed(empty, Format::Json);
+    let refused = write(&source.builder, source.part, Format::Padl);
+    assert_eq!(refused, Err(WriteError::Empty));
+    let refused = write(&source.builder, source.part, Format::Pov);
+    assert_eq!(refused, Err(WriteError::ReadOnly));
+}
+
+#[test]
+fn deep_parts_need_no_stack() {
+    const LEVELS: usize = 100_000;
+    let text = format!(
+        "A = {}SPH(R=1){}",
+        "(".repeat(LEVELS),
+        " AT (MOVX=1) DIF SPH(R=2) UN SPH(R=3))".repeat(LEVELS)
+    );
+    for format in [Format::Padl, Format::Csg, Format::Json] {
+        let other = written(&text, Format::Padl, format);
+        assert!(tree(&other, format) == tree(&text, Format::Padl));
+    }
+}
+
+#[test]
+fn many_copies_are_refused() {
+    let mut text = "A0 = SPH(R=1)\n".to_owned();
+    for level in 1..40 {
+        text += &format!("A{level} = A{0} UN A{0} AT (MOVX={level})\n", level - 1);
+    }
+    let source = parsed(&text, Format::Padl);
+    let refused = write(&source.builder, source.part, Format::Json);
+    assert!(matches!(refused, Err(WriteError::TooManyLeaves { .. })));
+}

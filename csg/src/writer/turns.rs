@@ -1,0 +1,67 @@
+//! Turns about coordinate axes, which are all that `.padl` has.
+
+use nalgebra::Matrix3;
+use premio_kernel::number::rational::{Rational, from_f64};
+
+use crate::moves::Step;
+
+/// Turns about coordinate axes, by degrees, that come to a step: the same turn where it is one, or
+/// where whole decimals of a degree about x, y and z in this order give it exactly; else the
+/// nearest that doubles tell. Nothing of a shift.
+pub(super) fn about_axes(step: &Step) -> Vec<(usize, Rational)> {
+    if let Step::Turn { axis, degrees } = step {
+        let others = |k: usize| (0..3).all(|i| i == k || axis[i].is_zero());
+        if let Some(k) = (0..3).find(|&k| others(k)) {
+            let backwards = axis[k] < Rational::ZERO;
+            let degrees = if backwards { -degrees } else { degrees.clone() };
+            return vec![(k, degrees)];
+        }
+    }
+    let Ok(motion) = step.motion() else {
+        return Vec::new();
+    };
+    let angles = angles(&motion.rotation_f64());
+    let exact = (0..=9)
+        .map(|digits| rounded(&angles, digits))
+        .find(|turns| {
+            let mut turned = crate::moves::Moves::new();
+            let all = turns
+                .iter()
+                .all(|turn| turned.push(about_axis(turn)).is_ok());
+            all && *turned.motion() == motion
+        });
+    exact.unwrap_or_else(|| {
+        let exactly = |(axis, degrees): (usize, f64)| Some((axis, from_f64(degrees)?));
+        angles.into_iter().enumerate().filter_map(exactly).collect()
+    })
+}
+
+fn about_axis((axis, degrees): &(usize, Rational)) -> Step {
+    Step::Turn {
+        axis: std::array::from_fn(|i| Rational::from(u8::from(i == *axis))),
+        degrees: degrees.clone(),
+    }
+}
+
+/// The turns that are not zero, by angles of few decimals.
+fn rounded(angles: &[f64; 3], digits: i32) -> Vec<(usize, Rational)> {
+    let scale = 10f64.powi(digits);
+    let round = |(axis, &degrees): (usize, &f64)| {
+        let whole = from_f64((degrees * scale).round())?;
+        (!whole.is_zero()).then(|| (axis, whole / from_f64(scale).unwrap_or(Rational::ONE)))
+    };
+    angles.iter().enumerate().filter_map(round).collect()
+}
+
+/// The angles in degrees of turns about x, then y, then z.
+fn angles(m: &Matrix3<f64>) -> [f64; 3] {
+    let level = m[(0, 0)].hypot(m[(1, 0)]);
+    let y = (-m[(2, 0)]).atan2(level);
+    // With x turned to z, turns about x and z are the same.
+    let upright = level < f64::EPSILON;
+    let (x, z) = match upright {
+        true => (0.0, (-m[(0, 1)]).atan2(m[(1, 1)])),
+        false => (m[(2, 1)].atan2(m[(2, 2)]), m[(1, 0)].atan2(m[(0, 0)])),
+    };
+    [x, y, z].map(f64::to_degrees)
+}

@@ -17,6 +17,10 @@ pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Write JSON: measures, checks and summaries, and on standard error what there is to say
+    /// (premio.message/1, one a line)
+    #[arg(long, global = true)]
+    pub json: bool,
 }
 
 const EXIT_STATUS: &str = "Example: premio info part.padl
@@ -48,7 +52,7 @@ pub enum Command {
     Export(ExportOptions),
     /// A description in another language
     #[command(after_help = "Examples: premio convert part.padl part.json
-          premio convert model.asc --part all.g model.padl")]
+          premio convert model.asc --part all.g model.padl --exact")]
     Convert(ConvertOptions),
     /// Random trees by the thousand, each put to the self-checks
     #[command(
@@ -109,9 +113,6 @@ impl DescriptionOptions {
 pub struct InfoOptions {
     #[command(flatten)]
     pub description: DescriptionOptions,
-    /// Write JSON (premio.info/1)
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// Options of `contours`.
@@ -324,9 +325,6 @@ pub struct FuzzOptions {
     /// Refuse a tree where a decision was closer than a hundred to one
     #[arg(long)]
     pub strict: bool,
-    /// Write the summary as JSON (premio.fuzz/1)
-    #[arg(long)]
-    pub json: bool,
     /// Where to write the summary [default: standard output]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,

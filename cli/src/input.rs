@@ -1,7 +1,7 @@
 //! Reading files and evaluating what they describe.
 
 use crate::arguments::{CameraOptions, DescriptionOptions};
-use crate::diagnostics::{self, Failure};
+use crate::diagnostics::{Failure, Voice};
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{self, Description, Format, Options};
 use premio_kernel::number::sign::Zeros;
@@ -25,10 +25,10 @@ pub struct Part {
 }
 
 /// Reads and evaluates a description; tells the reader's notes and the close calls.
-pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
+pub fn part(options: &DescriptionOptions, voice: Voice) -> Result<Part, Failure> {
     let started = Instant::now();
     let name = options.file.display().to_string();
-    let description = description(&name, options)?;
+    let description = description(&name, options, voice)?;
     let read = started.elapsed().as_secs_f64();
     let started = Instant::now();
     let how = EvaluationOptions {
@@ -44,14 +44,15 @@ pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
         },
         ..EvaluationOptions::default()
     };
+    let working = voice.working("finding the boundary");
     let evaluation =
         evaluate(&description.tree, &how).map_err(|e| Failure::evaluation(&name, &e))?;
+    drop(working);
     let calls = &evaluation.decisions.close_calls;
     if options.strict && !calls.is_empty() {
-        let text = diagnostics::close_calls(&name, evaluation.resolution, calls);
-        return Err(Failure::limit(text));
+        return Err(Failure::close(&name, evaluation.resolution, calls));
     }
-    diagnostics::tell_close_calls(&name, evaluation.resolution, calls);
+    voice.close_calls(&name, evaluation.resolution, calls);
     Ok(Part {
         name,
         description,
@@ -61,16 +62,22 @@ pub fn part(options: &DescriptionOptions) -> Result<Part, Failure> {
     })
 }
 
-fn description(name: &str, options: &DescriptionOptions) -> Result<Description, Failure> {
+fn description(
+    name: &str,
+    options: &DescriptionOptions,
+    voice: Voice,
+) -> Result<Description, Failure> {
     let format = format(&options.file)?;
     let text = bytes(&options.file)?;
     let how = Options {
         smooth: options.smooth,
         part: options.part.clone(),
     };
+    let working = voice.working("reading");
     let description =
         reader::read(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
-    diagnostics::notes(name, &text, &description.notes);
+    drop(working);
+    voice.notes(name, &text, &description.notes);
     Ok(description)
 }
 

@@ -11,25 +11,27 @@ mod output;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
-use diagnostics::Failure;
+use diagnostics::Voice;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Runs the program with its arguments, its own name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let voice = Voice::of(&arguments);
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(message) => return diagnostics::usage(&message),
+        Err(message) => return voice.usage(&message),
     };
     let outcome = match &arguments.command {
-        Command::Info(options) => commands::info::run(options),
-        Command::Contours(options) => commands::contours::run(options),
-        Command::Check(options) => commands::check::run(options),
-        Command::Export(options) => commands::export::run(options),
-        Command::Convert(options) => commands::convert::run(options),
-        Command::Fuzz(options) => commands::fuzz::run(options),
+        Command::Info(options) => commands::info::run(options, voice),
+        Command::Contours(options) => commands::contours::run(options, voice),
+        Command::Check(options) => commands::check::run(options, voice),
+        Command::Export(options) => commands::export::run(options, voice),
+        Command::Convert(options) => commands::convert::run(options, voice),
+        Command::Fuzz(options) => commands::fuzz::run(options, voice),
         Command::Man(options) => commands::manual::man(options),
         Command::Completions(options) => commands::manual::completions(options),
     };
-    outcome.map_or_else(Failure::report, |()| ExitCode::SUCCESS)
+    outcome.map_or_else(|failure| voice.fail(failure), |()| ExitCode::SUCCESS)
 }

@@ -234,3 +234,119 @@ fn manual_pages_and_completions_are_of_the_commands() {
         );
     }
 }
+
+/// The lines of standard error, each a message for programs.
+fn messages(output: &Output) -> Vec<Value> {
+    let text = String::from_utf8(output.stderr.clone()).unwrap();
+    let lines = text.lines().map(|line| serde_json::from_str(line).unwrap());
+    lines
+        .inspect(|line: &Value| assert_eq!(line["schema"], "premio.message/1"))
+        .collect()
+}
+
+#[test]
+fn programs_are_told_in_json() {
+    let folder = folder();
+    fs::write(
+        folder.path().join("bad.padl"),
+        "A = SPH(R=1)\nB = SPG(R=2)\n",
+    )
+    .unwrap();
+    let output = premio(folder.path(), "info bad.padl --json");
+    assert_eq!(output.status.code(), Some(2));
+    let [error] = &messages(&output)[..] else {
+        panic!("{output:?}")
+    };
+    assert_eq!(
+        (&error["level"], &error["status"]),
+        (&"error".into(), &2.into())
+    );
+    assert_eq!(
+        (&error["file"], &error["line"], &error["column"]),
+        (&"bad.padl".into(), &2.into(), &5.into())
+    );
+    // Before the command, and whatever it writes.
+    let output = premio(folder.path(), "--json export none.padl --format step");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(messages(&output).len(), 1);
+    let output = premio(folder.path(), "contours part.padl --json --format svg");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        messages(&output)[0]["text"]
+            .as_str()
+            .unwrap()
+            .contains("--camera")
+    );
+    // Close calls have their places.
+    let near = "PART = BLO(X=1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=1.0000000001)\n";
+    fs::write(folder.path().join("near.padl"), near).unwrap();
+    let output = premio(folder.path(), "info near.padl --strict --json");
+    assert_eq!(output.status.code(), Some(3));
+    let calls = messages(&output)[0]["close_calls"]
+        .as_array()
+        .unwrap()
+        .len();
+    assert!(calls > 0);
+    let output = premio(folder.path(), "info near.padl --json");
+    assert!(output.status.success());
+    assert_eq!(messages(&output)[0]["level"], "note");
+}
+
+#[test]
+fn checks_for_programs() {
+    let folder = folder();
+    let report = json(&premio(folder.path(), "check part.padl --rays 2000 --json"));
+    assert_eq!(
+        (&report["schema"], &report["holds"]),
+        (&"premio.check/1".into(), &true.into())
+    );
+    assert_eq!(report["checks"][0]["subject"], "topology");
+}
+
+#[test]
+fn descriptions_are_converted() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let volume =
+        |file: &str| json(&premio(folder.path(), &format!("info {file} --json")))["volume"].clone();
+    let there = premio(folder.path(), "convert part.padl part.json");
+    assert!(there.status.success() && there.stderr.is_empty() && there.stdout.is_empty());
+    let back = premio(folder.path(), "convert part.json again.padl --exact");
+    assert!(back.status.success(), "{back:?}");
+    assert_eq!(volume("again.padl"), volume("part.padl"));
+    // What a language cannot hold is said, or refused.
+    fs::write(path("third.padl"), "P = SPH(R=1/3) UN BLO(X=1, Y=1, Z=1)\n").unwrap();
+    let near = premio(folder.path(), "convert third.padl third.json");
+    let said = String::from_utf8(near.stderr).unwrap();
+    assert!(
+        near.status.success() && said.contains("1 primitive of 2 cannot be held exactly by .json"),
+        "{said}"
+    );
+    let refused = premio(folder.path(), "convert third.padl exact.json --exact");
+    assert_eq!(refused.status.code(), Some(3));
+    assert!(!path("exact.json").exists());
+    // Other languages are read only.
+    let scene = "#declare R = 2;\ndifference { box { -R, R } sphere { 0, R } cylinder { -3*y, 3*y, 1 rotate 90*x } }";
+    fs::write(path("scene.pov"), scene).unwrap();
+    let there = premio(folder.path(), "convert scene.pov scene.padl");
+    assert!(there.status.success(), "{there:?}");
+    assert_eq!(volume("scene.padl"), volume("scene.pov"));
+    assert_eq!(
+        premio(folder.path(), "convert part.padl part.pov")
+            .status
+            .code(),
+        Some(2)
+    );
+    assert_eq!(
+        premio(folder.path(), "convert part.padl part.txt")
+            .status
+            .code(),
+        Some(2)
+    );
+    assert_eq!(
+        premio(folder.path(), "convert scene.pov one.padl --part R")
+            .status
+            .code(),
+        Some(2)
+    );
+}

@@ -1,19 +1,59 @@
 //! `premio check`: every self-check there is, on one description.
 
 use crate::arguments::CheckOptions;
-use crate::checks::Checker;
-use crate::diagnostics::Failure;
+use crate::checks::{Check, Checker, Finding, Report};
+use crate::diagnostics::{Failure, Voice};
 use crate::{input, output};
+use serde::Serialize;
 
 /// Runs the command.
-pub fn run(options: &CheckOptions) -> Result<(), Failure> {
-    let part = input::part(&options.description)?;
+pub fn run(options: &CheckOptions, voice: Voice) -> Result<(), Failure> {
+    let part = input::part(&options.description, voice)?;
     let checker = Checker::new(&part.description.tree, &part.evaluation);
+    let working = voice.working("checking");
     let report = checker.all(options.rays as usize);
-    output::write(report.to_string(), None)?;
+    drop(working);
+    match voice.is_json() {
+        true => output::json(&Checked::of(&report), None)?,
+        false => output::write(report.to_string(), None)?,
+    }
     if report.holds() {
         Ok(())
     } else {
         Err(Failure::Check)
+    }
+}
+
+/// A report for programs (premio.check/1).
+#[derive(Serialize)]
+struct Checked<'a> {
+    schema: &'static str,
+    holds: bool,
+    checks: Vec<One<'a>>,
+}
+
+#[derive(Serialize)]
+struct One<'a> {
+    subject: String,
+    finding: &'static str,
+    detail: &'a str,
+}
+
+impl<'a> Checked<'a> {
+    fn of(report: &'a Report) -> Self {
+        let one = |check: &'a Check| One {
+            subject: check.subject.to_string(),
+            finding: match check.finding {
+                Finding::Holds => "holds",
+                Finding::Fails => "fails",
+                Finding::Untold => "untold",
+            },
+            detail: &check.detail,
+        };
+        Self {
+            schema: "premio.check/1",
+            holds: report.holds(),
+            checks: report.checks.iter().map(one).collect(),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! `premio contours`: what a camera sees.
 
 use crate::arguments::{ContoursFormat, ContoursOptions, ViewName};
-use crate::diagnostics::Failure;
+use crate::diagnostics::{Failure, Voice};
 use crate::input::Part;
 use crate::{input, output};
 use nalgebra::Point3;
@@ -15,14 +15,16 @@ const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do n
     the boundary is known, but no view of it is reckoned with more digits";
 
 /// Runs the command.
-pub fn run(options: &ContoursOptions) -> Result<(), Failure> {
+pub fn run(options: &ContoursOptions, voice: Voice) -> Result<(), Failure> {
     let to = options.output.as_deref();
     if options.sheet.is_asked() {
-        return output::write(on_sheet(options)?, to);
+        return output::write(on_sheet(options, voice)?, to);
     }
     let camera = input::camera(&options.camera)?;
-    let part = input::part(&options.description)?;
+    let part = input::part(&options.description, voice)?;
+    let working = voice.working("finding the contours");
     let mut seen = seen(&part, &camera)?;
+    drop(working);
     match options.format {
         ContoursFormat::Json => {
             if let Some(n) = options.samples {
@@ -54,7 +56,7 @@ fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
 }
 
 /// The views, or that of the camera, on a sheet.
-fn on_sheet(options: &ContoursOptions) -> Result<String, Failure> {
+fn on_sheet(options: &ContoursOptions, voice: Voice) -> Result<String, Failure> {
     let write = match options.format {
         ContoursFormat::Json => {
             return Err(Failure::input(
@@ -69,15 +71,18 @@ fn on_sheet(options: &ContoursOptions) -> Result<String, Failure> {
         true => Some(input::camera(&options.camera)?),
         false => None,
     };
-    let part = input::part(&options.description)?;
+    let part = input::part(&options.description, voice)?;
     let cameras = match alone {
         Some(camera) => vec![(None, camera)],
         None => cameras(&part, &asked.views)?,
     };
+    let bar = voice.progress(cameras.len() as u64);
     let mut views = Vec::new();
     for (view, camera) in cameras {
         views.push((view, drawing(&seen(&part, &camera)?, options)));
+        bar.inc(1);
     }
+    bar.finish_and_clear();
     let title = asked.title.clone();
     let how = sheet::Options {
         title: title.unwrap_or_else(|| options.description.stem()),

@@ -1,17 +1,17 @@
 //! `premio convert`: a description in another language.
 
 use crate::arguments::ConvertOptions;
-use crate::diagnostics::{self, Failure, counted};
+use crate::diagnostics::{Failure, Voice, counted};
 use crate::{input, output};
 use premio_csg::reader::{self, Format, Options, Source};
 use premio_csg::tree::Tree;
 use premio_csg::writer;
 
 /// Runs the command.
-pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
+pub fn run(options: &ConvertOptions, voice: Voice) -> Result<(), Failure> {
     let name = options.file.display().to_string();
     let target = input::format(&options.output)?;
-    let source = source(&name, options)?;
+    let source = source(&name, options, voice)?;
     let failed = |e: &dyn std::fmt::Display| Failure::limit(format!("{name}: {e}"));
     let tree = source.builder.finish(source.part).map_err(|e| failed(&e))?;
     let text = match writer::write(&source.builder, source.part, target) {
@@ -28,12 +28,12 @@ pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
         if options.exact {
             return Err(Failure::limit(format!("{name}: {told}")));
         }
-        diagnostics::note(&name, &told);
+        voice.note(&name, &told);
     }
     output::write(&text, Some(&options.output))
 }
 
-fn source(name: &str, options: &ConvertOptions) -> Result<Source, Failure> {
+fn source(name: &str, options: &ConvertOptions, voice: Voice) -> Result<Source, Failure> {
     let format = input::format(&options.file)?;
     let text = input::bytes(&options.file)?;
     let how = Options {
@@ -41,7 +41,7 @@ fn source(name: &str, options: &ConvertOptions) -> Result<Source, Failure> {
         part: options.part.clone(),
     };
     let source = reader::parse(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
-    diagnostics::notes(name, &text, &source.notes);
+    voice.notes(name, &text, &source.notes);
     Ok(source)
 }
 

@@ -1,7 +1,7 @@
 //! `premio export`: the boundary in a format of choice.
 
 use crate::arguments::{ExportFormat, ExportOptions, StepProtocol};
-use crate::diagnostics::{self, Failure, counted};
+use crate::diagnostics::{Failure, Voice, counted};
 use crate::input::Part;
 use crate::{input, output};
 use premio_csg::model::Model;
@@ -11,10 +11,11 @@ use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
 
 /// Runs the command.
-pub fn run(options: &ExportOptions) -> Result<(), Failure> {
+pub fn run(options: &ExportOptions, voice: Voice) -> Result<(), Failure> {
     refuse_what_is_not_asked(options)?;
-    let part = input::part(&options.description)?;
+    let part = input::part(&options.description, voice)?;
     let to = options.output.as_deref();
+    let working = voice.working("making the file");
     let bytes = match options.format {
         ExportFormat::Json => return output::json(&Model::of(&part.evaluation.brep), to),
         ExportFormat::Step => as_step(&part, options)?.into_bytes(),
@@ -23,8 +24,9 @@ pub fn run(options: &ExportOptions) -> Result<(), Failure> {
             as_triangles(&part, options).map_err(failed)?
         }
     };
+    drop(working);
     output::write(&bytes, to)?;
-    tell_parted(&part, options.format);
+    tell_parted(&part, options.format, voice);
     Ok(())
 }
 
@@ -107,7 +109,7 @@ fn unit(options: &ExportOptions) -> Unit {
 }
 
 /// Says what became of edges of more than two faces.
-fn tell_parted(part: &Part, format: ExportFormat) {
+fn tell_parted(part: &Part, format: ExportFormat, voice: Voice) {
     let parted = part.evaluation.brep.topology.edges_of_many_faces();
     if parted == 0 {
         return;
@@ -122,5 +124,5 @@ fn tell_parted(part: &Part, format: ExportFormat) {
         }
     };
     let said = format!("{edges} of more than two faces: {became}");
-    diagnostics::note(&part.name, &said);
+    voice.note(&part.name, &said);
 }

@@ -1,7 +1,7 @@
 //! `premio fuzz`: random trees by the thousand.
 
 use crate::arguments::{FuzzOptions, ModelFormat, ProfileChoice};
-use crate::diagnostics::{self, Failure};
+use crate::diagnostics::{Failure, Voice};
 use crate::fuzz::Error;
 use crate::fuzz::archive::Archive;
 use crate::fuzz::profile::Profile;
@@ -23,7 +23,7 @@ impl From<Error> for Failure {
 }
 
 /// Runs the command.
-pub fn run(options: &FuzzOptions) -> Result<(), Failure> {
+pub fn run(options: &FuzzOptions, voice: Voice) -> Result<(), Failure> {
     let limit = Duration::from_secs_f64(options.limit);
     if let Some(terms) = &options.worker {
         return worker(terms, limit);
@@ -45,7 +45,7 @@ pub fn run(options: &FuzzOptions) -> Result<(), Failure> {
         archive: archive.as_ref(),
     };
     let terms = state.plan.terms;
-    let bar = diagnostics::progress(state.plan.trees());
+    let bar = voice.progress(state.plan.trees());
     let state = run_all(
         state,
         &how,
@@ -61,12 +61,18 @@ pub fn run(options: &FuzzOptions) -> Result<(), Failure> {
     if let Some(archive) = &archive {
         archive.finish(&state)?;
     }
-    tell(options, &Summary::of(&state), stop.load(Ordering::Relaxed))
+    let stopped = stop.load(Ordering::Relaxed);
+    tell(options, voice, &Summary::of(&state), stopped)
 }
 
-fn tell(options: &FuzzOptions, summary: &Summary, stopped: bool) -> Result<(), Failure> {
+fn tell(
+    options: &FuzzOptions,
+    voice: Voice,
+    summary: &Summary,
+    stopped: bool,
+) -> Result<(), Failure> {
     let to = options.output.as_deref();
-    match options.json {
+    match voice.is_json() {
         true => output::json(summary, to)?,
         false => output::write(summary.to_string(), to)?,
     }

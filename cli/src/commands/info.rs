@@ -1,7 +1,7 @@
 //! `premio info`: measures of the solid.
 
 use crate::arguments::InfoOptions;
-use crate::diagnostics::Failure;
+use crate::diagnostics::{Failure, Voice};
 use crate::input::{self, Part};
 use crate::output;
 use premio_kernel::number::sign::{CloseCall, Decisions};
@@ -64,10 +64,12 @@ struct Seconds {
 }
 
 /// Runs the command.
-pub fn run(options: &InfoOptions) -> Result<(), Failure> {
-    let part = input::part(&options.description)?;
+pub fn run(options: &InfoOptions, voice: Voice) -> Result<(), Failure> {
+    let part = input::part(&options.description, voice)?;
+    let working = voice.working("measuring");
     let info = Info::of(&part);
-    if options.json {
+    drop(working);
+    if voice.is_json() {
         output::json(&info, None)
     } else {
         output::write(info.to_string(), None)

@@ -1,0 +1,81 @@
+//! The line of a text that a message is about.
+
+use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+use premio_csg::reader::ReadError;
+
+/// How much of a long line is shown on either side.
+const SHOWN: usize = 60;
+
+/// The line of a text that a message is about; of a long line the part around the place.
+#[derive(Debug)]
+pub struct Excerpt {
+    name: String,
+    text: String,
+    pub span: SourceSpan,
+    line: usize,
+    column: usize,
+}
+
+impl Excerpt {
+    /// The excerpt around what an error found.
+    pub fn of(error: &ReadError, text: &[u8]) -> Self {
+        let at = error.span.start.min(text.len());
+        let start = text[..at]
+            .iter()
+            .rposition(|&b| b == b'\n')
+            .map_or(0, |i| i + 1);
+        let end = text[at..]
+            .iter()
+            .position(|&b| b == b'\n')
+            .map_or(text.len(), |i| at + i);
+        let until = error.span.end.clamp(at, end);
+        let [before, found, after] = [&text[start..at], &text[at..until], &text[until..end]]
+            .map(|bytes| printable(&String::from_utf8_lossy(bytes)));
+        let before = last(&before);
+        let (found, after) = (first(&found), first(&after));
+        Self {
+            name: error.name.to_string(),
+            span: (before.len(), found.len()).into(),
+            text: format!("{before}{found}{after}"),
+            line: error.line as usize - 1,
+            column: error.column as usize - 1,
+        }
+    }
+}
+
+/// A text that moves no cursor and sets no colours.
+fn printable(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\r' | '\t' => ' ',
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    text.chars().map(shown).collect()
+}
+
+fn first(text: &str) -> String {
+    text.chars().take(SHOWN).collect()
+}
+
+fn last(text: &str) -> String {
+    let skipped = text.chars().count().saturating_sub(SHOWN);
+    text.chars().skip(skipped).collect()
+}
+
+impl SourceCode for Excerpt {
+    fn read_span<'a>(
+        &'a self,
+        _: &SourceSpan,
+        _: usize,
+        _: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.clone(),
+            self.text.as_bytes(),
+            (0, self.text.len()).into(),
+            self.line,
+            self.column,
+            1,
+        )))
+    }
+}

@@ -1,0 +1,232 @@
+//! What there is to say, perhaps with its place in a text: for people, and for programs.
+
+use super::excerpt::Excerpt;
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+use premio_csg::reader::ReadError;
+use premio_kernel::number::sign::CloseCall;
+use serde::Serialize;
+use std::fmt;
+use std::io::{self, IsTerminal};
+
+/// What is wrong, or what else there is to know.
+#[derive(Debug, Default)]
+pub struct Message {
+    text: String,
+    excerpt: Option<Excerpt>,
+    place: Option<Place>,
+    calls: Vec<CloseCall>,
+}
+
+/// A place in a text, and what is wrong there.
+#[derive(Debug, Serialize)]
+struct Place {
+    file: String,
+    line: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    column: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    found: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    expected: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    help: Option<String>,
+}
+
+/// How grave a message is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Level {
+    /// There is no result.
+    Error,
+    /// There is one.
+    Note,
+}
+
+/// A message for programs: one line.
+#[derive(Serialize)]
+struct Line<'a> {
+    schema: &'static str,
+    level: Level,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    status: Option<u8>,
+    text: &'a str,
+    #[serde(flatten)]
+    place: Option<&'a Place>,
+    #[serde(skip_serializing_if = "<[CloseCall]>::is_empty")]
+    close_calls: &'a [CloseCall],
+}
+
+impl Message {
+    /// A text by itself.
+    pub fn plain(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Why a text was not read, and where.
+    pub fn of_reader(error: &ReadError, text: &[u8]) -> Self {
+        Self {
+            text: error.to_string(),
+            excerpt: Some(Excerpt::of(error, text)),
+            place: Some(Place {
+                file: error.name.to_string(),
+                line: error.line,
+                column: Some(error.column),
+                found: Some(error.found.to_string()),
+                expected: Some(error.expected.to_string()),
+                help: error.help.as_ref().map(ToString::to_string),
+            }),
+            ..Self::default()
+        }
+    }
+
+    /// What there is to know of a line of a file.
+    pub fn at_line(file: &str, line: u32, text: &str) -> Self {
+        Self {
+            text: text.to_owned(),
+            place: Some(Place {
+                file: file.to_owned(),
+                line,
+                column: None,
+                found: None,
+                expected: None,
+                help: None,
+            }),
+            ..Self::default()
+        }
+    }
+
+    /// The same with the close calls that it is about.
+    pub fn with_calls(self, calls: &[CloseCall]) -> Self {
+        let calls = calls.to_vec();
+        Self { calls, ..self }
+    }
+
+    /// With colours and boxes on a terminal, in plain characters elsewhere.
+    pub fn render(&self) -> String {
+        let theme = if io::stderr().is_terminal() {
+            GraphicalTheme::default()
+        } else {
+            // A caret under a single character, too.
+            let mut plain = GraphicalTheme::none();
+            plain.characters.underbar = '^';
+            plain
+        };
+        let mut text = String::new();
+        let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false);
+        match handler.render_report(&mut text, self) {
+            Ok(()) => text,
+            Err(fmt::Error) => self.text.clone(),
+        }
+    }
+
+    /// A note in plain words, with its file and line where it has any.
+    pub fn note(&self) -> String {
+        match &self.place {
+            Some(Place { file, line, .. }) => format!("{file}:{line}: note: {}", self.text),
+            None => format!("note: {}", self.text),
+        }
+    }
+
+    /// As JSON in one line (premio.message/1).
+    pub fn line(&self, level: Level, status: Option<u8>) -> String {
+        let line = Line {
+            schema: "premio.message/1",
+            level,
+            status,
+            text: &self.text,
+            place: self.place.as_ref(),
+            close_calls: &self.calls,
+        };
+        serde_json::to_string(&line).unwrap_or_else(|e| e.to_string())
+    }
+}
+
+impl fmt::Display for Message {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl std::error::Error for Message {}
+
+impl Diagnostic for Message {
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.excerpt.as_ref().map(|e| e as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let excerpt = self.excerpt.as_ref()?;
+        let label = LabeledSpan::new_with_span(Some("here".to_owned()), excerpt.span);
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use premio_csg::reader::{Format, Options, read};
+
+    fn message(text: &[u8]) -> Message {
+        let error = read("part.padl", text, Format::Padl, &Options::default()).unwrap_err();
+        Message::of_reader(&error, text)
+    }
+
+    fn rendered(text: &[u8]) -> String {
+        message(text).render()
+    }
+
+    #[test]
+    fn a_message_for_programs_is_one_line() {
+        let line = message(b"A = SPH(R=1)\nB = SPG(R=2)\n").line(Level::Error, Some(2));
+        assert!(!line.contains('\n'));
+        let value: serde_json::Value = serde_json::from_str(&line).unwrap();
+        assert_eq!(value["schema"], "premio.message/1");
+        assert_eq!(
+            (&value["level"], &value["status"]),
+            (&"error".into(), &2.into())
+        );
+        assert_eq!((&value["line"], &value["column"]), (&2.into(), &5.into()));
+        assert_eq!(value["file"], "part.padl");
+        assert_eq!(value["help"], "did you mean `SPH`?");
+        let note = Message::at_line("a.pov", 7, "something").line(Level::Note, None);
+        let value: serde_json::Value = serde_json::from_str(&note).unwrap();
+        assert_eq!(
+            (&value["line"], &value["text"]),
+            (&7.into(), &"something".into())
+        );
+        assert!(value.get("status").is_none() && value.get("column").is_none());
+    }
+
+    #[test]
+    fn a_message_shows_its_place() {
+        let shown = rendered(b"A = SPH(R=1)\nB = SPG(R=2)\n");
+        assert!(shown.contains("part.padl:2:5: found"), "{shown}");
+        assert!(shown.contains("B = SPG(R=2)"), "{shown}");
+        let caret = shown.lines().find(|l| l.contains('^')).unwrap();
+        let line = shown.lines().find(|l| l.contains("B = SPG")).unwrap();
+        assert_eq!(
+            caret.find('^').unwrap(),
+            line.find("SPG").unwrap(),
+            "{shown}"
+        );
+    }
+
+    #[test]
+    fn any_text_can_be_shown() {
+        let long = [b"A = SPH(R=1".as_slice(), &[b' '; 100_000], b"\xc3\x28)"].concat();
+        assert!(rendered(&long).len() < 1000);
+        for text in [
+            &b""[..],
+            b"\xff",
+            b"\n\n\n",
+            b"A = (\n\n",
+            b"A\t=\t\xe2\x82)\r\n",
+            b"\r",
+        ] {
+            assert!(!rendered(text).is_empty());
+        }
+    }
+}

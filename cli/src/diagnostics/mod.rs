@@ -1,0 +1,216 @@
+//! What goes to standard error when something is to be said.
+
+mod excerpt;
+mod message;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use message::{Level, Message};
+use premio_csg::boundary::EvaluationError;
+use premio_csg::reader::{ErrorKind, Note, ReadError};
+use premio_kernel::number::sign::CloseCall;
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Why a command ended without its result.
+#[derive(Debug)]
+pub enum Failure {
+    /// The input or the arguments are wrong.
+    Input(Message),
+    /// The geometry is beyond a stated limit, or a close call under `--strict`.
+    Limit(Message),
+    /// A self-check does not hold; the report says which.
+    Check,
+    /// It was interrupted, and said how far it came.
+    Interrupted,
+    /// Nobody reads the output any more.
+    BrokenPipe,
+}
+
+impl Failure {
+    /// Wrong input, in a line.
+    pub fn input(text: impl Into<String>) -> Self {
+        Self::Input(Message::plain(text))
+    }
+
+    /// Beyond a limit, in a line.
+    pub fn limit(text: impl Into<String>) -> Self {
+        Self::Limit(Message::plain(text))
+    }
+
+    /// A text that was not read.
+    pub fn read(error: &ReadError, text: &[u8]) -> Self {
+        let message = Message::of_reader(error, text);
+        match error.kind {
+            ErrorKind::Input => Self::Input(message),
+            ErrorKind::Limit => Self::Limit(message),
+        }
+    }
+
+    /// A tree that was not evaluated.
+    pub fn evaluation(name: &str, error: &EvaluationError) -> Self {
+        Self::limit(format!("{name}: {error}"))
+    }
+
+    /// Decisions too close to the resolution.
+    pub fn close(name: &str, resolution: f64, calls: &[CloseCall]) -> Self {
+        let text = close_calls(name, resolution, calls);
+        Self::Limit(Message::plain(text).with_calls(calls))
+    }
+}
+
+/// For whom the program speaks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Voice {
+    /// For people.
+    #[default]
+    Words,
+    /// For programs: a line of JSON each (premio.message/1).
+    Json,
+}
+
+impl Voice {
+    /// What the arguments ask for, whether or not they are right.
+    pub fn of(arguments: &[OsString]) -> Self {
+        match arguments.iter().any(|word| word == "--json") {
+            true => Self::Json,
+            false => Self::Words,
+        }
+    }
+
+    /// Whether results are written as JSON, too.
+    pub fn is_json(self) -> bool {
+        self == Self::Json
+    }
+
+    /// Says what happened, and how the program ends.
+    pub fn fail(self, failure: Failure) -> ExitCode {
+        let (message, status) = match failure {
+            Failure::Input(message) => (message, 2),
+            Failure::Limit(message) => (message, 3),
+            Failure::Check => return ExitCode::from(1),
+            Failure::Interrupted => return ExitCode::from(130),
+            Failure::BrokenPipe => return ExitCode::SUCCESS,
+        };
+        match self {
+            Self::Words => say(&message.render()),
+            Self::Json => say(&message.line(Level::Error, Some(status))),
+        }
+        ExitCode::from(status)
+    }
+
+    /// What clap has to say: help, or what is wrong with the arguments.
+    pub fn usage(self, message: &clap::Error) -> ExitCode {
+        match (message.use_stderr(), self) {
+            (true, Self::Json) => {
+                let text = message.render().to_string();
+                return self.fail(Failure::input(text.trim_end()));
+            }
+            // A broken pipe behind `--help` is nobody's concern.
+            _ => drop(message.print()),
+        }
+        ExitCode::from(if message.use_stderr() { 2 } else { 0 })
+    }
+
+    /// Tells the notes of a reader.
+    pub fn notes(self, name: &str, text: &[u8], notes: &[Note]) {
+        for note in notes {
+            let before = text.get(..note.span.start).unwrap_or(text);
+            let lines = before.iter().filter(|&&b| b == b'\n').count();
+            let line = u32::try_from(lines + 1).unwrap_or(u32::MAX);
+            self.tell(&Message::at_line(name, line, &note.text));
+        }
+    }
+
+    /// Tells what else there is to know of an output.
+    pub fn note(self, name: &str, text: &str) {
+        self.tell(&Message::plain(format!("{name}: {text}")));
+    }
+
+    /// Tells the close calls that were let pass.
+    pub fn close_calls(self, name: &str, resolution: f64, calls: &[CloseCall]) {
+        if !calls.is_empty() {
+            let text = close_calls(name, resolution, calls);
+            self.tell(&Message::plain(text).with_calls(calls));
+        }
+    }
+
+    fn tell(self, message: &Message) {
+        match self {
+            Self::Words => say(&message.note()),
+            Self::Json => say(&message.line(Level::Note, None)),
+        }
+    }
+
+    /// Shows what is being done, and since when, until it is dropped; on a terminal only.
+    pub fn working(self, what: &'static str) -> Working {
+        let bar = self.bar(ProgressBar::new_spinner(), "{spinner} {msg}, {elapsed}");
+        bar.set_message(what);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Working(bar)
+    }
+
+    /// A bar that shows how far some work is, on a terminal only.
+    pub fn progress(self, of: u64) -> ProgressBar {
+        let look = "{wide_bar} {human_pos} of {human_len}, {eta} left{msg}";
+        self.bar(ProgressBar::new(of), look)
+    }
+
+    fn bar(self, bar: ProgressBar, look: &str) -> ProgressBar {
+        if self.is_json() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) = ProgressStyle::with_template(look) {
+            bar.set_style(style);
+        }
+        bar
+    }
+}
+
+/// Work whose sign is on the terminal until it is dropped.
+#[derive(Debug)]
+pub struct Working(ProgressBar);
+
+impl Drop for Working {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Writes a text to standard error.
+fn say(text: &str) {
+    // Where even that fails there is nowhere left to say so.
+    let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
+}
+
+/// How many close calls are listed before they are only counted.
+const LISTED: usize = 20;
+
+/// The close calls of an evaluation: what, where, how close.
+fn close_calls(name: &str, resolution: f64, calls: &[CloseCall]) -> String {
+    let mut text = format!(
+        "{name}: {} close to the resolution of {resolution:.3e}",
+        counted(calls.len(), "decision")
+    );
+    for CloseCall {
+        question,
+        place: [x, y, z],
+        distance,
+        ..
+    } in calls.iter().take(LISTED)
+    {
+        let distance = distance.abs();
+        text += &format!("\n  {question}: {distance:.3e} apart at ({x:.9}, {y:.9}, {z:.9})");
+    }
+    if calls.len() > LISTED {
+        text += &format!("\n  and {} more", calls.len() - LISTED);
+    }
+    text
+}
+
+/// A number with its noun.
+pub fn counted(n: usize, noun: &str) -> String {
+    let plural = if n == 1 { "" } else { "s" };
+    format!("{n} {noun}{plural}")
+}

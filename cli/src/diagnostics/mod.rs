@@ -17,9 +17,9 @@ use std::time::Duration;
 #[derive(Debug)]
 pub enum Failure {
     /// The input or the arguments are wrong.
-    Input(Message),
+    Input(Box<Message>),
     /// The geometry is beyond a stated limit, or a close call under `--strict`.
-    Limit(Message),
+    Limit(Box<Message>),
     /// A self-check does not hold; the report says which.
     Check,
     /// It was interrupted, and said how far it came.
@@ -31,17 +31,17 @@ pub enum Failure {
 impl Failure {
     /// Wrong input, in a line.
     pub fn input(text: impl Into<String>) -> Self {
-        Self::Input(Message::plain(text))
+        Self::Input(Box::new(Message::plain(text)))
     }
 
     /// Beyond a limit, in a line.
     pub fn limit(text: impl Into<String>) -> Self {
-        Self::Limit(Message::plain(text))
+        Self::Limit(Box::new(Message::plain(text)))
     }
 
     /// A text that was not read.
     pub fn read(error: &ReadError, text: &[u8]) -> Self {
-        let message = Message::of_reader(error, text);
+        let message = Box::new(Message::of_reader(error, text));
         match error.kind {
             ErrorKind::Input => Self::Input(message),
             ErrorKind::Limit => Self::Limit(message),
@@ -56,7 +56,7 @@ impl Failure {
     /// Decisions too close to the resolution.
     pub fn close(name: &str, resolution: f64, calls: &[CloseCall]) -> Self {
         let text = close_calls(name, resolution, calls);
-        Self::Limit(Message::plain(text).with_calls(calls))
+        Self::Limit(Box::new(Message::plain(text).with_calls(calls)))
     }
 }
 

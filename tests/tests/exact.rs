@@ -9,6 +9,7 @@ use premio_csg::tree::Tree;
 use premio_kernel::brep::signature::Signature;
 use premio_kernel::number::sign::Zeros;
 use premio_tests::random::tree;
+use serde_json::json;
 use std::fs;
 use std::path::Path;
 
@@ -88,6 +89,30 @@ fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
     let differ = Signature::of(&plain.brep) != Signature::of(&again.brep);
     let [told, again] = [plain, again].map(|e| e.brep.topology.census());
     differ.then(|| format!("{name}: {again:?} for {told:?}"))
+}
+
+/// A cone less a ball that passes through its apex, and is tangent to it there: over the cone's
+/// rulings the curve is cut at the apex, where its equation has a double zero, and starts anywhere
+/// else. Doubles left a vertex at that start, in the middle of an edge.
+#[test]
+fn a_curve_through_an_apex_has_no_other_start() {
+    let description = json!({"op":"union","children":[
+        {"op":"difference","children":[
+            {"prim":"cone","r":1,"h":3,"transform":[{"translate":[0,0,-3]},
+                {"rotate":[[0,1,0],-71.565_051_177_077_99]},{"rotate":[[0,0,1],45]},{"rotate":[[1,0,0],180]}]},
+            {"prim":"sphere","r":2.5,"transform":[{"translate":[-2.5,0,0]},{"rotate":[[0,1,0],-90]},
+                {"rotate":[[0,0,1],90]},{"rotate":[[1,0,0],180]}]},
+            {"prim":"cone","r":1,"h":3,"transform":[{"translate":[0,1.5,-0.5]}]}]},
+        {"prim":"block","size":[1,3,3],"transform":[{"rotate":[[0,1,0],30]},{"translate":[-1,0,1]}]}],
+        "transform":[{"rotate":[[1,0,0],17]},{"rotate":[[0,0,1],31]},
+            {"translate":[0.3,0.7,-0.2]}]});
+    let text = description.to_string();
+    let tree = read("part", text.as_bytes(), Format::Json, &Options::default())
+        .unwrap()
+        .tree;
+    assert_eq!(filtered_wrongly("cone and ball", &tree), None);
+    let topology = evaluated(&tree, Zeros::ByResolution).brep.topology;
+    assert_eq!((topology.edges.len(), topology.vertices), (14, 9));
 }
 
 /// What is not as it should be about the exact boundary of a case.

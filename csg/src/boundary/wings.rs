@@ -354,7 +354,7 @@ fn join<N: Number>(
         let curve = &arrangement.meetings[piece.meeting].curve;
         let follows = other.meeting == piece.meeting
             && other.ends.is_some_and(|e| e[0] == end)
-            && meets_at(curve.period(), piece.range[1], other.range[0])
+            && meets_at(curve.cycle(), piece.range[1], other.range[0])
             && !curve.turns_back(piece.range[1])
             && same_wings(wings, same);
         if follows {
@@ -383,16 +383,16 @@ fn join<N: Number>(
             }
             done[j] = true;
             let curve = &arrangement.meetings[piece.meeting].curve;
-            piece.range[1] = run_on(curve.period(), piece.range[1], edges[j].0.range);
+            piece.range[1] = run_on(curve.cycle(), piece.range[1], edges[j].0.range);
             if let (Some(ends), Some(e)) = (piece.ends.as_mut(), edges[j].0.ends) {
                 ends[1] = e[1];
             }
             last = j;
         }
         if piece.ends.is_none()
-            && let Some(period) = arrangement.meetings[piece.meeting].curve.period()
+            && let Some(cycle) = arrangement.meetings[piece.meeting].curve.cycle()
         {
-            piece.range[1] = piece.range[0] + period;
+            piece.range[1] = piece.range[0] + cycle;
         }
         joined.push(Joined {
             piece,
@@ -405,14 +405,14 @@ fn join<N: Number>(
 
 /// Where a piece ends that begins where the one before it does, counted on over the turns: a sum of
 /// lengths would leave a gap of its rounding in a closed curve.
-fn run_on<N: Number>(period: Option<N>, before: N, [from, to]: [N; 2]) -> N {
-    period.map_or(to, |p| to + p * ((before - from) / p).round())
+fn run_on<N: Number>(cycle: Option<N>, before: N, [from, to]: [N; 2]) -> N {
+    cycle.map_or(to, |p| to + p * ((before - from) / p).round())
 }
 
 /// Whether two parameters are the same point of a curve.
-fn meets_at<N: Number>(period: Option<N>, a: N, b: N) -> bool {
+fn meets_at<N: Number>(cycle: Option<N>, a: N, b: N) -> bool {
     let scale = N::ONE / N::whole(1 << 24);
-    let away = match period {
+    let away = match cycle {
         Some(p) => {
             let d = (a - b).rem_euclid(p);
             d.min(p - d)

@@ -18,11 +18,11 @@ use std::process::ExitCode;
 /// Runs the program with its arguments, its own name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let voice = Voice::of(&arguments);
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => arguments,
-        Err(message) => return voice.usage(&message),
+        Err(message) => return Voice::guessed(&arguments).usage(&message),
     };
+    let voice = Voice::of(arguments.json);
     let outcome = match &arguments.command {
         Command::Info(options) => commands::info::run(options, voice),
         Command::Contours(options) => commands::contours::run(options, voice),

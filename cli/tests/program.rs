@@ -325,6 +325,20 @@ fn descriptions_are_converted() {
     let refused = premio(folder.path(), "convert third.padl exact.json --exact");
     assert_eq!(refused.status.code(), Some(3));
     assert!(!path("exact.json").exists());
+    // Faces that six digits keep apart coincide in a .csg alone.
+    let turned = |offset: &str| {
+        format!("multmatrix([[0.866025,-0.5,0,{offset},[0,0,1,0],[0,0,0,1]]) {{ cube(10); }}\n")
+    };
+    let six = turned("0],[0.5,0.866025,0,0]") + &turned("8.66025],[0.5,0.866025,0,5]");
+    fs::write(path("six.csg"), six).unwrap();
+    let said = premio(folder.path(), "convert six.csg six.padl").stderr;
+    assert!(
+        String::from_utf8(said)
+            .unwrap()
+            .contains("numbers of few digits")
+    );
+    let refused = premio(folder.path(), "convert six.csg six.json --exact");
+    assert_eq!(refused.status.code(), Some(3));
     // Other languages are read only.
     let scene = "#declare R = 2;\ndifference { box { -R, R } sphere { 0, R } cylinder { -3*y, 3*y, 1 rotate 90*x } }";
     fs::write(path("scene.pov"), scene).unwrap();

@@ -21,6 +21,14 @@ pub enum Step {
 }
 
 impl Step {
+    /// A turn about a coordinate axis, by its number from 0.
+    pub fn about(axis: usize, degrees: Rational) -> Self {
+        Self::Turn {
+            axis: along(axis, Rational::ONE),
+            degrees,
+        }
+    }
+
     /// The motion of this step.
     pub fn motion(&self) -> Result<Motion, MotionError> {
         match self {
@@ -29,6 +37,18 @@ impl Step {
             Self::Quaternion(quaternion) => {
                 Motion::from_quaternion(quaternion.clone()).ok_or(MotionError::ZeroAxis)
             }
+        }
+    }
+
+    /// Whether it is a shift, or turns coordinate axes into others.
+    pub(crate) fn is_plain(&self) -> bool {
+        match self {
+            Self::Shift(_) => true,
+            Self::Turn { axis, degrees } => {
+                let across = axis.iter().filter(|x| x.is_zero()).count();
+                across == 2 && (degrees / Rational::from(90)).is_int()
+            }
+            Self::Quaternion(_) => false,
         }
     }
 
@@ -55,6 +75,13 @@ impl Step {
             Self::Turn { .. } | Self::Quaternion(_) => self.clone(),
         }
     }
+}
+
+/// A vector along a coordinate axis, by its number from 0.
+pub(crate) fn along(axis: usize, length: Rational) -> [Rational; 3] {
+    let mut vector: [Rational; 3] = Default::default();
+    vector[axis] = length;
+    vector
 }
 
 /// Steps in the order in which they are made, and the motion that they come to.
@@ -96,13 +123,35 @@ impl Moves {
         let mut moves = Self::new();
         for (axis, degrees) in degrees.into_iter().enumerate() {
             if degrees != 0 {
-                let axis = std::array::from_fn(|i| Rational::from(u8::from(i == axis)));
-                let degrees = degrees.into();
                 // A coordinate axis has a direction.
-                let _ = moves.push(Step::Turn { axis, degrees });
+                let _ = moves.push(Step::about(axis, degrees.into()));
             }
         }
         moves
+    }
+
+    /// The same motion in fewer steps, where shifts and quarter turns follow one another.
+    pub(crate) fn tidied(steps: Vec<Step>) -> Vec<Step> {
+        let mut tidy = Vec::with_capacity(steps.len());
+        for run in steps.chunk_by(|a, b| a.is_plain() == b.is_plain()) {
+            let fewer = Self::in_one_turn(run).filter(|fewer| fewer.len() < run.len());
+            tidy.extend(fewer.unwrap_or_else(|| run.to_vec()));
+        }
+        tidy
+    }
+
+    /// Quarter turns and shifts as quarter turns and one shift.
+    fn in_one_turn(run: &[Step]) -> Option<Vec<Step>> {
+        let mut all = Self::new();
+        for step in run {
+            all.push(step.clone()).ok()?;
+        }
+        let mut fewer = Self::quarter_turns(&all.motion.rotation_matrix())?.steps;
+        let offset = all.motion.offset();
+        if offset.iter().any(|x| !x.is_zero()) {
+            fewer.push(Step::Shift(offset.clone()));
+        }
+        Some(fewer)
     }
 
     /// Adds a step after the others; refuses a turn about nothing.
@@ -187,6 +236,27 @@ mod tests {
         assert_eq!(found.len(), 24);
         let mirror = [[-1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|row| row.map(Rational::from));
         assert_eq!(Moves::quarter_turns(&mirror), None);
+    }
+
+    #[test]
+    fn quarter_turns_and_shifts_are_tidied() {
+        let shift = |x: i32, y: i32, z: i32| Step::Shift([x, y, z].map(Rational::from));
+        let there = [shift(1, 2, 3), Step::about(0, 90.into()), shift(0, 3, 0)];
+        let back = [
+            shift(0, -3, 0),
+            Step::about(0, 270.into()),
+            shift(-1, -2, -3),
+        ];
+        assert_eq!(Moves::tidied([there.clone(), back].concat()), []);
+        // What becomes no shorter stays as it was written.
+        let [before, turn, _] = there.clone();
+        let two = vec![before, turn];
+        assert_eq!(Moves::tidied(two.clone()), two);
+        let oblique = Step::about(2, 7.into());
+        let steps = [&there[..], &[oblique.clone()], &there].concat();
+        let fewer = [Step::about(0, 90.into()), shift(1, 0, 2)];
+        let expected = [&fewer[..], &[oblique], &fewer].concat();
+        assert_eq!(Moves::tidied(steps), expected);
     }
 
     #[test]

@@ -6,18 +6,10 @@ use libfuzzer_sys::fuzz_target;
 use premio_csg::reader::{Format, Options, parse, read};
 use premio_csg::writer::{WriteError, write};
 
-const FORMATS: [Format; 5] = [
-    Format::Padl,
-    Format::Csg,
-    Format::Json,
-    Format::Asc,
-    Format::Pov,
-];
-
 fuzz_target!(|bytes: &[u8]| {
     for smooth in [false, true] {
         let options = Options { smooth, part: None };
-        for format in FORMATS {
+        for format in Format::ALL {
             match parse("input", bytes, format, &options) {
                 Err(error) => {
                     assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());

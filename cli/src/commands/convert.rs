@@ -24,7 +24,9 @@ pub fn run(options: &ConvertOptions, voice: Voice) -> Result<(), Failure> {
     // What was written is read again: only that tells what the language could not hold.
     let read = reader::read(&name, text.as_bytes(), target, &Options::default());
     let again = read.map_err(|e| Failure::limit(format!("what was written is not read: {e}")))?;
-    if let Some(told) = lost(&tree, &again.tree, target) {
+    let digits = source.digits.filter(|_| again.digits.is_none());
+    let lost = [lost(&tree, &again.tree, target), digits.map(coarse)];
+    for told in lost.into_iter().flatten() {
         if options.exact {
             return Err(Failure::limit(format!("{name}: {told}")));
         }
@@ -43,6 +45,14 @@ fn source(name: &str, options: &ConvertOptions, voice: Voice) -> Result<Source, 
     let source = reader::parse(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
     voice.notes(name, &text, &source.notes);
     Ok(source)
+}
+
+/// What is lost where numbers of few digits are written with all of theirs.
+fn coarse(digits: f64) -> String {
+    format!(
+        "numbers of few digits: what is nearer than {digits:.1e} of the part's size coincides in \
+         what was read, and in what is written with such a `--resolution` only"
+    )
 }
 
 /// What a language could not hold of a tree.

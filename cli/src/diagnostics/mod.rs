@@ -71,12 +71,17 @@ pub enum Voice {
 }
 
 impl Voice {
-    /// What the arguments ask for, whether or not they are right.
-    pub fn of(arguments: &[OsString]) -> Self {
-        match arguments.iter().any(|word| word == "--json") {
+    /// For programs, if JSON is asked for.
+    pub fn of(json: bool) -> Self {
+        match json {
             true => Self::Json,
             false => Self::Words,
         }
+    }
+
+    /// What arguments that are wrong seem to ask for.
+    pub fn guessed(arguments: &[OsString]) -> Self {
+        Self::of(arguments.iter().any(|word| word == "--json"))
     }
 
     /// Whether results are written as JSON, too.

@@ -42,6 +42,9 @@ pub enum Format {
 }
 
 impl Format {
+    /// All languages.
+    pub const ALL: [Self; 5] = [Self::Padl, Self::Csg, Self::Json, Self::Asc, Self::Pov];
+
     /// The language that a file's ending says; `None` for another ending.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
         let ending = path.as_ref().extension()?.to_str()?;

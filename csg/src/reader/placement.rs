@@ -4,7 +4,7 @@
 //! `A = R` or `A = R S` up to the rounding of the file.
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
-use premio_kernel::motion::{Motion, RationalMatrix};
+use premio_kernel::motion::RationalMatrix;
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
 use crate::moves::{Moves, Step};
@@ -190,10 +190,10 @@ fn whole_angle(matrix: &Matrix3<f64>, rounding: f64) -> Option<Step> {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let degrees = matrix[(j, i)].atan2(matrix[(i, i)]).to_degrees();
     let degrees = from_f64((degrees * STEPS).round() / STEPS)?;
-    let axis: [Rational; 3] = std::array::from_fn(|k| Rational::from(u8::from(k == axis)));
-    let motion = Motion::rotation(axis.clone(), &degrees).ok()?;
+    let step = Step::about(axis, degrees);
+    let motion = step.motion().ok()?;
     let explained = (motion.rotation_f64() - matrix).amax() <= rounding;
-    explained.then_some(Step::Turn { axis, degrees })
+    explained.then_some(step)
 }
 
 /// The rotation of the quaternion that is nearest to a matrix.
@@ -218,6 +218,7 @@ fn orthogonal_factor(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use premio_kernel::motion::Motion;
     use premio_kernel::number::rational::from_decimal;
     use proptest::prelude::*;
 

@@ -15,7 +15,7 @@ mod turns;
 use premio_kernel::number::rational::Rational;
 
 use crate::builder::{Builder, Draft, MAX_LEAVES, Part, Placing};
-use crate::moves::Step;
+use crate::moves::{Moves, Step};
 use crate::primitive::Primitive;
 use crate::reader::Format;
 use crate::tree::Operation;
@@ -127,7 +127,7 @@ impl Use {
             steps.reverse();
             self.draft = *child;
         }
-        (self, steps)
+        (self, Moves::tidied(steps))
     }
 
     /// A primitive as it is used, and the shift that a mirror makes of it.
@@ -203,6 +203,7 @@ fn enter(
         Draft::Leaf(primitive) => {
             let (primitive, shift) = part.primitive(primitive);
             steps.splice(0..0, shift);
+            let steps = Moves::tidied(steps);
             language.leaf(&primitive, &steps);
         }
         Draft::Operation { op, children } => {

@@ -30,8 +30,8 @@ struct Scad {
 const SMOOTH: &str = "$fn = 0, $fa = 12, $fs = 2";
 
 impl Scad {
-    /// Opens a matrix for each turn with the shifts after it, the last of them outermost: a matrix
-    /// of one turn is known by its angle.
+    /// Opens a matrix for each motion, the last of them outermost: a matrix of one turn is known by
+    /// its angle.
     fn begin(&mut self, steps: &[Step]) {
         for motion in motions(steps).iter().rev() {
             push(
@@ -46,18 +46,22 @@ impl Scad {
     }
 }
 
-/// The motions that are written as a matrix each, in the order in which they are made.
+/// The motions that are written as a matrix each, in the order in which they are made: a turn with
+/// the shifts after it, quarter turns and shifts together.
 fn motions(steps: &[Step]) -> Vec<Motion> {
-    let mut motions: Vec<Motion> = Vec::new();
+    let mut motions: Vec<(Motion, bool)> = Vec::new();
     for step in steps {
         // A step was made when it was read, so that it has a motion.
         let motion = step.motion().unwrap_or_default();
-        match (step, motions.last_mut()) {
-            (Step::Shift(_), Some(last)) => *last = last.then(&motion),
-            _ => motions.push(motion),
+        let is_shift = matches!(step, Step::Shift(_));
+        match motions.last_mut() {
+            Some((last, is_plain)) if is_shift || (*is_plain && step.is_plain()) => {
+                *last = last.then(&motion);
+            }
+            _ => motions.push((motion, step.is_plain())),
         }
     }
-    motions
+    motions.into_iter().map(|(motion, _)| motion).collect()
 }
 
 fn matrix(motion: &Motion) -> String {

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use premio_kernel::number::rational::{Rational, from_f64};
 
-use crate::moves::Step;
+use crate::moves::{Moves, Step};
 
 /// Turns about coordinate axes, by degrees, that come to a step: the same turn where it is one, or
 /// where whole decimals of a degree about x, y and z in this order give it exactly; else the
@@ -24,23 +24,16 @@ pub(super) fn about_axes(step: &Step) -> Vec<(usize, Rational)> {
     let exact = (0..=9)
         .map(|digits| rounded(&angles, digits))
         .find(|turns| {
-            let mut turned = crate::moves::Moves::new();
-            let all = turns
-                .iter()
-                .all(|turn| turned.push(about_axis(turn)).is_ok());
+            let mut turned = Moves::new();
+            let steps = turns.iter().cloned();
+            let mut steps = steps.map(|(axis, degrees)| Step::about(axis, degrees));
+            let all = steps.all(|step| turned.push(step).is_ok());
             all && *turned.motion() == motion
         });
     exact.unwrap_or_else(|| {
         let exactly = |(axis, degrees): (usize, f64)| Some((axis, from_f64(degrees)?));
         angles.into_iter().enumerate().filter_map(exactly).collect()
     })
-}
-
-fn about_axis((axis, degrees): &(usize, Rational)) -> Step {
-    Step::Turn {
-        axis: std::array::from_fn(|i| Rational::from(u8::from(i == *axis))),
-        degrees: degrees.clone(),
-    }
 }
 
 /// The turns that are not zero, by angles of few decimals.

@@ -144,7 +144,6 @@ impl<'a> Database<'a> {
             let expected = "`put NAME TYPE`, and the attributes of the object";
             return Err(last.unexpected(expected));
         };
-        // A combination's `region yes` has no values after it in some versions.
         if attributes.len() % 2 == 1 {
             let last = &attributes[attributes.len() - 1];
             return Err(last.unexpected("an attribute with its value"));

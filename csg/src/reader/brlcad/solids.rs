@@ -17,30 +17,43 @@ pub(super) struct Solid {
 }
 
 /// Why a solid is none of ours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NotOurs {
-    #[error("an ellipsoid whose axes are not equal and at right angles, expected a sphere")]
+    /// Its axes are not equal and at right angles.
     Ellipsoid,
-    #[error("a cone of elliptical section, expected circles at both ends")]
+    /// A cone whose ends are no circles.
     Elliptical,
-    #[error("an oblique cone, expected an axis at right angles to its ends")]
+    /// A cone whose axis is not at right angles to its ends.
     Oblique,
-    #[error("a polyhedron of eight corners, expected a block or a right-angled wedge")]
+    /// Eight corners, but of no block and no right-angled wedge.
     Polyhedron,
-    #[error("a vector without direction, expected one of some length")]
+    /// A vector of no length, or beyond the range of doubles.
     NoDirection,
-    #[error("a solid of wrong size: {0}")]
+    /// A length that makes no solid.
     Size(PrimitiveError),
 }
 
 impl NotOurs {
     /// What was found, and what was expected.
-    pub(super) fn parts(self) -> (String, String) {
-        let text = self.to_string();
-        match text.split_once(", expected ") {
-            Some((found, expected)) => (found.to_owned(), expected.to_owned()),
-            None => (text, "a solid of positive size".to_owned()),
-        }
+    pub(super) fn parts(self) -> (String, &'static str) {
+        let (found, expected) = match self {
+            Self::Ellipsoid => (
+                "an ellipsoid whose axes are not equal and at right angles",
+                "a sphere",
+            ),
+            Self::Elliptical => ("a cone of elliptical section", "circles at both ends"),
+            Self::Oblique => ("an oblique cone", "an axis at right angles to its ends"),
+            Self::Polyhedron => (
+                "a polyhedron of eight corners",
+                "a block or a right-angled wedge",
+            ),
+            Self::NoDirection => ("a vector without direction", "one of some length"),
+            Self::Size(error) => {
+                let found = format!("a solid of wrong size: {error}");
+                return (found, "a solid of positive size");
+            }
+        };
+        (found.to_owned(), expected)
     }
 }
 

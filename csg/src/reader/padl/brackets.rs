@@ -10,7 +10,7 @@ use super::super::number::bad_length;
 use super::expression::Operand;
 use super::words::{MOTIONS, Shape};
 use crate::builder::{Builder, MAX_MOTION_BITS, Part};
-use crate::moves::{Moves, Step};
+use crate::moves::{Moves, Step, along};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 
 /// What is around an expression.
@@ -233,10 +233,7 @@ impl Placing {
         let value = operand.number(&format!("for `{name}`"))?;
         let step = match self.current {
             axis @ 0..3 => Step::Shift(along(axis, value)),
-            turn => Step::Turn {
-                axis: along(turn - 3, Rational::ONE),
-                degrees: value,
-            },
+            turn => Step::about(turn - 3, value),
         };
         self.moves.push(step).map_err(|error| {
             Fault::input(span.clone(), error.to_string(), "an angle in degrees")
@@ -253,15 +250,4 @@ impl Placing {
         }
         Ok(())
     }
-}
-
-/// A vector along one coordinate axis.
-fn along(axis: usize, length: Rational) -> [Rational; 3] {
-    std::array::from_fn(|i| {
-        if i == axis {
-            length.clone()
-        } else {
-            Rational::ZERO
-        }
-    })
 }

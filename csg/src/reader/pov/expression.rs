@@ -10,6 +10,7 @@ use super::super::lexer::{Lexeme, Token};
 use super::super::number::{check_length, literal};
 use super::words::truth;
 use super::{Reader, Value};
+use crate::moves::along;
 
 /// Brackets are nested at most so deep, and with them this recursion.
 const MAX_DEPTH: usize = 100;
@@ -96,31 +97,37 @@ impl Reader<'_> {
     }
 
     fn sum(&mut self, depth: usize) -> Result<Operand, Fault> {
-        let mut left = self.product(depth)?;
-        loop {
-            let operator = match self.cursor.peek().token {
-                Token::Symbol('+') => Operator::Add,
-                Token::Symbol('-') => Operator::Subtract,
-                _ => return Ok(left),
-            };
-            self.cursor.next();
-            let right = self.product(depth)?;
-            left = combined(operator, left, right)?;
-        }
+        self.chain(depth, Self::product, |symbol| match symbol {
+            '+' => Some(Operator::Add),
+            '-' => Some(Operator::Subtract),
+            _ => None,
+        })
     }
 
     fn product(&mut self, depth: usize) -> Result<Operand, Fault> {
-        let mut left = self.signed(depth)?;
-        loop {
-            let operator = match self.cursor.peek().token {
-                Token::Symbol('*') => Operator::Multiply,
-                Token::Symbol('/') => Operator::Divide,
-                _ => return Ok(left),
-            };
+        self.chain(depth, Self::signed, |symbol| match symbol {
+            '*' => Some(Operator::Multiply),
+            '/' => Some(Operator::Divide),
+            _ => None,
+        })
+    }
+
+    /// Operands with operators of one rank between them, from left to right.
+    fn chain(
+        &mut self,
+        depth: usize,
+        operand: fn(&mut Self, usize) -> Result<Operand, Fault>,
+        operator: fn(char) -> Option<Operator>,
+    ) -> Result<Operand, Fault> {
+        let mut left = operand(self, depth)?;
+        while let Token::Symbol(symbol) = self.cursor.peek().token
+            && let Some(operator) = operator(symbol)
+        {
             self.cursor.next();
-            let right = self.signed(depth)?;
+            let right = operand(self, depth)?;
             left = combined(operator, left, right)?;
         }
+        Ok(left)
     }
 
     fn signed(&mut self, depth: usize) -> Result<Operand, Fault> {
@@ -208,10 +215,7 @@ impl Reader<'_> {
     fn name(&mut self, lexeme: Lexeme) -> Result<Operand, Fault> {
         let text = self.cursor.text(lexeme);
         let span = lexeme.span();
-        let unit = |axis: usize| {
-            let component = |i: usize| Rational::from(u8::from(i == axis));
-            (0..3).map(component).collect::<Vec<Rational>>()
-        };
+        let unit = |axis: usize| along(axis, Rational::ONE).to_vec();
         let components = match (text, self.names.get(text)) {
             ("x", _) => unit(0),
             ("y", _) => unit(1),

@@ -150,9 +150,8 @@ impl Object {
         let mut moves = Moves::new();
         for (axis, degrees) in degrees.into_iter().enumerate() {
             if !degrees.is_zero() {
-                let axis = std::array::from_fn(|i| Rational::from(u8::from(i == axis)));
                 // A coordinate axis has a direction.
-                let _ = moves.push(Step::Turn { axis, degrees });
+                let _ = moves.push(Step::about(axis, degrees));
             }
         }
         match moves.steps() {

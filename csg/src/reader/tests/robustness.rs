@@ -26,14 +26,6 @@ const SEEDS: [(&str, Format); 5] = [
     ),
 ];
 
-const FORMATS: [Format; 5] = [
-    Format::Padl,
-    Format::Csg,
-    Format::Json,
-    Format::Asc,
-    Format::Pov,
-];
-
 /// Reads, and checks that an error's place is in the text.
 fn check(bytes: &[u8], format: Format) {
     if let Err(error) = read("part", bytes, format, &Options::default()) {
@@ -46,7 +38,7 @@ fn check(bytes: &[u8], format: Format) {
 proptest! {
     #[test]
     fn any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        for format in FORMATS {
+        for format in Format::ALL {
             check(&bytes, format);
         }
     }
@@ -60,7 +52,7 @@ proptest! {
         "difference", "inverse", ".x",
     ]), 0..60)) {
         let text = words.concat();
-        for format in FORMATS {
+        for format in Format::ALL {
             check(text.as_bytes(), format);
         }
     }

@@ -253,7 +253,7 @@ mod tests {
         let two = vec![before, turn];
         assert_eq!(Moves::tidied(two.clone()), two);
         let oblique = Step::about(2, 7.into());
-        let steps = [&there[..], &[oblique.clone()], &there].concat();
+        let steps = [&there[..], std::slice::from_ref(&oblique), &there].concat();
         let fewer = [Step::about(0, 90.into()), shift(1, 0, 2)];
         let expected = [&fewer[..], &[oblique], &fewer].concat();
         assert_eq!(Moves::tidied(steps), expected);

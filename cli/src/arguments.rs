@@ -1,11 +1,13 @@
 //! The command line.
 
+mod predict;
 mod sheet;
 
 use crate::fuzz::profile::Profile;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+pub use predict::{CompareOptions, PredictOptions, RenderOptions};
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetOptions, ViewName};
 use std::path::PathBuf;
@@ -54,6 +56,19 @@ pub enum Command {
     #[command(after_help = "Examples: premio convert part.padl part.json
           premio convert model.asc --part all.g model.padl --exact")]
     Convert(ConvertOptions),
+    /// Which features of the part a sensor and a detector will find, under given lights
+    #[command(
+        after_help = "Examples: premio predict part.padl --setup setup.toml -o prediction.json
+          premio predict part.padl --setup setup.toml --overlay part.svg -o prediction.json"
+    )]
+    Predict(PredictOptions),
+    /// The image of a setup, by a line of sight through every pixel
+    #[command(after_help = "Example: premio render part.padl --setup setup.toml -o part.png")]
+    Render(RenderOptions),
+    /// What is predicted, held against what is found in an image of the same setup
+    #[command(after_help = "Examples: premio compare part.padl --setup setup.toml
+          premio compare part.padl --setup setup.toml --image photo.png --json")]
+    Compare(CompareOptions),
     /// Random trees by the thousand, each put to the self-checks
     #[command(
         after_help = "Examples: premio fuzz --profile grid,near --count 10000 --state run.json --shrink

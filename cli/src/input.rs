@@ -62,6 +62,16 @@ pub fn part(options: &DescriptionOptions, voice: Voice) -> Result<Part, Failure>
     })
 }
 
+/// Why there is no view of some parts.
+const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do not tell them apart: \
+    the boundary is known, but no view of it is reckoned with more digits";
+
+/// The resolution for views of a part.
+pub fn resolution_of_views(part: &Part) -> Result<f64, Failure> {
+    let resolution = part.evaluation.resolution_of_views();
+    resolution.ok_or_else(|| Failure::limit(format!("{}: {UNSEEN}", part.name)))
+}
+
 fn description(
     name: &str,
     options: &DescriptionOptions,

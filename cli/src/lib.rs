@@ -6,6 +6,7 @@ pub mod checks;
 mod commands;
 mod diagnostics;
 pub mod fuzz;
+mod imaging;
 mod input;
 mod output;
 
@@ -29,6 +30,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(options) => commands::check::run(options, voice),
         Command::Export(options) => commands::export::run(options, voice),
         Command::Convert(options) => commands::convert::run(options, voice),
+        Command::Predict(options) => commands::predict::run(options, voice),
+        Command::Render(options) => commands::render::run(options, voice),
+        Command::Compare(options) => commands::compare::run(options, voice),
         Command::Fuzz(options) => commands::fuzz::run(options, voice),
         Command::Man(options) => commands::manual::man(options),
         Command::Completions(options) => commands::manual::completions(options),

@@ -32,6 +32,8 @@ pub struct Projection {
     /// u, where the projection is orthographic.
     unit: f64,
     affine: Matrix3<f64>,
+    /// The inverse of `affine`.
+    inverse: Matrix3<f64>,
     /// Whether y points down in the image.
     pub y_down: bool,
     /// The size of the image, where it is given.
@@ -61,6 +63,14 @@ fn unit_of(size: f64) -> f64 {
 impl Projection {
     /// The projection of `camera` for a part of the given size (the diagonal of its box).
     pub fn new(camera: &Camera, size: f64) -> Self {
+        let mut projection = Self::of(camera, size);
+        if let Some(inverse) = projection.affine.try_inverse() {
+            projection.inverse = inverse;
+        }
+        projection
+    }
+
+    fn of(camera: &Camera, size: f64) -> Self {
         // A positive distance, so that no contour reaches the eye's own plane.
         let least = size * ROUNDING.sqrt();
         let unit = unit_of(size);
@@ -77,6 +87,7 @@ impl Projection {
                 axes: look(eye, target, up),
                 unit,
                 affine: Matrix3::from_diagonal(&Vector3::new(*focal, *focal, 1.0)),
+                inverse: Matrix3::identity(),
                 y_down: false,
                 size: None,
             },
@@ -89,6 +100,7 @@ impl Projection {
                     axes,
                     unit,
                     affine: Matrix3::from_diagonal(&Vector3::new(unit, unit, 1.0)),
+                    inverse: Matrix3::identity(),
                     y_down: false,
                     size: None,
                 }
@@ -104,6 +116,7 @@ impl Projection {
                     axes: [axis(0), axis(1), axis(2)],
                     unit,
                     affine: *k,
+                    inverse: Matrix3::identity(),
                     y_down: true,
                     size: *size,
                 }
@@ -173,6 +186,28 @@ impl Projection {
         Point2::new(g.x, g.y)
     }
 
+    /// The line of sight through an image point: a point of it before all that is seen, and its unit
+    /// direction into the scene.
+    pub fn line_of_sight(&self, image: &Point2<f64>) -> (Point3<f64>, Vector3<f64>) {
+        // The inverse of an affine map is one: only its first two rows are not known.
+        let m = &self.inverse;
+        let h = [0, 1].map(|i| m[(i, 0)] * image.x + m[(i, 1)] * image.y + m[(i, 2)]);
+        let [x, y, z] = &self.axes;
+        let across = |i: usize| x[i] * h[0] + y[i] * h[1];
+        match self.sight {
+            Sight::Eye(eye) => {
+                let into = [0, 1, 2].map(|i| across(i) + z[i]);
+                let [a, b, c] = into;
+                let length = (a * a + b * b + c * c).sqrt();
+                (eye, Vector3::new(a / length, b / length, c / length))
+            }
+            Sight::Direction(d) => {
+                let aside = Vector3::new(across(0), across(1), across(2));
+                (self.origin + aside * self.unit, d)
+            }
+        }
+    }
+
     /// The unit vector from a point towards the eye, with the distance to it.
     pub fn towards_eye(&self, p: &Point3<f64>) -> (Vector3<f64>, f64) {
         match self.sight {
@@ -198,8 +233,7 @@ impl Projection {
     /// The six coefficients (a, b, c, d, e, f) of a x² + b x y + c y² + d x + e y + f = 0 in image
     /// coordinates, of largest magnitude one, for the conic hᵀ C h = 0.
     pub fn conic(&self, c: &Matrix3<f64>) -> [f64; 6] {
-        let inverse = self.affine.try_inverse().unwrap_or_else(Matrix3::identity);
-        let m = inverse.transpose() * c * inverse;
+        let m = self.inverse.transpose() * c * self.inverse;
         let six = [
             m[(0, 0)],
             2.0 * m[(0, 1)],
@@ -215,8 +249,7 @@ impl Projection {
     /// The coefficients (a, b, c) of a x + b y + c = 0 in image coordinates, a² + b² = 1, for the
     /// line l·h = 0.
     pub fn line(&self, l: &Vector3<f64>) -> [f64; 3] {
-        let inverse = self.affine.try_inverse().unwrap_or_else(Matrix3::identity);
-        let m = inverse.tr_mul(l);
+        let m = self.inverse.tr_mul(l);
         (m / m.x.hypot(m.y)).into()
     }
 }

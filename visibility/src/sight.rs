@@ -5,7 +5,7 @@
 //! and never has to be told from zero.
 
 use crate::projection::{Projection, Sight};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::{Locator, Place};
 use premio_kernel::brep::topology::{FaceId, Sense};
@@ -157,7 +157,7 @@ pub struct Scene<'a> {
     /// longer in the image than the resolution.
     pub tilt: f64,
     tree: RTree<FaceBox>,
-    boxes: Vec<Box3>,
+    bounds: Box3,
 }
 
 struct Pierced {
@@ -235,7 +235,8 @@ impl<'a> Scene<'a> {
             GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
         };
         let tree = RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect());
-        let size = hull(&boxes).diagonal();
+        let bounds = hull(&boxes);
+        let size = bounds.diagonal();
         Self {
             brep,
             projection,
@@ -243,13 +244,13 @@ impl<'a> Scene<'a> {
             band,
             tilt: (band / size).max(ROUNDING),
             tree,
-            boxes,
+            bounds,
         }
     }
 
     /// The box of the whole part.
     pub fn bounds(&self) -> Box3 {
-        hull(&self.boxes)
+        self.bounds
     }
 
     /// The line of sight from a point.
@@ -265,6 +266,34 @@ impl<'a> Scene<'a> {
             towards,
             length: length.min(away).max(0.0),
         }
+    }
+
+    /// The face that is seen at an image point, and where on it.
+    pub fn nearest(&self, image: &Point2<f64>) -> Option<(FaceId, Point3<f64>)> {
+        let (eye, into) = self.projection.line_of_sight(image);
+        let part = self.bounds();
+        let beyond = (part.centre() - eye).dot(&into) + part.diagonal();
+        if !beyond.is_above_zero() {
+            return None;
+        }
+        let ray = self.ray(&(eye + into * beyond));
+        let mut found: Option<Hit> = None;
+        self.hits(&ray, Asked::All, &|_| Own::No, &mut |hit| {
+            if found.is_none_or(|known| hit.at.is_beyond(known.at)) {
+                found = Some(hit);
+            }
+        });
+        found.map(|hit| (hit.face, ray.origin + ray.towards * hit.at))
+    }
+
+    /// Whether a face lies between a point of the face `own` and the eye.
+    pub fn is_hidden(&self, p: &Point3<f64>, own: FaceId) -> bool {
+        let through = |face| if face == own { Own::Through } else { Own::No };
+        let mut hidden = false;
+        self.hits(&self.ray(p), Asked::All, &through, &mut |hit| {
+            hidden |= hit.plain;
+        });
+        hidden
     }
 
     /// The faces on a line of sight, with what `own` says about those through its origin; the

@@ -10,10 +10,6 @@ use premio_visibility::drawing::sheet::{self, Angle, Paper, Sheet, View};
 use premio_visibility::drawing::{self, Drawing, dxf, svg};
 use premio_visibility::{Camera, Contours, contours};
 
-/// Why there is no view of some parts.
-const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do not tell them apart: \
-    the boundary is known, but no view of it is reckoned with more digits";
-
 /// Runs the command.
 pub fn run(options: &ContoursOptions, voice: Voice) -> Result<(), Failure> {
     let to = options.output.as_deref();
@@ -38,11 +34,8 @@ pub fn run(options: &ContoursOptions, voice: Voice) -> Result<(), Failure> {
 }
 
 fn seen(part: &Part, camera: &Camera) -> Result<Contours, Failure> {
-    let evaluation = &part.evaluation;
-    let Some(resolution) = evaluation.resolution_of_views() else {
-        return Err(Failure::limit(format!("{}: {UNSEEN}", part.name)));
-    };
-    contours(&evaluation.brep, camera, resolution)
+    let resolution = input::resolution_of_views(part)?;
+    contours(&part.evaluation.brep, camera, resolution)
         .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
 }
 

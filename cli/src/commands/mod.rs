@@ -1,9 +1,12 @@
 //! The commands.
 
 pub mod check;
+pub mod compare;
 pub mod contours;
 pub mod convert;
 pub mod export;
 pub mod fuzz;
 pub mod info;
 pub mod manual;
+pub mod predict;
+pub mod render;

@@ -2,6 +2,7 @@
 
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use premio_csg::reader::ReadError;
+use std::ops::Range;
 
 /// How much of a long line is shown on either side.
 const SHOWN: usize = 60;
@@ -19,7 +20,18 @@ pub struct Excerpt {
 impl Excerpt {
     /// The excerpt around what an error found.
     pub fn of(error: &ReadError, text: &[u8]) -> Self {
-        let at = error.span.start.min(text.len());
+        let place = [error.line, error.column].map(|n| n as usize);
+        Self::around(error.name.to_string(), place, &error.span, text)
+    }
+
+    /// The excerpt around some bytes of a text, at a line and a column that count from one.
+    pub fn around(
+        name: String,
+        [line, column]: [usize; 2],
+        span: &Range<usize>,
+        text: &[u8],
+    ) -> Self {
+        let at = span.start.min(text.len());
         let start = text[..at]
             .iter()
             .rposition(|&b| b == b'\n')
@@ -28,17 +40,17 @@ impl Excerpt {
             .iter()
             .position(|&b| b == b'\n')
             .map_or(text.len(), |i| at + i);
-        let until = error.span.end.clamp(at, end);
+        let until = span.end.clamp(at, end);
         let [before, found, after] = [&text[start..at], &text[at..until], &text[until..end]]
             .map(|bytes| printable(&String::from_utf8_lossy(bytes)));
         let before = last(&before);
         let (found, after) = (first(&found), first(&after));
         Self {
-            name: error.name.to_string(),
+            name,
             span: (before.len(), found.len()).into(),
             text: format!("{before}{found}{after}"),
-            line: error.line as usize - 1,
-            column: error.column as usize - 1,
+            line: line - 1,
+            column: column - 1,
         }
     }
 }

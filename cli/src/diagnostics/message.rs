@@ -4,6 +4,7 @@ use super::excerpt::Excerpt;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 use premio_csg::reader::ReadError;
 use premio_kernel::number::sign::CloseCall;
+use premio_predict::setup::SetupError;
 use serde::Serialize;
 use std::fmt;
 use std::io::{self, IsTerminal};
@@ -30,6 +31,20 @@ struct Place {
     expected: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     help: Option<String>,
+}
+
+impl Place {
+    /// A line, and no more.
+    fn line(file: &str, line: u32) -> Self {
+        Self {
+            file: file.to_owned(),
+            line,
+            column: None,
+            found: None,
+            expected: None,
+            help: None,
+        }
+    }
 }
 
 /// How grave a message is.
@@ -82,18 +97,37 @@ impl Message {
         }
     }
 
+    /// What is wrong with a setup, and where it is written.
+    pub fn of_setup(name: &str, error: &SetupError, text: &str) -> Self {
+        let Some(span) = error.span(text) else {
+            return Self::plain(format!("{name}: {error}"));
+        };
+        let before = text.get(..span.start).unwrap_or(text);
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        let place = [line, column];
+        let told = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        Self {
+            text: format!("{name}:{line}:{column}: {error}"),
+            excerpt: Some(Excerpt::around(
+                name.to_owned(),
+                place,
+                &span,
+                text.as_bytes(),
+            )),
+            place: Some(Place {
+                column: Some(told(column)),
+                ..Place::line(name, told(line))
+            }),
+            ..Self::default()
+        }
+    }
+
     /// What there is to know of a line of a file.
     pub fn at_line(file: &str, line: u32, text: &str) -> Self {
         Self {
             text: text.to_owned(),
-            place: Some(Place {
-                file: file.to_owned(),
-                line,
-                column: None,
-                found: None,
-                expected: None,
-                help: None,
-            }),
+            place: Some(Place::line(file, line)),
             ..Self::default()
         }
     }

@@ -8,6 +8,8 @@ use message::{Level, Message};
 use premio_csg::boundary::EvaluationError;
 use premio_csg::reader::{ErrorKind, Note, ReadError};
 use premio_kernel::number::sign::CloseCall;
+use premio_predict::outline::stage::StageError;
+use premio_predict::setup::SetupError;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -45,6 +47,23 @@ impl Failure {
         match error.kind {
             ErrorKind::Input => Self::Input(message),
             ErrorKind::Limit => Self::Limit(message),
+        }
+    }
+
+    /// A setup that cannot be used.
+    pub fn setup(name: &str, error: &SetupError, text: &str) -> Self {
+        Self::Input(Box::new(Message::of_setup(name, error, text)))
+    }
+
+    /// A setup in which nothing can be predicted of a part.
+    pub fn stage(part: &str, setup: &str, error: &StageError) -> Self {
+        match error {
+            StageError::Subject(_) => Self::limit(format!("{part}: {error}")),
+            StageError::Setup(_)
+            | StageError::View(_)
+            | StageError::Light(..)
+            | StageError::NoFace { .. }
+            | StageError::OutOfSight(_) => Self::input(format!("{setup}: {error}")),
         }
     }
 

@@ -1,0 +1,98 @@
+//! `premio compare`: what is predicted, held against what is found in an image.
+
+use super::predict::{setup, with_draft};
+use super::render::rendered;
+use crate::arguments::CompareOptions;
+use crate::diagnostics::{Failure, Voice};
+use crate::{imaging, input, output};
+use premio_predict::agreement::{Agreement, Match, SCHEMA, matches};
+use premio_predict::outline::Source;
+use premio_predict::prediction::prediction;
+use premio_predict::processing::Domain;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// The comparison, as it is handed on.
+#[derive(Debug, Serialize)]
+struct Comparison {
+    schema: &'static str,
+    /// Edges and limbs.
+    outlines: Agreement,
+    /// Boundaries of shadows, and outlines of highlights.
+    lighting: Agreement,
+    features: Vec<Match>,
+}
+
+/// The seed of a rendered image's noise, other than that of the predicted one.
+const OTHER: u64 = 0x5eed;
+
+/// Runs the command.
+pub fn run(options: &CompareOptions, voice: Voice) -> Result<(), Failure> {
+    let setup = setup(&options.setup)?;
+    let taken = options.image.as_deref().map(imaging::read).transpose()?;
+    let [width, height] = setup.conditions.sensor.resolution;
+    if let Some(image) = taken
+        .as_ref()
+        .filter(|i| [i.width, i.height] != [width, height])
+    {
+        let path = options.image.as_deref().unwrap_or(&options.setup).display();
+        return Err(Failure::input(format!(
+            "{path}: found {} x {} pixels, expected the setup's {width} x {height}",
+            image.width, image.height
+        )));
+    }
+    let part = input::part(&options.description, voice)?;
+    let (comparison, predicted, image) = with_draft(&part, &options.setup, &setup, |draft| {
+        let predicted = prediction(draft, &setup);
+        let seed = setup.conditions.seed ^ OTHER;
+        let image = taken.unwrap_or_else(|| rendered(draft, seed, voice));
+        let (_, found) = draft.evidence_in(&image, &Domain::full(width, height));
+        let features = matches(&predicted.arcs, &found, setup.conditions.detector.shortest);
+        let outline = |m: &&Match| matches!(m.source, Source::Edge { .. } | Source::Limb { .. });
+        let comparison = Comparison {
+            schema: SCHEMA,
+            outlines: Agreement::of(features.iter().filter(outline)),
+            lighting: Agreement::of(features.iter().filter(|m| !outline(m))),
+            features,
+        };
+        (comparison, predicted, image)
+    })?;
+    if let Some(path) = &options.overlay {
+        imaging::overlay(&predicted, Some(&image), path)?;
+    }
+    let to = options.output.as_deref();
+    match voice.is_json() {
+        true => output::json(&comparison, to),
+        false => output::write(words(&comparison), to),
+    }
+}
+
+fn words(comparison: &Comparison) -> String {
+    let mut text = String::new();
+    for (name, all) in [
+        ("edges and limbs", &comparison.outlines),
+        ("light", &comparison.lighting),
+    ] {
+        let _ = writeln!(
+            text,
+            "{name:16} {:4}  same state {:.3}  Brier {:.4}  (all whole: {:.3}, {:.4})",
+            all.features, all.same, all.brier, all.baseline_same, all.baseline_brier
+        );
+    }
+    for m in comparison
+        .features
+        .iter()
+        .filter(|m| m.predicted != m.found)
+    {
+        let (predicted, found) = (m.predicted.word(), m.found.word());
+        let _ = writeln!(
+            text,
+            "  {} {}: predicted {predicted}, found {found} ({:.0} px, {:.2} of it)",
+            m.source.word(),
+            m.arc,
+            m.length,
+            m.share
+        );
+    }
+    text
+}

@@ -1,0 +1,44 @@
+//! `premio render`: the image of a setup, by rays.
+
+use super::predict::{setup, with_draft};
+use crate::arguments::RenderOptions;
+use crate::diagnostics::{Failure, Voice};
+use crate::{imaging, input};
+use premio_predict::prediction::Draft;
+use premio_predict::processing::Grey;
+use premio_predict::render;
+use rayon::prelude::*;
+
+/// Runs the command.
+pub fn run(options: &RenderOptions, voice: Voice) -> Result<(), Failure> {
+    let setup = setup(&options.setup)?;
+    let part = input::part(&options.description, voice)?;
+    let image = with_draft(&part, &options.setup, &setup, |draft| {
+        rendered(draft, setup.conditions.seed, voice)
+    })?;
+    imaging::write(&image, setup.conditions.sensor.levels, &options.output)
+}
+
+/// The image of a draft's setup, by a line of sight through every pixel.
+pub fn rendered(draft: &Draft<'_>, seed: u64, voice: Voice) -> Grey {
+    let sensor = &draft.conditions.sensor;
+    let [width, height] = sensor.resolution;
+    let shading = &draft.shading;
+    let bar = voice.progress(height as u64);
+    let strips: Vec<usize> = (0..height).step_by(STRIP).collect();
+    let levels: Vec<Vec<f32>> = strips
+        .into_par_iter()
+        .map(|y| {
+            let rows = y..(y + STRIP).min(height);
+            let count = rows.len() as u64;
+            let levels = render::rows(shading, width, rows);
+            bar.inc(count);
+            levels
+        })
+        .collect();
+    bar.finish_and_clear();
+    render::finished(levels.concat(), sensor, seed)
+}
+
+/// How many rows are rendered at once.
+const STRIP: usize = 16;

@@ -1,0 +1,146 @@
+//! Grey images in files, and drawings on them.
+
+use crate::diagnostics::Failure;
+use crate::output;
+use font8x8::legacy::BASIC_LEGACY;
+use image::{DynamicImage, ImageFormat, ImageReader, Rgb, RgbImage};
+use premio_predict::feature::ink::bresenham;
+use premio_predict::overlay;
+use premio_predict::prediction::Prediction;
+use premio_predict::processing::Grey;
+use std::io::Cursor;
+use std::path::Path;
+
+/// The grey image of a file: PNG, PGM or JPEG; a picture in colours by its luma.
+pub fn read(path: &Path) -> Result<Grey, Failure> {
+    let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: {e}", path.display()));
+    let reader = ImageReader::open(path).map_err(|e| failed(&e))?;
+    let reader = reader.with_guessed_format().map_err(|e| failed(&e))?;
+    let image = reader.decode().map_err(|e| failed(&e))?;
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let levels = match image {
+        // Levels of eight bits, whatever there are.
+        DynamicImage::ImageLuma8(grey) => grey.into_raw().into_iter().map(f32::from).collect(),
+        other => {
+            let grey = other.to_luma16().into_raw();
+            grey.into_iter().map(|v| f32::from(v) / 257.0).collect()
+        }
+    };
+    Ok(Grey {
+        width,
+        height,
+        levels,
+    })
+}
+
+/// Writes a grey image of so many levels: PNG, or PGM, by the file's ending.
+pub fn write(image: &Grey, levels: u32, path: &Path) -> Result<(), Failure> {
+    let (width, height) = (image.width as u32, image.height as u32);
+    let picture = if levels <= 256 {
+        let bytes = image.levels.iter().map(|v| *v as u8).collect();
+        image::GrayImage::from_raw(width, height, bytes).map(DynamicImage::ImageLuma8)
+    } else {
+        let words = image.levels.iter().map(|v| *v as u16).collect();
+        image::ImageBuffer::from_raw(width, height, words).map(DynamicImage::ImageLuma16)
+    };
+    let Some(picture) = picture else {
+        return Err(Failure::input("the image has no pixels"));
+    };
+    encode(&picture, path)
+}
+
+fn encode(picture: &DynamicImage, path: &Path) -> Result<(), Failure> {
+    let name = path.display();
+    let ending = path
+        .extension()
+        .and_then(|e| e.to_str())
+        .unwrap_or_default();
+    let format = match ending.to_ascii_lowercase().as_str() {
+        "png" => ImageFormat::Png,
+        "pgm" | "pnm" => ImageFormat::Pnm,
+        _ => {
+            let expected = "expected a file that ends in .png or .pgm";
+            return Err(Failure::input(format!("{name}: {expected}")));
+        }
+    };
+    let mut bytes = Cursor::new(Vec::new());
+    let written = picture.write_to(&mut bytes, format);
+    written.map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    output::write(bytes.into_inner(), Some(path))
+}
+
+/// Writes the overlay of a prediction, over an image where there is one: SVG, or PNG.
+pub fn overlay(prediction: &Prediction, below: Option<&Grey>, path: &Path) -> Result<(), Failure> {
+    if path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("svg"))
+    {
+        return output::write(overlay::svg(prediction), Some(path));
+    }
+    encode(&DynamicImage::ImageRgb8(picture(prediction, below)), path)
+}
+
+/// The height of a line of text, in pixels.
+const LINE: usize = 10;
+
+fn picture(prediction: &Prediction, below: Option<&Grey>) -> RgbImage {
+    let [width, height] = prediction.image.setup.conditions.sensor.resolution;
+    let reasons = overlay::missing(prediction);
+    let tall = height + LINE * reasons.len();
+    let mut picture = RgbImage::from_pixel(width as u32, tall as u32, Rgb([255; 3]));
+    if let Some(grey) = below {
+        for (i, level) in grey.levels.iter().enumerate() {
+            let (x, y) = (i % grey.width, i / grey.width);
+            if x < width && y < height {
+                // Faded, so that the lines are seen.
+                let shade = (96.0 + 0.625 * level.clamp(0.0, 255.0)) as u8;
+                picture.put_pixel(x as u32, y as u32, Rgb([shade; 3]));
+            }
+        }
+    }
+    for stroke in overlay::strokes(prediction) {
+        let colour = stroke.contrast.map_or(overlay::MISSING, overlay::colour);
+        let dashed = stroke.contrast.is_none();
+        let mut count = 0usize;
+        for pair in stroke.points.windows(2) {
+            let near = |p: [f64; 2]| p.map(|v| v.clamp(-1e6, 1e6).round() as i32);
+            bresenham(near(pair[0]), near(pair[1]), |[x, y]| {
+                count += 1;
+                if !(dashed && count / 3 % 2 == 1) {
+                    put(&mut picture, [x, y], height, colour);
+                }
+            });
+        }
+    }
+    for (k, (id, reason)) in reasons.iter().enumerate() {
+        let [x, y] = overlay::label_place(&prediction.arcs[*id as usize]);
+        let place = [x.clamp(-1e6, 1e6) as i32 + 3, y.clamp(-1e6, 1e6) as i32 - 9];
+        text(&mut picture, place, height, &id.to_string());
+        let row = (height + LINE * k + 1) as i32;
+        text(&mut picture, [2, row], tall, reason);
+    }
+    picture
+}
+
+fn put(picture: &mut RgbImage, [x, y]: [i32; 2], height: usize, colour: [u8; 3]) {
+    let inside = x >= 0 && y >= 0 && (x as u32) < picture.width() && (y as usize) < height;
+    if inside {
+        picture.put_pixel(x as u32, y as u32, Rgb(colour));
+    }
+}
+
+/// Writes letters of eight by eight pixels.
+fn text(picture: &mut RgbImage, [left, top]: [i32; 2], height: usize, words: &str) {
+    for (k, letter) in words.chars().enumerate() {
+        let glyph = BASIC_LEGACY
+            .get(letter as usize)
+            .copied()
+            .unwrap_or_default();
+        for (row, bits) in glyph.iter().enumerate() {
+            for column in (0..8).filter(|c| bits >> c & 1 == 1) {
+                let place = [left + 8 * k as i32 + column, top + row as i32];
+                put(picture, place, height, overlay::MISSING);
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The brightness on both sides along an arc.
+
+use crate::image::shading::Shading;
+use crate::outline::arc::Side;
+use crate::outline::{Arc, Regions};
+use serde::{Deserialize, Serialize};
+
+/// How far apart the places are at which the sides are looked at, in pixels.
+const EVERY: f64 = 6.0;
+/// How far from the arc they are looked at: where the first plain pixel is.
+const ASIDE: f64 = 1.0;
+
+/// The grey levels on both sides of an arc, before noise and steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contrast {
+    /// How far along the arc, in pixels.
+    pub along: f64,
+    /// The level to the left, as it runs.
+    pub left: f64,
+    /// The level to the right.
+    pub right: f64,
+}
+
+impl Contrast {
+    /// By how many levels the sides differ, as far as a sensor with this top level tells.
+    pub fn difference(&self, top: f64) -> f64 {
+        (self.left.clamp(0.0, top) - self.right.clamp(0.0, top)).abs()
+    }
+}
+
+/// The regions on the sides of an arc: by section, the left and the right one.
+pub fn sides(regions: &Regions, arc: usize) -> Vec<[u32; 2]> {
+    let sections = regions.sections.of_arc(arc);
+    sections
+        .map(|s| [Side::Left, Side::Right].map(|on| regions.beside(s, on)))
+        .collect()
+}
+
+/// The brightness along an arc within a part of it.
+pub fn contrast(
+    shading: &Shading<'_>,
+    regions: &Regions,
+    (number, arc): (usize, &Arc),
+    [start, end]: [f64; 2],
+) -> Vec<Contrast> {
+    let sides = sides(regions, number);
+    let steps = ((end - start) / EVERY).ceil().max(1.0);
+    let mut found = Vec::new();
+    let (mut before, mut section) = (0.0, 0);
+    let mut next = 0u32;
+    let place = |k: u32| start + (end - start) * ((f64::from(k) + 0.5) / steps);
+    for (i, [a, b]) in arc.line.segments() {
+        section += usize::from(i > 0 && arc.stops.contains(&i));
+        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let d = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+        while f64::from(next) < steps && place(next) <= before + length {
+            let along = place(next);
+            next += 1;
+            let s = along - before;
+            if s < 0.0 || !d[0].is_finite() {
+                continue;
+            }
+            let at = [a[0] + s * d[0], a[1] + s * d[1]];
+            // With y down the left is where the direction turns to against the clock.
+            let aside = [ASIDE * d[1], -ASIDE * d[0]];
+            let level = |side: usize, sign: f64| {
+                let at = [at[0] + sign * aside[0], at[1] + sign * aside[1]];
+                let region = &regions.all[sides[section][side] as usize];
+                let seen = region.seen.unwrap_or_else(|| shading.asked(at));
+                shading.level(at, &seen, &mut shading.distance(&seen.point))
+            };
+            found.push(Contrast {
+                along,
+                left: level(0, 1.0),
+                right: level(1, -1.0),
+            });
+        }
+        before += length;
+    }
+    found
+}

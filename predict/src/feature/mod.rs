@@ -1,0 +1,62 @@
+//! Features of an image: arcs with what a detector finds of them, and what they are grouped to.
+
+pub mod contrast;
+pub mod evidence;
+pub mod group;
+pub mod ink;
+pub mod junction;
+pub mod reason;
+
+pub use evidence::{Evidence, Fragment, State};
+pub use reason::Reason;
+
+use crate::setup::SetupError;
+use serde::{Deserialize, Serialize};
+
+/// When an arc counts as found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Criteria {
+    /// The share of an arc that has to be found, in one piece, for it to be whole.
+    pub whole: f64,
+    /// The share that has to be found for it not to be missed.
+    pub least: f64,
+    /// How far from an arc an edge pixel may be to be of it, in pixels.
+    pub reach: f64,
+    /// Of how many draws of the noise the probabilities are told, where there is noise.
+    pub draws: u32,
+}
+
+impl Default for Criteria {
+    fn default() -> Self {
+        Self {
+            whole: 0.9,
+            least: 0.1,
+            reach: 1.5,
+            draws: 8,
+        }
+    }
+}
+
+impl Criteria {
+    /// Whether the values are in their ranges.
+    pub fn validate(&self) -> Result<(), SetupError> {
+        let shares = 0.0 < self.least && self.least <= self.whole && self.whole <= 1.0;
+        if !shares {
+            let reason = format!(
+                "is {} and `features.least` {}: they must be 0 < least <= whole <= 1",
+                self.whole, self.least
+            );
+            return Err(SetupError::value("features.whole", reason));
+        }
+        if !(0.5..=8.0).contains(&self.reach) {
+            let reason = format!("is {}, and must be 0.5 to 8 pixels", self.reach);
+            return Err(SetupError::value("features.reach", reason));
+        }
+        if !(1..=4096).contains(&self.draws) {
+            let reason = format!("is {}, and must be 1 to 4096", self.draws);
+            return Err(SetupError::value("features.draws", reason));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,106 @@
+//! The point spread of the optics: a Gaussian, on the pixels that are known.
+
+use crate::processing::{Domain, Grey};
+use std::ops::Range;
+
+/// How many standard deviations of the point spread count.
+const WIDE: f64 = 3.0;
+
+/// How many pixels on each side the point spread reaches.
+pub fn reach(sigma: f64) -> usize {
+    (WIDE * sigma).ceil() as usize
+}
+
+/// The weights of a Gaussian from the middle outwards; all of them, on both sides, add up to one.
+fn weights(sigma: f64) -> Vec<f32> {
+    let half = reach(sigma);
+    let value = |k: usize| (-0.5 * (k as f64 / sigma).powi(2)).exp();
+    let sum = (1..=half).map(value).sum::<f64>() * 2.0 + 1.0;
+    (0..=half).map(|k| (value(k) / sum) as f32).collect()
+}
+
+/// Blurs the known pixels of an image. What is blurred right is the domain less [`reach`], and what is
+/// beyond the image is taken to be as its nearest pixel.
+pub fn blur(image: &mut Grey, domain: &Domain, sigma: f64) {
+    blur_by(image, domain, sigma, &mut Vec::new());
+}
+
+/// The same with memory that is used again.
+pub fn blur_by(image: &mut Grey, domain: &Domain, sigma: f64, across: &mut Vec<f32>) {
+    if reach(sigma) == 0 {
+        return;
+    }
+    let weights = weights(sigma);
+    let (width, height) = (image.width, image.height);
+    // What is blurred across is kept beside, and blurred down from there.
+    across.resize(image.levels.len(), 0.0);
+    let wide = grown_rows(domain, reach(sigma));
+    for (y, runs) in wide.iter().enumerate() {
+        let row = &image.levels[y * width..(y + 1) * width];
+        let out = &mut across[y * width..(y + 1) * width];
+        for x in runs
+            .iter()
+            .flat_map(|run| run.start as usize..run.end as usize)
+        {
+            let pair = |k: usize| row[x.saturating_sub(k)] + row[(x + k).min(width - 1)];
+            out[x] = sum(&weights, row[x], pair);
+        }
+    }
+    for y in 0..height {
+        for x in domain
+            .spans(y)
+            .iter()
+            .flat_map(|run| run.start as usize..run.end as usize)
+        {
+            let at = |v: usize| across[v * width + x];
+            let pair = |k: usize| at(y.saturating_sub(k)) + at((y + k).min(height - 1));
+            image.levels[y * width + x] = sum(&weights, at(y), pair);
+        }
+    }
+}
+
+/// By row: the columns that the domain has within so many rows.
+fn grown_rows(domain: &Domain, by: usize) -> Vec<Vec<Range<u32>>> {
+    let height = domain.height();
+    let near = |y: usize| y.saturating_sub(by)..(y + by + 1).min(height);
+    let row = |y: usize| {
+        let runs = near(y).flat_map(|v| domain.spans(v).iter().cloned());
+        let one = Domain::of_rows(domain.width(), std::iter::once(runs.collect()));
+        one.spans(0).to_vec()
+    };
+    (0..height).map(row).collect()
+}
+
+fn sum(weights: &[f32], middle: f32, pair: impl Fn(usize) -> f32) -> f32 {
+    let sides = weights.iter().enumerate().skip(1);
+    sides.fold(weights[0] * middle, |all, (k, w)| all + w * pair(k))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flat_image_stays_and_a_point_spreads() {
+        let size = 21;
+        let domain = Domain::full(size, size);
+        let mut flat = Grey {
+            width: size,
+            height: size,
+            levels: vec![7.0; size * size],
+        };
+        blur(&mut flat, &domain, 1.2);
+        assert!(flat.levels.iter().all(|v| (v - 7.0).abs() < 1e-4));
+        let mut point = flat.clone();
+        point.levels.fill(0.0);
+        point.levels[10 * size + 10] = 1.0;
+        blur(&mut point, &domain, 1.2);
+        let total: f32 = point.levels.iter().sum();
+        assert!((total - 1.0).abs() < 1e-5);
+        let moment: f64 = (0..size)
+            .flat_map(|y| (0..size).map(move |x| (x, y)))
+            .map(|(x, y)| f64::from(point.levels[y * size + x]) * (x as f64 - 10.0).powi(2))
+            .sum();
+        assert!((moment - 1.44).abs() < 0.06, "{moment}");
+    }
+}

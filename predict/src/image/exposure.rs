@@ -1,0 +1,241 @@
+//! Grey levels of pixels, from what each of them shows: the lines that cross it tell how much of it is
+//! of which region, and each region is shaded where the pixel shows it.
+
+use super::field::Field;
+use super::shading::Shading;
+use crate::outline::scanline::{LINES, line_y};
+use crate::outline::{Region, Regions, Seen};
+use crate::processing::{Domain, Grey};
+use std::ops::Range;
+
+/// How many pixels apart the light of one region is reckoned, where it runs straight in between.
+const KNOTS: u32 = 8;
+/// How far from a straight course it may be, in grey levels.
+const STRAIGHT: f64 = 1.0 / 16.0;
+
+/// The pixel's part of a line.
+const SHARE: f64 = 1.0 / LINES as f64;
+
+/// What of a pixel one region fills.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    region: u32,
+    area: f64,
+    /// The area's moments: over the area its centre.
+    moment: [f64; 2],
+}
+
+/// The levels of the pixels of a domain, before the point spread, noise and steps.
+pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &Domain, image: &mut Grey) {
+    let mut light = Light::of(shading, regions, [image.width, image.height]);
+    let mut shares: Vec<Share> = Vec::new();
+    let mut row = Row::default();
+    for y in 0..image.height.min(domain.height()) {
+        let spans = domain.spans(y);
+        if spans.is_empty() {
+            continue;
+        }
+        row.fill(regions, y);
+        let levels = &mut image.levels[y * image.width..(y + 1) * image.width];
+        for span in spans {
+            row.seek(span.start);
+            let mut x = span.start;
+            while x < span.end {
+                // Up to here all lines are in one region each.
+                match row.plain(x) {
+                    (until, Some(region)) if until > x => {
+                        let run = x..until.min(span.end);
+                        x = run.end;
+                        light.shade(region, run, y, levels);
+                    }
+                    _ => {
+                        row.shares(x, y, &mut shares);
+                        let part = |share: &Share| {
+                            let at = share.moment.map(|m| m / share.area);
+                            share.area * light.level(share.region, at)
+                        };
+                        levels[x as usize] = shares.iter().map(part).sum::<f64>() as f32;
+                        x += 1;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The light of the regions of an image, with what is known of each so far.
+struct Light<'s, 'p> {
+    shading: &'s Shading<'p>,
+    regions: &'s Regions,
+    /// By region: how far the place is that was asked for last.
+    hints: Vec<f64>,
+    /// By region: its field, if it is flat.
+    fields: Vec<Option<Field>>,
+}
+
+impl<'s, 'p> Light<'s, 'p> {
+    fn of(shading: &'s Shading<'p>, regions: &'s Regions, size: [usize; 2]) -> Self {
+        let seen = |region: &Region| region.seen;
+        let all = || regions.all.iter().map(seen);
+        let hint = |seen: Option<Seen>| seen.map_or(0.0, |s| shading.distance(&s.point));
+        let field = |seen: Option<Seen>| seen.and_then(|s| Field::of(shading, &s, size));
+        Self {
+            shading,
+            regions,
+            hints: all().map(hint).collect(),
+            fields: all().map(field).collect(),
+        }
+    }
+
+    /// The level of a region at a point of it.
+    fn level(&mut self, region: u32, at: [f64; 2]) -> f64 {
+        let region = region as usize;
+        if let Some(field) = &mut self.fields[region] {
+            return field.level(self.shading, at);
+        }
+        match &self.regions.all[region].seen {
+            Some(seen) => self.shading.level(at, seen, &mut self.hints[region]),
+            None => {
+                let seen = self.shading.asked(at);
+                self.shading
+                    .level(at, &seen, &mut self.shading.distance(&seen.point))
+            }
+        }
+    }
+
+    /// The levels of a run of pixels of one region.
+    fn shade(&mut self, region: u32, run: Range<u32>, y: usize, levels: &mut [f32]) {
+        let flat = self.fields[region as usize].is_some();
+        let mut level = |x: u32| self.level(region, [f64::from(x), y as f64]);
+        match flat {
+            true => run.for_each(|x| levels[x as usize] = level(x) as f32),
+            false => shade(run, levels, &mut level),
+        }
+    }
+}
+
+/// The levels of a run of pixels of one region: of pieces of it, each by its ends and its middle where
+/// it runs straight, and halved where not.
+fn shade(run: Range<u32>, row: &mut [f32], level: &mut impl FnMut(u32) -> f64) {
+    let mut from = (run.start, level(run.start));
+    row[from.0 as usize] = from.1 as f32;
+    while from.0 + 1 < run.end {
+        let x = (from.0 + KNOTS).min(run.end - 1);
+        let to = (x, level(x));
+        between(from, to, row, level);
+        row[to.0 as usize] = to.1 as f32;
+        from = to;
+    }
+}
+
+/// The levels between two pixels.
+fn between(from: (u32, f64), to: (u32, f64), row: &mut [f32], level: &mut impl FnMut(u32) -> f64) {
+    let x = (from.0 + to.0) / 2;
+    if x == from.0 {
+        return;
+    }
+    let middle = (x, level(x));
+    row[x as usize] = middle.1 as f32;
+    let part = |a: (u32, f64), b: (u32, f64), x: u32| {
+        a.1 + (b.1 - a.1) * (f64::from(x - a.0) / f64::from(b.0 - a.0))
+    };
+    // A parabola is off its half chords by a quarter of what its middle is off its chord.
+    if (part(from, to, x) - middle.1).abs() > 4.0 * STRAIGHT {
+        between(from, middle, row, level);
+        between(middle, to, row, level);
+        return;
+    }
+    for (a, b) in [(from, middle), (middle, to)] {
+        for x in a.0 + 1..b.0 {
+            row[x as usize] = part(a, b, x) as f32;
+        }
+    }
+}
+
+/// The gaps of the lines through a row of pixels.
+#[derive(Default)]
+struct Row {
+    /// By line: its gaps, each by its end and its region.
+    gaps: [Vec<(f64, u32)>; LINES],
+    /// By line: the gap that the last pixel began in.
+    at: [usize; LINES],
+}
+
+impl Row {
+    fn fill(&mut self, regions: &Regions, y: usize) {
+        for (k, gaps) in self.gaps.iter_mut().enumerate() {
+            gaps.clear();
+            gaps.extend(
+                regions
+                    .gaps(y * LINES + k)
+                    .map(|([_, end], region)| (end, region)),
+            );
+        }
+        self.at = [0; LINES];
+    }
+
+    /// Goes on to the gaps in which a pixel begins.
+    fn seek(&mut self, x: u32) {
+        let left = f64::from(x) - 0.5;
+        for (gaps, at) in self.gaps.iter().zip(&mut self.at) {
+            while *at + 1 < gaps.len() && gaps[*at].0 <= left {
+                *at += 1;
+            }
+        }
+    }
+
+    /// Up to which pixel, from one on, every line stays in its gap; and the one region of all gaps.
+    fn plain(&mut self, x: u32) -> (u32, Option<u32>) {
+        self.seek(x);
+        let (first, region) = self.gaps[0][self.at[0]];
+        let mut end = first;
+        let mut same = Some(region);
+        for (gaps, &at) in self.gaps.iter().zip(&self.at).skip(1) {
+            end = end.min(gaps[at].0);
+            same = same.filter(|region| *region == gaps[at].1);
+        }
+        // The last pixel that ends before the gap does.
+        (((end + 0.5).floor().max(0.0) as u32).max(x), same)
+    }
+
+    /// What of a pixel is of which region.
+    fn shares(&self, x: u32, y: usize, shares: &mut Vec<Share>) {
+        shares.clear();
+        let (left, right) = (f64::from(x) - 0.5, f64::from(x) + 0.5);
+        for (k, (gaps, &at)) in self.gaps.iter().zip(&self.at).enumerate() {
+            let row = line_y(y * LINES + k);
+            let mut from = left;
+            for &(end, region) in &gaps[at..] {
+                let to = end.min(right);
+                if to > from {
+                    let area = (to - from) * SHARE;
+                    let moment = [area * 0.5 * (from + to), area * row];
+                    add(
+                        shares,
+                        Share {
+                            region,
+                            area,
+                            moment,
+                        },
+                    );
+                    from = to;
+                }
+                if end >= right {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+fn add(shares: &mut Vec<Share>, share: Share) {
+    match shares.iter_mut().find(|known| known.region == share.region) {
+        Some(known) => {
+            known.area += share.area;
+            for i in 0..2 {
+                known.moment[i] += share.moment[i];
+            }
+        }
+        None => shares.push(share),
+    }
+}

@@ -1,0 +1,230 @@
+//! The light that a point of the part sends to the camera (equation 1 of the paper).
+
+use crate::outline::pierce::front;
+use crate::outline::stage::StageError;
+use crate::outline::{Seen, Stage};
+use crate::reflectance::{Polarisation, Surface};
+use crate::setup::{Conditions, SetupError};
+use crate::subject::Subject;
+use nalgebra::{Point2, Point3, Vector3};
+use premio_kernel::brep::topology::FaceId;
+use std::f64::consts::PI;
+
+/// The materials of a part's faces.
+#[derive(Clone, Debug)]
+pub struct Finishes {
+    surfaces: Vec<Surface>,
+    /// By face: an index into `surfaces`.
+    by_face: Vec<usize>,
+}
+
+impl Finishes {
+    /// The materials that conditions give the faces of a part.
+    pub fn new(subject: &Subject<'_>, conditions: &Conditions) -> Result<Self, StageError> {
+        let count = subject.brep.topology.faces.len();
+        let mut surfaces = vec![conditions.material.material()?.surface()];
+        let mut by_face = vec![0; count];
+        for finish in &conditions.surfaces {
+            surfaces.push(finish.material.material()?.surface());
+            for &face in &finish.faces {
+                let place = by_face.get_mut(face as usize);
+                *place.ok_or(StageError::NoFace { face, count })? = surfaces.len() - 1;
+            }
+        }
+        Ok(Self { surfaces, by_face })
+    }
+
+    /// The material of a face.
+    pub fn of(&self, face: FaceId) -> &Surface {
+        &self.surfaces[self.by_face[face.index()]]
+    }
+}
+
+/// What a point sends to the camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Radiance {
+    /// All of it, I^r.
+    pub total: f64,
+    /// What of it lights are mirrored with.
+    pub specular: f64,
+}
+
+/// The light of a stage, in grey levels of the sensor before noise and steps.
+#[derive(Debug)]
+pub struct Shading<'s> {
+    stage: &'s Stage<'s>,
+    finishes: &'s Finishes,
+    openness: &'s [f64],
+    ambient: f64,
+    background: f64,
+    /// Levels for each unit of radiance on the optical axis.
+    gain: f64,
+    polarisations: Vec<Polarisation>,
+}
+
+impl<'s> Shading<'s> {
+    /// The light of a stage under conditions.
+    pub fn new(
+        stage: &'s Stage<'s>,
+        finishes: &'s Finishes,
+        conditions: &Conditions,
+    ) -> Result<Self, SetupError> {
+        let lights = stage.lights.iter().map(|(source, _)| source);
+        let strength: f64 = lights.clone().map(|source| source.strength()).sum();
+        // Without lights the surroundings shine on a white surface from everywhere.
+        let strength = if strength > 0.0 {
+            strength
+        } else {
+            conditions.ambient * PI
+        };
+        let polarisation = |[parallel, perpendicular]: [f64; 2]| {
+            Polarisation::new(parallel, perpendicular).ok_or_else(|| {
+                SetupError::value("light.parallel", "or `perpendicular` is negative")
+            })
+        };
+        let polarisations: Result<_, _> = lights.map(|s| polarisation(s.polarisation)).collect();
+        Ok(Self {
+            stage,
+            finishes,
+            openness: &stage.subject.openness,
+            ambient: conditions.ambient,
+            background: conditions.background,
+            gain: conditions.sensor.gain(strength),
+            polarisations: polarisations?,
+        })
+    }
+
+    /// What a point of a face sends towards `viewer`, a unit vector, where lights of `lit` reach it.
+    pub fn radiance(
+        &self,
+        face: FaceId,
+        p: &Point3<f64>,
+        viewer: &Vector3<f64>,
+        lit: u64,
+    ) -> Radiance {
+        let surface = self.finishes.of(face);
+        let normal = self.stage.subject.brep.outward(face, p);
+        let around = self.ambient * surface.ambient() * self.openness[face.index()];
+        let mut all = Radiance {
+            total: around,
+            specular: 0.0,
+        };
+        for (i, (source, _)) in self.stage.lights.iter().enumerate() {
+            if lit >> i & 1 == 0 {
+                continue;
+            }
+            let (towards, strength) = source.from(p);
+            let cosine = normal.dot(&towards);
+            if cosine > 0.0 {
+                let r = surface.reflectance(&normal, &towards, viewer, self.polarisations[i]);
+                all.total += strength * cosine * r.total;
+                all.specular += strength * cosine * r.specular;
+            }
+        }
+        all
+    }
+
+    /// The place of a face that is seen at a point of the image, with the direction it is seen in.
+    /// `hint` is how far it is about, and becomes how far it is.
+    pub fn place(
+        &self,
+        at: [f64; 2],
+        face: FaceId,
+        hint: &mut f64,
+    ) -> Option<(Point3<f64>, Vector3<f64>)> {
+        let projection = self.stage.view.scene.projection;
+        let (eye, into) = projection.line_of_sight(&Point2::from(at));
+        let far = front(self.stage.subject.brep, face, &eye, &into, *hint)?;
+        *hint = far;
+        Some((eye + into * far, into))
+    }
+
+    /// Grey levels, before noise and steps, at a point of the image where `seen` is seen.
+    pub fn level(&self, at: [f64; 2], seen: &Seen, hint: &mut f64) -> f64 {
+        self.levels(at, seen, hint).total
+    }
+
+    /// The same, with what of it lights are mirrored with.
+    pub fn levels(&self, at: [f64; 2], seen: &Seen, hint: &mut f64) -> Radiance {
+        let placed = seen
+            .face
+            .and_then(|face| Some((face, self.place(at, face, hint)?)));
+        let (radiance, into) = match placed {
+            Some((face, (p, into))) => (self.radiance(face, &p, &-into, seen.lit), into),
+            None => {
+                let projection = self.stage.view.scene.projection;
+                let (_, into) = projection.line_of_sight(&Point2::from(at));
+                let background = Radiance {
+                    total: self.background,
+                    specular: 0.0,
+                };
+                (background, into)
+            }
+        };
+        let cosine = into.dot(&self.stage.view.scene.projection.axis());
+        // C over its value on the optical axis, which the exposure is set by.
+        let gain = self.gain * (cosine * cosine) * (cosine * cosine);
+        Radiance {
+            total: gain * radiance.total,
+            specular: gain * radiance.specular,
+        }
+    }
+
+    /// How many lights there are.
+    pub fn lights(&self) -> usize {
+        self.stage.lights.len()
+    }
+
+    /// The surface of a face.
+    pub fn surface(&self, face: FaceId) -> &premio_kernel::geometry::surface::Surface {
+        self.stage.subject.brep.surface(face)
+    }
+
+    /// Whether a face mirrors anything.
+    pub fn mirrors(&self, face: FaceId) -> bool {
+        self.finishes.of(face).is_specular()
+    }
+
+    /// N·H at the place of a face that is seen at a point of the image: one where the light is
+    /// mirrored. None where the light is behind the face.
+    pub fn mirrored(
+        &self,
+        at: [f64; 2],
+        face: FaceId,
+        light: usize,
+        hint: &mut f64,
+    ) -> Option<f64> {
+        let (p, into) = self.place(at, face, hint)?;
+        let normal = self.stage.subject.brep.outward(face, &p);
+        let (towards, _) = self.stage.lights[light].0.from(&p);
+        let between = towards - into;
+        (normal.dot(&towards) > 0.0).then(|| normal.dot(&between) / between.norm())
+    }
+
+    /// How far a point is from where its line of sight starts.
+    pub fn distance(&self, p: &Point3<f64>) -> f64 {
+        (p - self.stage.view.scene.projection.origin()).norm()
+    }
+
+    /// What a line of sight through a point of the image meets, and which lights reach it.
+    pub fn asked(&self, at: [f64; 2]) -> Seen {
+        let Some((face, point)) = self.stage.seen(at) else {
+            return Seen {
+                face: None,
+                point: self.stage.subject.centre,
+                lit: 0,
+            };
+        };
+        let normal = self.stage.subject.brep.outward(face, &point);
+        let reaches = |i: &usize| {
+            let (towards, _) = self.stage.lights[*i].0.from(&point);
+            normal.dot(&towards) > 0.0 && self.stage.is_lit(*i, &point, face)
+        };
+        let lit = (0..self.stage.lights.len()).filter(reaches);
+        Seen {
+            face: Some(face),
+            point,
+            lit: lit.fold(0, |all, i| all | 1 << i),
+        }
+    }
+}

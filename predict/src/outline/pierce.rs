@@ -1,0 +1,148 @@
+//! Where a line of sight meets the front of a surface that is known to be seen there.
+
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::geometry::surface::{Cone, Surface, Torus};
+
+/// How often Newton's step is made on a torus, and into how many steps its ball is cut where that
+/// does not arrive.
+const STEPS: usize = 8;
+const CUTS: usize = 64;
+
+/// The distance along a unit direction at which a line meets the front of a face's surface, next to
+/// `hint` where it may do so more than once. A line that just misses the surface meets it where it
+/// is nearest: its limb.
+pub fn front(
+    brep: &Brep,
+    face: FaceId,
+    origin: &Point3<f64>,
+    into: &Vector3<f64>,
+    hint: f64,
+) -> Option<f64> {
+    let surface = brep.surface(face);
+    let outwards = brep.sense(face) == Sense::Along;
+    let f = surface.frame();
+    let q = f.coordinates(origin);
+    let w = f.components(into);
+    let at = match surface {
+        Surface::Plane(_) => -q.z / w.z,
+        Surface::Cylinder(s) => {
+            let a = w.x * w.x + w.y * w.y;
+            let b = q.x * w.x + q.y * w.y;
+            let c = q.x * q.x + q.y * q.y - s.radius * s.radius;
+            entry(a, b, c, outwards)
+        }
+        Surface::Sphere(s) => {
+            let c = q.norm_squared() - s.radius * s.radius;
+            entry(1.0, q.dot(&w), c, outwards)
+        }
+        Surface::Cone(s) => cone(s, &q, &w, outwards),
+        Surface::Torus(s) => torus(s, &q, &w, outwards, hint)?,
+    };
+    at.is_finite().then_some(at)
+}
+
+/// The root of a s² + 2 b s + c at which a line enters a convex surface, or leaves it.
+fn entry(a: f64, b: f64, c: f64, enters: bool) -> f64 {
+    let root = (b * b - a * c).max(0.0).sqrt();
+    // The root without cancellation, the other from the product.
+    let k = -(b + root.copysign(b));
+    let roots = [k / a, c / k];
+    let (least, most) = (roots[0].min(roots[1]), roots[0].max(roots[1]));
+    match (root > 0.0, enters) {
+        (false, _) => -b / a,
+        (true, true) => least,
+        (true, false) => most,
+    }
+}
+
+/// Of the two meetings with both nappes the one that is on the cone and seen from its front.
+fn cone(s: &Cone, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool) -> f64 {
+    let (k, m) = (s.cos * s.cos, s.sin * s.sin);
+    let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
+    let b = k * (q.x * w.x + q.y * w.y) - m * q.z * w.z;
+    let c = k * (q.x * q.x + q.y * q.y) - m * q.z * q.z;
+    let root = (b * b - a * c).max(0.0).sqrt();
+    let r = -(b + root.copysign(b));
+    let mut best = f64::NAN;
+    for at in [r / a, c / r] {
+        let p = q + w * at;
+        let rho = p.x.hypot(p.y);
+        let slope = (p.x * w.x + p.y * w.y) / rho * s.cos - w.z * s.sin;
+        let is_front = (slope <= 0.0) == enters;
+        if at.is_finite() && p.z >= 0.0 && (is_front || best.is_nan()) {
+            best = at;
+        }
+    }
+    best
+}
+
+/// The meeting with a torus next to a hint: Newton's method on the distance, and a search in the ball
+/// about it where that does not arrive.
+fn torus(s: &Torus, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool, hint: f64) -> Option<f64> {
+    let sign = if enters { 1.0 } else { -1.0 };
+    let value = |t: f64| {
+        let p = q + w * t;
+        let rho = p.x.hypot(p.y);
+        let across = rho - s.major;
+        let tube = across.hypot(p.z);
+        let slope = (across * (p.x * w.x + p.y * w.y) / rho + p.z * w.z) / tube;
+        (sign * (tube - s.minor), sign * slope)
+    };
+    let fine = s.minor * f64::EPSILON.sqrt();
+    let mut t = hint;
+    for _ in 0..STEPS {
+        let (f, slope) = value(t);
+        // From outside to inside along the line.
+        if f.abs() <= fine && slope <= 0.0 {
+            return Some(t);
+        }
+        let step = f / slope;
+        if step.is_nan() || step.abs() > s.minor {
+            break;
+        }
+        t -= step;
+    }
+    searched(&value, q, w, s, hint)
+}
+
+/// The crossing from outside to inside nearest to the hint, or else where the line is nearest.
+fn searched(
+    value: &impl Fn(f64) -> (f64, f64),
+    q: &Vector3<f64>,
+    w: &Vector3<f64>,
+    s: &Torus,
+    hint: f64,
+) -> Option<f64> {
+    let nearest = -q.dot(w);
+    let reach = s.major + s.minor;
+    let half2 = reach * reach - (q + w * nearest).norm_squared();
+    if half2 <= 0.0 {
+        return None;
+    }
+    let half = half2.sqrt();
+    let at = |k: usize| nearest - half + 2.0 * half * (k as f64 / CUTS as f64);
+    let mut best: Option<f64> = None;
+    let mut least = (f64::INFINITY, nearest);
+    for k in 0..CUTS {
+        let [mut lo, mut hi] = [at(k), at(k + 1)];
+        let [f, g] = [value(lo).0, value(hi).0];
+        if f.abs() < least.0 {
+            least = (f.abs(), lo);
+        }
+        if f > 0.0 && g <= 0.0 {
+            for _ in 0..48 {
+                let middle = 0.5 * (lo + hi);
+                match value(middle).0 > 0.0 {
+                    true => lo = middle,
+                    false => hi = middle,
+                }
+            }
+            if best.is_none_or(|known| (lo - hint).abs() < (known - hint).abs()) {
+                best = Some(lo);
+            }
+        }
+    }
+    best.or(Some(least.1))
+}

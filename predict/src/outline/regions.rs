@@ -1,0 +1,288 @@
+//! The regions that arcs divide an image into, each with the one face, and the lights, that are seen
+//! in it.
+//!
+//! Sides of sections that face one another across a line of the image, with nothing between them,
+//! belong to one region. What is seen in it is asked of a line of sight through each of a few points
+//! of it; where these do not agree, or the sides of shadows contradict it, every pixel is asked.
+
+use super::arc::{Arc, Side};
+use super::scanline::{Crossing, LINES, Scanlines, Sections, line_at, line_y};
+use super::stage::Stage;
+use nalgebra::Point3;
+use premio_kernel::brep::topology::FaceId;
+
+/// How many points of a region are asked.
+const ASKED: usize = 6;
+/// The shortest gap between two crossings, in pixels, that tells that their sides are of one region.
+const GAP: f64 = 1.0 / 1024.0;
+/// A point tells whether a light reaches a region only where it does not graze the face.
+const GRAZING: f64 = 1.0 / 64.0;
+
+/// What is seen in a region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// The face; none is the background.
+    pub face: Option<FaceId>,
+    /// A point of the face that is seen in it.
+    pub point: Point3<f64>,
+    /// By bit: whether the light reaches it, where it is turned towards the light.
+    pub lit: u64,
+}
+
+/// A region of an image.
+#[derive(Clone, Debug)]
+pub struct Region {
+    /// What is seen in it; none where every point has to be asked for itself.
+    pub seen: Option<Seen>,
+    /// Its area within the image, in pixels.
+    pub area: f64,
+    /// A few points of it, with the length of the gap between arcs each is in the middle of.
+    pub points: Vec<([f64; 2], f64)>,
+}
+
+/// The regions of an image.
+#[derive(Debug)]
+pub struct Regions {
+    /// The crossings of lines and arcs.
+    pub scanlines: Scanlines,
+    /// The sections of the arcs.
+    pub sections: Sections,
+    /// The regions; the first is what lies beyond all arcs to the left.
+    pub all: Vec<Region>,
+    /// By side of a section: its region.
+    sides: Vec<u32>,
+}
+
+/// The number of a side of a section.
+fn side(section: u32, side: Side) -> usize {
+    // The first number is of what lies beyond all arcs.
+    1 + 2 * section as usize + usize::from(side == Side::Right)
+}
+
+/// Sets of numbers that are joined (Tarjan 1975).
+struct Sets(Vec<u32>);
+
+impl Sets {
+    fn find(&mut self, mut i: u32) -> u32 {
+        while self.0[i as usize] != i {
+            let above = self.0[self.0[i as usize] as usize];
+            self.0[i as usize] = above;
+            i = above;
+        }
+        i
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a as u32), self.find(b as u32));
+        // The lesser number stands for both, so that the order of joins does not matter.
+        let (least, most) = (a.min(b), a.max(b));
+        self.0[most as usize] = least;
+    }
+}
+
+impl Regions {
+    /// The regions between the arcs of a stage's image.
+    pub fn new(stage: &Stage<'_>, arcs: &[Arc], [width, height]: [usize; 2]) -> Self {
+        let sections = Sections::of(arcs);
+        let scanlines = Scanlines::new(arcs, &sections, height);
+        let mut sets = Sets((0..=2 * sections.all.len() as u32).collect());
+        for line in 0..scanlines.lines() {
+            join(scanlines.on(line), &mut sets);
+        }
+        let mut numbers = vec![u32::MAX; sets.0.len()];
+        let mut all = Vec::new();
+        let mut sides = Vec::with_capacity(sets.0.len());
+        for i in 0..sets.0.len() {
+            let root = sets.find(i as u32) as usize;
+            if numbers[root] == u32::MAX {
+                numbers[root] = all.len() as u32;
+                all.push(Region {
+                    seen: None,
+                    area: 0.0,
+                    points: Vec::new(),
+                });
+            }
+            sides.push(numbers[root]);
+        }
+        let mut regions = Self {
+            scanlines,
+            sections,
+            all,
+            sides,
+        };
+        regions.choose_points(width);
+        regions.ask(stage, arcs);
+        regions
+    }
+
+    /// How many arcs divide the image; outlines of highlights, which come after them, do not.
+    pub fn arcs(&self) -> usize {
+        self.sections.arcs()
+    }
+
+    /// The region on a side of a section.
+    pub fn beside(&self, section: u32, on: Side) -> u32 {
+        self.sides[side(section, on)]
+    }
+
+    /// The region at a point of the image.
+    pub fn at(&self, [x, y]: [f64; 2]) -> u32 {
+        let line = line_at(y).min(self.scanlines.lines().saturating_sub(1));
+        let on = self.scanlines.on(line);
+        match on.partition_point(|c| c.x <= x) {
+            0 => on.first().map_or(self.sides[0], |c| self.sides[left_of(c)]),
+            k => self.sides[right_of(&on[k - 1])],
+        }
+    }
+
+    /// The gaps of a line: the region between each two crossings, from beyond the left on.
+    pub fn gaps(&self, line: usize) -> impl Iterator<Item = ([f64; 2], u32)> + '_ {
+        let on = self.scanlines.on(line);
+        let first = on.first().map_or(0, |c| self.sides[left_of(c)]);
+        let start = on.first().map_or(f64::INFINITY, |c| c.x);
+        let rest = on.iter().enumerate().map(move |(i, c)| {
+            let next = on.get(i + 1);
+            let end = next.map_or(f64::INFINITY, |n| n.x);
+            // Next to the end of a section the other crossing tells.
+            let region = match next {
+                Some(n) if !c.firm && n.firm => self.sides[left_of(n)],
+                _ => self.sides[right_of(c)],
+            };
+            ([c.x, end], region)
+        });
+        std::iter::once(([f64::NEG_INFINITY, start], first)).chain(rest)
+    }
+
+    /// The middles of the widest gaps, of lines that are spread over the region.
+    fn choose_points(&mut self, width: usize) {
+        let blank = ([0.0; 2], 0.0);
+        let mut areas = vec![0.0; self.all.len()];
+        let mut best = vec![[blank; ASKED]; self.all.len()];
+        let (left, right) = (-0.5, width as f64 - 0.5);
+        for line in 0..self.scanlines.lines() {
+            // Lines of different rows, so that the points are not next to one another.
+            let slot = (line / (LINES - 1)) % ASKED;
+            for ([from, to], region) in self.gaps(line) {
+                let (from, to) = (from.max(left), to.min(right));
+                areas[region as usize] += (to - from).max(0.0) / LINES as f64;
+                let known = &mut best[region as usize][slot];
+                if to - from > known.1 {
+                    *known = ([0.5 * (from + to), line_y(line)], to - from);
+                }
+            }
+        }
+        for ((region, best), area) in self.all.iter_mut().zip(best).zip(areas) {
+            region.area = area;
+            region.points.extend(best.iter().filter(|p| p.1 > GAP));
+        }
+    }
+
+    /// Asks what is seen in every region.
+    fn ask(&mut self, stage: &Stage<'_>, arcs: &[Arc]) {
+        let votes = self.votes(arcs, stage.lights.len());
+        for (region, votes) in self
+            .all
+            .iter_mut()
+            .zip(votes.chunks(stage.lights.len().max(1)))
+        {
+            region.seen = seen(stage, &region.points, votes);
+        }
+    }
+
+    /// By region and light: how many sides of shadows say that it is lit, and that it is not.
+    fn votes(&self, arcs: &[Arc], lights: usize) -> Vec<[u32; 2]> {
+        let mut votes = vec![[0; 2]; self.all.len() * lights.max(1)];
+        for (i, arc) in arcs.iter().enumerate() {
+            let Some(shade) = arc.shade else {
+                continue;
+            };
+            for section in self.sections.of_arc(i) {
+                for (on, which) in [(shade.lit, 0), (shade.lit.other(), 1)] {
+                    let region = self.beside(section, on) as usize;
+                    votes[region * lights + shade.light][which] += 1;
+                }
+            }
+        }
+        votes
+    }
+}
+
+fn left_of(c: &Crossing) -> usize {
+    side(c.section, c.right.other())
+}
+
+fn right_of(c: &Crossing) -> usize {
+    side(c.section, c.right)
+}
+
+fn join(on: &[Crossing], sets: &mut Sets) {
+    if let Some(first) = on.first().filter(|c| c.firm) {
+        sets.join(0, left_of(first));
+    }
+    if let Some(last) = on.last().filter(|c| c.firm) {
+        sets.join(0, right_of(last));
+    }
+    for pair in on.windows(2) {
+        let [a, b] = [&pair[0], &pair[1]];
+        if a.firm && b.firm && b.x - a.x > GAP {
+            sets.join(right_of(a), left_of(b));
+        }
+    }
+}
+
+/// What is seen at all of some points, given what the sides of shadows say; none where they differ.
+fn seen(stage: &Stage<'_>, points: &[([f64; 2], f64)], votes: &[[u32; 2]]) -> Option<Seen> {
+    let mut hits = points.iter().map(|&(at, _)| stage.seen(at));
+    let first = hits.next()?;
+    let Some((face, point)) = first else {
+        let same = hits.all(|hit| hit.is_none());
+        return same.then_some(Seen {
+            face: None,
+            point: stage.subject.centre,
+            lit: 0,
+        });
+    };
+    let mut all = vec![point];
+    for hit in hits {
+        all.push(hit.filter(|h| h.0 == face)?.1);
+    }
+    let mut lit = 0u64;
+    for (light, votes) in (0..stage.lights.len()).zip(votes) {
+        if is_lit(stage, light, face, &all, *votes)? {
+            lit |= 1 << light;
+        }
+    }
+    Some(Seen {
+        face: Some(face),
+        point,
+        lit,
+    })
+}
+
+/// Whether a light reaches points of a face; none where it reaches some of them.
+fn is_lit(
+    stage: &Stage<'_>,
+    light: usize,
+    face: FaceId,
+    points: &[Point3<f64>],
+    votes: [u32; 2],
+) -> Option<bool> {
+    let source = &stage.lights[light].0;
+    let turned = |p: &&Point3<f64>| {
+        let (towards, _) = source.from(p);
+        stage.subject.brep.outward(face, p).dot(&towards) > GRAZING
+    };
+    let mut asked = points
+        .iter()
+        .filter(turned)
+        .map(|p| stage.is_lit(light, p, face));
+    match votes {
+        [0, 0] => {
+            let first = asked.next().unwrap_or(false);
+            asked.all(|lit| lit == first).then_some(first)
+        }
+        [_, 0] => asked.next().is_none_or(|lit| lit).then_some(true),
+        [0, _] => asked.next().is_none_or(|lit| !lit).then_some(false),
+        _ => None,
+    }
+}

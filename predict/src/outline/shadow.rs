@@ -1,0 +1,259 @@
+//! Cast shadows: what a light sees end before something farther off is the boundary of a shadow on
+//! it. So they are the contours of the light's view, carried on along its lines of sight.
+
+use super::arc::{Arc, Shade, Side, Source};
+use super::crossings::{Place, Segments};
+use super::flatten::{FINE, Polyline, Shown, Window, flatten, shown};
+use super::pierce::front;
+use super::stage::{Sightings, Stage, ordinals};
+use nalgebra::{Point2, Point3, Vector3};
+use premio_kernel::brep::topology::FaceId;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::surface::Surface;
+use premio_visibility::contour::Contour;
+
+/// How far aside of a contour its sides are looked at, in the part's size.
+const ASIDE: f64 = 1.0 / 65_536.0;
+/// How far something has to be behind a contour for a shadow on it to be told apart, in the part's
+/// size.
+const BEHIND: f64 = 1.0 / 1024.0;
+/// By how many pixels the ends of a shadow's boundary are drawn out, so that they reach what they end
+/// on, which is as fine as [`FINE`].
+const OVERLAP: f64 = 2.0 * FINE;
+
+/// A piece of what a light sees, before a face that it hides in part.
+struct Cast<'c> {
+    contour: &'c Contour,
+    range: [f64; 2],
+    ground: FaceId,
+    /// How far the ground is from where the light's lines of sight start, in the middle.
+    hint: f64,
+    /// A point of the ground that the light reaches, next to the middle.
+    lit: Point3<f64>,
+}
+
+/// Adds the visible boundaries of cast shadows to the arcs of a view, which they stop where they end.
+pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
+    let segments = Segments::of(arcs);
+    let mut found = Vec::new();
+    let mut ends = Vec::new();
+    for (light, (_, views)) in stage.lights.iter().enumerate() {
+        for view in views {
+            let ordinals = ordinals(&view.contours);
+            for cast in casts(stage, view, &ordinals) {
+                let Some(line) = shadow(stage, view, &cast, window) else {
+                    continue;
+                };
+                let lit = lit_side(stage, &cast, &line);
+                let source = source(light, &cast, &ordinals);
+                let shade = Some(Shade { light, lit });
+                for part in visible_parts(stage, &segments, &cast, &line, &mut ends) {
+                    found.push(Arc {
+                        source,
+                        contour: None,
+                        smooth: false,
+                        coefficients: Vec::new(),
+                        line: part,
+                        stops: Vec::new(),
+                        shade,
+                    });
+                }
+            }
+        }
+    }
+    for (arc, p) in ends {
+        let arc: &mut Arc = &mut arcs[arc as usize];
+        if let Some(at) = arc.line.nearest(&p) {
+            arc.stop_at(p, at);
+        }
+    }
+    arcs.extend(found);
+}
+
+fn source(light: usize, cast: &Cast<'_>, ordinals: &[u32]) -> Source {
+    let (light, face) = (light as u32, cast.ground.0);
+    match cast.contour.edge {
+        Some(edge) => Source::EdgeShadow {
+            light,
+            edge: edge.0,
+            face,
+        },
+        None => Source::LimbShadow {
+            light,
+            caster: cast.contour.faces[0].0,
+            ordinal: ordinals[cast.contour.id as usize],
+            face,
+        },
+    }
+}
+
+/// The pieces of a light's view that cast a shadow on the part.
+fn casts<'v>(stage: &Stage<'_>, view: &'v Sightings<'_>, ordinals: &[u32]) -> Vec<Cast<'v>> {
+    let size = light_unit(stage, view);
+    let everywhere = Window {
+        min: [f64::NEG_INFINITY; 2],
+        max: [f64::INFINITY; 2],
+    };
+    let arcs = view.arcs(ordinals, size * ASIDE, &everywhere);
+    let mut casts = Vec::new();
+    for arc in arcs.iter().filter(|arc| !arc.smooth) {
+        let Some(contour) = arc.contour.map(|id| &view.contours.contours[id as usize]) else {
+            continue;
+        };
+        let last = arc.line.points.len() - 1;
+        let mut from = 0;
+        for &to in arc.stops.iter().chain([&last]) {
+            let ends = [from, to].map(|k| stage_parameter(view, contour, &arc.line, k));
+            from = to;
+            casts.extend(cast(stage, view, contour, ends, size));
+        }
+    }
+    casts
+}
+
+/// The length in a light's image of a part's radius next to its middle.
+fn light_unit(stage: &Stage<'_>, view: &Sightings<'_>) -> f64 {
+    let projection = view.scene.projection;
+    let centre = stage.subject.centre;
+    let across = Vector3::ith(projection.axis().abs().imin(), stage.subject.radius);
+    (projection.project(&(centre + across)) - projection.project(&centre)).norm()
+}
+
+/// The parameter at a point of a polyline; where something ends behind it, as near as doubles tell.
+fn stage_parameter(view: &Sightings<'_>, contour: &Contour, line: &Polyline, k: usize) -> f64 {
+    let mut t = line.parameters[k];
+    if k == 0 || k + 1 == line.points.len() {
+        return t;
+    }
+    let p = Point2::from(line.points[k]);
+    let step = (line.parameters[k + 1] - line.parameters[k - 1]) * ASIDE;
+    for _ in 0..4 {
+        let at = |t: f64| view.scene.projection.project(&contour.curve3.point(t));
+        let along = (at(t + step) - at(t - step)) / (2.0 * step);
+        let off = (p - at(t)).dot(&along) / along.norm_squared();
+        if !off.is_finite() {
+            break;
+        }
+        t += off;
+    }
+    let [lo, hi] = [line.parameters[k - 1], line.parameters[k + 1]];
+    t.clamp(lo.min(hi), lo.max(hi))
+}
+
+/// What a piece casts: it does where one side of it is farther off.
+fn cast<'v>(
+    stage: &Stage<'_>,
+    view: &Sightings<'_>,
+    contour: &'v Contour,
+    range: [f64; 2],
+    size: f64,
+) -> Option<Cast<'v>> {
+    let projection = view.scene.projection;
+    let t = 0.5 * (range[0] + range[1]);
+    let p = contour.curve3.point(t);
+    let step = (range[1] - range[0]) * ASIDE;
+    let image = |t: f64| projection.project(&contour.curve3.point(t));
+    let along = image(t + step) - image(t - step);
+    let across = nalgebra::Vector2::new(-along.y, along.x) / along.norm();
+    if !across.x.is_finite() {
+        return None;
+    }
+    let depth = projection.depth(&p);
+    let mut found = None;
+    for side in [1.0, -1.0] {
+        let aside = projection.project(&p) + across * (side * size * ASIDE);
+        if let Some((face, q)) = view.scene.nearest(&aside) {
+            let jump = projection.depth(&q) - depth;
+            if jump > BEHIND * stage.subject.radius {
+                let (origin, _) = projection.line_of_sight(&aside);
+                found = Some(Cast {
+                    contour,
+                    range,
+                    ground: face,
+                    hint: (q - origin).norm(),
+                    lit: q,
+                });
+            }
+        }
+    }
+    found
+}
+
+/// The image of the curve in which a cast falls on its ground.
+fn shadow(
+    stage: &Stage<'_>,
+    view: &Sightings<'_>,
+    cast: &Cast<'_>,
+    window: &Window,
+) -> Option<Polyline> {
+    let light = view.scene.projection;
+    let camera = stage.view.scene.projection;
+    let curve = |t: f64| -> Option<Shown> {
+        let image = light.project(&cast.contour.curve3.point(t));
+        let (origin, into) = light.line_of_sight(&image);
+        let far = front(stage.subject.brep, cast.ground, &origin, &into, cast.hint)?;
+        let p = origin + into * far;
+        (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
+    };
+    let straight = matches!(cast.contour.curve3, Curve::Line(_))
+        && matches!(stage.subject.brep.surface(cast.ground), Surface::Plane(_));
+    let mut line = flatten(curve, cast.range, straight, (FINE, window))?;
+    draw_out(&mut line);
+    Some(line)
+}
+
+/// Moves both ends of a polyline on by [`OVERLAP`].
+fn draw_out(line: &mut Polyline) {
+    let n = line.points.len();
+    for (end, before) in [(0, 1), (n - 1, n - 2)] {
+        let [p, q] = [line.points[end], line.points[before]];
+        let length = (p[0] - q[0]).hypot(p[1] - q[1]);
+        if length > OVERLAP {
+            let by = OVERLAP / length;
+            line.points[end] = [p[0] + by * (p[0] - q[0]), p[1] + by * (p[1] - q[1])];
+        }
+    }
+}
+
+/// The side of a shadow's boundary that is lit.
+fn lit_side(stage: &Stage<'_>, cast: &Cast<'_>, line: &Polyline) -> Side {
+    let lit = stage.view.scene.projection.project(&cast.lit);
+    let lit = [lit.x, lit.y];
+    let (i, _, _) = line.nearest(&lit).unwrap_or((0, 0.0, 0.0));
+    Side::of(lit, [line.points[i], line.points[i + 1]])
+}
+
+/// The parts of a shadow's boundary that the camera sees, and where these end on which arcs.
+fn visible_parts(
+    stage: &Stage<'_>,
+    segments: &Segments,
+    cast: &Cast<'_>,
+    line: &Polyline,
+    ends: &mut Vec<(u32, [f64; 2])>,
+) -> Vec<Polyline> {
+    let mut cuts: Vec<(Place, Option<u32>)> = segments.crossings(line);
+    let last = line.points.len() - 2;
+    cuts.push(((0, 0.0), None));
+    cuts.push(((last, 1.0), None));
+    cuts.sort_by(|a, b| a.0.0.cmp(&b.0.0).then(a.0.1.total_cmp(&b.0.1)));
+    let mut parts = Vec::new();
+    for pair in cuts.windows(2) {
+        let [(from, before), (to, after)] = [pair[0], pair[1]];
+        let part = line.part(from, to);
+        let Some((i, s)) = part.middle().filter(|_| part.length() > OVERLAP) else {
+            continue;
+        };
+        let depth = 0.5 * (part.depths[i] + part.depths[i + 1]);
+        let is_seen = stage.seen(part.at(i, s)).is_some_and(|(face, p)| {
+            let off = stage.view.scene.projection.scale(&p) - depth;
+            face == cast.ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
+        });
+        if is_seen {
+            for (place, arc) in [(from, before), (to, after)] {
+                ends.extend(arc.map(|arc| (arc, line.at(place.0, place.1))));
+            }
+            parts.push(part);
+        }
+    }
+    parts
+}

@@ -1,0 +1,343 @@
+//! A part under its lights, before a camera: the views of all of them.
+
+use super::arc::{Arc, Source};
+use super::flatten::{FINE, Window, flatten, shown};
+use crate::setup::light::{self, Place};
+use crate::setup::viewpoint::Matrices;
+use crate::setup::{Setup, SetupError};
+use crate::subject::{Subject, SubjectError};
+use nalgebra::{Point2, Point3, Vector3};
+use premio_kernel::brep::topology::FaceId;
+use premio_visibility::camera::{Camera, CameraError};
+use premio_visibility::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece};
+use premio_visibility::projection::Projection;
+use premio_visibility::sight::Scene;
+use premio_visibility::{ViewError, contours};
+use std::collections::HashMap;
+
+/// Why nothing can be predicted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StageError {
+    /// The setup cannot be used.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The camera has no view of the part.
+    #[error("the camera: {0}")]
+    View(ViewError),
+    /// A light has no view of the part.
+    #[error("light {0}: {1}")]
+    Light(usize, ViewError),
+    /// The part cannot be seen from anywhere.
+    #[error(transparent)]
+    Subject(#[from] SubjectError),
+    /// A face that the setup names is not there.
+    #[error("`surface` names face {face}, and the part has {count}")]
+    NoFace {
+        /// The number that is named.
+        face: u32,
+        /// How many faces there are.
+        count: usize,
+    },
+    /// No part of the image shows the part.
+    #[error("the camera sees nothing of the part: {0}")]
+    OutOfSight(String),
+}
+
+/// A camera with its projection.
+#[derive(Clone, Debug)]
+pub struct Eye {
+    /// The camera.
+    pub camera: Camera,
+    /// How it projects.
+    pub projection: Projection,
+}
+
+impl Eye {
+    fn new(camera: Camera, subject: &Subject<'_>) -> Self {
+        let projection = Projection::new(&camera, 2.0 * subject.radius);
+        Self { camera, projection }
+    }
+}
+
+/// The eyes of a setup: the camera's, and those of the lights. A light within the ball about the part
+/// looks both ways.
+#[derive(Clone, Debug)]
+pub struct Eyes {
+    /// The camera's matrices.
+    pub matrices: Matrices,
+    /// The camera.
+    pub camera: Eye,
+    /// By light: its source and its eyes.
+    pub lights: Vec<(light::Source, Vec<Eye>)>,
+}
+
+impl Eyes {
+    /// The eyes of a setup about a part.
+    pub fn new(subject: &Subject<'_>, setup: &Setup) -> Result<Self, StageError> {
+        let matrices = setup
+            .camera
+            .matrices(&setup.conditions.sensor, &subject.centre)?;
+        let mut lights = Vec::with_capacity(setup.lights.len());
+        for (i, light) in setup.lights.iter().enumerate() {
+            let source = light::Source::new(light, &subject.centre);
+            let cameras = light_cameras(&source, subject).map_err(|error| {
+                SetupError::value(format!("light[{i}].position"), error.to_string())
+            })?;
+            let eyes = cameras.into_iter().map(|c| Eye::new(c, subject)).collect();
+            lights.push((source, eyes));
+        }
+        Ok(Self {
+            matrices,
+            camera: Eye::new(matrices.camera()?, subject),
+            lights,
+        })
+    }
+}
+
+fn light_cameras(
+    source: &light::Source,
+    subject: &Subject<'_>,
+) -> Result<Vec<Camera>, CameraError> {
+    let centre = subject.centre;
+    match source.place() {
+        Place::Far(d) => {
+            let eye = centre + d * (4.0 * subject.radius);
+            Ok(vec![Camera::orthographic(eye, centre, upright(&d))?])
+        }
+        Place::Near(p) => {
+            let away = centre - p;
+            let far = away.norm() > subject.radius;
+            let towards = if far { away } else { Vector3::z() };
+            let looking = |d: Vector3<f64>| Camera::perspective(p, p + d, upright(&d), 1.0);
+            match far {
+                true => Ok(vec![looking(towards)?]),
+                false => Ok(vec![looking(towards)?, looking(-towards)?]),
+            }
+        }
+    }
+}
+
+fn upright(d: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::ith(d.abs().imin(), 1.0)
+}
+
+/// What one eye sees, with the boundary ready for its lines of sight.
+#[derive(Debug)]
+pub struct Sightings<'a> {
+    /// The contours.
+    pub contours: Contours,
+    /// The boundary.
+    pub scene: Scene<'a>,
+}
+
+/// A part before its camera and under its lights.
+#[derive(Debug)]
+pub struct Stage<'a> {
+    /// The part.
+    pub subject: &'a Subject<'a>,
+    /// The camera's matrices.
+    pub matrices: Matrices,
+    /// The camera's view.
+    pub view: Sightings<'a>,
+    /// By light: its source, and what it sees.
+    pub lights: Vec<(light::Source, Vec<Sightings<'a>>)>,
+    /// By contour: of limbs, which limb of its face it is.
+    ordinals: Vec<u32>,
+}
+
+impl<'a> Stage<'a> {
+    /// The views of all eyes.
+    pub fn new(subject: &'a Subject<'a>, eyes: &'a Eyes) -> Result<Self, StageError> {
+        let see = |eye: &'a Eye| -> Result<Sightings<'a>, ViewError> {
+            Ok(Sightings {
+                contours: contours(subject.brep, &eye.camera, subject.band)?,
+                scene: Scene::new(subject.brep, &eye.projection, subject.band),
+            })
+        };
+        let view = see(&eyes.camera).map_err(StageError::View)?;
+        let mut lights = Vec::with_capacity(eyes.lights.len());
+        for (i, (source, each)) in eyes.lights.iter().enumerate() {
+            let seen: Result<Vec<_>, _> = each.iter().map(see).collect();
+            lights.push((*source, seen.map_err(|e| StageError::Light(i, e))?));
+        }
+        let ordinals = ordinals(&view.contours);
+        Ok(Self {
+            subject,
+            matrices: eyes.matrices,
+            view,
+            lights,
+            ordinals,
+        })
+    }
+
+    /// The visible pieces of the camera's contours, cut where others end on them.
+    pub fn arcs(&self, window: &Window) -> Vec<Arc> {
+        self.view.arcs(&self.ordinals, FINE, window)
+    }
+
+    /// Whether a light reaches a point of a face that is turned towards it.
+    pub fn is_lit(&self, light: usize, p: &Point3<f64>, face: FaceId) -> bool {
+        let (_, views) = &self.lights[light];
+        let before = |v: &&Sightings<'_>| views.len() == 1 || v.scene.projection.depth(p) > 0.0;
+        views
+            .iter()
+            .find(before)
+            .is_some_and(|v| !v.scene.is_hidden(p, face))
+    }
+
+    /// The face that is seen at a point of the image, and where on it.
+    pub fn seen(&self, at: [f64; 2]) -> Option<(FaceId, Point3<f64>)> {
+        self.view.scene.nearest(&Point2::from(at))
+    }
+}
+
+impl Sightings<'_> {
+    /// The visible pieces of the contours, cut where others end on them, as polylines within `fine`;
+    /// `ordinals` tells which limb of its face each is.
+    pub fn arcs(&self, ordinals: &[u32], fine: f64, window: &Window) -> Vec<Arc> {
+        let contours = &self.contours;
+        let projection = self.scene.projection;
+        let mut arcs: Vec<Arc> = Vec::new();
+        for contour in &contours.contours {
+            let straight = is_straight(contour);
+            for piece in contour.pieces.iter().filter(|piece| piece.visible) {
+                let curve = |t: f64| Some(shown(projection, &contour.curve3.point(t)));
+                let Some(mut line) = flatten(curve, piece.t, straight, (fine, window)) else {
+                    continue;
+                };
+                // Pieces that meet do so in one point, however it was reckoned.
+                pin(&mut line, contours, piece);
+                arcs.push(Arc {
+                    source: source(contour, ordinals[contour.id as usize]),
+                    contour: Some(contour.id),
+                    smooth: contour.smooth,
+                    coefficients: coefficients(contour),
+                    line,
+                    stops: Vec::new(),
+                    shade: None,
+                });
+            }
+        }
+        stop(&mut arcs, contours);
+        arcs
+    }
+}
+
+/// By contour: which limb of its face it is.
+pub fn ordinals(contours: &Contours) -> Vec<u32> {
+    let mut count: HashMap<FaceId, u32> = HashMap::new();
+    let ordinal = |contour: &Contour| match contour.kind {
+        Kind::Boundary => 0,
+        Kind::Limb => {
+            let next = count.entry(contour.faces[0]).or_default();
+            *next += 1;
+            *next - 1
+        }
+    };
+    contours.contours.iter().map(ordinal).collect()
+}
+
+/// Whether the image of a contour is a straight line, run in one direction.
+pub fn is_straight(contour: &Contour) -> bool {
+    matches!(
+        (&contour.curve2, &contour.curve3),
+        (
+            ImageCurve::Line { .. },
+            premio_kernel::geometry::curve::Curve::Line(_)
+        )
+    )
+}
+
+fn coefficients(contour: &Contour) -> Vec<f64> {
+    match &contour.curve2 {
+        ImageCurve::Line { coefficients } => coefficients.to_vec(),
+        ImageCurve::Conic { coefficients } => coefficients.to_vec(),
+        ImageCurve::Point { .. } | ImageCurve::Projected => Vec::new(),
+    }
+}
+
+fn source(contour: &Contour, ordinal: u32) -> Source {
+    match (contour.edge, contour.faces.first()) {
+        (Some(edge), _) => Source::Edge { edge: edge.0 },
+        (None, face) => Source::Limb {
+            face: face.map_or(0, |f| f.0),
+            ordinal,
+        },
+    }
+}
+
+fn pin(line: &mut super::flatten::Polyline, contours: &Contours, piece: &Piece) {
+    let last = line.points.len() - 1;
+    for (end, at) in [(piece.start, 0), (piece.end, last)] {
+        if let Some(id) = end {
+            line.points[at] = contours.junctions[id as usize].point2;
+        }
+    }
+}
+
+/// Puts a point into each arc where another one ends behind it.
+fn stop(arcs: &mut [Arc], contours: &Contours) {
+    let mut by_contour: HashMap<u32, Vec<usize>> = HashMap::new();
+    for (i, arc) in arcs.iter().enumerate() {
+        by_contour
+            .entry(arc.contour.unwrap_or(u32::MAX))
+            .or_default()
+            .push(i);
+    }
+    let visible = contours.contours.iter().flat_map(|c| {
+        let pieces = c.pieces.iter().filter(|p| p.visible);
+        pieces
+            .flat_map(move |p| [p.start, p.end])
+            .flatten()
+            .map(move |j| (c.id, j))
+    });
+    let mut ends: Vec<(u32, u32)> = visible.collect();
+    ends.sort_unstable_by_key(|&(contour, junction)| (junction, contour));
+    ends.dedup();
+    for (contour, junction) in ends {
+        let junction = &contours.junctions[junction as usize];
+        let Some(&before) = junction.contours.first() else {
+            continue;
+        };
+        if junction.kind != JunctionKind::T || before == contour {
+            continue;
+        }
+        let on = by_contour.get(&before).into_iter().flatten();
+        let p = junction.point2;
+        let found = on.filter_map(|&i| arcs[i].line.nearest(&p).map(|at| (i, at)));
+        let nearest = found.min_by(|a, b| a.1.2.total_cmp(&b.1.2));
+        if let Some((i, at)) = nearest {
+            arcs[i].stop_at(p, at);
+        }
+    }
+}
+
+/// How near to an arc what ends on it has to be, squared, in pixels.
+const ON: f64 = 0.25;
+
+impl Arc {
+    /// Notes that another arc ends at a point of this one, its segment and the part of it given.
+    pub fn stop_at(&mut self, p: [f64; 2], (i, s, square): (usize, f64, f64)) {
+        let last = self.line.points.len() - 1;
+        let is_end = |k: usize| {
+            let q = self.line.points[k];
+            (q[0] - p[0]).hypot(q[1] - p[1]) < f64::EPSILON.sqrt()
+        };
+        if square > ON || is_end(0) || is_end(last) {
+            return;
+        }
+        if let Some(known) = (i..=i + 1).find(|&k| is_end(k)) {
+            if let Err(place) = self.stops.binary_search(&known) {
+                self.stops.insert(place, known);
+            }
+            return;
+        }
+        self.line.insert(i, s, p);
+        self.stops
+            .iter_mut()
+            .filter(|k| **k > i)
+            .for_each(|k| *k += 1);
+        let place = self.stops.partition_point(|&k| k <= i);
+        self.stops.insert(place, i + 1);
+    }
+}

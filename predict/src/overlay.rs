@@ -1,0 +1,219 @@
+//! Predicted features as a drawing: found pieces coloured by their contrast, the rest dashed, each with
+//! why it is missing.
+
+use crate::feature::evidence::State;
+use crate::prediction::{ArcLevel, Geometry, Prediction};
+use std::fmt::Write;
+
+/// The contrast of the strongest colour, in grey levels.
+const STRONG: f64 = 128.0;
+/// The colours of contrasts from none to [`STRONG`]: viridis at equal steps (van der Walt and Smith
+/// 2015).
+const COLOURS: [[u8; 3]; 5] = [
+    [68, 1, 84],
+    [59, 82, 139],
+    [33, 145, 140],
+    [94, 201, 98],
+    [253, 231, 37],
+];
+/// The colour of what is missing.
+pub const MISSING: [u8; 3] = [214, 39, 40];
+
+/// The colour of a contrast in grey levels.
+pub fn colour(contrast: f64) -> [u8; 3] {
+    let place = (contrast / STRONG).clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
+    let i = (place as usize).min(COLOURS.len() - 2);
+    let part = place - i as f64;
+    let mix = |k: usize| {
+        let [a, b] = [COLOURS[i][k], COLOURS[i + 1][k]].map(f64::from);
+        (a + (b - a) * part).round() as u8
+    };
+    [mix(0), mix(1), mix(2)]
+}
+
+/// A line of the overlay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    /// Its points in pixels.
+    pub points: Vec<[f64; 2]>,
+    /// The mean contrast along it, where it is found.
+    pub contrast: Option<f64>,
+    /// The arc.
+    pub arc: u32,
+}
+
+/// What is drawn of a prediction.
+pub fn strokes(prediction: &Prediction) -> Vec<Stroke> {
+    let features = prediction.arcs.iter().filter(|arc| !arc.smooth);
+    features
+        .flat_map(|arc| arc_strokes(arc, prediction))
+        .collect()
+}
+
+fn arc_strokes(arc: &ArcLevel, prediction: &Prediction) -> Vec<Stroke> {
+    let points = points(&arc.geometry);
+    let top = f64::from(prediction.image.setup.conditions.sensor.levels - 1);
+    let mut strokes = Vec::new();
+    if arc.state != State::Whole {
+        strokes.push(Stroke {
+            points: points.clone(),
+            contrast: None,
+            arc: arc.id,
+        });
+    }
+    for piece in &arc.fragments {
+        let within = |along: f64| piece.along[0] <= along && along <= piece.along[1];
+        let on = arc.contrast.iter().filter(|c| within(c.along));
+        let all: Vec<f64> = on.map(|c| c.difference(top)).collect();
+        let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+        strokes.push(Stroke {
+            points: part(&points, piece.along),
+            contrast: Some(mean),
+            arc: arc.id,
+        });
+    }
+    strokes
+}
+
+/// The points of a form.
+pub fn points(geometry: &Geometry) -> Vec<[f64; 2]> {
+    match geometry {
+        Geometry::Line { ends } => ends.to_vec(),
+        Geometry::Conic { points, .. } | Geometry::Sampled { points } => points.clone(),
+    }
+}
+
+/// The part of a polyline between two lengths along it.
+fn part(points: &[[f64; 2]], [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut kept = Vec::new();
+    let mut before = 0.0;
+    for pair in points.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let at = |along: f64| {
+            let s = ((along - before) / length).clamp(0.0, 1.0);
+            [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
+        };
+        if length > 0.0 && before + length >= from && before <= to {
+            if kept.is_empty() {
+                kept.push(at(from));
+            }
+            kept.push(at(to));
+        }
+        before += length;
+    }
+    kept
+}
+
+/// The place of an arc's label: the middle of its line.
+pub fn label_place(arc: &ArcLevel) -> [f64; 2] {
+    let points = points(&arc.geometry);
+    let line = part(&points, [0.5 * arc.length, 0.5 * arc.length + 1.0]);
+    line.first().or(points.first()).copied().unwrap_or_default()
+}
+
+/// The arcs of a prediction that are not whole, each with why.
+pub fn missing(prediction: &Prediction) -> Vec<(u32, String)> {
+    let features = prediction
+        .arcs
+        .iter()
+        .filter(|arc| !arc.smooth && arc.length > 0.0);
+    let told = features.filter_map(|arc| {
+        let reason = arc.reason?;
+        let word = arc.source.word();
+        Some((
+            arc.id,
+            format!("{}: {word} {}, {reason}", arc.id, arc.state.word()),
+        ))
+    });
+    told.collect()
+}
+
+const STYLE: &str = "svg{background:#fff}path{fill:none;stroke-linecap:round;stroke-linejoin:round;stroke-width:2}\
+.missing{stroke:#d62728;stroke-width:1;stroke-dasharray:4 3}\
+text{font-family:sans-serif;font-size:9px;fill:#d62728}.key{fill:#000}";
+
+/// The overlay as an SVG document, in pixels.
+pub fn svg(prediction: &Prediction) -> String {
+    let [width, height] = prediction.image.setup.conditions.sensor.resolution;
+    let reasons = missing(prediction);
+    let below = 14 * (reasons.len() + 2);
+    let mut out = String::new();
+    let _ = writeln!(
+        out,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" \
+         width=\"{width}\" height=\"{}\" viewBox=\"-0.5 -0.5 {width} {}\">\n<style>{STYLE}</style>\n\
+         <rect x=\"-0.5\" y=\"-0.5\" width=\"{width}\" height=\"{height}\" fill=\"#f4f4f4\"/>",
+        height + below,
+        height + below
+    );
+    for stroke in strokes(prediction) {
+        path(&stroke, prediction, &mut out);
+    }
+    for (id, _) in &reasons {
+        let [x, y] = label_place(&prediction.arcs[*id as usize]);
+        let _ = writeln!(
+            out,
+            "<text x=\"{:.1}\" y=\"{:.1}\">{id}</text>",
+            x + 3.0,
+            y - 3.0
+        );
+    }
+    key(width, height, &mut out);
+    for (k, (_, reason)) in reasons.iter().enumerate() {
+        let y = height + 14 * (k + 2);
+        let _ = writeln!(out, "<text x=\"4\" y=\"{y}\">{reason}</text>");
+    }
+    out.push_str("</svg>\n");
+    out
+}
+
+fn path(stroke: &Stroke, prediction: &Prediction, out: &mut String) {
+    let mut d = String::new();
+    for (i, [x, y]) in stroke.points.iter().enumerate() {
+        let command = if i == 0 { 'M' } else { 'L' };
+        let _ = write!(d, "{command}{x:.2} {y:.2}");
+    }
+    let arc = &prediction.arcs[stroke.arc as usize];
+    let why = arc
+        .reason
+        .map_or(String::new(), |reason| format!(", {reason}"));
+    let title = format!(
+        "{} {}: {}{why}",
+        arc.source.word(),
+        arc.id,
+        arc.state.word()
+    );
+    let look = match stroke.contrast {
+        None => "class=\"missing\"".to_owned(),
+        Some(contrast) => {
+            let [r, g, b] = colour(contrast);
+            format!("stroke=\"#{r:02x}{g:02x}{b:02x}\"")
+        }
+    };
+    let _ = writeln!(out, "<path {look} d=\"{d}\"><title>{title}</title></path>");
+}
+
+/// The key to the colours.
+fn key(width: usize, height: usize, out: &mut String) {
+    let y = height + 4;
+    for k in 0..=8u32 {
+        let contrast = STRONG * f64::from(k) / 8.0;
+        let [r, g, b] = colour(contrast);
+        let x = 70 + 22 * k;
+        let _ = writeln!(
+            out,
+            "<rect x=\"{x}\" y=\"{y}\" width=\"22\" height=\"8\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>"
+        );
+    }
+    let text = y + 8;
+    let _ = writeln!(
+        out,
+        "<text class=\"key\" x=\"4\" y=\"{text}\">contrast 0</text>"
+    );
+    let right = (70 + 22 * 9 + 4).min(width);
+    let _ = writeln!(
+        out,
+        "<text class=\"key\" x=\"{right}\" y=\"{text}\">{STRONG}</text>"
+    );
+}

@@ -1,0 +1,390 @@
+//! The five levels, as they are handed on (`premio.prediction/1`).
+
+use super::draft::{Draft, Outcome};
+use crate::feature::contrast::{Contrast, sides};
+use crate::feature::evidence::State;
+use crate::feature::group::{Boundary, Chain, boundaries, chains, triplets};
+use crate::feature::junction::{Junction, Nodes, junctions};
+use crate::feature::reason::Reason;
+use crate::outline::{Arc, Source};
+use crate::processing::Shape;
+use crate::setup::Setup;
+use serde::Serialize;
+
+/// The name of the format.
+pub const SCHEMA: &str = "premio.prediction/1";
+
+/// The prediction of an image.
+#[derive(Clone, Debug, Serialize)]
+pub struct Prediction {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// The image, and the conditions that make it.
+    pub image: ImageLevel,
+    /// The part in it.
+    pub object: ObjectLevel,
+    /// The regions, by id.
+    pub regions: Vec<RegionLevel>,
+    /// The boundaries of regions, by id.
+    pub boundaries: Vec<BoundaryLevel>,
+    /// The arcs that boundaries consist of, by id.
+    pub arcs: Vec<ArcLevel>,
+    /// What the detector makes of the image, by id.
+    pub segments: Vec<Segment>,
+}
+
+/// The image level: under which conditions the image is made.
+#[derive(Clone, Debug, Serialize)]
+pub struct ImageLevel {
+    /// The setup.
+    pub setup: Setup,
+    /// OpenCV's camera matrix, in pixels.
+    #[serde(rename = "K")]
+    pub k: [[f64; 3]; 3],
+    /// The rotation into the camera's frame.
+    #[serde(rename = "R")]
+    pub r: [[f64; 3]; 3],
+    /// The part's origin in the camera's frame.
+    pub t: [f64; 3],
+    /// The difference of grey levels that the detector's threshold takes.
+    pub contrast_needed: f64,
+    /// Over how many draws of the noise chances are told.
+    pub draws: u32,
+}
+
+/// The object level: what of the part appears.
+#[derive(Clone, Debug, Serialize)]
+pub struct ObjectLevel {
+    /// The least and the greatest column and row of its arcs in the image.
+    pub bounds: [[f64; 2]; 2],
+    /// The regions that show it.
+    pub regions: Vec<u32>,
+    /// The arcs that may be found: all but where the normal does not jump.
+    pub features: Vec<u32>,
+    /// Where arcs meet.
+    pub junctions: Vec<Junction>,
+    /// Arcs that follow one another through junctions of two.
+    pub chains: Vec<Chain>,
+    /// Three arcs, the middle one of which meets the others at its ends.
+    pub triplets: Vec<[u32; 3]>,
+    /// The closed boundaries.
+    pub loops: Vec<u32>,
+    /// The boundaries of holes in regions.
+    pub holes: Vec<u32>,
+}
+
+/// The region level.
+#[derive(Clone, Debug, Serialize)]
+pub struct RegionLevel {
+    /// Its place in the list.
+    pub id: u32,
+    /// The face that is seen in it; none is the background.
+    pub face: Option<u32>,
+    /// The lights that reach it.
+    pub lit: Vec<u32>,
+    /// The mean grey level, before noise and steps.
+    pub mean: f64,
+    /// Its area in pixels.
+    pub area: f64,
+    /// Its boundaries.
+    pub boundaries: Vec<u32>,
+}
+
+/// The boundary level.
+#[derive(Clone, Debug, Serialize)]
+pub struct BoundaryLevel {
+    /// Its place in the list.
+    pub id: u32,
+    /// The region it bounds.
+    pub region: u32,
+    /// Its arcs.
+    #[serde(flatten)]
+    pub boundary: Boundary,
+    /// The share of its length that is found.
+    pub found: f64,
+}
+
+/// The form of an arc in the image, in pixels.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+pub enum Geometry {
+    /// A straight line.
+    Line {
+        /// Its ends.
+        ends: [[f64; 2]; 2],
+    },
+    /// A conic a x² + b x y + c y² + d x + e y + f = 0.
+    Conic {
+        /// a to f.
+        coefficients: Vec<f64>,
+        /// Points of it, from its start to its end.
+        points: Vec<[f64; 2]>,
+    },
+    /// Neither.
+    Sampled {
+        /// Points of it, from its start to its end.
+        points: Vec<[f64; 2]>,
+    },
+}
+
+/// How likely an arc is whole, broken or missed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Chances {
+    /// In one piece.
+    pub whole: f64,
+    /// In pieces, or in part.
+    pub broken: f64,
+    /// Not found.
+    pub missed: f64,
+}
+
+/// A piece of an arc that is found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Piece {
+    /// The range of the curve's parameter.
+    pub t: [f64; 2],
+    /// From where to where along the arc, in pixels.
+    pub along: [f64; 2],
+    /// The detector's segments that it is made of.
+    pub segments: Vec<u32>,
+}
+
+/// The arc level.
+#[derive(Clone, Debug, Serialize)]
+pub struct ArcLevel {
+    /// Its place in the list.
+    pub id: u32,
+    /// What it is the image of.
+    pub source: Source,
+    /// The contour of the view that it is a piece of.
+    pub contour: Option<u32>,
+    /// The range of the parameter of the curve in space; of a shadow's boundary that of what casts it.
+    pub t: [f64; 2],
+    /// The regions to its left and to its right, from stop to stop.
+    pub sides: Vec<[u32; 2]>,
+    /// Whether the normal does not jump across it.
+    pub smooth: bool,
+    /// Its form.
+    pub geometry: Geometry,
+    /// Its length within the image, in pixels.
+    pub length: f64,
+    /// The grey levels on both sides along it, before noise and steps.
+    pub contrast: Vec<Contrast>,
+    /// What is found of it.
+    pub fragments: Vec<Piece>,
+    /// The share of it that is found, its ends left out.
+    pub share: f64,
+    /// Its most frequent state.
+    pub state: State,
+    /// How likely each state is.
+    pub chances: Chances,
+    /// Why it is not whole.
+    #[serde(flatten)]
+    pub reason: Option<Reason>,
+}
+
+/// What the detector makes of edge pixels, and which arcs these are of.
+#[derive(Clone, Debug, Serialize)]
+pub struct Segment {
+    /// Its place in the list.
+    pub id: u32,
+    /// Its form, in pixels.
+    pub shape: Shape,
+    /// The root mean square distance of the edge pixels from it.
+    pub rms: f64,
+    /// The arcs.
+    pub arcs: Vec<u32>,
+}
+
+/// The prediction of a draft's image.
+pub fn prediction(draft: &Draft<'_>, setup: &Setup) -> Prediction {
+    let outcome = draft.outcome();
+    let measure = draft.measure();
+    let arcs: Vec<ArcLevel> = (0..draft.arcs.len())
+        .map(|i| arc_level(draft, &outcome, i, &measure))
+        .collect();
+    let nodes = Nodes::of(&draft.arcs);
+    let margin = draft.conditions.detector.radius() as f64;
+    let meetings = junctions(&draft.arcs, &nodes, &outcome.evidence, &draft.ink, margin);
+    let mut regions = region_levels(draft);
+    let mut bounds = Vec::new();
+    let by_region = boundaries(&draft.arcs[..draft.regions.arcs()], &nodes, &draft.regions);
+    for (region, all) in by_region.into_iter().enumerate() {
+        for boundary in all {
+            let id = bounds.len() as u32;
+            regions[region].boundaries.push(id);
+            bounds.push(boundary_level(id, region as u32, boundary, &arcs));
+        }
+    }
+    let segments = segments(&outcome, arcs.len());
+    let matrices = draft.stage.matrices;
+    let rows =
+        |m: &nalgebra::Matrix3<f64>| std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
+    Prediction {
+        schema: SCHEMA,
+        image: ImageLevel {
+            setup: setup.clone(),
+            k: rows(&matrices.k),
+            r: rows(&matrices.r),
+            t: matrices.t.into(),
+            contrast_needed: measure.needed,
+            draws: outcome.counts.first().map_or(0, |c| c.iter().sum()),
+        },
+        object: object_level(draft, meetings, &regions, &bounds, &arcs),
+        regions,
+        boundaries: bounds,
+        arcs,
+        segments,
+    }
+}
+
+fn object_level(
+    draft: &Draft<'_>,
+    junctions: Vec<Junction>,
+    regions: &[RegionLevel],
+    boundaries: &[BoundaryLevel],
+    arcs: &[ArcLevel],
+) -> ObjectLevel {
+    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for p in draft.ink.pixels.iter().map(|p| p.at) {
+        for i in 0..2 {
+            bounds[0][i] = bounds[0][i].min(p[i]);
+            bounds[1][i] = bounds[1][i].max(p[i]);
+        }
+    }
+    let those = |hole: bool| {
+        let all = boundaries
+            .iter()
+            .filter(|b| b.boundary.closed && (!hole || b.boundary.hole));
+        all.map(|b| b.id).collect()
+    };
+    ObjectLevel {
+        bounds,
+        regions: regions
+            .iter()
+            .filter(|r| r.face.is_some())
+            .map(|r| r.id)
+            .collect(),
+        features: arcs.iter().filter(|a| !a.smooth).map(|a| a.id).collect(),
+        chains: chains(arcs.len(), &junctions),
+        triplets: triplets(arcs.len(), &junctions),
+        junctions,
+        loops: those(false),
+        holes: those(true),
+    }
+}
+
+fn region_levels(draft: &Draft<'_>) -> Vec<RegionLevel> {
+    let levels = draft.regions.all.iter().enumerate().map(|(i, region)| {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for &(at, gap) in &region.points {
+            let seen = region.seen.unwrap_or_else(|| draft.shading.asked(at));
+            let mut hint = draft.shading.distance(&seen.point);
+            sum += gap * draft.shading.level(at, &seen, &mut hint);
+            weight += gap;
+        }
+        let seen = region.seen;
+        RegionLevel {
+            id: i as u32,
+            face: seen.and_then(|s| s.face).map(|f| f.0),
+            lit: (0..64)
+                .filter(|k| seen.is_some_and(|s| s.lit >> k & 1 == 1))
+                .collect(),
+            mean: if weight > 0.0 { sum / weight } else { 0.0 },
+            area: region.area,
+            boundaries: Vec::new(),
+        }
+    });
+    levels.collect()
+}
+
+fn boundary_level(id: u32, region: u32, boundary: Boundary, arcs: &[ArcLevel]) -> BoundaryLevel {
+    let own = boundary.arcs.iter().map(|&a| &arcs[a as usize]);
+    let length: f64 = own.clone().map(|a| a.length).sum();
+    let found: f64 = own.map(|a| a.length * a.share).sum();
+    BoundaryLevel {
+        id,
+        region,
+        boundary,
+        found: if length > 0.0 { found / length } else { 0.0 },
+    }
+}
+
+fn arc_level(
+    draft: &Draft<'_>,
+    outcome: &Outcome,
+    i: usize,
+    measure: &crate::feature::reason::Measure,
+) -> ArcLevel {
+    let arc = &draft.arcs[i];
+    let evidence = &outcome.evidence[i];
+    let contrast = draft.contrast(i);
+    let reason = draft.reason(i, &outcome.evidence, &contrast, measure);
+    let [start, end] = draft.ink.spans[i];
+    let total: u32 = outcome.counts[i].iter().sum();
+    let chance = |state: State| f64::from(outcome.counts[i][state.index()]) / f64::from(total);
+    let fragments = evidence.fragments.iter().map(|f| Piece {
+        t: f.along.map(|a| arc.line.parameter_at(a)),
+        along: f.along,
+        segments: f.segments.clone(),
+    });
+    ArcLevel {
+        id: i as u32,
+        source: arc.source,
+        contour: arc.contour,
+        t: [0, arc.line.parameters.len() - 1].map(|k| arc.line.parameters[k]),
+        sides: match i < draft.regions.arcs() {
+            true => sides(&draft.regions, i),
+            false => Vec::new(),
+        },
+        smooth: arc.smooth,
+        geometry: geometry(arc),
+        length: (end - start).max(0.0),
+        contrast,
+        fragments: fragments.collect(),
+        share: evidence.share,
+        state: evidence.state,
+        chances: Chances {
+            whole: chance(State::Whole),
+            broken: chance(State::Broken),
+            missed: chance(State::Missed),
+        },
+        reason: if arc.smooth { None } else { reason },
+    }
+}
+
+fn geometry(arc: &Arc) -> Geometry {
+    let points = &arc.line.points;
+    let ends = [points[0], points[points.len() - 1]];
+    match arc.coefficients.len() {
+        3 => Geometry::Line { ends },
+        6 => Geometry::Conic {
+            coefficients: arc.coefficients.clone(),
+            points: points.clone(),
+        },
+        _ if points.len() == 2 => Geometry::Line { ends },
+        _ => Geometry::Sampled {
+            points: points.clone(),
+        },
+    }
+}
+
+fn segments(outcome: &Outcome, arcs: usize) -> Vec<Segment> {
+    let found = outcome
+        .detection
+        .segments
+        .iter()
+        .enumerate()
+        .map(|(i, segment)| Segment {
+            id: i as u32,
+            shape: segment.shape,
+            rms: segment.rms,
+            arcs: (0..arcs as u32)
+                .filter(|&a| {
+                    let fragments = &outcome.evidence[a as usize].fragments;
+                    fragments.iter().any(|f| f.segments.contains(&(i as u32)))
+                })
+                .collect(),
+        });
+    found.collect()
+}

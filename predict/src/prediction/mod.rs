@@ -1,0 +1,10 @@
+//! The prediction of an image: five levels with their relations (section 4.3 of the paper).
+
+mod draft;
+mod levels;
+
+pub use draft::{Draft, Memory, Outcome};
+pub use levels::{
+    ArcLevel, BoundaryLevel, Chances, Geometry, ImageLevel, ObjectLevel, Piece, Prediction,
+    RegionLevel, SCHEMA, Segment, prediction,
+};

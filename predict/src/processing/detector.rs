@@ -1,0 +1,266 @@
+//! The detector: what it is told, and its steps.
+
+use super::corners::{corners, extend};
+use super::detection::Detection;
+use super::domain::Domain;
+use super::grey::Grey;
+use super::joining::join;
+use super::linking::link;
+use super::segments::Fitter;
+use super::shrink::shrink;
+use super::thinning::{connect, edge_pixels, pick};
+use super::workspace::Workspace;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A detector of edges, lines, conics and corners.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Detector {
+    /// How the gradient is found.
+    pub mask: Mask,
+    /// How large the gradient of an edge is at least, in grey levels per pixel.
+    pub threshold: f64,
+    /// Weaker pixels down to this, in grey levels per pixel, are kept where 8-neighbours join them
+    /// to strong ones (hysteresis, Canny 1986); at most the threshold.
+    pub low: Option<f64>,
+    /// How edges become one pixel thick.
+    pub thinning: Thinning,
+    /// Ends of chains this near, in pixels, are joined where their directions agree.
+    pub gap: f64,
+    /// Shorter chains, in pixels along them, are dropped.
+    pub shortest: f64,
+    /// How far, in pixels, a chain may leave its chord or fitted curve before it is split (Ramer
+    /// 1972).
+    pub corner: f64,
+}
+
+/// A gradient mask (Haralick & Shapiro ch. 7), with weights such that a ramp of one level per pixel
+/// has the gradient one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Mask {
+    /// Two by two pixels; it is centred between them, as sub-pixel positions account for.
+    Roberts,
+    /// Three by three pixels of equal weight.
+    Prewitt,
+    /// Three by three pixels, the middle ones of twice the weight.
+    #[default]
+    Sobel,
+    /// The derivatives of a Gaussian, cut off at three times its width (Canny 1986).
+    Gaussian {
+        /// The width of the Gaussian: its standard deviation in pixels.
+        sigma: f64,
+    },
+}
+
+/// How edges become one pixel thick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Thinning {
+    /// A pixel stays if the gradient is largest there, against magnitudes interpolated along the
+    /// gradient on both sides (Canny 1986).
+    #[default]
+    NonMaximum,
+    /// All pixels above the threshold are edges, and shrink as long as they stay connected, the
+    /// weakest first (the connected shrink operator, Haralick & Shapiro ch. 6); ends of lines stay.
+    Shrink,
+}
+
+/// Why a detector is none.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum DetectorError {
+    /// A value is not a number, or out of its range.
+    #[error("`{name}` is {value}, and should be {range}")]
+    Value {
+        /// The name of the field.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be, in words.
+        range: &'static str,
+    },
+    /// The low threshold is above the other.
+    #[error("`low` is {low}, above `threshold`, {threshold}")]
+    LowAboveThreshold {
+        /// The low threshold, in levels per pixel.
+        low: f64,
+        /// The threshold, in levels per pixel.
+        threshold: f64,
+    },
+}
+
+impl Mask {
+    /// The least and the greatest width of a Gaussian: less is no mask of pixels, more is no edge.
+    const SIGMAS: [f64; 2] = [0.375, 20.0];
+
+    /// How many pixels it looks at to each side.
+    pub fn radius(self) -> usize {
+        match self {
+            Self::Roberts | Self::Prewitt | Self::Sobel => 1,
+            Self::Gaussian { sigma } => (3.0 * Self::usable(sigma)).ceil() as usize,
+        }
+    }
+
+    /// The nearest width that a mask can have.
+    pub(super) fn usable(sigma: f64) -> f64 {
+        let [least, greatest] = Self::SIGMAS;
+        if sigma.is_nan() {
+            least
+        } else {
+            sigma.clamp(least, greatest)
+        }
+    }
+
+    /// Where it is centred, relative to its pixel, along both axes.
+    pub(super) fn centre(self) -> f64 {
+        match self {
+            Self::Roberts => 0.5,
+            _ => 0.0,
+        }
+    }
+}
+
+impl Default for Detector {
+    /// A detector for levels from 0 to 255.
+    fn default() -> Self {
+        Self {
+            mask: Mask::default(),
+            threshold: 10.0,
+            low: None,
+            thinning: Thinning::default(),
+            gap: 3.0,
+            shortest: 8.0,
+            corner: 1.0,
+        }
+    }
+}
+
+impl Detector {
+    /// Whether all values are what they may be.
+    pub fn validate(&self) -> Result<(), DetectorError> {
+        let positive = "positive and finite";
+        let not_negative = "zero or more, and finite";
+        check("threshold", self.threshold, self.threshold > 0.0, positive)?;
+        let distances = [("gap", self.gap), ("shortest", self.shortest)];
+        for (name, value) in distances {
+            check(name, value, value >= 0.0, not_negative)?;
+        }
+        check("corner", self.corner, self.corner > 0.0, positive)?;
+        if let Some(low) = self.low {
+            check("low", low, low >= 0.0, not_negative)?;
+            if low > self.threshold {
+                let threshold = self.threshold;
+                return Err(DetectorError::LowAboveThreshold { low, threshold });
+            }
+        }
+        if let Mask::Gaussian { sigma } = self.mask {
+            let usable = Mask::usable(sigma) == sigma;
+            check("sigma", sigma, usable, "between 0.375 and 20 pixels")?;
+        }
+        Ok(())
+    }
+
+    /// How many pixels about an edge must be known for it to be found: those of the mask, and the
+    /// one to which thinning compares.
+    pub fn radius(&self) -> usize {
+        self.mask.radius() + 1
+    }
+
+    /// Finds the edges in the known pixels of an image. Nothing is found where image and domain are
+    /// of different sizes.
+    pub fn detect(&self, grey: &Grey, domain: &Domain) -> Detection {
+        self.detect_with(&mut Workspace::new(), grey, domain)
+    }
+
+    /// Finds the same in memory that is used again.
+    pub fn detect_with(&self, work: &mut Workspace, grey: &Grey, domain: &Domain) -> Detection {
+        let size = grey.width.checked_mul(grey.height);
+        let usable = size.is_some_and(|n| n == grey.levels.len() && u32::try_from(n).is_ok());
+        if !usable || [domain.width(), domain.height()] != [grey.width, grey.height] {
+            return Detection::default();
+        }
+        work.resize(grey.width, grey.height);
+        let inner = domain.eroded(self.mask.radius());
+        work.gradient.find(self.mask, grey, domain, &inner);
+        pick(self, work, &inner.eroded(1));
+        connect(self, work);
+        shrink(self.thinning, work);
+        let links = link(work);
+        let pixels = edge_pixels(self, work);
+        work.clear();
+        let chains = join(links.chains(&pixels), &pixels, self);
+        let mut fitter = Fitter::new(self, &pixels);
+        let chains = fitter.segments(chains);
+        let mut segments = fitter.found;
+        let corners = corners(self, &pixels, &chains, &segments);
+        extend(self, &corners, &mut segments);
+        Detection {
+            pixels,
+            chains,
+            segments,
+            corners,
+        }
+    }
+}
+
+fn check(
+    name: &'static str,
+    value: f64,
+    holds: bool,
+    range: &'static str,
+) -> Result<(), DetectorError> {
+    if holds && value.is_finite() {
+        Ok(())
+    } else {
+        Err(DetectorError::Value { name, value, range })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_checked() {
+        let good = Detector::default();
+        assert_eq!(good.validate(), Ok(()));
+        let wrong = [
+            Detector {
+                threshold: f64::NAN,
+                ..good.clone()
+            },
+            Detector {
+                low: Some(11.0),
+                ..good.clone()
+            },
+            Detector {
+                gap: -1.0,
+                ..good.clone()
+            },
+            Detector {
+                corner: 0.0,
+                ..good.clone()
+            },
+            Detector {
+                mask: Mask::Gaussian { sigma: 0.1 },
+                ..good.clone()
+            },
+        ];
+        for detector in wrong {
+            assert!(detector.validate().is_err(), "{detector:?}");
+        }
+    }
+
+    #[test]
+    fn it_is_written_and_read() {
+        let text = r#"{"mask": {"gaussian": {"sigma": 1.5}}, "thinning": "shrink", "low": 4}"#;
+        let detector: Detector = serde_json::from_str(text).unwrap();
+        assert_eq!(detector.mask, Mask::Gaussian { sigma: 1.5 });
+        assert_eq!((detector.low, detector.gap), (Some(4.0), 3.0));
+        assert_eq!(detector.radius(), 6);
+        let again = serde_json::to_string(&detector).unwrap();
+        assert_eq!(serde_json::from_str::<Detector>(&again).unwrap(), detector);
+        assert!(serde_json::from_str::<Detector>(r#"{"mode": 1}"#).is_err());
+    }
+}

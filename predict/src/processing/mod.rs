@@ -1,0 +1,34 @@
+//! The processing model (Haralick & Shapiro, Computer and Robot Vision): one detector of edges,
+//! lines, conics and corners, for a whole grey image and for the known pixels of a predicted one.
+//!
+//! The steps: [gradient masks](Mask) (ch. 7), [thinning](Thinning) (ch. 6), hysteresis (Canny
+//! 1986), linking of pixels to [chains](Chain) (ch. 11), splitting of chains at corners (Ramer
+//! 1972), and [fits](fit) of lines and ellipses to the pieces (ch. 11, Fitzgibbon 1999).
+//!
+//! No step looks at a pixel outside the [`Domain`], so that an image of which little is known gives
+//! the same edges as the whole one wherever [`Detector::radius`] pixels about them are known.
+
+mod corners;
+mod detection;
+mod detector;
+mod domain;
+pub mod fit;
+mod gradient;
+mod grey;
+mod joining;
+mod linking;
+mod segments;
+mod shrink;
+mod splitting;
+mod thinning;
+mod walk;
+mod workspace;
+
+#[cfg(test)]
+mod tests;
+
+pub use detection::{Chain, Corner, Detection, EdgePixel, Segment, Shape};
+pub use detector::{Detector, DetectorError, Mask, Thinning};
+pub use domain::Domain;
+pub use grey::Grey;
+pub use workspace::Workspace;

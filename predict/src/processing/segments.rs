@@ -1,0 +1,303 @@
+//! Lines and conics along chains: the pieces between splits, merged where one curve holds several
+//! (Haralick & Shapiro ch. 11).
+
+use super::detection::{Chain, EdgePixel, Segment, Shape};
+use super::detector::Detector;
+use super::fit::{Fit, LineFit, distance_to_conic, ellipse, line};
+use super::splitting::{outermost, split, split_closed};
+use super::walk::{Stretch, Walk};
+use std::ops::Range;
+
+/// A curve with a smaller root mean square distance than this, in pixels, is as good as any.
+const FINE: f64 = 3.0 / 16.0;
+
+/// How much larger the distances from one line may be than from those of its pieces.
+const LOOSER: f64 = 1.25;
+
+/// As many points as tell an ellipse from a line with noise.
+const FEWEST: usize = 8;
+
+/// A long stretch is first tried on about this many of its points.
+const SAMPLE: usize = 40;
+
+/// Fits segments to chains.
+pub(super) struct Fitter<'a> {
+    detector: &'a Detector,
+    pixels: &'a [EdgePixel],
+    /// The segments so far, chain by chain.
+    pub found: Vec<Segment>,
+}
+
+/// The pieces of a chain, with what is known of them.
+struct Pieces<'a> {
+    points: &'a [[f64; 2]],
+    /// Where each begins, and at last the end of the chain.
+    breaks: Vec<usize>,
+    /// The sum of squared distances of each from its line.
+    squares: Vec<f64>,
+    tolerance: f64,
+    /// How many pixels next to a corner the mask may pull.
+    blurred: usize,
+}
+
+impl<'a> Fitter<'a> {
+    pub fn new(detector: &'a Detector, pixels: &'a [EdgePixel]) -> Self {
+        Self {
+            detector,
+            pixels,
+            found: Vec::new(),
+        }
+    }
+
+    /// Finds the segments of chains, and gives the chains back: the closed ones start where a
+    /// segment does.
+    pub fn segments(&mut self, chains: Vec<Chain>) -> Vec<Chain> {
+        let numbered = (0_u32..).zip(chains);
+        let chains = numbered.map(|(number, chain)| self.chain(number, chain));
+        chains.collect()
+    }
+
+    fn chain(&mut self, number: u32, chain: Chain) -> Chain {
+        let mut walk = Walk::new(chain, self.pixels);
+        let tolerance = self.detector.corner;
+        let breaks = if walk.chain.closed {
+            walk.turn(outermost(&walk.points));
+            let breaks = split_closed(&walk.points, tolerance);
+            let sharpest = sharpest(&walk.points, &breaks);
+            walk.turn(sharpest);
+            turned(breaks, sharpest)
+        } else {
+            split(&walk.points, tolerance)
+        };
+        walk.stretches = self.pieces(&walk.points, breaks).merged();
+        self.close(&mut walk);
+        walk.tidy(2 * self.detector.radius());
+        let whole = walk.chain.closed && walk.stretches.len() == 1;
+        for stretch in &walk.stretches {
+            let segment = self.segment(number, &walk, stretch, whole);
+            self.found.push(segment);
+        }
+        walk.chain
+    }
+
+    /// Makes the last and the first stretch of a closed chain one, if a curve holds both.
+    fn close(&self, walk: &mut Walk) {
+        let last = match &walk.stretches[..] {
+            [_, .., last] if walk.chain.closed => last.range.start,
+            _ => return,
+        };
+        walk.turn(last);
+        let [back, front] = [0, 1].map(|i| walk.stretches[i].range.end);
+        let both = self.pieces(&walk.points, vec![0, back, front]).held(0..2);
+        if let Some((bent, _)) = both {
+            let range = 0..front;
+            walk.stretches.splice(0..2, [Stretch { range, bent }]);
+        }
+    }
+
+    fn pieces<'p>(&self, points: &'p [[f64; 2]], breaks: Vec<usize>) -> Pieces<'p> {
+        let square = |b: &[usize]| {
+            let fit = line(&points[b[0]..b[1]]);
+            fit.map_or(0.0, |f| f.rms * f.rms * (b[1] - b[0]) as f64)
+        };
+        Pieces {
+            squares: breaks.windows(2).map(square).collect(),
+            points,
+            breaks,
+            tolerance: self.detector.corner,
+            blurred: self.detector.radius(),
+        }
+    }
+
+    fn segment(&self, chain: u32, walk: &Walk, stretch: &Stretch, whole: bool) -> Segment {
+        let all = &walk.points[stretch.range.clone()];
+        // Beyond a corner the mask sees another edge, which pulls the pixels next to it.
+        let outer = self.detector.radius().min(all.len() / 4);
+        let inner = &all[outer..all.len() - outer];
+        let fitted = if whole { all } else { inner };
+        let straight = line(fitted).or_else(|| line(all));
+        // With other boundaries it can be a line after all.
+        let curved = whole || straight.is_none_or(|fit| fit.rms > FINE);
+        let curve = (stretch.bent && curved).then(|| ellipse(fitted)).flatten();
+        let fit = curve.map(Fit::Ellipse).or(straight.map(Fit::Line));
+        Segment {
+            chain,
+            range: [stretch.range.start as u32, stretch.range.end as u32],
+            shape: shape(fit, walk, &stretch.range, whole),
+            rms: fit.map_or(0.0, |f| f.rms()),
+        }
+    }
+}
+
+/// The shape of a fit to a range of points.
+fn shape(fit: Option<Fit>, walk: &Walk, range: &Range<usize>, whole: bool) -> Shape {
+    let points = &walk.points[range.clone()];
+    let onto = |p: [f64; 2]| fit.map_or(p, |f| f.foot(p));
+    let ends = [points[0], points[points.len() - 1]].map(onto);
+    match fit {
+        Some(Fit::Ellipse(fit)) if whole => Shape::Ellipse {
+            conic: fit.conic,
+            centre: fit.centre,
+            axes: fit.axes,
+        },
+        Some(Fit::Ellipse(fit)) => Shape::Arc {
+            conic: fit.conic,
+            ends,
+            middle: onto(points[points.len() / 2]),
+        },
+        Some(Fit::Line(fit)) if !whole => Shape::Line {
+            ends: reaching(&fit, ends, walk.beyond(range)),
+        },
+        _ => Shape::Line { ends },
+    }
+}
+
+/// The ends of a line that is split from its neighbours: the pixel beyond a split is as near to the
+/// corner as the last one before it, and is taken where it is farther out.
+fn reaching(fit: &LineFit, ends: [[f64; 2]; 2], beyond: [Option<[f64; 2]>; 2]) -> [[f64; 2]; 2] {
+    [0, 1].map(|i| {
+        let outwards = [ends[1 - i], ends[i]];
+        let out = |p: [f64; 2]| {
+            let [a, b] = outwards;
+            (p[0] - b[0]) * (b[0] - a[0]) + (p[1] - b[1]) * (b[1] - a[1])
+        };
+        let next = beyond[i].map(|p| fit.foot(p));
+        next.filter(|&p| out(p) > 0.0).unwrap_or(ends[i])
+    })
+}
+
+/// The breaks of a closed chain, where it starts so many points later.
+fn turned(mut breaks: Vec<usize>, by: usize) -> Vec<usize> {
+    let n = breaks.pop().unwrap_or_default();
+    let at = breaks.iter().position(|&b| b == by).unwrap_or_default();
+    breaks.rotate_left(at);
+    let mut breaks: Vec<usize> = breaks.iter().map(|b| (b + n - by) % n).collect();
+    breaks.push(n);
+    breaks
+}
+
+/// At which break a closed chain turns most between its chords.
+fn sharpest(points: &[[f64; 2]], breaks: &[usize]) -> usize {
+    let n = points.len();
+    let m = breaks.len() - 1;
+    let chord = |i: usize| {
+        let [a, b] = [points[breaks[i % m]], points[breaks[i % m + 1] % n]];
+        [b[0] - a[0], b[1] - a[1]]
+    };
+    let turn = |i: usize| turn(chord(i + m - 1), chord(i)).abs();
+    let mut best = 0;
+    for i in 1..m {
+        if turn(i) > turn(best) {
+            best = i;
+        }
+    }
+    breaks[best]
+}
+
+/// The angle from one vector to another.
+fn turn(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
+}
+
+impl Pieces<'_> {
+    /// The stretches of points, each of as many pieces as one curve holds. The neighbours that one
+    /// curve holds best become one first, so that a curve is whole before its ends are tried.
+    fn merged(mut self) -> Vec<Stretch> {
+        let count = self.squares.len();
+        if let Some((bent, _)) = self.held(0..count).filter(|_| count > 1) {
+            let range = 0..self.points.len();
+            return vec![Stretch { range, bent }];
+        }
+        let mut bent = vec![false; count];
+        let mut pairs: Vec<_> = (1..count).map(|i| self.held(i - 1..i + 1)).collect();
+        loop {
+            let told = pairs.iter().enumerate();
+            let told = told.filter_map(|(i, pair)| pair.map(|(bent, rms)| (i, bent, rms)));
+            let Some((i, kind, rms)) = told.min_by(|a, b| a.2.total_cmp(&b.2)) else {
+                break;
+            };
+            self.breaks.remove(i + 1);
+            self.squares.remove(i + 1);
+            bent.remove(i + 1);
+            pairs.remove(i);
+            let length = self.breaks[i + 1] - self.breaks[i];
+            (self.squares[i], bent[i]) = (rms * rms * length as f64, kind);
+            for k in [i.checked_sub(1), Some(i)].into_iter().flatten() {
+                if k < pairs.len() {
+                    pairs[k] = self.held(k..k + 2);
+                }
+            }
+        }
+        let ranges = self.breaks.windows(2).map(|b| b[0]..b[1]);
+        let stretches = ranges.zip(bent);
+        stretches
+            .map(|(range, bent)| Stretch { range, bent })
+            .collect()
+    }
+
+    /// Whether the curve that holds the points of pieces about as well as their own do is an
+    /// ellipse, or a line, and its distances in the root mean square; none where neither does.
+    fn held(&self, pieces: Range<usize>) -> Option<(bool, f64)> {
+        let range = self.breaks[pieces.start]..self.breaks[pieces.end];
+        let squares: f64 = self.squares[pieces.clone()].iter().sum();
+        let rms = (squares / range.len() as f64).sqrt();
+        let points = &self.points[range];
+        let near = |d: f64| d <= self.tolerance;
+        if let Some(fit) = self.straight(points, (LOOSER * rms).max(FINE)) {
+            let outer = self.outer(points);
+            let inner = outer..points.len() - outer;
+            let distances = points.iter().map(|&p| fit.distance(p)).enumerate();
+            // Where a corner may bend the ends, they may be farther away.
+            let mut distances =
+                distances.map(|(i, d)| if inner.contains(&i) { d } else { 0.5 * d });
+            return distances.all(near).then_some((false, fit.rms));
+        }
+        let limit = rms.max(FINE);
+        if points.len() < FEWEST || !self.turns_one_way(pieces) {
+            return None;
+        }
+        let step = points.len() / SAMPLE;
+        if step > 1 {
+            let sample: Vec<[f64; 2]> = points.iter().copied().step_by(step).collect();
+            ellipse(&sample).filter(|fit| fit.rms <= 2.0 * limit)?;
+        }
+        let fit = ellipse(points).filter(|fit| fit.rms <= limit)?;
+        let all = points
+            .iter()
+            .all(|&p| near(distance_to_conic(&fit.conic, p)));
+        (all && runs_along(points, fit.centre)).then_some((true, fit.rms))
+    }
+
+    /// How many points at each end of a stretch a corner may bend.
+    fn outer(&self, points: &[[f64; 2]]) -> usize {
+        self.blurred.min(points.len() / 4)
+    }
+
+    /// The line of points, if it holds all but those at the ends, which a corner may bend.
+    fn straight(&self, points: &[[f64; 2]], limit: f64) -> Option<LineFit> {
+        let outer = self.outer(points);
+        line(&points[outer..points.len() - outer]).filter(|fit| fit.rms <= limit)
+    }
+
+    /// Whether the chords of pieces turn to one side only.
+    fn turns_one_way(&self, pieces: Range<usize>) -> bool {
+        let n = self.points.len();
+        let chord = |i: usize| {
+            let [a, b] = [i, i + 1].map(|k| self.points[self.breaks[k].min(n - 1)]);
+            [b[0] - a[0], b[1] - a[1]]
+        };
+        let mut sides = (pieces.start + 1..pieces.end).map(|i| turn(chord(i - 1), chord(i)));
+        let first = sides.next().unwrap_or_default();
+        sides.all(|side| side * first > 0.0)
+    }
+}
+
+/// Whether points run about a centre one way, seen at a few of them.
+fn runs_along(points: &[[f64; 2]], centre: [f64; 2]) -> bool {
+    let step = (points.len() / 8).max(1);
+    let arms = points.iter().step_by(step);
+    let arms: Vec<[f64; 2]> = arms.map(|p| [0, 1].map(|i| p[i] - centre[i])).collect();
+    let mut sides = arms.windows(2).map(|a| turn(a[0], a[1]));
+    let first = sides.next().unwrap_or_default();
+    sides.all(|side| side * first > 0.0)
+}

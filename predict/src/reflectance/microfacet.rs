@@ -1,0 +1,33 @@
+//! A surface as many small mirrors: how they lie, and how much of each is in the light and in sight.
+
+/// Beckmann's distribution D = exp(−(tan α/m)²)/(m² cos⁴α) of the facets' normals.
+///
+/// `m` is the root mean square slope, `cos_alpha` the cosine of the angle between the facets' normal
+/// and that of the surface. Its integral over the hemisphere, each direction by its cosine, is π
+/// (Beckmann and Spizzichino, 1963; Cook and Torrance, 1982, equation 6). Nothing where the facet
+/// looks into the surface.
+#[inline]
+pub fn distribution(m: f64, cos_alpha: f64) -> f64 {
+    let cos2 = cos_alpha * cos_alpha;
+    let m2 = m * m;
+    let exponent = (1.0 - cos2).max(0.0) / (m2 * cos2);
+    // Beyond it the exponential is zero in doubles, and 1/cos⁴α may be infinite.
+    if cos_alpha > 0.0 && exponent < 746.0 {
+        (-exponent).exp() / (m2 * cos2 * cos2)
+    } else {
+        0.0
+    }
+}
+
+/// The geometric attenuation G = min{1, 2(N·H)(N·V)/(V·H), 2(N·H)(N·L)/(V·H)}, from 0 to 1.
+///
+/// The share of a facet that its neighbours neither shade nor hide, for V-shaped grooves (Torrance
+/// and Sparrow, 1967; Cook and Torrance, 1982).
+#[inline]
+pub fn attenuation(n_h: f64, n_v: f64, n_l: f64, v_h: f64) -> f64 {
+    if n_h > 0.0 && n_v > 0.0 && n_l > 0.0 && v_h > 0.0 {
+        (2.0 * n_h * n_v.min(n_l) / v_h).min(1.0)
+    } else {
+        0.0
+    }
+}

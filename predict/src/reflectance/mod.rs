@@ -1,0 +1,22 @@
+//! The physical object model: how much of the light that comes to a surface goes to the sensor.
+//!
+//! The model of Cook and Torrance (ACM Transactions on Graphics 1, 1982), with the Fresnel term for
+//! light that is polarised of Yi, Haralick and Shapiro (PREMIO, section 3.1.2): of each light the
+//! reflected radiance is its irradiance, with the cosine N·L in it, times `s R_s + d R_d`; the
+//! ambient light is reflected by `R_a`. Angles and formulas are those of the literature where the
+//! printed ones are damaged; each function says its own.
+
+mod library;
+mod material;
+mod microfacet;
+mod optics;
+mod surface;
+
+pub use library::Named;
+pub use material::{Constants, Material, MaterialError, SpecularForm};
+pub use microfacet::{attenuation, distribution};
+pub use optics::{Optics, Polarisation, Reflectivity};
+pub use surface::{Reflectance, Surface};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,228 @@
+//! A setup: everything but the part that an image depends on.
+//!
+//! Lengths are in the part's unit and frame, but for the sensor's, which are millimetres. Radiances
+//! share one arbitrary unit: what a light gives times its solid angle, per steradian.
+
+pub mod light;
+pub mod sensor;
+pub mod viewpoint;
+mod written;
+
+use crate::feature::Criteria;
+use crate::processing::{Detector, DetectorError};
+use crate::reflectance::{Material, Named};
+use light::Light;
+use sensor::Sensor;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use viewpoint::Viewpoint;
+pub use written::Written;
+
+/// Why a setup cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SetupError {
+    /// The text is not that of a setup.
+    #[error("{message}")]
+    Syntax {
+        /// What is wrong.
+        message: String,
+        /// The bytes of the text at which it is, where known.
+        span: Option<Range<usize>>,
+    },
+    /// A value is out of its range.
+    #[error("`{key}` {reason}")]
+    Value {
+        /// The key, with the tables that hold it.
+        key: String,
+        /// What is wrong with its value.
+        reason: String,
+    },
+    /// A material by a name that is not known.
+    #[error("no material is called \"{0}\": known are {known}", known = names())]
+    Material(String),
+    /// The detector's constants are out of their range.
+    #[error("the detector: {0}")]
+    Detector(#[from] DetectorError),
+    /// There is no light, and nothing else that shines.
+    #[error("there is no light: a setup has a `[[light]]`, or an `ambient` above zero")]
+    Dark,
+}
+
+impl SetupError {
+    /// The bytes of a text at which it is, where they are known.
+    pub fn span(&self, text: &str) -> Option<Range<usize>> {
+        match self {
+            Self::Syntax { span, .. } => span.clone(),
+            Self::Value { key, .. } => written::place(key, text),
+            Self::Material(name) => {
+                let quoted = format!("\"{name}\"");
+                text.find(&quoted).map(|at| at..at + quoted.len())
+            }
+            Self::Detector(_) | Self::Dark => None,
+        }
+    }
+
+    /// A value out of its range.
+    pub fn value(key: impl Into<String>, reason: impl Into<String>) -> Self {
+        let (key, reason) = (key.into(), reason.into());
+        Self::Value { key, reason }
+    }
+}
+
+fn names() -> String {
+    Named::ALL.map(Named::name).join(", ")
+}
+
+/// A material by its name, or by its constants.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Finish {
+    /// One of [`Named`].
+    Named(String),
+    /// The constants.
+    Given(Material),
+}
+
+impl Finish {
+    /// The constants.
+    pub fn material(&self) -> Result<Material, SetupError> {
+        match self {
+            Self::Named(name) => {
+                let known = Material::named(name);
+                known.ok_or_else(|| SetupError::Material(name.clone()))
+            }
+            Self::Given(material) => Ok(*material),
+        }
+    }
+}
+
+impl Default for Finish {
+    fn default() -> Self {
+        Self::Named("plastic".to_owned())
+    }
+}
+
+/// The material of some faces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FacesFinish {
+    /// The faces, by the ids that `premio export --format json` and the contours name them by.
+    pub faces: Vec<u32>,
+    /// Their material.
+    pub material: Finish,
+}
+
+/// What stands still while lights and cameras move: the conditions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Conditions {
+    /// The seed of the noise.
+    pub seed: u64,
+    /// The sensor.
+    pub sensor: Sensor,
+    /// The radiance of the surroundings, I_a.
+    pub ambient: f64,
+    /// The radiance of what is seen beside the part.
+    pub background: f64,
+    /// The material of the part.
+    pub material: Finish,
+    /// The faces of other materials.
+    #[serde(rename = "surface")]
+    pub surfaces: Vec<FacesFinish>,
+    /// The processing model.
+    pub detector: Detector,
+    /// When a feature counts as whole, broken or missed.
+    pub features: Criteria,
+}
+
+impl Default for Conditions {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            sensor: Sensor::default(),
+            ambient: 1.0 / 32.0,
+            background: 1.0 / 64.0,
+            material: Finish::default(),
+            surfaces: Vec::new(),
+            detector: Detector::default(),
+            features: Criteria::default(),
+        }
+    }
+}
+
+impl Conditions {
+    /// Whether all values are in their ranges.
+    pub fn validate(&self) -> Result<(), SetupError> {
+        self.sensor.validate()?;
+        at_least_zero("ambient", self.ambient)?;
+        at_least_zero("background", self.background)?;
+        self.material.material()?;
+        for surface in &self.surfaces {
+            surface.material.material()?;
+        }
+        self.detector.validate()?;
+        self.features.validate()
+    }
+}
+
+/// One picture's setup.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Setup {
+    /// Where the camera is.
+    pub camera: Viewpoint,
+    /// The lights.
+    #[serde(rename = "light")]
+    pub lights: Vec<Light>,
+    /// All else.
+    #[serde(flatten)]
+    pub conditions: Conditions,
+}
+
+impl Setup {
+    /// The setup that a TOML text describes.
+    pub fn from_toml(text: &str) -> Result<Self, SetupError> {
+        Written::from_toml(text)?.setup()
+    }
+
+    /// Whether all values are in their ranges.
+    pub fn validate(&self) -> Result<(), SetupError> {
+        self.conditions.validate()?;
+        self.camera.validate(&self.conditions.sensor)?;
+        if self.lights.len() > MOST_LIGHTS {
+            return Err(SetupError::value("light", "is there more than 64 times"));
+        }
+        for (i, light) in self.lights.iter().enumerate() {
+            light.validate(i)?;
+        }
+        let shines = |light: &Light| light.intensity() > 0.0;
+        match self.lights.iter().any(shines) || self.conditions.ambient > 0.0 {
+            true => Ok(()),
+            false => Err(SetupError::Dark),
+        }
+    }
+}
+
+/// How many lights there may be: which of them a region sees is kept as bits.
+pub const MOST_LIGHTS: usize = 64;
+
+/// A number that is finite and not negative.
+pub(crate) fn at_least_zero(key: &str, x: f64) -> Result<(), SetupError> {
+    match x.is_finite() && x >= 0.0 {
+        true => Ok(()),
+        false => Err(SetupError::value(
+            key,
+            format!("is {x}, and must be 0 or more"),
+        )),
+    }
+}
+
+/// A number that is finite and positive.
+pub(crate) fn above_zero(key: &str, x: f64) -> Result<(), SetupError> {
+    match x.is_finite() && x > 0.0 {
+        true => Ok(()),
+        false => Err(SetupError::value(
+            key,
+            format!("is {x}, and must be above 0"),
+        )),
+    }
+}

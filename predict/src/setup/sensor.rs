@@ -1,0 +1,124 @@
+//! The sensor: a pinhole camera with a lens and a film of pixels.
+
+use super::{SetupError, above_zero, at_least_zero};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// The most pixels an image may have.
+const MOST_PIXELS: usize = 1 << 28;
+
+/// The constants of a sensor (section 3.2.2 of the paper), and its response.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sensor {
+    /// f, the focal length in millimetres.
+    pub focal: f64,
+    /// a, the diameter of the lens in millimetres.
+    pub diameter: f64,
+    /// w and h, the width and the height of the film in millimetres.
+    pub film: [f64; 2],
+    /// R, the width and the height in pixels.
+    pub resolution: [usize; 2],
+    /// How many grey levels there are.
+    pub levels: u32,
+    /// The grey level of a white diffuse surface in the middle of the part that faces all lights: the
+    /// exposure.
+    pub white: f64,
+    /// The standard deviation of the point spread in pixels, besides a pixel's own square.
+    pub blur: f64,
+    /// How many electrons make the highest level, which sets the photon noise; 0: there is none.
+    pub electrons: f64,
+    /// The standard deviation of the read noise in grey levels.
+    pub read_noise: f64,
+}
+
+impl Default for Sensor {
+    fn default() -> Self {
+        Self {
+            focal: 16.0,
+            diameter: 4.0,
+            film: [8.8, 6.6],
+            resolution: [640, 480],
+            levels: 256,
+            white: 200.0,
+            blur: 0.5,
+            electrons: 0.0,
+            read_noise: 0.0,
+        }
+    }
+}
+
+impl Sensor {
+    /// Whether its values are in their ranges.
+    pub fn validate(&self) -> Result<(), SetupError> {
+        above_zero("sensor.focal", self.focal)?;
+        above_zero("sensor.diameter", self.diameter)?;
+        above_zero("sensor.film", self.film[0].min(self.film[1]))?;
+        above_zero("sensor.white", self.white)?;
+        at_least_zero("sensor.electrons", self.electrons)?;
+        at_least_zero("sensor.read_noise", self.read_noise)?;
+        at_least_zero("sensor.blur", self.blur)?;
+        let [width, height] = self.resolution;
+        if width == 0 || height == 0 {
+            let reason = format!("is {width} x {height}: an image has a pixel at least");
+            return Err(SetupError::value("sensor.resolution", reason));
+        }
+        if width
+            .checked_mul(height)
+            .is_none_or(|all| all > MOST_PIXELS)
+        {
+            let reason = format!("is {width} x {height}: more than {MOST_PIXELS} pixels");
+            return Err(SetupError::value("sensor.resolution", reason));
+        }
+        if !(2..=1 << 16).contains(&self.levels) {
+            let reason = format!("is {}, and must be 2 to 65536", self.levels);
+            return Err(SetupError::value("sensor.levels", reason));
+        }
+        match self.blur <= 16.0 {
+            true => Ok(()),
+            false => Err(SetupError::value("sensor.blur", "is more than 16 pixels")),
+        }
+    }
+
+    /// C, the part of the light that the lens collects, for a ray at an angle of this cosine to the
+    /// optical axis: (π/4) (a/f)² cos⁴α (Haralick and Shapiro 1992).
+    pub fn collection(&self, cosine: f64) -> f64 {
+        let aperture = self.diameter / self.focal;
+        0.25 * PI * aperture * aperture * cosine.powi(4)
+    }
+
+    /// Grey levels for each unit of radiance on the optical axis, where lights of this strength, I_l
+    /// dω_l together, expose a white surface.
+    pub fn gain(&self, strength: f64) -> f64 {
+        // Radiance of a white diffuse surface: what falls on it over π.
+        self.white * PI / strength
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wide_ray_is_collected_less_by_the_fourth_power() {
+        let sensor = Sensor {
+            focal: 10.0,
+            diameter: 5.0,
+            ..Sensor::default()
+        };
+        let on_axis = sensor.collection(1.0);
+        assert!((on_axis - PI / 16.0).abs() < 1e-15);
+        let aside = sensor.collection(0.5f64.sqrt());
+        assert!((aside / on_axis - 0.25).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_resolution_of_zero_is_told() {
+        let sensor = Sensor {
+            resolution: [640, 0],
+            ..Sensor::default()
+        };
+        let error = sensor.validate().unwrap_err().to_string();
+        assert!(error.contains("640 x 0"), "{error}");
+    }
+}

@@ -1,0 +1,162 @@
+//! Where a camera is: an eye that looks at a target, or OpenCV's matrices.
+
+use super::SetupError;
+use super::sensor::Sensor;
+use nalgebra::{Matrix3, Point3, Vector3};
+use premio_visibility::camera::{Camera, CameraError, Model};
+use serde::{Deserialize, Serialize};
+
+/// A viewpoint, in the part's unit and frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Viewpoint {
+    /// The centre of projection.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub eye: Option<[f64; 3]>,
+    /// A point on the optical axis; the middle of the part where it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<[f64; 3]>,
+    /// What is up in the image, as far as it can be; z where it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub up: Option<[f64; 3]>,
+    /// OpenCV's camera matrix, in pixels; then the sensor's focal length and film say only how much
+    /// light there is.
+    #[serde(rename = "K", default, skip_serializing_if = "Option::is_none")]
+    pub k: Option<[[f64; 3]; 3]>,
+    /// The rotation into the camera's frame: x right, y down, z into the scene.
+    #[serde(rename = "R", default, skip_serializing_if = "Option::is_none")]
+    pub r: Option<[[f64; 3]; 3]>,
+    /// The part's origin in the camera's frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub t: Option<[f64; 3]>,
+}
+
+impl Viewpoint {
+    /// A camera at `eye` that looks at `target`.
+    pub fn looking(eye: Point3<f64>, target: Point3<f64>, up: Vector3<f64>) -> Self {
+        Self {
+            eye: Some(eye.into()),
+            target: Some(target.into()),
+            up: Some(up.into()),
+            ..Self::default()
+        }
+    }
+
+    /// Whether it is one of the two kinds, and its values are in their ranges.
+    pub fn validate(&self, sensor: &Sensor) -> Result<(), SetupError> {
+        // Any middle of a part does, but the eye itself.
+        let [x, y, z] = self.eye.unwrap_or_default();
+        self.matrices(sensor, &Point3::new(x + 1.0 + x.abs(), y, z))
+            .map(|_| ())
+    }
+
+    /// The matrices of the camera for a part with this middle.
+    pub fn matrices(&self, sensor: &Sensor, centre: &Point3<f64>) -> Result<Matrices, SetupError> {
+        let strangers = match self.eye {
+            Some(_) => [
+                ("K", self.k.is_some()),
+                ("R", self.r.is_some()),
+                ("t", self.t.is_some()),
+            ],
+            None => [
+                ("target", self.target.is_some()),
+                ("up", self.up.is_some()),
+                ("eye", false),
+            ],
+        };
+        if let Some((key, _)) = strangers.iter().find(|s| s.1) {
+            let reason = "does not go with the other keys: `eye`, `target`, `up`, or `K`, `R`, `t`";
+            return Err(SetupError::value(format!("camera.{key}"), reason));
+        }
+        let matrices = match self.eye {
+            Some(eye) => self.looking_at(Point3::from(eye), sensor, centre)?,
+            None => self.given()?,
+        };
+        matrices.camera()?;
+        Ok(matrices)
+    }
+
+    fn given(&self) -> Result<Matrices, SetupError> {
+        let missing = |key: &str| SetupError::value(format!("camera.{key}"), "is missing");
+        let matrix = |rows: [[f64; 3]; 3]| Matrix3::from_fn(|i, j| rows[i][j]);
+        let k = self
+            .k
+            .ok_or_else(|| missing(if self.r.is_some() { "K" } else { "eye" }))?;
+        Ok(Matrices {
+            k: matrix(k),
+            r: matrix(self.r.ok_or_else(|| missing("R"))?),
+            t: Vector3::from(self.t.ok_or_else(|| missing("t"))?),
+        })
+    }
+
+    fn looking_at(
+        &self,
+        eye: Point3<f64>,
+        sensor: &Sensor,
+        centre: &Point3<f64>,
+    ) -> Result<Matrices, SetupError> {
+        let target = self.target.map_or(*centre, Point3::from);
+        let up = Vector3::from(self.up.unwrap_or([0.0, 0.0, 1.0]));
+        Camera::perspective(eye, target, up, 1.0).map_err(told)?;
+        let z = (target - eye).normalize();
+        let x = across(&z, &up);
+        let r = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
+        let [width, height] = sensor.resolution.map(|n| n as f64);
+        let scale = [
+            sensor.focal / sensor.film[0] * width,
+            sensor.focal / sensor.film[1] * height,
+        ];
+        // The centre of the first pixel is at (0, 0).
+        let middle = [0.5 * (width - 1.0), 0.5 * (height - 1.0)];
+        let k = Matrix3::new(
+            scale[0], 0.0, middle[0], 0.0, scale[1], middle[1], 0.0, 0.0, 1.0,
+        );
+        let t = -(r * eye.coords);
+        Ok(Matrices { k, r, t })
+    }
+}
+
+/// OpenCV's matrices: image = K (R x + t), in pixels, the centre of the first pixel at (0, 0), y down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matrices {
+    /// K, the camera matrix.
+    pub k: Matrix3<f64>,
+    /// R, the rotation into the camera's frame: x right, y down, z into the scene.
+    pub r: Matrix3<f64>,
+    /// t, the part's origin in the camera's frame.
+    pub t: Vector3<f64>,
+}
+
+impl Matrices {
+    /// The camera of the matrices.
+    pub fn camera(&self) -> Result<Camera, SetupError> {
+        let Self { k, r, t } = *self;
+        Camera::of(Model::Matrices {
+            k,
+            r,
+            t,
+            size: None,
+        })
+        .map_err(told)
+    }
+}
+
+fn told(error: CameraError) -> SetupError {
+    match error {
+        CameraError::Value(key, reason) => SetupError::value(format!("camera.{key}"), reason),
+        other => SetupError::value("camera", other.to_string()),
+    }
+}
+
+/// The unit vector to the right in the image.
+fn across(z: &Vector3<f64>, up: &Vector3<f64>) -> Vector3<f64> {
+    let x = z.cross(up);
+    // Along the line of sight, or as good as: another axis takes its place.
+    match x.norm() > up.norm() * f64::EPSILON.sqrt() {
+        true => x.normalize(),
+        false => {
+            let least = z.abs().imin();
+            z.cross(&Vector3::ith(least, 1.0)).normalize()
+        }
+    }
+}

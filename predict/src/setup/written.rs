@@ -1,0 +1,156 @@
+//! Setups as they are written, in TOML.
+
+use super::light::Light;
+use super::sensor::Sensor;
+use super::viewpoint::Viewpoint;
+use super::{Conditions, FacesFinish, Finish, Setup, SetupError};
+use crate::feature::Criteria;
+use crate::processing::Detector;
+use serde::Deserialize;
+use std::ops::Range;
+
+/// The keys of a setup's text, all of them its own, so that one that is not known is told by its place.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Written {
+    seed: Option<u64>,
+    camera: Option<Viewpoint>,
+    #[serde(default, rename = "light")]
+    lights: Vec<Light>,
+    sensor: Option<Sensor>,
+    ambient: Option<f64>,
+    background: Option<f64>,
+    material: Option<Finish>,
+    #[serde(default, rename = "surface")]
+    surfaces: Vec<FacesFinish>,
+    detector: Option<Detector>,
+    features: Option<Criteria>,
+}
+
+impl Written {
+    /// The keys of a text.
+    pub fn from_toml(text: &str) -> Result<Self, SetupError> {
+        toml::from_str(text).map_err(|error: toml::de::Error| SetupError::Syntax {
+            message: error.message().to_owned(),
+            span: error.span(),
+        })
+    }
+
+    /// One picture's setup.
+    pub fn setup(self) -> Result<Setup, SetupError> {
+        let missing = "is missing: `eye = [x, y, z]`, or `K`, `R` and `t`";
+        let camera = self.camera.clone();
+        let setup = Setup {
+            camera: camera.ok_or_else(|| SetupError::value("camera", missing))?,
+            lights: self.lights.clone(),
+            conditions: self.conditions(),
+        };
+        setup.validate()?;
+        Ok(setup)
+    }
+
+    /// The conditions, with defaults for what is not written.
+    pub fn conditions(self) -> Conditions {
+        let known = Conditions::default();
+        Conditions {
+            seed: self.seed.unwrap_or(known.seed),
+            sensor: self.sensor.unwrap_or(known.sensor),
+            ambient: self.ambient.unwrap_or(known.ambient),
+            background: self.background.unwrap_or(known.background),
+            material: self.material.unwrap_or(known.material),
+            surfaces: self.surfaces,
+            detector: self.detector.unwrap_or(known.detector),
+            features: self.features.unwrap_or(known.features),
+        }
+    }
+}
+
+/// Where the value of a key like `light[1].position` is written, or else its table.
+pub(super) fn place(key: &str, text: &str) -> Option<Range<usize>> {
+    let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
+    let (table, wanted) = match table.split_once('[') {
+        Some((table, number)) => (table, number.trim_end_matches(']').parse().unwrap_or(0)),
+        None => (table, 0),
+    };
+    let (mut current, mut count) = ("", 0usize);
+    let mut found = None;
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let start = at + (line.len() - line.trim_start().len());
+        let content = line.trim();
+        at += line.len();
+        if content.starts_with('[') {
+            let header = content.trim_matches(['[', ']', ' ']);
+            count = if header == table && current == table {
+                count + 1
+            } else {
+                0
+            };
+            current = header;
+            let is_it = header == table && count == wanted || table.is_empty() && header == name;
+            found = found.or(is_it.then(|| start..start + content.len()));
+        }
+        let is_own = current == table && count == wanted;
+        let value = content.strip_prefix(name).map(str::trim_start);
+        if is_own && value.is_some_and(|rest| rest.starts_with('=')) {
+            return Some(start..start + content.len());
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "\
+seed = 3
+[camera]
+eye = [9, 7, 8]
+[[light]]
+position = [1, 2, 3]
+[[light]]
+position = [4, 5, 6]
+  parallel = -1
+";
+
+    #[test]
+    fn values_are_found_in_the_text() {
+        let shown = |key: &str| place(key, TEXT).map(|span| &TEXT[span]);
+        assert_eq!(shown("seed"), Some("seed = 3"));
+        assert_eq!(shown("camera.eye"), Some("eye = [9, 7, 8]"));
+        assert_eq!(shown("light[1].parallel"), Some("parallel = -1"));
+        assert_eq!(shown("light[0].position"), Some("position = [1, 2, 3]"));
+        assert_eq!(shown("light[1].position"), Some("position = [4, 5, 6]"));
+        // A default that is wrong is written nowhere, but its table may be.
+        assert_eq!(shown("camera.up"), Some("[camera]"));
+        assert_eq!(shown("sensor.focal"), None);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_by_its_key() {
+        let error = Setup::from_toml(TEXT).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "`light[1].parallel` is -1, and must be 0 or more"
+        );
+        let unknown = Setup::from_toml("[camera]\neye = [1, 2, 3]\nfar = 2\n").unwrap_err();
+        assert!(
+            matches!(unknown, SetupError::Syntax { span: Some(_), .. }),
+            "{unknown}"
+        );
+        let dark = "ambient = 0\n[camera]\neye = [1, 2, 3]\n";
+        assert_eq!(Setup::from_toml(dark).unwrap_err(), SetupError::Dark);
+        let material = "material = \"gold\"\n[camera]\neye = [1, 2, 3]\n";
+        let error = Setup::from_toml(material).unwrap_err().to_string();
+        assert!(error.contains("aluminium"), "{error}");
+        let both = "[camera]\neye = [1, 2, 3]\nt = [1, 2, 3]\n";
+        assert!(Setup::from_toml(both).is_err());
+        let zero = "[camera]\neye = [1, 2, 3]\n[sensor]\nresolution = [0, 480]\n";
+        let error = Setup::from_toml(zero).unwrap_err();
+        assert_eq!(
+            error.span(zero).map(|s| &zero[s]),
+            Some("resolution = [0, 480]")
+        );
+    }
+}

@@ -1,0 +1,86 @@
+//! How long predictions take: a cube with three cuts at 640 × 480, against a full render of it by our
+//! own rays, and a part of a hundred faces.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a bench fails by it")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_predict::image::shading::Finishes;
+use premio_predict::outline::Stage;
+use premio_predict::outline::stage::Eyes;
+use premio_predict::prediction::{Draft, Memory, prediction};
+use premio_predict::render;
+use premio_predict::setup::Setup;
+use premio_predict::subject::Subject;
+use premio_tests::parts::{cube_with_cuts, plate};
+use serde_json::Value;
+use std::time::Duration;
+
+fn part(json: &Value) -> Evaluation {
+    let text = json.to_string();
+    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
+}
+
+/// A camera and a light about a part of some size, both from above.
+fn setup(size: f64) -> Setup {
+    let [x, y, z] = [3.0 * size, 2.3 * size, 2.7 * size];
+    let text = format!(
+        "[camera]\neye = [{x}, {y}, {z}]\n[[light]]\nposition = [{}, {}, {}]\n[detector]\nthreshold = 8\n",
+        1.3 * size,
+        3.3 * size,
+        4.7 * size
+    );
+    Setup::from_toml(&text).unwrap()
+}
+
+fn with_draft<T>(
+    subject: &Subject<'_>,
+    setup: &Setup,
+    memory: &mut Memory,
+    ask: impl FnOnce(&Draft<'_>) -> T,
+) -> T {
+    let eyes = Eyes::new(subject, setup).unwrap();
+    let stage = Stage::new(subject, &eyes).unwrap();
+    let finishes = Finishes::new(subject, &setup.conditions).unwrap();
+    let own = std::mem::take(memory);
+    let draft = Draft::within(&stage, &finishes, &setup.conditions, own).unwrap();
+    let answer = ask(&draft);
+    *memory = draft.into_memory();
+    answer
+}
+
+fn predictions(c: &mut Criterion) {
+    let mut group = c.benchmark_group("predictions");
+    group
+        .measurement_time(Duration::from_secs(3))
+        .sample_size(10);
+    for (name, json, size) in [
+        ("cube with three cuts", cube_with_cuts(), 3.0),
+        ("block with 49 through holes", plate(7, 2.0), 7.0),
+    ] {
+        let part = part(&json);
+        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        let setup = setup(size);
+        let mut memory = Memory::default();
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                with_draft(&subject, &setup, &mut memory, |draft| {
+                    prediction(draft, &setup)
+                })
+            });
+        });
+        group.bench_function(format!("{name}: full render"), |b| {
+            b.iter(|| {
+                with_draft(&subject, &setup, &mut memory, |draft| {
+                    let [width, height] = setup.conditions.sensor.resolution;
+                    render::rows(&draft.shading, width, 0..height)
+                })
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, predictions);
+criterion_main!(benches);

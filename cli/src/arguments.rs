@@ -7,7 +7,10 @@ use crate::fuzz::profile::Profile;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-pub use predict::{CompareOptions, PredictOptions, RenderOptions};
+pub use predict::{
+    CompareOptions, MergeOptions, ModelCommand, ModelOptions, ModelRunOptions, PredictOptions,
+    RenderOptions,
+};
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetOptions, ViewName};
 use std::path::PathBuf;
@@ -62,6 +65,13 @@ pub enum Command {
           premio predict part.padl --setup setup.toml --overlay part.svg -o prediction.json"
     )]
     Predict(PredictOptions),
+    /// What predictions over many setups come to: the detectability of every feature
+    #[command(
+        after_help = "Examples: premio model part.padl --setups setups.toml -o part.model
+          premio model part.padl --setups setups.toml --shard 2/5 -o part.2.shard
+          premio model merge part.*.shard -o part.model"
+    )]
+    Model(ModelOptions),
     /// The image of a setup, by a line of sight through every pixel
     #[command(after_help = "Example: premio render part.padl --setup setup.toml -o part.png")]
     Render(RenderOptions),

@@ -8,6 +8,8 @@ mod diagnostics;
 pub mod fuzz;
 mod imaging;
 mod input;
+mod interrupt;
+mod model;
 mod output;
 
 use arguments::{Arguments, Command};
@@ -31,6 +33,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Export(options) => commands::export::run(options, voice),
         Command::Convert(options) => commands::convert::run(options, voice),
         Command::Predict(options) => commands::predict::run(options, voice),
+        Command::Model(options) => commands::model::run(options, voice),
         Command::Render(options) => commands::render::run(options, voice),
         Command::Compare(options) => commands::compare::run(options, voice),
         Command::Fuzz(options) => commands::fuzz::run(options, voice),

@@ -9,6 +9,7 @@
 pub mod agreement;
 pub mod feature;
 pub mod image;
+pub mod model;
 pub mod outline;
 pub mod overlay;
 pub mod prediction;

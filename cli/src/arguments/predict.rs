@@ -1,7 +1,7 @@
 //! Options of the commands about images.
 
 use super::DescriptionOptions;
-use clap::{Args, ValueEnum};
+use clap::{ArgMatches, Args, FromArgMatches, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Options of `predict`.
@@ -58,4 +58,112 @@ pub struct CompareOptions {
 pub enum SchemaName {
     /// premio.prediction/1
     Prediction,
+}
+
+/// Options of `model`.
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct ModelOptions {
+    /// In place of predicting: put shards together
+    #[command(subcommand)]
+    pub command: Option<ModelCommand>,
+    #[command(flatten)]
+    pub run: ModelRun,
+}
+
+/// The options of a run, if one is asked for: clap finds no options that are absent as a whole where
+/// they hold others.
+#[derive(Debug)]
+pub struct ModelRun(pub Option<ModelRunOptions>);
+
+impl FromArgMatches for ModelRun {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let asked = matches.contains_id("setups");
+        let options = asked.then(|| ModelRunOptions::from_arg_matches(matches));
+        options.transpose().map(Self)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for ModelRun {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        ModelRunOptions::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        ModelRunOptions::augment_args_for_update(command)
+    }
+}
+
+/// What else there is to do with models.
+#[derive(Debug, Subcommand)]
+pub enum ModelCommand {
+    /// The model of all shards of one run
+    #[command(after_help = "Example: premio model merge part.*.shard -o part.model")]
+    Merge(MergeOptions),
+}
+
+/// Options of `model merge`.
+#[derive(Debug, Args)]
+pub struct MergeOptions {
+    /// The shards: all of one run, in any order
+    #[arg(value_name = "SHARD", required = true)]
+    pub shards: Vec<PathBuf>,
+    #[command(flatten)]
+    pub output: ModelOutput,
+}
+
+/// Where a model goes.
+#[derive(Debug, Args)]
+pub struct ModelOutput {
+    /// Where to write the model, or the shard [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// Options of `model` as it predicts.
+#[derive(Debug, Args)]
+pub struct ModelRunOptions {
+    #[command(flatten)]
+    pub description: DescriptionOptions,
+    /// The setups: the spheres of cameras and lights, sensor, materials, detector (TOML)
+    #[arg(long, value_name = "SETUPS")]
+    pub setups: PathBuf,
+    #[command(flatten)]
+    pub output: ModelOutput,
+    /// Predict one of N shards only, I from 1: for `model merge`
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    pub shard: Option<Shard>,
+    /// Go on with a run that was interrupted
+    #[arg(long, conflicts_with = "shard", requires = "output")]
+    pub resume: bool,
+    /// How many threads predict [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// One of several shards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// Which, from 1.
+    pub index: usize,
+    /// Of how many.
+    pub of: usize,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let wrong = || "expected a shard and their number, as 2/5".to_owned();
+    let (index, of) = text.split_once('/').ok_or_else(wrong)?;
+    let (index, of) = (
+        index.parse().map_err(|_| wrong())?,
+        of.parse().map_err(|_| wrong())?,
+    );
+    match (1..=of).contains(&index) {
+        true => Ok(Shard { index, of }),
+        false => Err(wrong()),
+    }
 }

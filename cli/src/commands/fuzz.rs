@@ -11,9 +11,9 @@ use crate::fuzz::summary::Summary;
 use crate::fuzz::trial::Terms;
 use crate::fuzz::worker::{Worker, serve};
 use crate::fuzz::write::Format;
+use crate::interrupt::{stop, threads};
 use crate::output;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 impl From<Error> for Failure {
@@ -39,7 +39,7 @@ pub fn run(options: &FuzzOptions, voice: Voice) -> Result<(), Failure> {
     };
     let stop = stop()?;
     let how = How {
-        threads: threads(options),
+        threads: threads(options.threads),
         stop: &stop,
         state: options.state.as_deref(),
         archive: archive.as_ref(),
@@ -136,18 +136,4 @@ fn formats(options: &FuzzOptions) -> Vec<Format> {
         ModelFormat::Json => Format::Json,
     };
     wanted.iter().map(format).collect()
-}
-
-fn threads(options: &FuzzOptions) -> usize {
-    let all = || std::thread::available_parallelism().map_or(1, usize::from);
-    options.threads.map_or_else(all, usize::from)
-}
-
-/// Set by an interrupt.
-fn stop() -> Result<Arc<AtomicBool>, Failure> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let set = Arc::clone(&stop);
-    ctrlc::set_handler(move || set.store(true, Ordering::Relaxed))
-        .map_err(|e| Failure::input(format!("interrupts cannot be handled: {e}")))?;
-    Ok(stop)
 }

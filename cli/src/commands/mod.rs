@@ -8,5 +8,6 @@ pub mod export;
 pub mod fuzz;
 pub mod info;
 pub mod manual;
+pub mod model;
 pub mod predict;
 pub mod render;

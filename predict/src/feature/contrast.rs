@@ -29,7 +29,10 @@ impl Contrast {
 }
 
 /// The regions on the sides of an arc: by section, the left and the right one.
-pub fn sides(regions: &Regions, arc: usize) -> Vec<[u32; 2]> {
+pub fn sides(regions: &Regions, (arc, shown): (usize, &Arc)) -> Vec<[u32; 2]> {
+    if let Some(region) = shown.within {
+        return vec![[region; 2]];
+    }
     let sections = regions.sections.of_arc(arc);
     sections
         .map(|s| [Side::Left, Side::Right].map(|on| regions.beside(s, on)))
@@ -43,7 +46,7 @@ pub fn contrast(
     (number, arc): (usize, &Arc),
     [start, end]: [f64; 2],
 ) -> Vec<Contrast> {
-    let sides = sides(regions, number);
+    let sides = sides(regions, (number, arc));
     let steps = ((end - start) / EVERY).ceil().max(1.0);
     let mut found = Vec::new();
     let (mut before, mut section) = (0.0, 0);

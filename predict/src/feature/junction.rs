@@ -13,7 +13,7 @@ const TURN: f64 = 3.0;
 /// The greatest angle by which two branches that go straight on are off.
 const STRAIGHT: f64 = PI / 15.0;
 /// How far from a junction a branch may end that is found, besides the detector's margin, in pixels.
-const NEAR: f64 = 3.0;
+pub const NEAR: f64 = 3.0;
 
 /// The form of a junction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

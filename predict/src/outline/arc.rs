@@ -97,6 +97,8 @@ pub struct Arc {
     pub stops: Vec<usize>,
     /// Of a shadow's boundary, which side is lit.
     pub shade: Option<Shade>,
+    /// Of a highlight's outline, the region that it lies in.
+    pub within: Option<u32>,
 }
 
 /// Which side of a shadow's boundary a light reaches.

@@ -171,17 +171,29 @@ impl Polyline {
         [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
     }
 
-    /// The parameter at a length along it, in pixels.
-    pub fn parameter_at(&self, along: f64) -> f64 {
+    /// The segment and the part of it at a length along it, in pixels; the end beyond.
+    pub fn place_at(&self, along: f64) -> (usize, f64) {
         let mut left = along.max(0.0);
         for (i, [a, b]) in self.segments() {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             if left <= length && length > 0.0 {
-                return self.parameter(i, left / length);
+                return (i, left / length);
             }
             left -= length;
         }
-        self.parameters.last().copied().unwrap_or(0.0)
+        (self.points.len().saturating_sub(2), 1.0)
+    }
+
+    /// The parameter at a length along it, in pixels.
+    pub fn parameter_at(&self, along: f64) -> f64 {
+        let (i, s) = self.place_at(along);
+        self.parameter(i, s)
+    }
+
+    /// The point at a length along it, in pixels.
+    pub fn point_at(&self, along: f64) -> [f64; 2] {
+        let (i, s) = self.place_at(along);
+        self.at(i, s)
     }
 
     /// The segment nearest to a point and the part of it, with the squared distance.

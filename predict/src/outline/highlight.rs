@@ -65,6 +65,7 @@ pub fn add_highlights(
                 line,
                 stops: Vec::new(),
                 shade: None,
+                within: Some(region),
             });
         }
     }

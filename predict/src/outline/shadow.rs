@@ -56,6 +56,7 @@ pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
                         line: part,
                         stops: Vec::new(),
                         shade,
+                        within: None,
                     });
                 }
             }

@@ -215,6 +215,7 @@ impl Sightings<'_> {
                     line,
                     stops: Vec::new(),
                     shade: None,
+                    within: None,
                 });
             }
         }

@@ -5,6 +5,8 @@ use super::sensor::Sensor;
 use super::viewpoint::Viewpoint;
 use super::{Conditions, FacesFinish, Finish, Setup, SetupError};
 use crate::feature::Criteria;
+use crate::model::Setups;
+use crate::model::setups::Sphere;
 use crate::processing::Detector;
 use serde::Deserialize;
 use std::ops::Range;
@@ -25,6 +27,8 @@ pub struct Written {
     surfaces: Vec<FacesFinish>,
     detector: Option<Detector>,
     features: Option<Criteria>,
+    viewing: Option<Sphere>,
+    illumination: Option<Sphere>,
 }
 
 impl Written {
@@ -36,8 +40,32 @@ impl Written {
         })
     }
 
+    /// Many setups.
+    pub fn setups(mut self) -> Result<Setups, SetupError> {
+        if self.camera.is_some() {
+            let reason = "is of one setup; cameras of many are on the sphere `[viewing]`";
+            return Err(SetupError::value("camera", reason));
+        }
+        let missing = || {
+            SetupError::value(
+                "viewing",
+                "is missing: the sphere of cameras, `count = 100`",
+            )
+        };
+        let viewing = self.viewing.take().ok_or_else(missing)?;
+        let (illumination, lights) = (self.illumination.take(), self.lights.clone());
+        Setups::new(self.conditions(), viewing, illumination, lights)
+    }
+
     /// One picture's setup.
     pub fn setup(self) -> Result<Setup, SetupError> {
+        let spheres = [
+            ("viewing", &self.viewing),
+            ("illumination", &self.illumination),
+        ];
+        if let Some((key, _)) = spheres.iter().find(|s| s.1.is_some()) {
+            return Err(SetupError::value(*key, "is of many setups, not of one"));
+        }
         let missing = "is missing: `eye = [x, y, z]`, or `K`, `R` and `t`";
         let camera = self.camera.clone();
         let setup = Setup {

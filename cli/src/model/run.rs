@@ -1,0 +1,104 @@
+//! Predicting the setups of shards, and summing them up.
+
+use super::shard::{Head, Run, Shard, Writer};
+use crate::diagnostics::Failure;
+use indicatif::ProgressBar;
+use premio_predict::image::shading::Finishes;
+use premio_predict::model::record::{Record, records};
+use premio_predict::model::summary::Summary;
+use premio_predict::model::{Observation, observe};
+use premio_predict::outline::Stage;
+use premio_predict::outline::stage::{Eyes, StageError};
+use premio_predict::prediction::{Draft, Memory};
+use premio_predict::subject::Subject;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How many setups are predicted before they are written.
+const BATCH: usize = 64;
+
+/// What predicts.
+pub struct Workers<'s> {
+    /// The part.
+    pub subject: &'s Subject<'s>,
+    /// The materials of its faces.
+    pub finishes: &'s Finishes,
+    /// The run.
+    pub run: &'s Run,
+    /// The threads.
+    pub threads: &'s ThreadPool,
+    /// How far the work is.
+    pub bar: &'s ProgressBar,
+    /// Set by an interrupt.
+    pub stop: &'s AtomicBool,
+}
+
+impl Workers<'_> {
+    /// Predicts the setups of a shard into its file; nothing is left of it if it is interrupted.
+    pub fn shard(&self, path: &Path, shard: [usize; 2]) -> Result<(), Failure> {
+        let head = Head::new(self.run, shard);
+        let mut writer = Writer::new(path, &head)?;
+        let range = head.range();
+        let mut from = range.start;
+        while from < range.end {
+            let batch = from..(from + BATCH).min(range.end);
+            from = batch.end;
+            let observed: Vec<Observation> = self.threads.install(|| {
+                let each = batch.into_par_iter();
+                each.map_init(Memory::default, |memory, i| self.observe(i, memory))
+                    .collect()
+            });
+            if self.stop.load(Ordering::Relaxed) {
+                return Err(Failure::Interrupted);
+            }
+            for observation in &observed {
+                writer.line(observation)?;
+            }
+        }
+        writer.finish()
+    }
+
+    fn observe(&self, index: usize, memory: &mut Memory) -> Observation {
+        if self.stop.load(Ordering::Relaxed) {
+            // It will not be written.
+            return Observation::unseen(&self.run.setups, index, String::new());
+        }
+        let seen = self.predict(index, memory);
+        self.bar.inc(1);
+        let unseen = |e: StageError| Observation::unseen(&self.run.setups, index, e.to_string());
+        seen.unwrap_or_else(unseen)
+    }
+
+    fn predict(&self, index: usize, memory: &mut Memory) -> Result<Observation, StageError> {
+        let setups = &self.run.setups;
+        let setup = setups.setup(index, self.subject);
+        let eyes = Eyes::new(self.subject, &setup)?;
+        let stage = Stage::new(self.subject, &eyes)?;
+        let own = std::mem::take(memory);
+        let draft = Draft::within(&stage, self.finishes, &setup.conditions, own)?;
+        let observation = observe(&draft, setups, index, &setup);
+        *memory = draft.into_memory();
+        Ok(observation)
+    }
+}
+
+/// The records of a model, from all shards of a run, in order.
+pub fn summed(run: &Run, shards: &[Shard], bar: &ProgressBar) -> Result<Vec<Record>, Failure> {
+    let mut summary = Summary::default();
+    for shard in shards {
+        shard.each(|observation| {
+            summary.add(observation);
+            bar.inc(1);
+        })?;
+    }
+    summary.begin_second();
+    for shard in shards {
+        shard.each(|observation| {
+            summary.add_again(observation);
+            bar.inc(1);
+        })?;
+    }
+    Ok(records(&summary, &run.part, &run.digest, &run.setups))
+}

@@ -1,0 +1,317 @@
+//! What one setup shows of a part.
+
+use super::information::{deviation, frame, information};
+use super::setups::Setups;
+use crate::feature::evidence::State;
+use crate::feature::group::chains;
+use crate::feature::junction::{Form, Junction, Nodes, junctions};
+use crate::outline::Source;
+use crate::prediction::{Draft, Outcome};
+use crate::setup::Setup;
+use nalgebra::Matrix6;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// How many attributes a feature has.
+pub const ATTRIBUTES: usize = 5;
+
+/// A feature in one setup: all arcs that are images of one thing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sight {
+    /// What it is the image of.
+    pub source: Source,
+    /// The length that is visible, in pixels.
+    pub length: f64,
+    /// What is found of it.
+    pub state: State,
+    /// How many fragments are found.
+    pub fragments: usize,
+    /// The share of the visible length that is found.
+    pub share: f64,
+    /// Of what is found: mid x, mid y, ln length, cos 2θ, sin 2θ of the chord. Lengths are in the
+    /// image of the part's radius, places about the image of its middle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attributes: Option<[f64; ATTRIBUTES]>,
+    /// By how much the deviations of the pose, turn and move, grow without it; none where it then is
+    /// not told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growth: Option<[f64; 2]>,
+}
+
+/// A relation between features in one setup.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Tuple {
+    /// What kind of relation.
+    pub kind: Relation,
+    /// The features, as indices of the setup's sights; of a chain in order.
+    pub members: Vec<u32>,
+    /// Whether all members are found, as far as they have to be for the relation to be seen.
+    pub seen: bool,
+    /// Whether it holds between what is found.
+    pub kept: bool,
+}
+
+/// A kind of relation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Relation {
+    /// Two meet at an angle.
+    L,
+    /// Three meet, two of which go straight on.
+    T,
+    /// Three meet within half a turn.
+    Arrow,
+    /// Three meet all around.
+    Y,
+    /// More meet.
+    Multi,
+    /// They follow one another.
+    Chain,
+}
+
+/// What one setup shows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Observation {
+    /// The number of the setup.
+    pub setup: usize,
+    /// The direction of the camera from the part's middle.
+    pub view: [f64; 3],
+    /// The features that are visible.
+    pub sights: Vec<Sight>,
+    /// The relations between them.
+    pub tuples: Vec<Tuple>,
+    /// How often two features that do not meet have found ends as near as those that do, of how many
+    /// pairs: what a relation holds by chance.
+    pub chance: [u32; 2],
+    /// The deviations of the pose: turn in radians, move in the part's unit.
+    pub pose: Option<[f64; 2]>,
+    /// Why nothing is seen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unseen: Option<String>,
+}
+
+impl Observation {
+    /// A setup in which nothing is seen.
+    pub fn unseen(setups: &Setups, setup: usize, why: String) -> Self {
+        Self {
+            setup,
+            view: view(setups, setup),
+            sights: Vec::new(),
+            tuples: Vec::new(),
+            chance: [0; 2],
+            pose: None,
+            unseen: Some(why),
+        }
+    }
+}
+
+fn view(setups: &Setups, setup: usize) -> [f64; 3] {
+    setups.directions(setup)[0].map_or([0.0; 3], Into::into)
+}
+
+/// What a setup shows of a part.
+pub fn observe(draft: &Draft<'_>, setups: &Setups, setup: usize, _: &Setup) -> Observation {
+    let outcome = draft.outcome();
+    let groups = groups(draft);
+    let told = information(draft, &outcome.evidence);
+    let all: Matrix6<f64> = told.iter().sum();
+    let pose = deviation(&all);
+    let sights: Vec<Sight> = groups
+        .iter()
+        .map(|(source, arcs)| {
+            let mut sight = sight(draft, &outcome, *source, arcs);
+            let own: Matrix6<f64> = arcs.iter().map(|&a| told[a as usize]).sum();
+            let without = deviation(&(all - own));
+            sight.growth = pose.zip(without).map(|(p, w)| [w[0] / p[0], w[1] / p[1]]);
+            sight
+        })
+        .collect();
+    let nodes = Nodes::of(&draft.arcs);
+    let margin = draft.conditions.detector.radius() as f64;
+    let meetings = junctions(&draft.arcs, &nodes, &outcome.evidence, &draft.ink, margin);
+    let index = index(draft.arcs.len(), &groups);
+    Observation {
+        setup,
+        view: view(setups, setup),
+        tuples: tuples(&meetings, &index, &sights),
+        chance: chance(draft, &outcome, &meetings, margin),
+        sights,
+        pose,
+        unseen: None,
+    }
+}
+
+/// The arcs in the image, by what they are the image of.
+fn groups(draft: &Draft<'_>) -> BTreeMap<Source, Vec<u32>> {
+    let mut groups: BTreeMap<Source, Vec<u32>> = BTreeMap::new();
+    for (i, arc) in draft.arcs.iter().enumerate() {
+        let [start, end] = draft.ink.spans[i];
+        // What is shorter the detector drops, and so does the model.
+        if !arc.smooth && end - start >= draft.conditions.detector.shortest {
+            groups.entry(arc.source).or_default().push(i as u32);
+        }
+    }
+    groups
+}
+
+/// By arc: the feature it is of.
+fn index(arcs: usize, groups: &BTreeMap<Source, Vec<u32>>) -> Vec<Option<u32>> {
+    let mut index = vec![None; arcs];
+    for (feature, arcs) in groups.values().enumerate() {
+        arcs.iter()
+            .for_each(|&a| index[a as usize] = Some(feature as u32));
+    }
+    index
+}
+
+fn sight(draft: &Draft<'_>, outcome: &Outcome, source: Source, arcs: &[u32]) -> Sight {
+    let of = |a: &u32| &outcome.evidence[*a as usize];
+    let length = |a: &u32| {
+        let [start, end] = draft.ink.spans[*a as usize];
+        end - start
+    };
+    let total: f64 = arcs.iter().map(length).sum();
+    let found: f64 = arcs.iter().map(|a| length(a) * of(a).share).sum();
+    let all = |state: State| arcs.iter().all(|a| of(a).state == state);
+    let state = match (all(State::Missed), all(State::Whole) && arcs.len() == 1) {
+        (true, _) => State::Missed,
+        (false, true) => State::Whole,
+        (false, false) => State::Broken,
+    };
+    let longest = arcs.iter().filter(|a| !of(a).fragments.is_empty());
+    let longest = longest.max_by(|a, b| length(a).total_cmp(&length(b)));
+    Sight {
+        source,
+        length: total,
+        state,
+        fragments: arcs.iter().map(|a| of(a).fragments.len()).sum(),
+        share: found / total,
+        attributes: longest
+            .filter(|_| state != State::Missed)
+            .and_then(|&a| attributes(draft, outcome, a)),
+        growth: None,
+    }
+}
+
+/// The attributes of what is found of an arc.
+fn attributes(draft: &Draft<'_>, outcome: &Outcome, arc: u32) -> Option<[f64; ATTRIBUTES]> {
+    let fragments = &outcome.evidence[arc as usize].fragments;
+    let (from, to) = (fragments.first()?.along[0], fragments.last()?.along[1]);
+    let line = &draft.arcs[arc as usize].line;
+    let (middle, scale) = frame(draft);
+    let [a, b] = [from, to].map(|along| line.point_at(along));
+    let d = [b[0] - a[0], b[1] - a[1]];
+    // A curve that closes has no chord: then any direction does.
+    let twice = 2.0 * d[1].atan2(d[0]);
+    let mid = [0, 1].map(|i| (0.5 * (a[i] + b[i]) - middle[i]) / scale);
+    let values = [
+        mid[0],
+        mid[1],
+        ((to - from) / scale).ln(),
+        twice.cos(),
+        twice.sin(),
+    ];
+    values.iter().all(|v| v.is_finite()).then_some(values)
+}
+
+fn relation(form: Form) -> Option<Relation> {
+    match form {
+        Form::End | Form::Continuation => None,
+        Form::L => Some(Relation::L),
+        Form::T => Some(Relation::T),
+        Form::Arrow => Some(Relation::Arrow),
+        Form::Y => Some(Relation::Y),
+        Form::Multi => Some(Relation::Multi),
+    }
+}
+
+fn tuples(junctions: &[Junction], index: &[Option<u32>], sights: &[Sight]) -> Vec<Tuple> {
+    let found = |m: &u32| sights[*m as usize].state != State::Missed;
+    let mut tuples = Vec::new();
+    for junction in junctions {
+        let Some(kind) = relation(junction.form) else {
+            continue;
+        };
+        let all = junction.branches.iter().map(|b| index[b.arc as usize]);
+        let Some(mut members) = all.collect::<Option<Vec<u32>>>() else {
+            continue;
+        };
+        members.sort_unstable();
+        members.dedup();
+        if members.len() > 1 {
+            tuples.push(Tuple {
+                kind,
+                seen: members.iter().all(found),
+                kept: junction.is_found(),
+                members,
+            });
+        }
+    }
+    for chain in chains(index.len(), junctions) {
+        let Some(members) = chain.arcs.iter().map(|a| index[*a as usize]).collect() else {
+            continue;
+        };
+        let mut members: Vec<u32> = members;
+        members.dedup();
+        if members.len() > 2 {
+            let seen = members.iter().all(found);
+            let kept = seen && chain_is_kept(&chain.arcs, junctions);
+            // One way along it is as good as the other.
+            if members.first() > members.last() {
+                members.reverse();
+            }
+            let kind = Relation::Chain;
+            tuples.push(Tuple {
+                kind,
+                members,
+                seen,
+                kept,
+            });
+        }
+    }
+    tuples.sort();
+    tuples.dedup_by(|b, a| (a.kind, &a.members) == (b.kind, &b.members));
+    tuples
+}
+
+/// Whether all junctions between the arcs of a chain are found.
+fn chain_is_kept(arcs: &[u32], junctions: &[Junction]) -> bool {
+    arcs.windows(2).all(|pair| {
+        let joins = |j: &&Junction| pair.iter().all(|a| j.branches.iter().any(|b| b.arc == *a));
+        junctions.iter().filter(joins).any(Junction::is_found)
+    })
+}
+
+/// How often found ends of arcs that do not meet are near to one another.
+fn chance(draft: &Draft<'_>, outcome: &Outcome, junctions: &[Junction], margin: f64) -> [u32; 2] {
+    let near = 2.0 * (margin + crate::feature::junction::NEAR);
+    let mut ends: Vec<(u32, [f64; 2])> = Vec::new();
+    for (i, found) in outcome.evidence.iter().enumerate() {
+        let outer = found.fragments.first().zip(found.fragments.last());
+        if let Some((first, last)) = outer.filter(|_| !draft.arcs[i].smooth) {
+            let line = &draft.arcs[i].line;
+            for along in [first.along[0], last.along[1]] {
+                ends.push((i as u32, line.point_at(along)));
+            }
+        }
+    }
+    let meet = |a: u32, b: u32| {
+        let has = |j: &Junction, arc: u32| j.branches.iter().any(|x| x.arc == arc);
+        junctions.iter().any(|j| has(j, a) && has(j, b))
+    };
+    let mut counts = [0; 2];
+    for (k, (a, p)) in ends.iter().enumerate() {
+        for (b, q) in &ends[k + 1..] {
+            if a == b {
+                continue;
+            }
+            let is_near = (p[0] - q[0]).hypot(p[1] - q[1]) <= near;
+            if is_near && meet(*a, *b) {
+                continue;
+            }
+            counts[0] += u32::from(is_near);
+            counts[1] += 1;
+        }
+    }
+    counts
+}

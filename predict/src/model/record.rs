@@ -1,0 +1,328 @@
+//! The model as it is handed on: a record a line (`premio.model/1`).
+
+use super::observation::{ATTRIBUTES, Relation};
+use super::setups::Setups;
+use super::summary::{AspectSums, FLOOR, FRAGMENTS, FeatureSums, Summary};
+use crate::outline::Source;
+use crate::statistics::{Interval, Moments, Proportion, Smoothing, Tree};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The name of the format.
+pub const SCHEMA: &str = "premio.model/1";
+
+/// A line of a model.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "record", rename_all = "lowercase")]
+pub enum Record {
+    /// The first line.
+    Model(Box<Head>),
+    /// A feature, in falling order of detectability.
+    Feature(Box<Feature>),
+    /// An aspect, in falling order of setups.
+    Aspect(Aspect),
+    /// A relation, in falling order of how often it is kept.
+    Tuple(Tuple),
+    /// Which features are found together.
+    Codetection(Codetection),
+}
+
+/// What the model is of.
+#[derive(Clone, Debug, Serialize)]
+pub struct Head {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// The part's file.
+    pub part: String,
+    /// What part and setups are told from others by.
+    pub digest: String,
+    /// The setups.
+    pub setups: Setups,
+    /// How many.
+    pub count: u64,
+    /// In how many of them nothing is seen, by reason.
+    pub unseen: BTreeMap<String, u64>,
+    /// How many features, aspects and relations follow.
+    pub features: usize,
+    /// See `features`.
+    pub aspects: usize,
+    /// How many setups are of aspects that are not listed.
+    pub other_aspects: u64,
+    /// See `features`.
+    pub tuples: usize,
+    /// The middle deviation of the pose: turn in radians, move in the part's unit (geometric mean over
+    /// the setups that tell it).
+    pub pose: Option<[f64; 2]>,
+    /// In how many setups the found features tell the pose.
+    pub posed: u64,
+    /// How likely the ends of two features that do not meet are as near as those that do.
+    pub chance: f64,
+}
+
+/// A share with its credible interval of 95 % (Beta(½, ½) posterior).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rate {
+    /// The mean.
+    pub mean: f64,
+    /// The ends of the interval.
+    pub interval: [f64; 2],
+    /// Of how many.
+    pub of: u64,
+}
+
+impl Rate {
+    fn of(proportion: &Proportion) -> Self {
+        let Interval { low, high } = proportion.interval(Proportion::LEVEL);
+        Self {
+            mean: proportion.mean(),
+            interval: [low, high],
+            of: proportion.trials(),
+        }
+    }
+
+    fn counted(successes: u64, trials: u64) -> Self {
+        Self::of(&Proportion::new(successes.min(trials), trials).unwrap_or_default())
+    }
+}
+
+/// Means and covariances of attributes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Attributes {
+    /// Of how many.
+    pub count: u64,
+    /// Mid x, mid y, ln length, cos 2θ, sin 2θ, in the image of the part's radius about its middle.
+    pub mean: Vec<f64>,
+    /// Their covariance, with a floor.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+impl Attributes {
+    fn of(moments: &Moments<ATTRIBUTES>) -> Option<Self> {
+        let covariance = moments.covariance(&FLOOR);
+        let rows = covariance
+            .row_iter()
+            .map(|row| row.iter().copied().collect());
+        Some(Self {
+            count: moments.count(),
+            mean: moments.mean()?.iter().copied().collect(),
+            covariance: rows.collect(),
+        })
+    }
+}
+
+/// What is known of a feature.
+#[derive(Clone, Debug, Serialize)]
+pub struct Feature {
+    /// Its place in the order of detectability, from 0.
+    pub rank: usize,
+    /// What it is the image of.
+    pub source: Source,
+    /// In how many setups it is whole, broken, missed, of those in which it is visible.
+    pub states: [u64; 3],
+    /// How likely it is found in a setup.
+    pub detectability: Rate,
+    /// How likely it is found where it is visible.
+    pub detectability_visible: Rate,
+    /// How likely it is told from all others of its aspect by its attributes, where it is found.
+    pub reliability: Rate,
+    /// By how much the deviations of the pose, turn and move, grow without it (geometric mean).
+    pub accuracy: Option<[f64; 2]>,
+    /// How often none, one, two.. fragments of it are found; the last is seven and more.
+    pub fragments: [u64; FRAGMENTS],
+    /// The mean share of its visible length that is found.
+    pub share: f64,
+    /// The attributes of what is found.
+    pub attributes: Option<Attributes>,
+}
+
+/// A feature in an aspect.
+#[derive(Clone, Debug, Serialize)]
+pub struct AspectFeature {
+    /// Its rank.
+    pub feature: usize,
+    /// In how many setups it is whole, broken, missed.
+    pub states: [u64; 3],
+    /// How likely it is found.
+    pub detectability: Rate,
+    /// The attributes of what is found.
+    pub attributes: Option<Attributes>,
+}
+
+/// What is known of an aspect.
+#[derive(Clone, Debug, Serialize)]
+pub struct Aspect {
+    /// Its place in the order of setups, from 0.
+    pub rank: usize,
+    /// How many setups are of it.
+    pub setups: u64,
+    /// The mean direction of the camera from the part's middle.
+    pub view: Vec<f64>,
+    /// Its features, by rank.
+    pub features: Vec<AspectFeature>,
+}
+
+/// What is known of a relation.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tuple {
+    /// Its place in the order of how often it is kept.
+    pub rank: usize,
+    /// Its kind.
+    pub kind: Relation,
+    /// The ranks of its features.
+    pub members: Vec<usize>,
+    /// In how many setups it is visible, all its members are found, and it is kept.
+    pub counts: [u64; 3],
+    /// How likely it is kept where its members are found.
+    pub kept: Rate,
+    /// How likely it would be by chance.
+    pub chance: f64,
+}
+
+/// A feature in the tree of which are found together.
+#[derive(Clone, Debug, Serialize)]
+pub struct Together {
+    /// Its rank.
+    pub feature: usize,
+    /// The rank of the feature that it depends on.
+    pub parent: Option<usize>,
+    /// Its mutual information with that, in nats.
+    pub information: f64,
+    /// How likely it is not visible, missed, found, by itself.
+    pub marginal: Vec<f64>,
+    /// By the parent's state: how likely it is not visible, missed, found.
+    pub table: Vec<Vec<f64>>,
+}
+
+/// Which features are found together: a tree of dependences (Chow and Liu 1968).
+#[derive(Clone, Debug, Serialize)]
+pub struct Codetection {
+    /// The nodes, parents first.
+    pub tree: Vec<Together>,
+}
+
+/// The records of a summary, whose two rounds are done.
+pub fn records(summary: &Summary, part: &str, digest: &str, setups: &Setups) -> Vec<Record> {
+    let order = summary.ranked();
+    let rank: BTreeMap<Source, usize> = order.iter().enumerate().map(|(i, s)| (*s, i)).collect();
+    let aspects = aspects(summary, &rank);
+    let tuples = tuples(summary, &rank);
+    let root = |m: &Moments<2>| m.mean().map(|v| [v[0].exp(), v[1].exp()]);
+    let head = Head {
+        schema: SCHEMA,
+        part: part.to_owned(),
+        digest: digest.to_owned(),
+        setups: setups.clone(),
+        count: summary.setups,
+        unseen: summary.unseen.clone(),
+        features: order.len(),
+        aspects: aspects.len(),
+        other_aspects: summary.other_aspects,
+        tuples: tuples.len(),
+        pose: root(&summary.pose),
+        posed: summary.pose.count(),
+        chance: chance(summary, 2),
+    };
+    let mut all = vec![Record::Model(Box::new(head))];
+    for (i, source) in order.iter().enumerate() {
+        let sums = &summary.features[source];
+        all.push(Record::Feature(Box::new(feature(
+            i,
+            *source,
+            sums,
+            summary.setups,
+        ))));
+    }
+    all.extend(aspects.into_iter().map(Record::Aspect));
+    all.extend(tuples.into_iter().map(Record::Tuple));
+    all.extend(codetection(summary, &rank).map(Record::Codetection));
+    all
+}
+
+fn feature(rank: usize, source: Source, sums: &FeatureSums, setups: u64) -> Feature {
+    let growth = sums.growth.mean();
+    Feature {
+        rank,
+        source,
+        states: sums.states,
+        detectability: Rate::counted(sums.found(), setups),
+        detectability_visible: Rate::counted(sums.found(), sums.visible()),
+        reliability: Rate::of(&sums.reliability),
+        accuracy: growth.map(|g| [g[0].exp(), g[1].exp()]),
+        fragments: *sums.fragments.counts(),
+        share: sums.share.mean().map_or(0.0, |m| m[0]),
+        attributes: Attributes::of(&sums.attributes),
+    }
+}
+
+fn aspects(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Vec<Aspect> {
+    let mut all: Vec<&AspectSums> = summary.aspects.values().collect();
+    all.sort_by_key(|sums| std::cmp::Reverse(sums.setups));
+    let told = |(i, sums): (usize, &AspectSums)| {
+        let mut features: Vec<AspectFeature> = sums
+            .features
+            .iter()
+            .map(|(source, own)| AspectFeature {
+                feature: rank[source],
+                states: own.states,
+                detectability: Rate::counted(own.found(), sums.setups),
+                attributes: Attributes::of(&own.attributes),
+            })
+            .collect();
+        features.sort_by_key(|f| f.feature);
+        Aspect {
+            rank: i,
+            setups: sums.setups,
+            view: sums
+                .view
+                .mean()
+                .map_or(Vec::new(), |v| v.iter().copied().collect()),
+            features,
+        }
+    };
+    all.into_iter().enumerate().map(told).collect()
+}
+
+/// How likely so many features that do not meet look as if they did.
+fn chance(summary: &Summary, members: usize) -> f64 {
+    let pair = Proportion::new(summary.chance[0], summary.chance[1])
+        .unwrap_or_default()
+        .mean();
+    // Each further one has to be near as well.
+    pair.powi(members.saturating_sub(1).min(64) as i32)
+}
+
+fn tuples(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Vec<Tuple> {
+    let mut all: Vec<Tuple> = summary
+        .tuples
+        .iter()
+        .map(|((kind, members), sums)| Tuple {
+            rank: 0,
+            kind: *kind,
+            members: members.iter().map(|m| rank[m]).collect(),
+            counts: [sums.visible, sums.seen, sums.kept],
+            kept: Rate::counted(sums.kept, sums.seen),
+            chance: chance(summary, members.len()),
+        })
+        .collect();
+    all.sort_by_key(|t| std::cmp::Reverse(t.counts[2]));
+    all.iter_mut().enumerate().for_each(|(i, t)| t.rank = i);
+    all
+}
+
+fn codetection(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Option<Codetection> {
+    let tree = Tree::new(summary.pairs.as_ref()?, Smoothing::Jeffreys);
+    let nodes = tree.order().iter().map(|&i| {
+        let node = &tree.nodes()[i];
+        let of = |k: usize| rank[&summary.paired[k]];
+        Together {
+            feature: of(i),
+            parent: node.parent.map(of),
+            information: node.information,
+            marginal: node.marginal.to_vec(),
+            table: node.table.iter().map(|row| row.to_vec()).collect(),
+        }
+    });
+    Some(Codetection {
+        tree: nodes.collect(),
+    })
+}

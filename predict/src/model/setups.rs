@@ -1,0 +1,216 @@
+//! Many setups: cameras on the viewing sphere, each with lights on the illumination sphere.
+
+use crate::setup::light::Light;
+use crate::setup::viewpoint::Viewpoint;
+use crate::setup::{Conditions, Setup, SetupError, Written, above_zero};
+use crate::sphere::{Cone, Lattice, Sampling, SphereError, points};
+use crate::statistics::hash;
+use crate::subject::Subject;
+use nalgebra::{Point3, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// Points on a sphere about the middle of the part.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sphere {
+    /// Its radius, in the part's unit; three times that of the part's own ball if it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// How points are laid on it.
+    #[serde(default)]
+    pub lattice: Lattice,
+    /// How many points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// Or the angle between neighbours, in degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
+    /// The directions from the middle that are meant; all if there is none.
+    #[serde(default)]
+    pub cones: Vec<Cone>,
+}
+
+impl Sphere {
+    /// The directions from the middle of the part.
+    fn directions(&self, key: &str) -> Result<Vec<Vector3<f64>>, SetupError> {
+        if let Some(radius) = self.radius {
+            above_zero(&format!("{key}.radius"), radius)?;
+        }
+        let sampling = match (self.count, self.angle) {
+            (Some(count), None) => Sampling::Count(count),
+            (None, Some(angle)) => Sampling::Angle(angle),
+            _ => {
+                let reason = "or `angle` is needed, and only one of them";
+                return Err(SetupError::value(format!("{key}.count"), reason));
+            }
+        };
+        let failed = |error: SphereError| {
+            let name = match error {
+                SphereError::Angle(_) => "angle",
+                SphereError::Axis(_) | SphereError::HalfAngle { .. } | SphereError::Empty => {
+                    "cones"
+                }
+                SphereError::NoCount | SphereError::TooMany if self.angle.is_some() => "angle",
+                SphereError::NoCount | SphereError::TooMany => "count",
+            };
+            SetupError::value(format!("{key}.{name}"), format!("is of no use: {error}"))
+        };
+        points(self.lattice, sampling, &self.cones).map_err(failed)
+    }
+
+    fn radius_about(&self, subject: &Subject<'_>) -> f64 {
+        self.radius.unwrap_or(3.0 * subject.radius)
+    }
+}
+
+/// Many setups.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Setups {
+    /// What they share.
+    #[serde(flatten)]
+    pub conditions: Conditions,
+    /// Where cameras are, all of which look at the middle of the part.
+    pub viewing: Sphere,
+    /// Where the light is that moves; none moves if it is not given.
+    pub illumination: Option<Sphere>,
+    /// Lights that stand still.
+    #[serde(rename = "light")]
+    pub lights: Vec<Light>,
+    #[serde(skip)]
+    views: Vec<Vector3<f64>>,
+    #[serde(skip)]
+    moving: Vec<Vector3<f64>>,
+}
+
+/// The most setups of one model.
+const MOST: usize = 1 << 32;
+
+impl Setups {
+    /// The setups that a TOML text describes.
+    pub fn from_toml(text: &str) -> Result<Self, SetupError> {
+        Written::from_toml(text)?.setups()
+    }
+
+    /// The setups of spheres under conditions.
+    pub fn new(
+        conditions: Conditions,
+        viewing: Sphere,
+        illumination: Option<Sphere>,
+        lights: Vec<Light>,
+    ) -> Result<Self, SetupError> {
+        let views = viewing.directions("viewing")?;
+        let moving = match &illumination {
+            Some(sphere) => sphere.directions("illumination")?,
+            None => Vec::new(),
+        };
+        let setups = Self {
+            conditions,
+            viewing,
+            illumination,
+            lights,
+            views,
+            moving,
+        };
+        if setups.len() > MOST {
+            return Err(SetupError::value(
+                "viewing.count",
+                "makes more than 2^32 setups",
+            ));
+        }
+        setups.conditions.validate()?;
+        let always = setups.conditions.ambient > 0.0 || !setups.lights.is_empty();
+        for (i, light) in setups.lights.iter().enumerate() {
+            light.validate(i)?;
+        }
+        match always || setups.illumination.is_some() {
+            true => Ok(setups),
+            false => Err(SetupError::Dark),
+        }
+    }
+
+    /// How many there are: every camera with every light.
+    pub fn len(&self) -> usize {
+        self.views.len().saturating_mul(self.moving.len().max(1))
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The direction of the camera of a setup, and of the light that moves.
+    pub fn directions(&self, index: usize) -> [Option<Vector3<f64>>; 2] {
+        let lights = self.moving.len().max(1);
+        let view = self.views.get(index / lights).copied();
+        [view, self.moving.get(index % lights).copied()]
+    }
+
+    /// One of the setups, about a part.
+    pub fn setup(&self, index: usize, subject: &Subject<'_>) -> Setup {
+        let [view, light] = self.directions(index);
+        self.looking(view.unwrap_or_else(Vector3::x), light, index, subject)
+    }
+
+    /// The setup with the camera and the light in any directions.
+    pub fn looking(
+        &self,
+        view: Vector3<f64>,
+        light: Option<Vector3<f64>>,
+        index: usize,
+        subject: &Subject<'_>,
+    ) -> Setup {
+        let eye: Point3<f64> = subject.centre + view * self.viewing.radius_about(subject);
+        // Up is z, and over the poles, where that is no direction, x as next to them.
+        let level = view.x.hypot(view.y);
+        let up = if level > POLE {
+            Vector3::z()
+        } else {
+            -Vector3::x() * view.z.signum()
+        };
+        let mut lights = self.lights.clone();
+        if let (Some(direction), Some(sphere)) = (light, &self.illumination) {
+            let at = subject.centre + direction * sphere.radius_about(subject);
+            lights.push(Light::at(at));
+        }
+        let conditions = Conditions {
+            seed: hash(self.conditions.seed, index as u64, 1),
+            ..self.conditions.clone()
+        };
+        Setup {
+            camera: Viewpoint::looking(eye, subject.centre, up),
+            lights,
+            conditions,
+        }
+    }
+}
+
+/// So near to the poles up is another direction.
+const POLE: f64 = 1.0 / 4096.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_camera_meets_every_light() {
+        let text = "[viewing]\ncount = 7\n[illumination]\ncount = 5\ncones = [{ axis = [0, 0, 1], half_angle = 60 }]\n";
+        let setups = Setups::from_toml(text).unwrap();
+        assert_eq!(setups.len(), 35);
+        let mut pairs: Vec<String> = (0..35)
+            .map(|i| format!("{:?}", setups.directions(i)))
+            .collect();
+        pairs.sort();
+        pairs.dedup();
+        assert_eq!(pairs.len(), 35);
+    }
+
+    #[test]
+    fn what_is_missing_is_told() {
+        let told = |text: &str| Setups::from_toml(text).unwrap_err().to_string();
+        assert!(told("seed = 1\n").contains("`viewing`"));
+        assert!(told("[viewing]\nlattice = \"icosahedral\"\n").contains("`viewing.count`"));
+        assert!(told("[viewing]\ncount = 0\n").contains("`viewing.count`"));
+        assert!(told("ambient = 0\n[viewing]\ncount = 3\n").contains("no light"));
+        assert!(told("[viewing]\ncount = 3\n[camera]\neye = [1, 2, 3]\n").contains("`camera`"));
+    }
+}

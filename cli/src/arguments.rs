@@ -8,8 +8,8 @@ use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 pub use predict::{
-    CompareOptions, MergeOptions, ModelCommand, ModelOptions, ModelRunOptions, PredictOptions,
-    RenderOptions,
+    AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions,
+    ModelRunOptions, PredictOptions, RenderOptions,
 };
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetOptions, ViewName};
@@ -72,6 +72,9 @@ pub enum Command {
           premio model merge part.*.shard -o part.model"
     )]
     Model(ModelOptions),
+    /// Where camera and light are best, and what other places cost
+    #[command(after_help = "Example: premio advise part.padl --setups setups.toml --goal pose")]
+    Advise(AdviseOptions),
     /// The image of a setup, by a line of sight through every pixel
     #[command(after_help = "Example: premio render part.padl --setup setup.toml -o part.png")]
     Render(RenderOptions),

@@ -34,6 +34,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Convert(options) => commands::convert::run(options, voice),
         Command::Predict(options) => commands::predict::run(options, voice),
         Command::Model(options) => commands::model::run(options, voice),
+        Command::Advise(options) => commands::advise::run(options, voice),
         Command::Render(options) => commands::render::run(options, voice),
         Command::Compare(options) => commands::compare::run(options, voice),
         Command::Fuzz(options) => commands::fuzz::run(options, voice),

@@ -6,6 +6,7 @@
 //! ([`processing`]) finds edges in them, and these are told to what they are the image of
 //! ([`feature`]).
 
+pub mod advise;
 pub mod agreement;
 pub mod feature;
 pub mod image;

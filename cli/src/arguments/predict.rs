@@ -167,3 +167,34 @@ fn shard(text: &str) -> Result<Shard, String> {
         false => Err(wrong()),
     }
 }
+
+/// Options of `advise`.
+#[derive(Debug, Args)]
+pub struct AdviseOptions {
+    #[command(flatten)]
+    pub description: DescriptionOptions,
+    /// The setups to try: the spheres of cameras and lights, sensor, materials, detector (TOML)
+    #[arg(long, value_name = "SETUPS")]
+    pub setups: PathBuf,
+    /// What is sought
+    #[arg(long, value_enum, default_value = "features")]
+    pub goal: GoalName,
+    /// How many setups are listed below the best
+    #[arg(long, value_name = "N", default_value = "10")]
+    pub top: u16,
+    /// How many threads work [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// What is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GoalName {
+    /// The most features that are expected to be found
+    Features,
+    /// The least deviation of the pose
+    Pose,
+}

@@ -1,5 +1,6 @@
 //! The commands.
 
+pub mod advise;
 pub mod check;
 pub mod compare;
 pub mod contours;

@@ -38,24 +38,59 @@ pub fn blur_by(image: &mut Grey, domain: &Domain, sigma: f64, across: &mut Vec<f
     for (y, runs) in wide.iter().enumerate() {
         let row = &image.levels[y * width..(y + 1) * width];
         let out = &mut across[y * width..(y + 1) * width];
-        for x in runs
-            .iter()
-            .flat_map(|run| run.start as usize..run.end as usize)
-        {
-            let pair = |k: usize| row[x.saturating_sub(k)] + row[(x + k).min(width - 1)];
-            out[x] = sum(&weights, row[x], pair);
+        for run in runs {
+            blur_run(row, run, &weights, out);
         }
     }
     for y in 0..height {
-        for x in domain
-            .spans(y)
-            .iter()
-            .flat_map(|run| run.start as usize..run.end as usize)
-        {
-            let at = |v: usize| across[v * width + x];
-            let pair = |k: usize| at(y.saturating_sub(k)) + at((y + k).min(height - 1));
-            image.levels[y * width + x] = sum(&weights, at(y), pair);
+        let row = |v: usize, run: &Range<u32>| {
+            &across[v * width + run.start as usize..v * width + run.end as usize]
+        };
+        for run in domain.spans(y) {
+            let out = &mut image.levels[y * width..(y + 1) * width];
+            let out = &mut out[run.start as usize..run.end as usize];
+            scale(out, row(y, run), weights[0]);
+            for (k, w) in weights.iter().enumerate().skip(1) {
+                let [above, below] = [y.saturating_sub(k), (y + k).min(height - 1)];
+                add(out, row(above, run), row(below, run), *w);
+            }
         }
+    }
+}
+
+/// Blurs a run of pixels of a row along it.
+fn blur_run(row: &[f32], run: &Range<u32>, weights: &[f32], out: &mut [f32]) {
+    let reach = weights.len() - 1;
+    let (start, end) = (run.start as usize, run.end as usize);
+    // Next to the ends of the row the nearest pixel stands for what is beyond.
+    let inner = start.max(reach)..end.min(row.len().saturating_sub(reach));
+    let beside = (start..end).filter(|x| !inner.contains(x));
+    for x in beside {
+        let pair = |k: usize| row[x.saturating_sub(k)] + row[(x + k).min(row.len() - 1)];
+        let sides = weights.iter().enumerate().skip(1);
+        out[x] = sides.fold(weights[0] * row[x], |all, (k, w)| all + w * pair(k));
+    }
+    if inner.is_empty() {
+        return;
+    }
+    let out = &mut out[inner.clone()];
+    scale(out, &row[inner.clone()], weights[0]);
+    for (k, w) in weights.iter().enumerate().skip(1) {
+        let moved = |by: usize| &row[by..by + out.len()];
+        let [left, right] = [moved(inner.start - k), moved(inner.start + k)];
+        add(out, left, right, *w);
+    }
+}
+
+fn scale(out: &mut [f32], from: &[f32], weight: f32) {
+    for (o, f) in out.iter_mut().zip(from) {
+        *o = weight * f;
+    }
+}
+
+fn add(out: &mut [f32], a: &[f32], b: &[f32], weight: f32) {
+    for (o, (a, b)) in out.iter_mut().zip(a.iter().zip(b)) {
+        *o += weight * (a + b);
     }
 }
 
@@ -69,11 +104,6 @@ fn grown_rows(domain: &Domain, by: usize) -> Vec<Vec<Range<u32>>> {
         one.spans(0).to_vec()
     };
     (0..height).map(row).collect()
-}
-
-fn sum(weights: &[f32], middle: f32, pair: impl Fn(usize) -> f32) -> f32 {
-    let sides = weights.iter().enumerate().skip(1);
-    sides.fold(weights[0] * middle, |all, (k, w)| all + w * pair(k))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use super::field::Field;
 use super::shading::Shading;
 use crate::outline::scanline::{LINES, line_y};
-use crate::outline::{Region, Regions, Seen};
+use crate::outline::{Region, Regions};
 use crate::processing::{Domain, Grey};
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ struct Share {
 
 /// The levels of the pixels of a domain, before the point spread, noise and steps.
 pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &Domain, image: &mut Grey) {
-    let mut light = Light::of(shading, regions, [image.width, image.height]);
+    let mut light = Light::of(shading, regions);
     let mut shares: Vec<Share> = Vec::new();
     let mut row = Row::default();
     for y in 0..image.height.min(domain.height()) {
@@ -74,16 +74,17 @@ struct Light<'s, 'p> {
 }
 
 impl<'s, 'p> Light<'s, 'p> {
-    fn of(shading: &'s Shading<'p>, regions: &'s Regions, size: [usize; 2]) -> Self {
-        let seen = |region: &Region| region.seen;
-        let all = || regions.all.iter().map(seen);
-        let hint = |seen: Option<Seen>| seen.map_or(0.0, |s| shading.distance(&s.point));
-        let field = |seen: Option<Seen>| seen.and_then(|s| Field::of(shading, &s, size));
+    fn of(shading: &'s Shading<'p>, regions: &'s Regions) -> Self {
+        let hint = |region: &Region| {
+            let seen = region.seen.as_ref();
+            seen.map_or(0.0, |s| shading.distance(&s.point))
+        };
+        let field = |region: &Region| Field::of(shading, region);
         Self {
             shading,
             regions,
-            hints: all().map(hint).collect(),
-            fields: all().map(field).collect(),
+            hints: regions.all.iter().map(hint).collect(),
+            fields: regions.all.iter().map(field).collect(),
         }
     }
 
@@ -105,12 +106,11 @@ impl<'s, 'p> Light<'s, 'p> {
 
     /// The levels of a run of pixels of one region.
     fn shade(&mut self, region: u32, run: Range<u32>, y: usize, levels: &mut [f32]) {
-        let flat = self.fields[region as usize].is_some();
-        let mut level = |x: u32| self.level(region, [f64::from(x), y as f64]);
-        match flat {
-            true => run.for_each(|x| levels[x as usize] = level(x) as f32),
-            false => shade(run, levels, &mut level),
+        if let Some(field) = &mut self.fields[region as usize] {
+            return field.shade(self.shading, run, y as f64, levels);
         }
+        let mut level = |x: u32| self.level(region, [f64::from(x), y as f64]);
+        shade(run, levels, &mut level);
     }
 }
 

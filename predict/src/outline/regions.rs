@@ -6,15 +6,22 @@
 //! of it; where these do not agree, or the sides of shadows contradict it, every pixel is asked.
 
 use super::arc::{Arc, Side};
+use super::flatten::FINE;
 use super::scanline::{Crossing, LINES, Scanlines, Sections, line_at, line_y};
 use super::stage::Stage;
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
+use premio_kernel::geometry::surface::Surface;
 
-/// How many points of a region are asked.
-const ASKED: usize = 6;
-/// The shortest gap between two crossings, in pixels, that tells that their sides are of one region.
-const GAP: f64 = 1.0 / 1024.0;
+/// How many bands of a region have points that are asked.
+const BANDS: usize = 3;
+/// The places in a gap that are asked: of a flat region only the first, its middle.
+const ACROSS: [f64; 3] = [0.5, 0.12, 0.88];
+/// The shortest distance between two arcs, in pixels, that tells that their sides are of one region:
+/// polylines nearer than they are fine may lie the other way about.
+const GAP: f64 = 4.0 * FINE;
+/// How far beside the middle of a section it is asked, in pixels.
+const BESIDE: f64 = 0.5;
 /// A point tells whether a light reaches a region only where it does not graze the face.
 const GRAZING: f64 = 1.0 / 64.0;
 
@@ -36,6 +43,8 @@ pub struct Region {
     pub seen: Option<Seen>,
     /// Its area within the image, in pixels.
     pub area: f64,
+    /// The least and the greatest pixel that shows it: columns and rows.
+    pub bounds: [[f64; 2]; 2],
     /// A few points of it, with the length of the gap between arcs each is in the middle of.
     pub points: Vec<([f64; 2], f64)>,
 }
@@ -51,6 +60,8 @@ pub struct Regions {
     pub all: Vec<Region>,
     /// By side of a section: its region.
     sides: Vec<u32>,
+    /// The width of the image in pixels.
+    width: usize,
 }
 
 /// The number of a side of a section.
@@ -99,6 +110,7 @@ impl Regions {
                 all.push(Region {
                     seen: None,
                     area: 0.0,
+                    bounds: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
                     points: Vec::new(),
                 });
             }
@@ -109,8 +121,9 @@ impl Regions {
             sections,
             all,
             sides,
+            width,
         };
-        regions.choose_points(width);
+        regions.choose_points();
         regions.ask(stage, arcs);
         regions
     }
@@ -153,27 +166,44 @@ impl Regions {
         std::iter::once(([f64::NEG_INFINITY, start], first)).chain(rest)
     }
 
-    /// The middles of the widest gaps, of lines that are spread over the region.
-    fn choose_points(&mut self, width: usize) {
-        let blank = ([0.0; 2], 0.0);
-        let mut areas = vec![0.0; self.all.len()];
-        let mut best = vec![[blank; ASKED]; self.all.len()];
-        let (left, right) = (-0.5, width as f64 - 0.5);
+    /// Measures the regions, and chooses points of them: of lines spread over a region those with the
+    /// widest gaps, and of a gap its middle and places towards its ends.
+    fn choose_points(&mut self) {
+        let (left, right) = (-0.5, self.width as f64 - 0.5);
+        let inside = |[from, to]: [f64; 2]| (from.max(left), to.min(right));
         for line in 0..self.scanlines.lines() {
-            // Lines of different rows, so that the points are not next to one another.
-            let slot = (line / (LINES - 1)) % ASKED;
-            for ([from, to], region) in self.gaps(line) {
-                let (from, to) = (from.max(left), to.min(right));
-                areas[region as usize] += (to - from).max(0.0) / LINES as f64;
-                let known = &mut best[region as usize][slot];
-                if to - from > known.1 {
-                    *known = ([0.5 * (from + to), line_y(line)], to - from);
+            let y = line_y(line);
+            let gaps: Vec<_> = self.gaps(line).collect();
+            for (gap, region) in gaps {
+                let (from, to) = inside(gap);
+                if to > from {
+                    let region = &mut self.all[region as usize];
+                    region.area += (to - from) / LINES as f64;
+                    let [least, most] = &mut region.bounds;
+                    *least = [least[0].min(from), least[1].min(y)];
+                    *most = [most[0].max(to), most[1].max(y)];
                 }
             }
         }
-        for ((region, best), area) in self.all.iter_mut().zip(best).zip(areas) {
-            region.area = area;
-            region.points.extend(best.iter().filter(|p| p.1 > GAP));
+        let mut best = vec![[(0.0, 0.0, 0.0); BANDS]; self.all.len()];
+        for line in 0..self.scanlines.lines() {
+            let y = line_y(line);
+            for (gap, region) in self.gaps(line) {
+                let (from, to) = inside(gap);
+                let [least, most] = self.all[region as usize].bounds;
+                let part = (y - least[1]) / (most[1] - least[1]).max(f64::MIN_POSITIVE);
+                let band = ((part * BANDS as f64) as usize).min(BANDS - 1);
+                let known = &mut best[region as usize][band];
+                if to - from > known.1 - known.0 {
+                    *known = (from, to, y);
+                }
+            }
+        }
+        for (region, best) in self.all.iter_mut().zip(best) {
+            for (from, to, y) in best.into_iter().filter(|(from, to, _)| to - from > GAP) {
+                let at = |part: f64| ([from + (to - from) * part, y], to - from);
+                region.points.extend(ACROSS.map(at));
+            }
         }
     }
 
@@ -187,6 +217,40 @@ impl Regions {
         {
             region.seen = seen(stage, &region.points, votes);
         }
+        self.doubt(stage, arcs);
+    }
+
+    /// Asks beside the middle of every section: a region that shows something else there than it is
+    /// told to, because arcs leave a gap that no line passes, is told nothing of.
+    fn doubt(&mut self, stage: &Stage<'_>, arcs: &[Arc]) {
+        for section in 0..self.sections.all.len() {
+            let (arc, [from, to]) = self.sections.all[section];
+            let line = &arcs[arc as usize].line;
+            let middle = (from + to) / 2;
+            let [a, b] = [line.points[middle], line.points[middle + 1]];
+            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+            let across = [
+                (a[1] - b[1]) / length * BESIDE,
+                (b[0] - a[0]) / length * BESIDE,
+            ];
+            for sign in [1.0, -1.0] {
+                let at = [0, 1].map(|i| 0.5 * (a[i] + b[i]) + sign * across[i]);
+                let side = Side::of(at, [a, b]);
+                let region = self.at(at);
+                // Another arc may run in between.
+                if region != self.beside(section as u32, side) || !self.holds(at) {
+                    continue;
+                }
+                let seen = &mut self.all[region as usize].seen;
+                *seen = seen.filter(|told| agrees(stage, told, at));
+            }
+        }
+    }
+
+    /// Whether a point lies in the image.
+    fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        let inside = |v: f64, size: usize| v >= -0.5 && v < size as f64 - 0.5;
+        inside(x, self.width) && inside(y, self.scanlines.lines() / LINES)
     }
 
     /// By region and light: how many sides of shadows say that it is lit, and that it is not.
@@ -224,16 +288,45 @@ fn join(on: &[Crossing], sets: &mut Sets) {
     }
     for pair in on.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        if a.firm && b.firm && b.x - a.x > GAP {
+        if a.firm && b.firm && (b.x - a.x) * a.slant.min(b.slant) > GAP {
             sets.join(right_of(a), left_of(b));
         }
     }
 }
 
+/// Whether a region shows at a point of it what it is told to.
+fn agrees(stage: &Stage<'_>, told: &Seen, at: [f64; 2]) -> bool {
+    let met = stage.seen(at);
+    if met.map(|(face, _)| face) != told.face {
+        return false;
+    }
+    let Some((face, p)) = met else {
+        return true;
+    };
+    let normal = stage.subject.brep.outward(face, &p);
+    (0..stage.lights.len()).all(|light| {
+        let (towards, _) = stage.lights[light].0.from(&p);
+        let told = told.lit >> light & 1 == 1;
+        normal.dot(&towards) <= GRAZING || stage.is_lit(light, &p, face) == told
+    })
+}
+
 /// What is seen at all of some points, given what the sides of shadows say; none where they differ.
 fn seen(stage: &Stage<'_>, points: &[([f64; 2], f64)], votes: &[[u32; 2]]) -> Option<Seen> {
-    let mut hits = points.iter().map(|&(at, _)| stage.seen(at));
-    let first = hits.next()?;
+    let first = stage.seen(points.first()?.0);
+    // Flat regions are alike all over.
+    let flat =
+        |(face, _): &(FaceId, _)| matches!(stage.subject.brep.surface(*face), Surface::Plane(_));
+    let step = if first.as_ref().is_none_or(flat) {
+        ACROSS.len()
+    } else {
+        1
+    };
+    let mut hits = points
+        .iter()
+        .step_by(step)
+        .skip(1)
+        .map(|&(at, _)| stage.seen(at));
     let Some((face, point)) = first else {
         let same = hits.all(|hit| hit.is_none());
         return same.then_some(Seen {
@@ -278,11 +371,12 @@ fn is_lit(
         .map(|p| stage.is_lit(light, p, face));
     match votes {
         [0, 0] => {
-            let first = asked.next().unwrap_or(false);
+            // Where nothing is turned to the light it does not matter.
+            let first = asked.next().unwrap_or(true);
             asked.all(|lit| lit == first).then_some(first)
         }
-        [_, 0] => asked.next().is_none_or(|lit| lit).then_some(true),
-        [0, _] => asked.next().is_none_or(|lit| !lit).then_some(false),
+        [_, 0] => asked.all(|lit| lit).then_some(true),
+        [0, _] => asked.all(|lit| !lit).then_some(false),
         _ => None,
     }
 }

@@ -19,6 +19,9 @@ pub struct Crossing {
     pub right: Side,
     /// Whether it is plainly this section that crosses.
     pub firm: bool,
+    /// The sine of the angle at which it crosses: what a polyline is off its curve moves the crossing
+    /// by as much over this.
+    pub slant: f64,
 }
 
 /// The sections of arcs: what lies between two points at which others end on them, or their own ends.
@@ -97,6 +100,7 @@ impl Scanlines {
             section: 0,
             right: Side::Left,
             firm: false,
+            slant: 0.0,
         };
         let mut crossings = vec![blank; counts[lines] as usize];
         let mut next = counts.clone();
@@ -134,6 +138,7 @@ fn each(arcs: &[Arc], sections: &Sections, lines: usize, mut report: impl FnMut(
             let [a, b] = [pair[0], pair[1]];
             let (top, bottom) = (a[1].min(b[1]), a[1].max(b[1]));
             let slope = (b[0] - a[0]) / (b[1] - a[1]);
+            let slant = (b[1] - a[1]).abs() / (b[0] - a[0]).hypot(b[1] - a[1]);
             // What runs down has its left on the page's right.
             let right = if b[1] > a[1] { Side::Left } else { Side::Right };
             for line in first_line(top, lines)..first_line(bottom, lines) {
@@ -148,6 +153,7 @@ fn each(arcs: &[Arc], sections: &Sections, lines: usize, mut report: impl FnMut(
                         section,
                         right,
                         firm,
+                        slant,
                     },
                 );
             }

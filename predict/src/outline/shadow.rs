@@ -44,9 +44,9 @@ pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
                 let Some(line) = shadow(stage, view, &cast, window) else {
                     continue;
                 };
-                let lit = lit_side(stage, &cast, &line);
+                let lit = lit_side(stage, view, &cast);
                 let source = source(light, &cast, &ordinals);
-                let shade = Some(Shade { light, lit });
+                let shade = lit.map(|lit| Shade { light, lit });
                 for part in visible_parts(stage, &segments, &cast, &line, &mut ends) {
                     found.push(Arc {
                         source,
@@ -101,6 +101,9 @@ fn casts<'v>(stage: &Stage<'_>, view: &'v Sightings<'_>, ordinals: &[u32]) -> Ve
         let Some(contour) = arc.contour.map(|id| &view.contours.contours[id as usize]) else {
             continue;
         };
+        if is_lit_on_both_sides(stage, view, contour, &arc.line) {
+            continue;
+        }
         let last = arc.line.points.len() - 1;
         let mut from = 0;
         for &to in arc.stops.iter().chain([&last]) {
@@ -110,6 +113,33 @@ fn casts<'v>(stage: &Stage<'_>, view: &'v Sightings<'_>, ordinals: &[u32]) -> Ve
         }
     }
     casts
+}
+
+/// Whether an edge lies between two planes that are both turned to the light, so that nothing next to it
+/// is behind it: a plane is turned to a light everywhere, or nowhere.
+fn is_lit_on_both_sides(
+    stage: &Stage<'_>,
+    view: &Sightings<'_>,
+    contour: &Contour,
+    line: &Polyline,
+) -> bool {
+    let flat = contour.faces.len() == 2
+        && contour
+            .faces
+            .iter()
+            .all(|&face| matches!(stage.subject.brep.surface(face), Surface::Plane(_)));
+    if contour.edge.is_none() || !flat {
+        return false;
+    }
+    let turned = |t: f64| {
+        let p = contour.curve3.point(t);
+        let (towards, _) = view.scene.projection.towards_eye(&p);
+        contour
+            .faces
+            .iter()
+            .all(|&face| stage.subject.brep.outward(face, &p).dot(&towards) > 0.0)
+    };
+    turned(line.parameters[0])
 }
 
 /// The length in a light's image of a part's radius next to its middle.
@@ -180,6 +210,17 @@ fn cast<'v>(
     found
 }
 
+/// Where the point of a cast with a parameter falls on its ground, as the camera shows it.
+fn fall(stage: &Stage<'_>, view: &Sightings<'_>, cast: &Cast<'_>, t: f64) -> Option<Shown> {
+    let light = view.scene.projection;
+    let camera = stage.view.scene.projection;
+    let image = light.project(&cast.contour.curve3.point(t));
+    let (origin, into) = light.line_of_sight(&image);
+    let far = front(stage.subject.brep, cast.ground, &origin, &into, cast.hint)?;
+    let p = origin + into * far;
+    (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
+}
+
 /// The image of the curve in which a cast falls on its ground.
 fn shadow(
     stage: &Stage<'_>,
@@ -187,17 +228,9 @@ fn shadow(
     cast: &Cast<'_>,
     window: &Window,
 ) -> Option<Polyline> {
-    let light = view.scene.projection;
-    let camera = stage.view.scene.projection;
-    let curve = |t: f64| -> Option<Shown> {
-        let image = light.project(&cast.contour.curve3.point(t));
-        let (origin, into) = light.line_of_sight(&image);
-        let far = front(stage.subject.brep, cast.ground, &origin, &into, cast.hint)?;
-        let p = origin + into * far;
-        (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
-    };
     let straight = matches!(cast.contour.curve3, Curve::Line(_))
         && matches!(stage.subject.brep.surface(cast.ground), Surface::Plane(_));
+    let curve = |t: f64| fall(stage, view, cast, t);
     let mut line = flatten(curve, cast.range, straight, (FINE, window))?;
     draw_out(&mut line);
     Some(line)
@@ -216,12 +249,17 @@ fn draw_out(line: &mut Polyline) {
     }
 }
 
-/// The side of a shadow's boundary that is lit.
-fn lit_side(stage: &Stage<'_>, cast: &Cast<'_>, line: &Polyline) -> Side {
+/// The side of a shadow's boundary that is lit: that of a point next to its middle, which is nearer to
+/// it than a polyline is.
+fn lit_side(stage: &Stage<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<Side> {
+    let [from, to] = cast.range;
+    let (t, step) = (0.5 * (from + to), (to - from) * ASIDE);
+    let at = |t: f64| fall(stage, view, cast, t).map(|(p, _)| [p.x, p.y]);
+    let [before, middle, after] = [at(t - step)?, at(t)?, at(t + step)?];
     let lit = stage.view.scene.projection.project(&cast.lit);
-    let lit = [lit.x, lit.y];
-    let (i, _, _) = line.nearest(&lit).unwrap_or((0, 0.0, 0.0));
-    Side::of(lit, [line.points[i], line.points[i + 1]])
+    let along = [after[0] - before[0], after[1] - before[1]];
+    let ahead = [middle[0] + along[0], middle[1] + along[1]];
+    Some(Side::of([lit.x, lit.y], [middle, ahead]))
 }
 
 /// The parts of a shadow's boundary that the camera sees, and where these end on which arcs.

@@ -287,25 +287,24 @@ fn stop(arcs: &mut [Arc], contours: &Contours) {
     }
     let visible = contours.contours.iter().flat_map(|c| {
         let pieces = c.pieces.iter().filter(|p| p.visible);
-        pieces
-            .flat_map(move |p| [p.start, p.end])
-            .flatten()
-            .map(move |j| (c.id, j))
+        pieces.flat_map(|p| [p.start, p.end]).flatten()
     });
-    let mut ends: Vec<(u32, u32)> = visible.collect();
-    ends.sort_unstable_by_key(|&(contour, junction)| (junction, contour));
+    let mut ends: Vec<u32> = visible.collect();
+    ends.sort_unstable();
     ends.dedup();
-    for (contour, junction) in ends {
+    for junction in ends {
         let junction = &contours.junctions[junction as usize];
-        let Some(&before) = junction.contours.first() else {
+        let Some(before) = junction.contours.first() else {
             continue;
         };
-        if junction.kind != JunctionKind::T || before == contour {
+        if junction.kind != JunctionKind::T {
             continue;
         }
-        let on = by_contour.get(&before).into_iter().flatten();
         let p = junction.point2;
-        let found = on.filter_map(|&i| arcs[i].line.nearest(&p).map(|at| (i, at)));
+        // A limb may pass before itself: then one of its pieces ends here, and another does not.
+        let on = by_contour.get(before).into_iter().flatten();
+        let passing = on.filter(|&&i| !arcs[i].ends_at(p));
+        let found = passing.filter_map(|&i| arcs[i].line.nearest(&p).map(|at| (i, at)));
         let nearest = found.min_by(|a, b| a.1.2.total_cmp(&b.1.2));
         if let Some((i, at)) = nearest {
             arcs[i].stop_at(p, at);
@@ -317,17 +316,23 @@ fn stop(arcs: &mut [Arc], contours: &Contours) {
 const ON: f64 = 0.25;
 
 impl Arc {
+    /// Whether a point of its polyline is this one.
+    fn is_at(&self, k: usize, p: [f64; 2]) -> bool {
+        let q = self.line.points[k];
+        (q[0] - p[0]).hypot(q[1] - p[1]) < f64::EPSILON.sqrt()
+    }
+
+    /// Whether it starts or ends at a point.
+    fn ends_at(&self, p: [f64; 2]) -> bool {
+        self.is_at(0, p) || self.is_at(self.line.points.len() - 1, p)
+    }
+
     /// Notes that another arc ends at a point of this one, its segment and the part of it given.
     pub fn stop_at(&mut self, p: [f64; 2], (i, s, square): (usize, f64, f64)) {
-        let last = self.line.points.len() - 1;
-        let is_end = |k: usize| {
-            let q = self.line.points[k];
-            (q[0] - p[0]).hypot(q[1] - p[1]) < f64::EPSILON.sqrt()
-        };
-        if square > ON || is_end(0) || is_end(last) {
+        if square > ON || self.ends_at(p) {
             return;
         }
-        if let Some(known) = (i..=i + 1).find(|&k| is_end(k)) {
+        if let Some(known) = (i..=i + 1).find(|&k| self.is_at(k, p)) {
             if let Err(place) = self.stops.binary_search(&known) {
                 self.stops.insert(place, known);
             }

@@ -1,0 +1,199 @@
+//! `premio advise`: where camera and light are best.
+
+use super::predict::text;
+use crate::arguments::{AdviseOptions, GoalName};
+use crate::diagnostics::{Failure, Voice};
+use crate::interrupt::threads;
+use crate::{input, output};
+use nalgebra::Vector3;
+use premio_predict::advise::{Goal, Judge, Placing, SCHEMA, Score};
+use premio_predict::image::shading::Finishes;
+use premio_predict::model::Setups;
+use premio_predict::outline::Source;
+use premio_predict::outline::stage::StageError;
+use premio_predict::prediction::Memory;
+use premio_predict::setup::Setup;
+use premio_predict::subject::Subject;
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A setup that is advised.
+#[derive(Debug, Serialize)]
+struct Advised {
+    eye: [f64; 3],
+    light: Option<[f64; 3]>,
+    #[serde(flatten)]
+    score: Score,
+    /// What it costs against the best: how many features fewer, and by how much the pose's deviations
+    /// are greater.
+    cost: Cost,
+    /// The features that the best is likely to find, and this one is not.
+    lost: Vec<Source>,
+}
+
+#[derive(Debug, Serialize)]
+struct Cost {
+    features: f64,
+    pose: Option<[f64; 2]>,
+}
+
+/// The advice, as it is handed on.
+#[derive(Debug, Serialize)]
+struct Advice {
+    schema: &'static str,
+    goal: Goal,
+    /// How many setups were tried.
+    tried: usize,
+    /// Of how many of them nothing is seen.
+    unseen: usize,
+    /// The best, refined; then the best of the setups as they are.
+    best: Vec<Advised>,
+}
+
+/// A refinement starts with steps of this angle, in radians.
+const STEP: f64 = 0.1;
+
+/// Runs the command.
+pub fn run(options: &AdviseOptions, voice: Voice) -> Result<(), Failure> {
+    let (name, text) = text(&options.setups)?;
+    let setups = Setups::from_toml(&text).map_err(|error| Failure::setup(&name, &error, &text))?;
+    let part = input::part(&options.description, voice)?;
+    let failed = |error: StageError| Failure::stage(&part.name, &name, &error);
+    let band = input::resolution_of_views(&part)?;
+    let subject = Subject::new(&part.evaluation.brep, band).map_err(|e| failed(e.into()))?;
+    let finishes = Finishes::new(&subject, &setups.conditions).map_err(failed)?;
+    let judge = Judge {
+        subject: &subject,
+        finishes: &finishes,
+        setups: &setups,
+        goal: match options.goal {
+            GoalName::Features => Goal::Features,
+            GoalName::Pose => Goal::Pose,
+        },
+    };
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads(options.threads))
+        .build();
+    let pool = pool.map_err(|e| Failure::input(format!("threads: {e}")))?;
+    let keep = usize::from(options.top).max(1);
+    let (scored, seen) = pool.install(|| scores(&judge, keep, voice));
+    let tried = setups.len();
+    let Some(first) = scored.first().cloned() else {
+        return Err(Failure::input(format!(
+            "{name}: in none of {tried} setups the part is seen"
+        )));
+    };
+    let working = voice.working("moving the best setup");
+    let best = judge.refined(first, STEP, &mut Memory::default());
+    drop(working);
+    let mut all = vec![best];
+    all.extend(scored.into_iter().take(usize::from(options.top)));
+    let advice = Advice {
+        schema: SCHEMA,
+        goal: judge.goal,
+        tried,
+        unseen: tried - seen,
+        best: all
+            .iter()
+            .map(|one| advised(&judge, one, &all[0].1))
+            .collect(),
+    };
+    let to = options.output.as_deref();
+    match voice.is_json() {
+        true => output::json(&advice, to),
+        false => output::write(words(&advice), to),
+    }
+}
+
+/// How many setups are scored before those are dropped that are not among the best.
+const BATCH: usize = 256;
+
+/// The best of all setups, the best first, and in how many something is seen.
+fn scores(judge: &Judge<'_>, keep: usize, voice: Voice) -> (Vec<(Placing, Score)>, usize) {
+    let count = judge.setups.len();
+    let bar = voice.progress(count as u64);
+    let (mut best, mut seen) = (Vec::new(), 0);
+    for from in (0..count).step_by(BATCH) {
+        let each = (from..(from + BATCH).min(count)).into_par_iter();
+        let scored: Vec<Option<(Placing, Score)>> = each
+            .map_init(Memory::default, |memory, i| {
+                let [view, light] = judge.setups.directions(i);
+                let view = view.unwrap_or_else(Vector3::x);
+                let placing = Placing { view, light };
+                let score = judge.score(&placing, memory);
+                bar.inc(1);
+                score.ok().map(|score| (placing, score))
+            })
+            .collect();
+        let before = best.len();
+        best.extend(scored.into_iter().flatten());
+        seen += best.len() - before;
+        // The sort is stable: of equals the first setup is the better one.
+        best.sort_by(|a, b| judge.value(&b.1).total_cmp(&judge.value(&a.1)));
+        best.truncate(keep);
+    }
+    bar.finish_and_clear();
+    (best, seen)
+}
+
+fn advised(judge: &Judge<'_>, (placing, score): &(Placing, Score), best: &Score) -> Advised {
+    let Setup { camera, lights, .. } =
+        judge
+            .setups
+            .looking(placing.view, placing.light, 0, judge.subject);
+    let likely = |chance: &f64| *chance >= 0.5;
+    let lost = best.chances.iter().filter(|(source, chance)| {
+        likely(chance) && !score.chances.get(source).is_some_and(likely)
+    });
+    Advised {
+        eye: camera.eye.unwrap_or_default(),
+        light: placing.light.and_then(|_| lights.last()?.position),
+        cost: Cost {
+            features: best.expected - score.expected,
+            pose: score
+                .pose
+                .zip(best.pose)
+                .map(|(p, q)| [p[0] / q[0], p[1] / q[1]]),
+        },
+        lost: lost.map(|(source, _)| *source).collect(),
+        score: score.clone(),
+    }
+}
+
+fn words(advice: &Advice) -> String {
+    let mut text = format!(
+        "{} setups tried, {} without the part\n\
+         rank  camera                    light                     expected  of  pose: turn, move     costs\n",
+        advice.tried, advice.unseen
+    );
+    let point = |p: &Option<[f64; 3]>| match p {
+        Some([x, y, z]) => format!("({x:.4}, {y:.4}, {z:.4})"),
+        None => "as given".to_owned(),
+    };
+    for (rank, one) in advice.best.iter().enumerate() {
+        let pose = one.score.pose.map_or("untold".to_owned(), |[turn, by]| {
+            format!("{:.4}°, {by:.3e}", turn.to_degrees())
+        });
+        let times = one
+            .cost
+            .pose
+            .map_or("pose untold".to_owned(), |[turn, by]| {
+                format!("pose x {turn:.2}, {by:.2}")
+            });
+        let cost = match rank {
+            0 => "nothing: the best, refined".to_owned(),
+            _ => format!("{:.1} features, {times}", one.cost.features),
+        };
+        let _ = writeln!(
+            text,
+            "{rank:4}  {:24}  {:24}  {:8.2}  {:2}  {pose:20} {cost}",
+            point(&Some(one.eye)),
+            point(&one.light),
+            one.score.expected,
+            one.score.visible
+        );
+    }
+    text
+}

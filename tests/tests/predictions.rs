@@ -1,0 +1,372 @@
+//! Predicted images against rays: what regions show, what pixels tell, and what a detector finds.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_predict::agreement::{Agreement, matches};
+use premio_predict::image::shading::Finishes;
+use premio_predict::outline::stage::{Eyes, StageError};
+use premio_predict::outline::{Source, Stage};
+use premio_predict::prediction::{Draft, prediction};
+use premio_predict::processing::Domain;
+use premio_predict::render;
+use premio_predict::setup::Setup;
+use premio_predict::subject::Subject;
+use premio_tests::parts::{cube_with_cuts, plate, tee};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+
+fn part(json: &Value) -> Evaluation {
+    let text = json.to_string();
+    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
+}
+
+/// A small picture of a part from one direction, lit from another, both in the part's size about its
+/// middle.
+fn setup(subject: &Subject<'_>, eye: [f64; 3], light: [f64; 3], more: &str) -> Setup {
+    let at = |d: [f64; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|i| subject.centre[i] + subject.radius * d[i]);
+        format!("[{x}, {y}, {z}]")
+    };
+    let text = format!(
+        "[camera]\neye = {}\n[[light]]\nposition = {}\n[sensor]\nresolution = [160, 120]\n{more}",
+        at(eye),
+        at(light)
+    );
+    Setup::from_toml(&text).unwrap()
+}
+
+fn with_draft<T>(
+    subject: &Subject<'_>,
+    setup: &Setup,
+    ask: impl FnOnce(&Draft<'_>) -> T,
+) -> Result<T, StageError> {
+    let eyes = Eyes::new(subject, setup)?;
+    let stage = Stage::new(subject, &eyes)?;
+    let finishes = Finishes::new(subject, &setup.conditions)?;
+    Ok(ask(&Draft::new(&stage, &finishes, &setup.conditions)?))
+}
+
+/// A ring, a ball and a slanted pin: limbs with cusps, and round shadows on round faces.
+fn ring() -> Value {
+    json!({"op": "union", "children": [
+        {"prim": "torus", "R": 3.0, "r": 1.0},
+        {"prim": "sphere", "r": 1.5},
+        {"prim": "cylinder", "r": 0.7, "h": 4.0, "transform": [{"rotate": [[0, 1, 0], 70]}]},
+    ]})
+}
+
+fn cone_on_a_table() -> Value {
+    json!({"op": "union", "children": [
+        {"prim": "block", "size": [8.0, 8.0, 1.0], "transform": [{"translate": [-4, -4, -1]}]},
+        {"prim": "cone", "r": 2.0, "h": 3.0},
+    ]})
+}
+
+const PLACES: [([f64; 3], [f64; 3]); 3] = [
+    ([2.6, 2.0, 2.3], [1.1, 2.9, 4.0]),
+    ([-2.9, 1.1, 1.9], [2.2, -1.4, 3.6]),
+    ([0.7, -3.3, 1.2], [-2.9, -2.0, 2.6]),
+];
+
+/// What a region shows is what a ray through any of its points meets, and the lights that reach it are
+/// those that rays find, but next to arcs.
+fn regions_show_what_rays_meet(draft: &Draft<'_>, context: &str, wrong: &mut Vec<String>) -> usize {
+    let [width, height] = draft.conditions.sensor.resolution;
+    let near = draft.ink.bitmap().grown(1);
+    let mut asked = 0;
+    for k in 0..600usize {
+        // Points without a common pattern.
+        let x = (k as f64 * 0.754_877_666).fract() * (width as f64 - 1.0);
+        let y = (k as f64 * 0.569_840_291).fract() * (height as f64 - 1.0);
+        if near.holds(x.round() as usize, y.round() as usize) {
+            continue;
+        }
+        let Some(shown) = draft.regions.all[draft.regions.at([x, y]) as usize].seen else {
+            continue;
+        };
+        let met = draft.shading.asked([x, y]);
+        // A light that a region is said to see may be behind the face at this point.
+        let same = shown.face == met.face && met.lit & !shown.lit == 0;
+        if !same {
+            wrong.push(format!("{context}: at ({x}, {y}) {shown:?}, met {met:?}"));
+        }
+        asked += 1;
+    }
+    asked
+}
+
+#[test]
+fn regions_of_parts_show_what_rays_meet() {
+    let parts = [
+        ("cube", cube_with_cuts()),
+        ("plate", plate(3, 1.0)),
+        ("tee", tee(1)),
+        ("ring", ring()),
+        ("cone", cone_on_a_table()),
+    ];
+    let mut wrong = Vec::new();
+    for (name, json) in parts {
+        let part = part(&json);
+        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        for (k, (eye, light)) in PLACES.into_iter().enumerate() {
+            let setup = setup(&subject, eye, light, "");
+            let asked = with_draft(&subject, &setup, |draft| {
+                regions_show_what_rays_meet(draft, &format!("{name} {k}"), &mut wrong)
+            });
+            assert!(asked.unwrap() > 100, "{name} {k}");
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn regions_of_named_cases_show_what_rays_meet() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let mut seen = 0;
+    let mut wrong = Vec::new();
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    names.sort();
+    for case in names {
+        let Ok(text) = fs::read(case.join("model.padl")) else {
+            continue;
+        };
+        let Ok(tree) = read("part", &text, Format::Padl, &Options::default()) else {
+            continue;
+        };
+        let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
+            continue;
+        };
+        let Some(band) = part.resolution_of_views() else {
+            continue;
+        };
+        let Ok(subject) = Subject::new(&part.brep, band) else {
+            continue;
+        };
+        let (eye, light) = PLACES[seen % PLACES.len()];
+        let setup = setup(&subject, eye, light, "");
+        let context = case.display().to_string();
+        let asked = with_draft(&subject, &setup, |draft| {
+            let asked = regions_show_what_rays_meet(draft, &context, &mut wrong);
+            prediction(draft, &setup);
+            asked
+        });
+        match asked {
+            Ok(_) | Err(StageError::OutOfSight(_) | StageError::View(_)) => seen += 1,
+            Err(error) => panic!("{context}: {error}"),
+        }
+    }
+    assert!(seen > 100, "{seen} cases");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn predicted_pixels_are_those_of_rays() {
+    for (name, json) in [("cube", cube_with_cuts()), ("cone", cone_on_a_table())] {
+        let part = part(&json);
+        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        let (eye, light) = PLACES[0];
+        let setup = setup(
+            &subject,
+            eye,
+            light,
+            "blur = 0.0\n[detector]\nthreshold = 8\n",
+        );
+        with_draft(&subject, &setup, |draft| {
+            let [width, height] = draft.conditions.sensor.resolution;
+            let levels = render::rows(&draft.shading, width, 0..height);
+            let (mut sum, mut most, mut count) = (0.0f64, 0.0f64, 0usize);
+            for y in 0..height {
+                for run in draft.domain.spans(y) {
+                    for x in run.start as usize..run.end as usize {
+                        let at = y * width + x;
+                        let off = f64::from(draft.image.levels[at] - levels[at]).abs();
+                        (sum, most, count) = (sum + off, most.max(off), count + 1);
+                    }
+                }
+            }
+            let mean = sum / count as f64;
+            // A pixel of 64 samples tells the share of its regions to some percent of their contrast.
+            assert!(mean < 0.25, "{name}: {mean} levels off, at most {most}");
+            assert!(most < 12.0, "{name}: {mean} levels off, at most {most}");
+        })
+        .unwrap();
+    }
+}
+
+#[test]
+fn features_are_found_as_predicted() {
+    let more =
+        "electrons = 10000\nread_noise = 1.0\n[detector]\nthreshold = 8\n[features]\ndraws = 8\n";
+    let mut all = Vec::new();
+    for json in [cube_with_cuts(), ring(), cone_on_a_table(), plate(2, 1.0)] {
+        let part = part(&json);
+        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        for (eye, light) in PLACES {
+            let setup = setup(&subject, eye, light, more);
+            with_draft(&subject, &setup, |draft| {
+                let [width, height] = draft.conditions.sensor.resolution;
+                let sensor = &draft.conditions.sensor;
+                let levels = render::rows(&draft.shading, width, 0..height);
+                let image = render::finished(levels, sensor, 77);
+                let (_, found) = draft.evidence_in(&image, &Domain::full(width, height));
+                let predicted = prediction(draft, &setup);
+                all.extend(matches(
+                    &predicted.arcs,
+                    &found,
+                    draft.conditions.detector.shortest,
+                ));
+            })
+            .unwrap();
+        }
+    }
+    let agreement = Agreement::of(all.iter());
+    assert!(agreement.features > 100, "{}", agreement.features);
+    assert!(agreement.baseline_same < 0.9, "too easy: {agreement:?}");
+    assert!(agreement.same >= 0.95, "{agreement:?}");
+    assert!(
+        agreement.brier <= 0.5 * agreement.baseline_brier,
+        "{agreement:?}"
+    );
+}
+
+/// A post on a table, lit along (1, 0, -1): its shadow is as long as it is high.
+#[test]
+fn a_shadow_lies_where_it_is_cast() {
+    let json = json!({"op": "union", "children": [
+        {"prim": "block", "size": [10.0, 6.0, 1.0], "transform": [{"translate": [-2, -3, -1]}]},
+        {"prim": "block", "size": [1.0, 1.0, 2.0], "transform": [{"translate": [-1, 0, 0]}]},
+    ]});
+    let part = part(&json);
+    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let text = "[camera]\neye = [6, -14, 16]\n[[light]]\ndirection = [-1, 0, 1]\n";
+    let setup = Setup::from_toml(text).unwrap();
+    with_draft(&subject, &setup, |draft| {
+        let shadows = draft
+            .arcs
+            .iter()
+            .filter(|a| matches!(a.source, Source::EdgeShadow { .. }));
+        let project = |x: f64, y: f64| {
+            let p = draft
+                .stage
+                .view
+                .scene
+                .projection
+                .project(&[x, y, 0.0].into());
+            [p.x, p.y]
+        };
+        // The far edge of the shadow, from the post's upper edge at x = 0: at x = 2, y from 0 to 1.
+        let [a, b] = [project(2.0, 0.0), project(2.0, 1.0)];
+        let ends = |p: [f64; 2], q: [f64; 2]| {
+            let off = |u: [f64; 2], v: [f64; 2]| (u[0] - v[0]).hypot(u[1] - v[1]);
+            off(p, a).max(off(q, b)).min(off(p, b).max(off(q, a)))
+        };
+        let nearest = shadows
+            .map(|arc| {
+                ends(
+                    arc.line.points[0],
+                    arc.line.points[arc.line.points.len() - 1],
+                )
+            })
+            .fold(f64::INFINITY, f64::min);
+        // Ends are drawn out by 1/32 pixel.
+        assert!(nearest < 0.05, "{nearest} px off");
+        let dark = draft.regions.all.iter().filter(|r| {
+            r.seen.is_some_and(|s| {
+                s.face.is_some_and(|f| {
+                    let n = subject.brep.outward(f, &s.point);
+                    n.z > 0.5 && s.point.z.abs() < 1e-6 && s.lit == 0
+                })
+            })
+        });
+        // Two by one in the plane z = 0, less what the post hides of it: nothing, from there.
+        let area: f64 = dark.map(|r| r.area).sum();
+        let corners = [
+            project(0.0, 0.0),
+            project(2.0, 0.0),
+            project(2.0, 1.0),
+            project(0.0, 1.0),
+        ];
+        let twice: f64 = (0..4)
+            .map(|i| {
+                let ([x, y], [u, v]) = (corners[i], corners[(i + 1) % 4]);
+                x * v - u * y
+            })
+            .sum();
+        let expected = 0.5 * twice.abs();
+        assert!(
+            (area - expected).abs() < 0.01 * expected,
+            "{area} px, expected {expected}"
+        );
+    })
+    .unwrap();
+}
+
+/// On a ball a light is mirrored half-way between the directions to it and to the camera.
+#[test]
+fn a_highlight_lies_where_the_light_is_mirrored() {
+    let part = part(&json!({"prim": "sphere", "r": 1.0}));
+    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let text = "material = \"plastic\"\n[camera]\neye = [50, 0, 0]\n[sensor]\nfocal = 150\n[[light]]\ndirection = [1, 1, 0]\n";
+    let setup = Setup::from_toml(text).unwrap();
+    with_draft(&subject, &setup, |draft| {
+        let glow = draft
+            .arcs
+            .iter()
+            .find(|a| matches!(a.source, Source::Highlight { .. }))
+            .unwrap();
+        let count = glow.line.points.len() as f64;
+        let sum = glow
+            .line
+            .points
+            .iter()
+            .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
+        let (sin, cos) = (std::f64::consts::PI / 8.0).sin_cos();
+        let at = draft
+            .stage
+            .view
+            .scene
+            .projection
+            .project(&[cos, sin, 0.0].into());
+        let off = (sum[0] / count - at.x).hypot(sum[1] / count - at.y);
+        // The outline is no circle: its middle is the brightest point to a part of its width.
+        let width = (glow.line.points[0][0] - at.x).hypot(glow.line.points[0][1] - at.y);
+        assert!(off < 0.2 * width, "{off} px off, {width} px wide");
+    })
+    .unwrap();
+}
+
+#[test]
+fn what_cannot_be_is_told() {
+    let part = part(&cube_with_cuts());
+    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let told = |text: &str| {
+        let setup = Setup::from_toml(text).unwrap();
+        with_draft(&subject, &setup, |_| ())
+            .unwrap_err()
+            .to_string()
+    };
+    let camera = "[camera]\neye = [9, 7, 8]\n";
+    let inside = told(&format!("{camera}[[light]]\nposition = [2, 2, 1.5]\n"));
+    assert!(
+        inside.contains("light 0") && inside.contains("inside"),
+        "{inside}"
+    );
+    let eye = told("[camera]\neye = [2, 2, 1.5]\n[[light]]\nposition = [9, 9, 9]\n");
+    assert!(eye.contains("camera") && eye.contains("inside"), "{eye}");
+    let away =
+        told("[camera]\neye = [9, 7, 8]\ntarget = [18, 14, 16]\n[[light]]\nposition = [9, 9, 9]\n");
+    assert!(away.contains("behind the camera"), "{away}");
+    let aside =
+        told("[camera]\neye = [9, 7, 8]\ntarget = [9, 0, 8]\n[[light]]\nposition = [9, 9, 9]\n");
+    assert!(aside.contains("falls on"), "{aside}");
+    let face = told(&format!(
+        "{camera}[[light]]\nposition = [9, 9, 9]\n[[surface]]\nfaces = [0, 99]\nmaterial = \"steel\"\n"
+    ));
+    assert!(face.contains("face 99"), "{face}");
+}

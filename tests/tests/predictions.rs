@@ -167,7 +167,11 @@ fn regions_of_named_cases_show_what_rays_meet() {
 
 #[test]
 fn predicted_pixels_are_those_of_rays() {
-    for (name, json) in [("cube", cube_with_cuts()), ("cone", cone_on_a_table())] {
+    for (name, json) in [
+        ("cube", cube_with_cuts()),
+        ("ring", ring()),
+        ("cone", cone_on_a_table()),
+    ] {
         let part = part(&json);
         let subject = Subject::new(&part.brep, part.resolution).unwrap();
         let (eye, light) = PLACES[0];

@@ -49,7 +49,8 @@ pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &Domain, image: 
                         light.shade(region, run, y, levels);
                     }
                     _ => {
-                        row.shares(x, y, &mut shares);
+                        let told = |r: u32| regions.all[r as usize].seen.is_some();
+                        row.shares(x, y, told, &mut shares);
                         let part = |share: &Share| {
                             let at = share.moment.map(|m| m / share.area);
                             share.area * light.level(share.region, at)
@@ -198,8 +199,8 @@ impl Row {
         (((end + 0.5).floor().max(0.0) as u32).max(x), same)
     }
 
-    /// What of a pixel is of which region.
-    fn shares(&self, x: u32, y: usize, shares: &mut Vec<Share>) {
+    /// What of a pixel is of which region; `told` says whether it is known what is seen in one.
+    fn shares(&self, x: u32, y: usize, told: impl Fn(u32) -> bool, shares: &mut Vec<Share>) {
         shares.clear();
         let (left, right) = (f64::from(x) - 0.5, f64::from(x) + 0.5);
         for (k, (gaps, &at)) in self.gaps.iter().zip(&self.at).enumerate() {
@@ -210,14 +211,16 @@ impl Row {
                 if to > from {
                     let area = (to - from) * SHARE;
                     let moment = [area * 0.5 * (from + to), area * row];
-                    add(
-                        shares,
-                        Share {
-                            region,
-                            area,
-                            moment,
-                        },
-                    );
+                    let share = Share {
+                        region,
+                        area,
+                        moment,
+                    };
+                    match told(region) {
+                        true => add(shares, share),
+                        // What is seen may be another thing on every line.
+                        false => shares.push(share),
+                    }
                     from = to;
                 }
                 if end >= right {

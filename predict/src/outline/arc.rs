@@ -40,6 +40,16 @@ pub enum Source {
         /// The face it falls on.
         face: u32,
     },
+    /// Where a face turns away from a light: its limb, as the light sees it. The brightness does not
+    /// jump there, but what is beyond is as dark as a shadow.
+    Terminator {
+        /// The light.
+        light: u32,
+        /// The face.
+        face: u32,
+        /// Which of its limbs.
+        ordinal: u32,
+    },
     /// The outline of a highlight on a face.
     Highlight {
         /// The light that it mirrors.
@@ -63,6 +73,7 @@ impl Source {
         match *self {
             Self::EdgeShadow { face, .. }
             | Self::LimbShadow { face, .. }
+            | Self::Terminator { face, .. }
             | Self::Highlight { face, .. } => Some(FaceId(face)),
             _ => None,
         }
@@ -74,6 +85,7 @@ impl Source {
             Self::Edge { .. } => "edge",
             Self::Limb { .. } => "limb",
             Self::EdgeShadow { .. } | Self::LimbShadow { .. } => "shadow",
+            Self::Terminator { .. } => "terminator",
             Self::Highlight { .. } => "highlight",
         }
     }
@@ -86,7 +98,7 @@ pub struct Arc {
     pub source: Source,
     /// The contour of the view that it is a piece of.
     pub contour: Option<u32>,
-    /// Whether the normal does not jump across it, so that nothing is seen of it.
+    /// Whether neither the normal nor the light jumps across it, so that nothing is seen of it.
     pub smooth: bool,
     /// The line that it is in the image exactly, a x + b y + c = 0, or the conic: 3 or 6 coefficients;
     /// none where it is neither, or not known to be.

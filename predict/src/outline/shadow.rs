@@ -40,24 +40,32 @@ pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
     for (light, (_, views)) in stage.lights.iter().enumerate() {
         for view in views {
             let ordinals = ordinals(&view.contours);
-            for cast in casts(stage, view, &ordinals) {
-                let Some(line) = shadow(stage, view, &cast, window) else {
-                    continue;
-                };
-                let lit = lit_side(stage, view, &cast);
-                let source = source(light, &cast, &ordinals);
-                let shade = lit.map(|lit| Shade { light, lit });
-                for part in visible_parts(stage, &segments, &cast, &line, &mut ends) {
+            let seen = seen_by_light(stage, view, &ordinals);
+            let mut add = |source: Source, shade: Option<Shade>, line: &Polyline| {
+                let ground = source.ground();
+                for part in visible_parts(stage, &segments, ground, line, &mut ends) {
                     found.push(Arc {
                         source,
                         contour: None,
-                        smooth: false,
+                        smooth: matches!(source, Source::Terminator { .. }),
                         coefficients: Vec::new(),
                         line: part,
                         stops: Vec::new(),
                         shade,
                         within: None,
                     });
+                }
+            };
+            for cast in casts(stage, view, &seen) {
+                if let Some(line) = shadow(stage, view, &cast, window) {
+                    let lit = lit_side(stage, view, &cast);
+                    let shade = lit.map(|lit| Shade { light, lit });
+                    add(source(light, &cast, &ordinals), shade, &line);
+                }
+            }
+            for limb in &seen {
+                if let Some((source, line)) = terminator(stage, light, view, limb, window) {
+                    add(source, None, &line);
                 }
             }
         }
@@ -88,16 +96,52 @@ fn source(light: usize, cast: &Cast<'_>, ordinals: &[u32]) -> Source {
     }
 }
 
-/// The pieces of a light's view that cast a shadow on the part.
-fn casts<'v>(stage: &Stage<'_>, view: &'v Sightings<'_>, ordinals: &[u32]) -> Vec<Cast<'v>> {
-    let size = light_unit(stage, view);
+/// What a light sees.
+fn seen_by_light(stage: &Stage<'_>, view: &Sightings<'_>, ordinals: &[u32]) -> Vec<Arc> {
     let everywhere = Window {
         min: [f64::NEG_INFINITY; 2],
         max: [f64::INFINITY; 2],
     };
-    let arcs = view.arcs(ordinals, size * ASIDE, &everywhere);
+    view.arcs(ordinals, light_unit(stage, view) * ASIDE, &everywhere)
+}
+
+/// Where a face turns away from a light, if the light sees a limb there, as the camera shows it.
+fn terminator(
+    stage: &Stage<'_>,
+    light: usize,
+    view: &Sightings<'_>,
+    limb: &Arc,
+    window: &Window,
+) -> Option<(Source, Polyline)> {
+    let Source::Limb { face, ordinal } = limb.source else {
+        return None;
+    };
+    let contour = &view.contours.contours[limb.contour? as usize];
+    let camera = stage.view.scene.projection;
+    let curve = |t: f64| {
+        let p = contour.curve3.point(t);
+        (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
+    };
+    let range = [limb.line.parameters[0], *limb.line.parameters.last()?];
+    let straight = matches!(contour.curve3, Curve::Line(_));
+    let mut line = flatten(curve, range, straight, (FINE, window))?;
+    draw_out(&mut line);
+    let light = light as u32;
+    Some((
+        Source::Terminator {
+            light,
+            face,
+            ordinal,
+        },
+        line,
+    ))
+}
+
+/// The pieces of a light's view that cast a shadow on the part.
+fn casts<'v>(stage: &Stage<'_>, view: &'v Sightings<'_>, seen: &[Arc]) -> Vec<Cast<'v>> {
+    let size = light_unit(stage, view);
     let mut casts = Vec::new();
-    for arc in arcs.iter().filter(|arc| !arc.smooth) {
+    for arc in seen.iter().filter(|arc| !arc.smooth) {
         let Some(contour) = arc.contour.map(|id| &view.contours.contours[id as usize]) else {
             continue;
         };
@@ -262,11 +306,11 @@ fn lit_side(stage: &Stage<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<
     Some(Side::of([lit.x, lit.y], [middle, ahead]))
 }
 
-/// The parts of a shadow's boundary that the camera sees, and where these end on which arcs.
+/// The parts of a curve on a face that the camera sees, and where these end on which arcs.
 fn visible_parts(
     stage: &Stage<'_>,
     segments: &Segments,
-    cast: &Cast<'_>,
+    ground: Option<FaceId>,
     line: &Polyline,
     ends: &mut Vec<(u32, [f64; 2])>,
 ) -> Vec<Polyline> {
@@ -285,7 +329,7 @@ fn visible_parts(
         let depth = 0.5 * (part.depths[i] + part.depths[i + 1]);
         let is_seen = stage.seen(part.at(i, s)).is_some_and(|(face, p)| {
             let off = stage.view.scene.projection.scale(&p) - depth;
-            face == cast.ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
+            Some(face) == ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
         });
         if is_seen {
             for (place, arc) in [(from, before), (to, after)] {

@@ -20,6 +20,8 @@ const ACROSS: [f64; 3] = [0.5, 0.12, 0.88];
 /// The shortest distance between two arcs, in pixels, that tells that their sides are of one region:
 /// polylines nearer than they are fine may lie the other way about.
 const GAP: f64 = 4.0 * FINE;
+/// Of a smaller region, in pixels, only the middles of gaps are asked.
+const SMALL: f64 = 64.0;
 /// How far beside the middle of a section it is asked, in pixels.
 const BESIDE: f64 = 0.5;
 /// A point tells whether a light reaches a region only where it does not graze the face.
@@ -215,7 +217,7 @@ impl Regions {
             .iter_mut()
             .zip(votes.chunks(stage.lights.len().max(1)))
         {
-            region.seen = seen(stage, &region.points, votes);
+            region.seen = seen(stage, region, votes);
         }
         self.doubt(stage, arcs);
     }
@@ -311,13 +313,14 @@ fn agrees(stage: &Stage<'_>, told: &Seen, at: [f64; 2]) -> bool {
     })
 }
 
-/// What is seen at all of some points, given what the sides of shadows say; none where they differ.
-fn seen(stage: &Stage<'_>, points: &[([f64; 2], f64)], votes: &[[u32; 2]]) -> Option<Seen> {
+/// What is seen at all points of a region, given what the sides of shadows say; none where they differ.
+fn seen(stage: &Stage<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<Seen> {
+    let points = &region.points;
     let first = stage.seen(points.first()?.0);
-    // Flat regions are alike all over.
+    // Flat regions are alike all over, and of small ones few pixels are wrong.
     let flat =
         |(face, _): &(FaceId, _)| matches!(stage.subject.brep.surface(*face), Surface::Plane(_));
-    let step = if first.as_ref().is_none_or(flat) {
+    let step = if first.as_ref().is_none_or(flat) || region.area < SMALL {
         ACROSS.len()
     } else {
         1

@@ -145,9 +145,6 @@ fn casts<'v>(stage: &Stage<'_>, view: &'v Sightings<'_>, seen: &[Arc]) -> Vec<Ca
         let Some(contour) = arc.contour.map(|id| &view.contours.contours[id as usize]) else {
             continue;
         };
-        if is_lit_on_both_sides(stage, view, contour, &arc.line) {
-            continue;
-        }
         let last = arc.line.points.len() - 1;
         let mut from = 0;
         for &to in arc.stops.iter().chain([&last]) {
@@ -157,33 +154,6 @@ fn casts<'v>(stage: &Stage<'_>, view: &'v Sightings<'_>, seen: &[Arc]) -> Vec<Ca
         }
     }
     casts
-}
-
-/// Whether an edge lies between two planes that are both turned to the light, so that nothing next to it
-/// is behind it: a plane is turned to a light everywhere, or nowhere.
-fn is_lit_on_both_sides(
-    stage: &Stage<'_>,
-    view: &Sightings<'_>,
-    contour: &Contour,
-    line: &Polyline,
-) -> bool {
-    let flat = contour.faces.len() == 2
-        && contour
-            .faces
-            .iter()
-            .all(|&face| matches!(stage.subject.brep.surface(face), Surface::Plane(_)));
-    if contour.edge.is_none() || !flat {
-        return false;
-    }
-    let turned = |t: f64| {
-        let p = contour.curve3.point(t);
-        let (towards, _) = view.scene.projection.towards_eye(&p);
-        contour
-            .faces
-            .iter()
-            .all(|&face| stage.subject.brep.outward(face, &p).dot(&towards) > 0.0)
-    };
-    turned(line.parameters[0])
 }
 
 /// The length in a light's image of a part's radius next to its middle.
@@ -233,25 +203,48 @@ fn cast<'v>(
     if !across.x.is_finite() {
         return None;
     }
+    let outwards = open_direction(stage, view, contour, &p)?;
     let depth = projection.depth(&p);
-    let mut found = None;
-    for side in [1.0, -1.0] {
+    let towards = projection.project(&(p + outwards * (stage.subject.radius * ASIDE)));
+    let first = (towards - projection.project(&p)).dot(&across).signum();
+    [first, -first].into_iter().find_map(|side| {
         let aside = projection.project(&p) + across * (side * size * ASIDE);
-        if let Some((face, q)) = view.scene.nearest(&aside) {
-            let jump = projection.depth(&q) - depth;
-            if jump > BEHIND * stage.subject.radius {
-                let (origin, _) = projection.line_of_sight(&aside);
-                found = Some(Cast {
-                    contour,
-                    range,
-                    ground: face,
-                    hint: (q - origin).norm(),
-                    lit: q,
-                });
-            }
-        }
+        let (face, q) = view.scene.nearest(&aside)?;
+        let jump = projection.depth(&q) - depth;
+        let (origin, _) = projection.line_of_sight(&aside);
+        (jump > BEHIND * stage.subject.radius).then(|| Cast {
+            contour,
+            range,
+            ground: face,
+            hint: (q - origin).norm(),
+            lit: q,
+        })
+    })
+}
+
+/// The direction in which a light's lines of sight are likely to pass by a point of a contour: out of the
+/// faces that are turned away from it. None where both faces of an edge are turned to it, so that
+/// nothing next to it is behind it.
+fn open_direction(
+    stage: &Stage<'_>,
+    view: &Sightings<'_>,
+    contour: &Contour,
+    p: &Point3<f64>,
+) -> Option<Vector3<f64>> {
+    let (towards, _) = view.scene.projection.towards_eye(p);
+    let outward = |face: &FaceId| stage.subject.brep.outward(*face, p);
+    let is_turned = |n: &Vector3<f64>| n.dot(&towards) > 0.0;
+    let normals = || contour.faces.iter().map(outward);
+    if contour.edge.is_some() && normals().count() == 2 && normals().all(|n| is_turned(&n)) {
+        return None;
     }
-    found
+    let away: Vector3<f64> = normals().filter(|n| !is_turned(n)).sum();
+    // Of a limb the normal is across the line of sight, whatever its sign is told to be.
+    Some(if away == Vector3::zeros() {
+        normals().sum()
+    } else {
+        away
+    })
 }
 
 /// Where the point of a cast with a parameter falls on its ground, as the camera shows it.

@@ -160,6 +160,14 @@ pub struct Scene<'a> {
     bounds: Box3,
 }
 
+/// Where a line of sight crosses the surface of a face.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    at: f64,
+    touches: bool,
+    face: FaceId,
+}
+
 struct Pierced {
     origin: [f64; 3],
     inverse: [f64; 3],
@@ -167,6 +175,18 @@ struct Pierced {
 }
 
 impl Pierced {
+    fn of(ray: &Ray) -> Self {
+        Self {
+            origin: ray.origin.into(),
+            // Finite, so that zero times it is zero: a line in the plane of a side is inside.
+            inverse: ray
+                .towards
+                .map(|x| (1.0 / x).clamp(f64::MIN, f64::MAX))
+                .into(),
+            length: ray.length,
+        }
+    }
+
     fn meets(&self, lo: &[f64; 3], hi: &[f64; 3]) -> bool {
         let (mut from, mut to) = (0.0f64, self.length);
         for i in 0..3 {
@@ -277,23 +297,52 @@ impl<'a> Scene<'a> {
             return None;
         }
         let ray = self.ray(&(eye + into * beyond));
-        let mut found: Option<Hit> = None;
-        self.hits(&ray, Asked::All, &|_| Own::No, &mut |hit| {
-            if found.is_none_or(|known| hit.at.is_beyond(known.at)) {
-                found = Some(hit);
-            }
-        });
-        found.map(|hit| (hit.face, ray.origin + ray.towards * hit.at))
+        let mut met = self.crossings(&ray, &|_| Own::No);
+        // The nearest to the eye first, so that the others need not be placed.
+        met.sort_by(|a, b| b.at.total_cmp(&a.at));
+        met.iter().find_map(|crossing| {
+            let p = ray.origin + ray.towards * crossing.at;
+            let seen = self.locator.place(crossing.face, &p) != Place::Outside;
+            seen.then_some((crossing.face, p))
+        })
     }
 
-    /// Whether a face lies between a point of the face `own` and the eye.
+    /// Whether a face lies between a point of the face `own` and the eye: what does is left by the line
+    /// of sight through a face turned towards the eye.
     pub fn is_hidden(&self, p: &Point3<f64>, own: FaceId) -> bool {
         let through = |face| if face == own { Own::Through } else { Own::No };
-        let mut hidden = false;
-        self.hits(&self.ray(p), Asked::All, &through, &mut |hit| {
-            hidden |= hit.plain;
-        });
-        hidden
+        let ray = self.ray(p);
+        self.crossings(&ray, &through).iter().any(|crossing| {
+            let q = ray.origin + ray.towards * crossing.at;
+            !crossing.touches
+                && self.is_turned(crossing.face, &q, &ray.towards)
+                && self.locator.place(crossing.face, &q) != Place::Outside
+        })
+    }
+
+    /// Where a line of sight crosses the surfaces of faces whose boxes it passes, within them or not.
+    fn crossings(&self, ray: &Ray, own: &impl Fn(FaceId) -> Own) -> Vec<Crossing> {
+        let mut met = Vec::new();
+        for leaf in self.tree.locate_with_selection_function(Pierced::of(ray)) {
+            let face = leaf.data;
+            let own = own(face);
+            let least = self.least(own);
+            let found = self.meetings(ray, self.brep.surface(face), own);
+            for &(at, touches) in &found.at[..found.count] {
+                if at.is_beyond(least) && at.is_short_of(ray.length) {
+                    met.push(Crossing { at, touches, face });
+                }
+            }
+        }
+        met
+    }
+
+    /// What is this near to the origin of a line of sight passes through it.
+    fn least(&self, own: Own) -> f64 {
+        match own {
+            Own::No => 4.0 * self.band,
+            Own::Through | Own::Tangent => 0.0,
+        }
     }
 
     /// The faces on a line of sight, with what `own` says about those through its origin; the
@@ -305,16 +354,7 @@ impl<'a> Scene<'a> {
         own: &impl Fn(FaceId) -> Own,
         report: &mut impl FnMut(Hit),
     ) {
-        let pierced = Pierced {
-            origin: ray.origin.into(),
-            // Finite, so that zero times it is zero: a line in the plane of a side is inside.
-            inverse: ray
-                .towards
-                .map(|x| (1.0 / x).clamp(f64::MIN, f64::MAX))
-                .into(),
-            length: ray.length,
-        };
-        for leaf in self.tree.locate_with_selection_function(pierced) {
+        for leaf in self.tree.locate_with_selection_function(Pierced::of(ray)) {
             self.face_hits(ray, leaf.data, asked, own(leaf.data), report);
         }
     }
@@ -329,11 +369,7 @@ impl<'a> Scene<'a> {
     ) {
         let surface = self.brep.surface(face);
         let meetings = self.meetings(ray, surface, own);
-        // What is this near to the origin passes through it.
-        let least = match own {
-            Own::No => 4.0 * self.band,
-            Own::Through | Own::Tangent => 0.0,
-        };
+        let least = self.least(own);
         for &(s, touch) in &meetings.at[..meetings.count] {
             let p = ray.origin + ray.towards * s;
             if asked == Asked::Hiding && s.abs().is_short_of(least) {

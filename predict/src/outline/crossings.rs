@@ -2,40 +2,58 @@
 
 use super::arc::Arc;
 use super::flatten::Polyline;
-use rstar::primitives::{GeomWithData, Line};
-use rstar::{AABB, RTree};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, Envelope, RTree};
 
 /// A place on a polyline: a segment, and the part of it.
 pub type Place = (usize, f64);
 
-type Leaf = GeomWithData<Line<[f64; 2]>, u32>;
+type Leaf = GeomWithData<Rectangle<[f64; 2]>, u32>;
 
-/// The segments of arcs, each with its arc.
+/// The polylines of arcs, each found by its box.
 #[derive(Debug)]
-pub struct Segments(RTree<Leaf>);
+pub struct Lines {
+    tree: RTree<Leaf>,
+    all: Vec<Vec<[f64; 2]>>,
+}
 
-impl Segments {
-    /// The segments of all arcs.
+impl Lines {
+    /// The polylines of all arcs.
     pub fn of(arcs: &[Arc]) -> Self {
-        let leaves = arcs.iter().enumerate().flat_map(|(i, arc)| {
-            let segments = arc.line.segments();
-            segments.map(move |(_, [a, b])| Leaf::new(Line::new(a, b), i as u32))
-        });
-        Self(RTree::bulk_load(leaves.collect()))
+        let all: Vec<Vec<[f64; 2]>> = arcs.iter().map(|arc| arc.line.points.clone()).collect();
+        let leaf = |(i, points): (usize, &Vec<[f64; 2]>)| {
+            let hull = AABB::from_points(points);
+            Leaf::new(hull.into(), i as u32)
+        };
+        Self {
+            tree: RTree::bulk_load(all.iter().enumerate().map(leaf).collect()),
+            all,
+        }
     }
 
-    /// Where they cross a polyline, each with the arc that does.
+    /// Where they cross another one, each with the arc that does.
     pub fn crossings(&self, line: &Polyline) -> Vec<(Place, Option<u32>)> {
         let mut found = Vec::new();
-        for (i, [a, b]) in line.segments() {
-            let hull = AABB::from_corners(a, b);
-            for leaf in self.0.locate_in_envelope_intersecting(hull) {
-                let other = leaf.geom();
-                if let Some(s) = crossing([a, b], [other.from, other.to]) {
-                    found.push(((i, s), Some(leaf.data)));
+        let hull = AABB::from_points(&line.points);
+        for leaf in self.tree.locate_in_envelope_intersecting(hull) {
+            for pair in self.all[leaf.data as usize].windows(2) {
+                let other = [pair[0], pair[1]];
+                if !hull.intersects(&AABB::from_corners(other[0], other[1])) {
+                    continue;
+                }
+                for (i, own) in line.segments() {
+                    if let Some(s) = crossing(own, other) {
+                        found.push(((i, s), Some(leaf.data)));
+                    }
                 }
             }
         }
+        // In an order that is not the tree's.
+        found.sort_by(|a, b| {
+            (a.0.0, a.1)
+                .cmp(&(b.0.0, b.1))
+                .then(a.0.1.total_cmp(&b.0.1))
+        });
         found
     }
 }

@@ -2,7 +2,7 @@
 //! it. So they are the contours of the light's view, carried on along its lines of sight.
 
 use super::arc::{Arc, Shade, Side, Source};
-use super::crossings::{Place, Segments};
+use super::crossings::{Lines, Place};
 use super::flatten::{FINE, Polyline, Shown, Window, flatten, shown};
 use super::pierce::front;
 use super::stage::{Sightings, Stage, ordinals};
@@ -14,6 +14,9 @@ use premio_visibility::contour::Contour;
 
 /// How far aside of a contour its sides are looked at, in the part's size.
 const ASIDE: f64 = 1.0 / 65_536.0;
+/// How fine the polylines of a light's view are, in the part's size: they only say which curve another
+/// one ends on, and about where.
+const LIGHT_FINE: f64 = 1.0 / 4096.0;
 /// How far something has to be behind a contour for a shadow on it to be told apart, in the part's
 /// size.
 const BEHIND: f64 = 1.0 / 1024.0;
@@ -34,7 +37,7 @@ struct Cast<'c> {
 
 /// Adds the visible boundaries of cast shadows to the arcs of a view, which they stop where they end.
 pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
-    let segments = Segments::of(arcs);
+    let lines = Lines::of(arcs);
     let mut found = Vec::new();
     let mut ends = Vec::new();
     for (light, (_, views)) in stage.lights.iter().enumerate() {
@@ -43,7 +46,7 @@ pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
             let seen = seen_by_light(stage, view, &ordinals);
             let mut add = |source: Source, shade: Option<Shade>, line: &Polyline| {
                 let ground = source.ground();
-                for part in visible_parts(stage, &segments, ground, line, &mut ends) {
+                for part in visible_parts(stage, &lines, ground, line, &mut ends) {
                     found.push(Arc {
                         source,
                         contour: None,
@@ -102,7 +105,7 @@ fn seen_by_light(stage: &Stage<'_>, view: &Sightings<'_>, ordinals: &[u32]) -> V
         min: [f64::NEG_INFINITY; 2],
         max: [f64::INFINITY; 2],
     };
-    view.arcs(ordinals, light_unit(stage, view) * ASIDE, &everywhere)
+    view.arcs(ordinals, light_unit(stage, view) * LIGHT_FINE, &everywhere)
 }
 
 /// Where a face turns away from a light, if the light sees a limb there, as the camera shows it.
@@ -302,12 +305,12 @@ fn lit_side(stage: &Stage<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<
 /// The parts of a curve on a face that the camera sees, and where these end on which arcs.
 fn visible_parts(
     stage: &Stage<'_>,
-    segments: &Segments,
+    lines: &Lines,
     ground: Option<FaceId>,
     line: &Polyline,
     ends: &mut Vec<(u32, [f64; 2])>,
 ) -> Vec<Polyline> {
-    let mut cuts: Vec<(Place, Option<u32>)> = segments.crossings(line);
+    let mut cuts: Vec<(Place, Option<u32>)> = lines.crossings(line);
     let last = line.points.len() - 2;
     cuts.push(((0, 0.0), None));
     cuts.push(((last, 1.0), None));

@@ -25,7 +25,7 @@ pub enum StageError {
     #[error("the camera: {0}")]
     View(ViewError),
     /// A light has no view of the part.
-    #[error("light {0}: {1}")]
+    #[error("light {0}, as an eye: {1}")]
     Light(usize, ViewError),
     /// The part cannot be seen from anywhere.
     #[error(transparent)]

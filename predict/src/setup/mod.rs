@@ -13,7 +13,10 @@ use crate::processing::{Detector, DetectorError};
 use crate::reflectance::{Material, Named};
 use light::Light;
 use sensor::Sensor;
-use serde::{Deserialize, Serialize};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{self, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 use std::ops::Range;
 use viewpoint::Viewpoint;
 pub use written::Written;
@@ -58,7 +61,8 @@ impl SetupError {
                 let quoted = format!("\"{name}\"");
                 text.find(&quoted).map(|at| at..at + quoted.len())
             }
-            Self::Detector(_) | Self::Dark => None,
+            Self::Detector(_) => written::place("detector", text),
+            Self::Dark => None,
         }
     }
 
@@ -74,13 +78,38 @@ fn names() -> String {
 }
 
 /// A material by its name, or by its constants.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Finish {
     /// One of [`Named`].
     Named(String),
     /// The constants.
     Given(Material),
+}
+
+/// By hand, so that what is wrong with constants is told, and not that they are no name.
+impl<'de> Deserialize<'de> for Finish {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl<'de> Visitor<'de> for Either {
+            type Value = Finish;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "a material's name, or its constants")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<Finish, E> {
+                Ok(Finish::Named(name.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Finish, A::Error> {
+                Material::deserialize(MapAccessDeserializer::new(map)).map(Finish::Given)
+            }
+        }
+
+        from.deserialize_any(Either)
+    }
 }
 
 impl Finish {

@@ -172,6 +172,10 @@ position = [4, 5, 6]
         let material = "material = \"gold\"\n[camera]\neye = [1, 2, 3]\n";
         let error = Setup::from_toml(material).unwrap_err().to_string();
         assert!(error.contains("aluminium"), "{error}");
+        let fractions = "material = { ambient = 0.5, s = 0.9, d = 0.4, m = 0.2, n = 1.5, k = 0 }\n[camera]\neye = [1, 2, 3]\n";
+        let error = Setup::from_toml(fractions).unwrap_err();
+        assert!(error.to_string().contains("at most 1"), "{error}");
+        assert!(error.span(fractions).is_some());
         let both = "[camera]\neye = [1, 2, 3]\nt = [1, 2, 3]\n";
         assert!(Setup::from_toml(both).is_err());
         let zero = "[camera]\neye = [1, 2, 3]\n[sensor]\nresolution = [0, 480]\n";

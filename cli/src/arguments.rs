@@ -9,7 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 pub use predict::{
     AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions,
-    ModelRunOptions, PredictOptions, RenderOptions,
+    ModelRunOptions, PredictOptions, RenderOptions, SchemaName, SchemaOptions,
 };
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetOptions, ViewName};
@@ -90,6 +90,9 @@ pub enum Command {
 Exit status: 0 no answer is wrong; 1 some are; 130 interrupted."
     )]
     Fuzz(FuzzOptions),
+    /// The JSON schema of what a command writes
+    #[command(after_help = "Example: premio schema prediction -o prediction.schema.json")]
+    Schema(SchemaOptions),
     /// The manual page of the program, or of one of its commands
     #[command(after_help = "Example: premio man contours | man -l -")]
     Man(ManOptions),

@@ -38,6 +38,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Render(options) => commands::render::run(options, voice),
         Command::Compare(options) => commands::compare::run(options, voice),
         Command::Fuzz(options) => commands::fuzz::run(options, voice),
+        Command::Schema(options) => commands::schema::run(options),
         Command::Man(options) => commands::manual::man(options),
         Command::Completions(options) => commands::manual::completions(options),
     };

@@ -76,7 +76,8 @@ fn a_prediction_has_five_levels_with_their_relations() {
     // Of the block three faces are seen, and of the bore its wall; the edges of its top are whole or
     // told why they are not.
     for arc in value["arcs"].as_array().unwrap() {
-        let told = arc["state"] == "whole" || arc["smooth"] == true || arc.get("why").is_some();
+        let told =
+            arc["state"] == "whole" || arc["smooth"] == true || arc["reason"]["why"].is_string();
         assert!(told, "{arc}");
     }
     assert!(!value["object"]["holes"].as_array().unwrap().is_empty());
@@ -91,6 +92,37 @@ fn a_prediction_has_five_levels_with_their_relations() {
         fs::read_to_string(folder.path().join("again.json")).unwrap(),
         text
     );
+}
+
+#[test]
+fn predictions_are_as_the_published_schema_says() {
+    let folder = folder();
+    let output = premio(folder.path(), "schema prediction");
+    done(&output);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let published = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../docs/prediction.schema.json"
+    );
+    assert_eq!(
+        fs::read_to_string(published).unwrap(),
+        text,
+        "docs/prediction.schema.json is old"
+    );
+    let schema: Value = serde_json::from_str(&text).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let output = premio(folder.path(), "predict part.padl --setup setup.toml");
+    done(&output);
+    let prediction: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let errors: Vec<String> = validator
+        .iter_errors(&prediction)
+        .map(|e| e.to_string())
+        .collect();
+    assert!(errors.is_empty(), "{errors:?}");
+    // And it can tell: an arc's state is one of three.
+    let mut wrong = prediction;
+    wrong["arcs"][0]["state"] = "seen".into();
+    assert!(!validator.is_valid(&wrong));
 }
 
 #[test]

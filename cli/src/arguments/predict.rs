@@ -53,6 +53,17 @@ pub struct CompareOptions {
     pub output: Option<PathBuf>,
 }
 
+/// Options of `schema`.
+#[derive(Debug, Args)]
+pub struct SchemaOptions {
+    /// Of what
+    #[arg(value_enum, value_name = "FORMAT")]
+    pub of: SchemaName,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
 /// The published schemas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SchemaName {

@@ -12,3 +12,4 @@ pub mod manual;
 pub mod model;
 pub mod predict;
 pub mod render;
+pub mod schema;

@@ -3,6 +3,7 @@
 use crate::image::shading::Shading;
 use crate::outline::arc::Side;
 use crate::outline::{Arc, Regions};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How far apart the places are at which the sides are looked at, in pixels.
@@ -11,7 +12,7 @@ const EVERY: f64 = 6.0;
 const ASIDE: f64 = 1.0;
 
 /// The grey levels on both sides of an arc, before noise and steps.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Contrast {
     /// How far along the arc, in pixels.
     pub along: f64,

@@ -3,6 +3,7 @@
 use super::Criteria;
 use super::ink::Ink;
 use crate::processing::{Detection, Detector, EdgePixel};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The cosine of the greatest angle between an edge's gradient and the normal of its arc.
@@ -11,7 +12,9 @@ const ALIGNED: f64 = 0.77;
 const STANDS_FOR: f64 = 0.75;
 
 /// How much of an arc is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum State {
     /// In one piece, all but its ends.

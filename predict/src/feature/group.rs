@@ -3,11 +3,12 @@
 use super::junction::{Form, Junction, Nodes};
 use crate::outline::arc::Side;
 use crate::outline::{Arc, Regions};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A boundary of a region.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Boundary {
     /// Its arcs, in order; the region is to the left of the way along them.
     pub arcs: Vec<u32>,
@@ -151,7 +152,9 @@ fn boundary(arcs: &[Arc], steps: &[Step], walk: &[usize], regions: &Regions) -> 
 }
 
 /// Arcs that follow one another.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
+)]
 pub struct Chain {
     /// The arcs, in order.
     pub arcs: Vec<u32>,

@@ -3,6 +3,7 @@
 use super::evidence::Evidence;
 use super::ink::Ink;
 use crate::outline::Arc;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -16,7 +17,9 @@ const STRAIGHT: f64 = PI / 15.0;
 pub const NEAR: f64 = 3.0;
 
 /// The form of a junction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Form {
     /// One arc ends.
@@ -36,7 +39,7 @@ pub enum Form {
 }
 
 /// A branch of a junction.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Branch {
     /// The arc.
     pub arc: u32,
@@ -51,7 +54,7 @@ pub struct Branch {
 }
 
 /// A point at which arcs meet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Junction {
     /// Its place in pixels.
     pub at: [f64; 2],

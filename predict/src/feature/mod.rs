@@ -11,10 +11,11 @@ pub use evidence::{Evidence, Fragment, State};
 pub use reason::Reason;
 
 use crate::setup::SetupError;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// When an arc counts as found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Criteria {
     /// The share of an arc that has to be found, in one piece, for it to be whole.

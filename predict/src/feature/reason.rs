@@ -3,11 +3,12 @@
 use super::contrast::Contrast;
 use super::evidence::{Evidence, State};
 use super::ink::Ink;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Why an arc, or a part of it, is not found.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(tag = "why", rename_all = "kebab-case")]
 pub enum Reason {
     /// It does not lie in the image.

@@ -2,10 +2,13 @@
 
 use super::flatten::Polyline;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What an arc is the image of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
+)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Source {
     /// An edge of the part.

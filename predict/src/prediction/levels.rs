@@ -9,13 +9,14 @@ use crate::feature::reason::Reason;
 use crate::outline::{Arc, Source};
 use crate::processing::Shape;
 use crate::setup::Setup;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The name of the format.
 pub const SCHEMA: &str = "premio.prediction/1";
 
 /// The prediction of an image.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct Prediction {
     /// [`SCHEMA`].
     pub schema: &'static str,
@@ -34,7 +35,7 @@ pub struct Prediction {
 }
 
 /// The image level: under which conditions the image is made.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct ImageLevel {
     /// The setup.
     pub setup: Setup,
@@ -53,7 +54,7 @@ pub struct ImageLevel {
 }
 
 /// The object level: what of the part appears.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct ObjectLevel {
     /// The least and the greatest column and row of its arcs in the image.
     pub bounds: [[f64; 2]; 2],
@@ -74,7 +75,7 @@ pub struct ObjectLevel {
 }
 
 /// The region level.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct RegionLevel {
     /// Its place in the list.
     pub id: u32,
@@ -91,7 +92,7 @@ pub struct RegionLevel {
 }
 
 /// The boundary level.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct BoundaryLevel {
     /// Its place in the list.
     pub id: u32,
@@ -105,7 +106,7 @@ pub struct BoundaryLevel {
 }
 
 /// The form of an arc in the image, in pixels.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Geometry {
     /// A straight line.
@@ -128,7 +129,7 @@ pub enum Geometry {
 }
 
 /// How likely an arc is whole, broken or missed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Chances {
     /// In one piece.
     pub whole: f64,
@@ -139,7 +140,7 @@ pub struct Chances {
 }
 
 /// A piece of an arc that is found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Piece {
     /// The range of the curve's parameter.
     pub t: [f64; 2],
@@ -150,7 +151,7 @@ pub struct Piece {
 }
 
 /// The arc level.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct ArcLevel {
     /// Its place in the list.
     pub id: u32,
@@ -179,12 +180,11 @@ pub struct ArcLevel {
     /// How likely each state is.
     pub chances: Chances,
     /// Why it is not whole.
-    #[serde(flatten)]
     pub reason: Option<Reason>,
 }
 
 /// What the detector makes of edge pixels, and which arcs these are of.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct Segment {
     /// Its place in the list.
     pub id: u32,

@@ -8,3 +8,8 @@ pub use levels::{
     ArcLevel, BoundaryLevel, Chances, Geometry, ImageLevel, ObjectLevel, Piece, Prediction,
     RegionLevel, SCHEMA, Segment, prediction,
 };
+
+/// The schema of [`Prediction`], as JSON Schema has it.
+pub fn schema() -> schemars::Schema {
+    schemars::schema_for!(Prediction)
+}

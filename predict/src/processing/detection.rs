@@ -1,6 +1,7 @@
 //! What a detector finds. Positions are in pixels, at sub-pixel accuracy, in image axes: pixel
 //! (x, y) has its centre at (x, y), y downwards.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What is found in an image.
@@ -56,7 +57,7 @@ pub struct Segment {
 }
 
 /// A fitted curve; its ends are in the order of the chain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Shape {
     /// A straight line.

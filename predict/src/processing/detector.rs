@@ -10,11 +10,12 @@ use super::segments::Fitter;
 use super::shrink::shrink;
 use super::thinning::{connect, edge_pixels, pick};
 use super::workspace::Workspace;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// A detector of edges, lines, conics and corners.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Detector {
     /// How the gradient is found.
@@ -37,7 +38,7 @@ pub struct Detector {
 
 /// A gradient mask (Haralick & Shapiro ch. 7), with weights such that a ramp of one level per pixel
 /// has the gradient one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Mask {
     /// Two by two pixels; it is centred between them, as sub-pixel positions account for.
@@ -55,7 +56,7 @@ pub enum Mask {
 }
 
 /// How edges become one pixel thick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Thinning {
     /// A pixel stays if the gradient is largest there, against magnitudes interpolated along the

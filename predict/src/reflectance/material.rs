@@ -2,12 +2,13 @@
 
 use super::{Optics, Polarisation, Reflectance, Surface};
 use nalgebra::Vector3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_PI;
 use thiserror::Error;
 
 /// By what the specular term is divided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SpecularForm {
     /// R_s = F D G/(4π (N·L)(N·V)): facets that are perfect mirrors return the light they receive.
@@ -29,7 +30,7 @@ pub enum SpecularForm {
 /// k = 0.0         # the extinction coefficient
 /// form = "normalised" # or "printed"
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Constants {
     /// R_a, the share of ambient light that is reflected: 0 to 1.

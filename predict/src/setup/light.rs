@@ -2,11 +2,12 @@
 
 use super::{SetupError, above_zero, at_least_zero};
 use nalgebra::{Point3, Vector3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// A monochromatic point light, partially or totally polarised.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Light {
     /// Where it is; or else `direction` is given.

@@ -10,8 +10,9 @@ mod written;
 
 use crate::feature::Criteria;
 use crate::processing::{Detector, DetectorError};
-use crate::reflectance::{Material, Named};
+use crate::reflectance::{Constants, Material, Named};
 use light::Light;
+use schemars::JsonSchema;
 use sensor::Sensor;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, MapAccess, Visitor};
@@ -78,13 +79,13 @@ fn names() -> String {
 }
 
 /// A material by its name, or by its constants.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 #[serde(untagged)]
 pub enum Finish {
     /// One of [`Named`].
     Named(String),
     /// The constants.
-    Given(Material),
+    Given(#[schemars(with = "Constants")] Material),
 }
 
 /// By hand, so that what is wrong with constants is told, and not that they are no name.
@@ -132,7 +133,7 @@ impl Default for Finish {
 }
 
 /// The material of some faces.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FacesFinish {
     /// The faces, by the ids that `premio export --format json` and the contours name them by.
@@ -142,7 +143,7 @@ pub struct FacesFinish {
 }
 
 /// What stands still while lights and cameras move: the conditions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Conditions {
     /// The seed of the noise.
@@ -195,7 +196,7 @@ impl Conditions {
 }
 
 /// One picture's setup.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Setup {
     /// Where the camera is.
     pub camera: Viewpoint,

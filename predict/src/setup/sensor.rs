@@ -1,6 +1,7 @@
 //! The sensor: a pinhole camera with a lens and a film of pixels.
 
 use super::{SetupError, above_zero, at_least_zero};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -8,7 +9,7 @@ use std::f64::consts::PI;
 const MOST_PIXELS: usize = 1 << 28;
 
 /// The constants of a sensor (section 3.2.2 of the paper), and its response.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sensor {
     /// f, the focal length in millimetres.

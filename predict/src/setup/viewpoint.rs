@@ -4,10 +4,11 @@ use super::SetupError;
 use super::sensor::Sensor;
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_visibility::camera::{Camera, CameraError, Model};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A viewpoint, in the part's unit and frame.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Viewpoint {
     /// The centre of projection.

@@ -1,0 +1,15 @@
+//! `premio schema`: what JSON is promised to be.
+
+use crate::arguments::{SchemaName, SchemaOptions};
+use crate::diagnostics::Failure;
+use crate::output;
+use premio_predict::prediction;
+
+/// Runs the command.
+pub fn run(options: &SchemaOptions) -> Result<(), Failure> {
+    let schema = match options.of {
+        SchemaName::Prediction => prediction::schema(),
+    };
+    let text = serde_json::to_string_pretty(&schema).map_err(|e| Failure::input(e.to_string()))?;
+    output::write(text + "\n", options.output.as_deref())
+}

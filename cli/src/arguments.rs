@@ -1,5 +1,6 @@
 //! The command line.
 
+mod matching;
 mod predict;
 mod sheet;
 
@@ -7,13 +8,15 @@ use crate::fuzz::profile::Profile;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+pub use matching::{MatchOptions, SoughtOptions, StrategyName, TrackOptions};
 pub use predict::{
-    AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions,
-    ModelRunOptions, PredictOptions, RenderOptions, SchemaName, SchemaOptions,
+    AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions, ModelOutput,
+    ModelRunOptions, PredictOptions, RecordsFormat, RenderOptions, SchemaName, SchemaOptions,
 };
+use premio_csg::reader::Options;
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetOptions, ViewName};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// From a description of a solid to its exact boundary and to what a camera sees of it.
 #[derive(Debug, Parser)]
@@ -82,6 +85,17 @@ pub enum Command {
     #[command(after_help = "Examples: premio compare part.padl --setup setup.toml
           premio compare part.padl --setup setup.toml --image photo.png --json")]
     Compare(CompareOptions),
+    /// Where the part is in a picture: pose, correspondences, how likely
+    #[command(
+        after_help = "Examples: premio match part.model photo.png --camera camera.json -o pose.json --overlay pose.png
+          premio match part.model scene/*.png --camera camera.json --csv poses.csv -o poses.jsonl"
+    )]
+    Match(MatchOptions),
+    /// Where the part is in the pictures of a sequence, each from the pose before
+    #[command(
+        after_help = "Example: premio track part.model film/*.png --camera camera.json -o poses.jsonl"
+    )]
+    Track(TrackOptions),
     /// Random trees by the thousand, each put to the self-checks
     #[command(
         after_help = "Examples: premio fuzz --profile grid,near --count 10000 --state run.json --shrink
@@ -104,7 +118,7 @@ Exit status: 0 no answer is wrong; 1 some are; 130 interrupted."
 }
 
 /// What is described, and how it is read and evaluated.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct DescriptionOptions {
     /// The description: .padl, .csg (OpenSCAD's flattened output), .json, .asc (BRL-CAD's database as
     /// text) or .pov (POV-Ray's scene)
@@ -122,6 +136,21 @@ pub struct DescriptionOptions {
     /// Decide nothing in doubles: the same boundary from numbers of 237 bits, some hundred times slower
     #[arg(long)]
     pub unfiltered: bool,
+    #[command(flatten)]
+    pub reading: ReadingOptions,
+}
+
+impl DescriptionOptions {
+    /// The file's name, without its folder and its ending.
+    pub fn stem(&self) -> String {
+        let stem = self.file.file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    }
+}
+
+/// How a description is read.
+#[derive(Debug, Default, Args)]
+pub struct ReadingOptions {
     /// The part of a .padl, .asc or .pov file to take [default: the last solid assigned, the object
     /// that no other holds, the whole scene]
     #[arg(long, value_name = "NAME")]
@@ -131,11 +160,28 @@ pub struct DescriptionOptions {
     pub smooth: bool,
 }
 
-impl DescriptionOptions {
-    /// The file's name, without its folder and its ending.
-    pub fn stem(&self) -> String {
-        let stem = self.file.file_stem().unwrap_or_default();
-        stem.to_string_lossy().into_owned()
+impl ReadingOptions {
+    /// What the readers are told.
+    pub fn options(&self) -> Options {
+        Options {
+            smooth: self.smooth,
+            part: self.part.clone(),
+        }
+    }
+}
+
+/// Where text is written.
+#[derive(Debug, Args)]
+pub struct OutputOptions {
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+impl OutputOptions {
+    /// The file, if it is one.
+    pub fn path(&self) -> Option<&Path> {
+        self.output.as_deref()
     }
 }
 
@@ -167,9 +213,8 @@ pub struct ContoursOptions {
     /// Draw boundaries along which the normal does not jump, too (svg, dxf)
     #[arg(long)]
     pub smooth_edges: bool,
-    /// Where to write [default: standard output]
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputOptions,
 }
 
 /// The camera: a file, or an eye that looks at a target.
@@ -236,9 +281,8 @@ pub struct ExportOptions {
     /// What the part is called (step, obj, glb, 3mf) [default: the file's name]
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
-    /// Where to write [default: standard output]
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputOptions,
 }
 
 /// The unit of lengths.
@@ -289,13 +333,8 @@ pub struct ConvertOptions {
     /// Refuse what the other language cannot hold exactly, in place of writing the nearest
     #[arg(long)]
     pub exact: bool,
-    /// The part of a .padl, .asc or .pov file to take [default: the last solid assigned, the object
-    /// that no other holds, the whole scene]
-    #[arg(long, value_name = "NAME")]
-    pub part: Option<String>,
-    /// Read a .csg primitive with a small $fn as the smooth one
-    #[arg(long)]
-    pub smooth: bool,
+    #[command(flatten)]
+    pub reading: ReadingOptions,
 }
 
 /// Options of `fuzz`.
@@ -401,9 +440,8 @@ pub struct ManOptions {
     /// The command that the page is of [default: the program]
     #[arg(value_name = "COMMAND")]
     pub command: Option<String>,
-    /// Where to write [default: standard output]
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputOptions,
 }
 
 /// Options of `completions`.
@@ -412,9 +450,8 @@ pub struct CompletionsOptions {
     /// The shell
     #[arg(value_enum, value_name = "SHELL")]
     pub shell: Shell,
-    /// Where to write [default: standard output]
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputOptions,
 }
 
 /// The formats of models.

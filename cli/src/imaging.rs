@@ -4,7 +4,10 @@ use crate::diagnostics::Failure;
 use crate::output;
 use font8x8::legacy::BASIC_LEGACY;
 use image::{DynamicImage, ImageFormat, ImageReader, Rgb, RgbImage};
+use premio_matching::finding::Match;
+use premio_matching::picture::Picture;
 use premio_predict::feature::ink::bresenham;
+use premio_predict::outline::Source;
 use premio_predict::overlay;
 use premio_predict::prediction::Prediction;
 use premio_predict::processing::Grey;
@@ -78,6 +81,39 @@ pub fn overlay(prediction: &Prediction, below: Option<&Grey>, path: &Path) -> Re
         return output::write(overlay::svg(prediction), Some(path));
     }
     encode(&DynamicImage::ImageRgb8(picture(prediction, below)), path)
+}
+
+/// The colours of what is found, and of the segments that it is.
+const FOUND: [u8; 3] = [44, 160, 44];
+const SEGMENTS: [u8; 3] = [31, 119, 180];
+
+/// Writes a picture with a part where it is matched: its contours green where they are found, red and
+/// dashed where they are missed, and the segments that they are in blue.
+pub fn matched(grey: &Grey, picture: &Picture, found: &Match, path: &Path) -> Result<(), Failure> {
+    let (width, height) = (grey.width as u32, grey.height as u32);
+    let mut image = RgbImage::from_pixel(width, height, Rgb([255; 3]));
+    for (pixel, level) in image.pixels_mut().zip(&grey.levels) {
+        *pixel = Rgb([(96.0 + 0.625 * level.clamp(0.0, 255.0)) as u8; 3]);
+    }
+    let is = |source: &Source| found.pairs.iter().find(|p| p.source == *source);
+    for arc in &found.arcs {
+        let missed = is(&arc.source).is_some_and(|p| p.found.is_none());
+        let colour = if missed { overlay::MISSING } else { FOUND };
+        for (k, (_, seen)) in arc.points.iter().enumerate() {
+            if !(missed && k / 2 % 2 == 1) {
+                let [x, y] = [seen.at.x, seen.at.y].map(|v| v.clamp(-1e6, 1e6).round() as i32);
+                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                    put(&mut image, [x + dx, y + dy], grey.height, colour);
+                }
+            }
+        }
+    }
+    let segments = found.pairs.iter().filter_map(|p| p.found.as_ref());
+    for &segment in segments.flat_map(|f| &f.segments) {
+        let [a, b] = picture.ends(segment).map(|p| p.map(|v| v.round() as i32));
+        bresenham(a, b, |at| put(&mut image, at, grey.height, SEGMENTS));
+    }
+    encode(&DynamicImage::ImageRgb8(image), path)
 }
 
 /// The height of a line of text, in pixels.

@@ -5,6 +5,7 @@ use crate::diagnostics::{Failure, Voice};
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{self, Description, Format, Options};
 use premio_kernel::number::sign::Zeros;
+use premio_predict::model::record::Description as Written;
 use premio_visibility::Camera;
 use std::path::Path;
 use std::time::Instant;
@@ -16,6 +17,8 @@ pub struct Part {
     pub name: String,
     /// What was read.
     pub description: Description,
+    /// The text that was read, and how.
+    pub written: Written,
     /// Its boundary.
     pub evaluation: Evaluation,
     /// How long reading took, in seconds.
@@ -26,36 +29,94 @@ pub struct Part {
 
 /// Reads and evaluates a description; tells the reader's notes and the close calls.
 pub fn part(options: &DescriptionOptions, voice: Voice) -> Result<Part, Failure> {
-    let started = Instant::now();
     let name = options.file.display().to_string();
-    let description = description(&name, options, voice)?;
+    let format = format(&options.file)?;
+    let text = bytes(&options.file)?;
+    let written = Written {
+        language: format.ending().to_owned(),
+        text: String::from_utf8_lossy(&text).into_owned(),
+        part: options.reading.part.clone(),
+        smooth: options.reading.smooth,
+        resolution: options.resolution,
+        exact: options.exact,
+    };
+    let digits = match options.unfiltered {
+        true => Digits::Many,
+        false => Digits::Filtered,
+    };
+    let part = evaluated(name, (format, &text), written, digits, voice)?;
+    let calls = &part.evaluation.decisions.close_calls;
+    if options.strict && !calls.is_empty() {
+        return Err(Failure::close(
+            &part.name,
+            part.evaluation.resolution,
+            calls,
+        ));
+    }
+    voice.close_calls(&part.name, part.evaluation.resolution, calls);
+    Ok(part)
+}
+
+/// The part of a description, read in the usual way.
+pub fn described(path: &Path, voice: Voice) -> Result<Part, Failure> {
+    let options = DescriptionOptions {
+        file: path.to_owned(),
+        ..DescriptionOptions::default()
+    };
+    part(&options, voice)
+}
+
+/// The part of a description that a model holds.
+pub fn part_of_model(name: &str, written: Written, voice: Voice) -> Result<Part, Failure> {
+    let language = &written.language;
+    let format = Format::ALL.into_iter().find(|f| f.ending() == language);
+    let format = format.ok_or_else(|| {
+        let said = "found a description in an unknown language";
+        Failure::input(format!("{name}: {said}: {language}"))
+    })?;
+    let text = written.text.clone().into_bytes();
+    evaluated(
+        name.to_owned(),
+        (format, &text),
+        written,
+        Digits::Filtered,
+        voice,
+    )
+}
+
+fn evaluated(
+    name: String,
+    (format, text): (Format, &[u8]),
+    written: Written,
+    digits: Digits,
+    voice: Voice,
+) -> Result<Part, Failure> {
+    let started = Instant::now();
+    let how = Options {
+        smooth: written.smooth,
+        part: written.part.clone(),
+    };
+    let description = description(&name, (format, text), &how, voice)?;
     let read = started.elapsed().as_secs_f64();
     let started = Instant::now();
     let how = EvaluationOptions {
-        resolution: options.resolution,
+        resolution: written.resolution,
         noise: description.digits,
-        zeros: match options.exact {
+        zeros: match written.exact {
             true => Zeros::Exact,
             false => Zeros::ByResolution,
         },
-        digits: match options.unfiltered {
-            true => Digits::Many,
-            false => Digits::Filtered,
-        },
+        digits,
         ..EvaluationOptions::default()
     };
     let working = voice.working("finding the boundary");
     let evaluation =
         evaluate(&description.tree, &how).map_err(|e| Failure::evaluation(&name, &e))?;
     drop(working);
-    let calls = &evaluation.decisions.close_calls;
-    if options.strict && !calls.is_empty() {
-        return Err(Failure::close(&name, evaluation.resolution, calls));
-    }
-    voice.close_calls(&name, evaluation.resolution, calls);
     Ok(Part {
         name,
         description,
+        written,
         evaluation,
         read,
         evaluate: started.elapsed().as_secs_f64(),
@@ -74,20 +135,14 @@ pub fn resolution_of_views(part: &Part) -> Result<f64, Failure> {
 
 fn description(
     name: &str,
-    options: &DescriptionOptions,
+    (format, text): (Format, &[u8]),
+    how: &Options,
     voice: Voice,
 ) -> Result<Description, Failure> {
-    let format = format(&options.file)?;
-    let text = bytes(&options.file)?;
-    let how = Options {
-        smooth: options.smooth,
-        part: options.part.clone(),
-    };
     let working = voice.working("reading");
-    let description =
-        reader::read(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
+    let description = reader::read(name, text, format, how).map_err(|e| Failure::read(&e, text))?;
     drop(working);
-    voice.notes(name, &text, &description.notes);
+    voice.notes(name, text, &description.notes);
     Ok(description)
 }
 

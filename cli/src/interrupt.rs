@@ -1,6 +1,7 @@
-//! Long work that is interrupted ends in good order.
+//! Long work: on how many threads, and that it ends in good order where it is interrupted.
 
 use crate::diagnostics::Failure;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -17,4 +18,10 @@ pub fn stop() -> Result<Arc<AtomicBool>, Failure> {
 pub fn threads(asked: Option<u16>) -> usize {
     let all = || std::thread::available_parallelism().map_or(1, usize::from);
     asked.map_or_else(all, usize::from)
+}
+
+/// So many threads.
+pub fn pool(asked: Option<u16>) -> Result<ThreadPool, Failure> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads(asked)).build();
+    pool.map_err(|e| Failure::input(format!("threads: {e}")))
 }

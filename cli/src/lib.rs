@@ -11,6 +11,7 @@ mod input;
 mod interrupt;
 mod model;
 mod output;
+mod setup;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -37,6 +38,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Advise(options) => commands::advise::run(options, voice),
         Command::Render(options) => commands::render::run(options, voice),
         Command::Compare(options) => commands::compare::run(options, voice),
+        Command::Match(options) => commands::matching::find(options, voice),
+        Command::Track(options) => commands::matching::track(options, voice),
         Command::Fuzz(options) => commands::fuzz::run(options, voice),
         Command::Schema(options) => commands::schema::run(options),
         Command::Man(options) => commands::manual::man(options),

@@ -34,35 +34,42 @@ fn stdout(text: &[u8]) -> Result<(), Failure> {
 /// Writes beside the file and renames: nobody ever sees half of it.
 pub fn file(text: impl AsRef<[u8]>, path: &Path) -> io::Result<()> {
     let target = target(path)?;
-    if fs::metadata(&target).is_ok_and(|m| !m.is_file()) {
+    if is_no_file(&target) {
         // A device or a pipe must not be replaced.
         return fs::write(&target, text);
     }
-    let folder = target.parent().filter(|p| !p.as_os_str().is_empty());
-    let mut whole = temporary(folder.unwrap_or(Path::new(".")))?;
+    let mut whole = temporary(&target)?;
     whole.write_all(text.as_ref())?;
     whole.as_file().sync_all()?;
     whole.persist(&target)?;
     Ok(())
 }
 
+/// Whether something is there that holds no bytes: a folder, a device or a pipe.
+pub fn is_no_file(target: &Path) -> bool {
+    fs::metadata(target).is_ok_and(|m| !m.is_file())
+}
+
 /// The file behind symbolic links.
-fn target(path: &Path) -> io::Result<PathBuf> {
+pub fn target(path: &Path) -> io::Result<PathBuf> {
     match fs::canonicalize(path) {
         Err(e) if e.kind() == ErrorKind::NotFound => Ok(path.to_owned()),
         found => found,
     }
 }
 
-/// A temporary file that, renamed, has the permissions of any other new file.
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+/// A temporary file beside a file to be that, renamed, has the permissions of any other new file.
+pub fn temporary(target: &Path) -> io::Result<NamedTempFile> {
+    let folder = target.parent().filter(|p| !p.as_os_str().is_empty());
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.prefix(".premio-").tempfile_in(folder)
+    builder
+        .prefix(".premio-")
+        .tempfile_in(folder.unwrap_or(Path::new(".")))
 }
 
 #[cfg(test)]

@@ -1,21 +1,13 @@
 //! `premio fuzz` from outside: exit status, summary, models, and going on where it ended.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+mod common;
+
+use common::{command, premio};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
-
-fn command(folder: &Path, words: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
-    command.current_dir(folder).args(words.split_whitespace());
-    command
-}
-
-fn premio(folder: &Path, words: &str) -> Output {
-    command(folder, words).output().unwrap()
-}
 
 /// The summary without times, and with it the exit status.
 fn summary(output: &Output) -> (Value, Option<i32>) {

@@ -1,14 +1,12 @@
 //! The commands about images from outside: exit status, messages, files.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+mod common;
+
+use common::premio;
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
-
-const PART: &str = "BASE = BLO(X=6, Y=4, Z=2)
-PART = BASE DIF CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1)
-";
+use std::process::Output;
 
 const SETUP: &str = "
 [camera]
@@ -32,23 +30,8 @@ electrons = 8000
 draws = 2
 ";
 
-fn premio(folder: &Path, words: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
-    command.current_dir(folder).args(words.split_whitespace());
-    command.output().unwrap()
-}
-
 fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let files = [
-        ("part.padl", PART),
-        ("setup.toml", SETUP),
-        ("setups.toml", SETUPS),
-    ];
-    for (name, text) in files {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    folder
+    common::folder(&[("setup.toml", SETUP), ("setups.toml", SETUPS)])
 }
 
 fn done(output: &Output) {
@@ -97,20 +80,7 @@ fn a_prediction_has_five_levels_with_their_relations() {
 #[test]
 fn predictions_are_as_the_published_schema_says() {
     let folder = folder();
-    let output = premio(folder.path(), "schema prediction");
-    done(&output);
-    let text = String::from_utf8(output.stdout).unwrap();
-    let published = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../docs/prediction.schema.json"
-    );
-    assert_eq!(
-        fs::read_to_string(published).unwrap(),
-        text,
-        "docs/prediction.schema.json is old"
-    );
-    let schema: Value = serde_json::from_str(&text).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
+    let validator = common::published(folder.path(), "prediction");
     let output = premio(folder.path(), "predict part.padl --setup setup.toml");
     done(&output);
     let prediction: Value = serde_json::from_slice(&output.stdout).unwrap();

@@ -1,25 +1,15 @@
 //! The program from outside: exit status, messages, output.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+mod common;
+
+use common::{command, premio};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
-
-const PART: &str = "BASE = BLO(X=6, Y=4, Z=2)
-PART = BASE DIF CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1)
-";
-
-fn premio(folder: &Path, words: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
-    command.current_dir(folder).args(words.split_whitespace());
-    command.output().unwrap()
-}
+use std::process::{Output, Stdio};
 
 fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("part.padl"), PART).unwrap();
-    folder
+    common::folder(&[])
 }
 
 fn json(output: &Output) -> Value {
@@ -201,11 +191,7 @@ fn no_decision_is_in_doubles_where_none_is_to_be() {
 #[test]
 fn nobody_has_to_read_to_the_end() {
     let folder = folder();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
-    command
-        .current_dir(folder.path())
-        .args(["export", "part.padl", "--format", "json"]);
-    let mut child = command
+    let mut child = command(folder.path(), "export part.padl --format json")
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

@@ -3,10 +3,12 @@
 //! Numbers are kept to nine digits, so that the last bits of a platform's sine do not count.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+mod common;
+
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// A block with a bore: lines, circles, ellipses.
 const BLOCK: &str = "PART = BLO(X=6, Y=4, Z=2) DIF CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1)\n";
@@ -18,9 +20,7 @@ const VIEW: &str = "--eye 20,-15,12 --target 3,2,1";
 fn premio(name: &str, text: &[u8], words: &str) -> Output {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), text).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
-    command.current_dir(folder.path());
-    command.args(words.split_whitespace()).output().unwrap()
+    common::premio(folder.path(), words)
 }
 
 fn said(text: &str, words: &str) -> String {
@@ -143,9 +143,7 @@ fn the_picture_in_the_readme() {
     let command = "cargo run --release -p premio -- ";
     let line = readme.lines().find_map(|l| l.strip_prefix(command));
     let (words, picture) = line.unwrap().split_once(" -o ").unwrap();
-    let mut premio = Command::new(env!("CARGO_BIN_EXE_premio"));
-    premio.current_dir(&root).args(words.split_whitespace());
-    let drawn = String::from_utf8(premio.output().unwrap().stdout).unwrap();
+    let drawn = String::from_utf8(common::premio(&root, words).stdout).unwrap();
     assert!(readme.contains(&format!("]({picture})")));
     let kept = fs::read_to_string(root.join(picture)).unwrap();
     assert!(drawn == kept, "run the README's command again, and look");

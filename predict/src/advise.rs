@@ -5,9 +5,9 @@ use crate::feature::evidence::State;
 use crate::image::shading::Finishes;
 use crate::model::Setups;
 use crate::model::information::{deviation, information};
-use crate::outline::stage::{Eyes, StageError};
-use crate::outline::{Source, Stage};
-use crate::prediction::{Draft, Memory};
+use crate::outline::Source;
+use crate::outline::stage::StageError;
+use crate::prediction::{Draft, Memory, with_draft};
 use crate::subject::Subject;
 use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
@@ -83,13 +83,7 @@ impl Judge<'_> {
         let setup = self
             .setups
             .looking(placing.view, placing.light, 0, self.subject);
-        let eyes = Eyes::new(self.subject, &setup)?;
-        let stage = Stage::new(self.subject, &eyes)?;
-        let own = std::mem::take(memory);
-        let draft = Draft::within(&stage, self.finishes, &setup.conditions, own)?;
-        let score = scored(&draft);
-        *memory = draft.into_memory();
-        Ok(score)
+        with_draft(self.subject, Some(self.finishes), &setup, memory, scored)
     }
 
     /// What the goal makes of a setup.

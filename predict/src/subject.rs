@@ -8,7 +8,7 @@ use premio_kernel::geometry::frame::Frame;
 use premio_kernel::tessellation::{Accuracy, Mesh, tessellate};
 use premio_visibility::camera::Camera;
 use premio_visibility::projection::Projection;
-use premio_visibility::sight::{Asked, Own, Ray, Scene};
+use premio_visibility::sight::{Own, Ray, Scene};
 use std::f64::consts::PI;
 
 /// How many directions of the hemisphere are tried, and from how many points of a face at the most.
@@ -96,9 +96,7 @@ fn open_part(subject: &Subject<'_>, scene: &Scene<'_>, mesh: &Mesh, face: FaceId
                 length: f64::INFINITY,
             };
             let own = |f| if f == face { Own::Through } else { Own::No };
-            let mut blocked = false;
-            scene.hits(&ray, Asked::All, &own, &mut |hit| blocked |= hit.plain);
-            open += usize::from(!blocked);
+            open += usize::from(!scene.is_blocked(&ray, &own));
             all += 1;
         }
     }

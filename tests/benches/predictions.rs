@@ -5,10 +5,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
-use premio_predict::image::shading::Finishes;
-use premio_predict::outline::Stage;
-use premio_predict::outline::stage::Eyes;
-use premio_predict::prediction::{Draft, Memory, prediction};
+use premio_predict::prediction::{Memory, prediction, with_draft};
 use premio_predict::render;
 use premio_predict::setup::Setup;
 use premio_predict::subject::Subject;
@@ -34,22 +31,6 @@ fn setup(size: f64) -> Setup {
     Setup::from_toml(&text).unwrap()
 }
 
-fn with_draft<T>(
-    subject: &Subject<'_>,
-    setup: &Setup,
-    memory: &mut Memory,
-    ask: impl FnOnce(&Draft<'_>) -> T,
-) -> T {
-    let eyes = Eyes::new(subject, setup).unwrap();
-    let stage = Stage::new(subject, &eyes).unwrap();
-    let finishes = Finishes::new(subject, &setup.conditions).unwrap();
-    let own = std::mem::take(memory);
-    let draft = Draft::within(&stage, &finishes, &setup.conditions, own).unwrap();
-    let answer = ask(&draft);
-    *memory = draft.into_memory();
-    answer
-}
-
 fn predictions(c: &mut Criterion) {
     let mut group = c.benchmark_group("predictions");
     group
@@ -65,17 +46,19 @@ fn predictions(c: &mut Criterion) {
         let mut memory = Memory::default();
         group.bench_function(name, |b| {
             b.iter(|| {
-                with_draft(&subject, &setup, &mut memory, |draft| {
+                with_draft(&subject, None, &setup, &mut memory, |draft| {
                     prediction(draft, &setup)
                 })
+                .unwrap()
             });
         });
         group.bench_function(format!("{name}: full render"), |b| {
             b.iter(|| {
-                with_draft(&subject, &setup, &mut memory, |draft| {
+                with_draft(&subject, None, &setup, &mut memory, |draft| {
                     let [width, height] = setup.conditions.sensor.resolution;
                     render::rows(&draft.shading, width, 0..height)
                 })
+                .unwrap()
             });
         });
     }

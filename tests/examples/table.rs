@@ -62,6 +62,22 @@ const ROWS: &[(&str, &str)] = &[
         "pipe with 8 branches: view in general position",
         "views/tee, general/8",
     ),
+    (
+        "cube with three cuts: one prediction at 640 × 480",
+        "predictions/cube with three cuts",
+    ),
+    (
+        "cube with three cuts: its full render by rays",
+        "predictions/cube with three cuts_ full render",
+    ),
+    (
+        "block with 49 through holes: one prediction at 640 × 480",
+        "predictions/block with 49 through holes",
+    ),
+    (
+        "block with 49 through holes: its full render by rays",
+        "predictions/block with 49 through holes_ full render",
+    ),
 ];
 
 /// The median, in nanoseconds.

@@ -8,6 +8,10 @@ from scene import Camera, Light
 
 Vector = numpy.ndarray
 
+# How far from the part's middle cameras and lights are, in its radius.
+AWAY = (6, 9)
+LIT_FROM = (3, 8)
+
 
 @dataclass
 class Conditions:
@@ -29,8 +33,22 @@ class Conditions:
     ambient: float = 0.0
     # 31 levels.
     background: float = 0.05
-    threshold: float = 8.0
+    detector: str = 'mask = "sobel"\nthreshold = 8.0\n'
     draws: int = 8
+
+    def toml(self, seed: int, where: str) -> str:
+        """The text that the program reads; `where` is the tables of cameras and lights."""
+        return (
+            f"seed = {seed}\nambient = {self.ambient!r}\nbackground = {self.background!r}\n"
+            f"{where}"
+            f"[material]\nambient = {self.reflected!r}\ndiffuse = {self.diffuse!r}\n"
+            "s = 0\nd = 1\nm = 0.3\nn = 1.5\nk = 0\n"
+            f"[sensor]\nfocal = {self.focal!r}\nfilm = {vector(self.film)}\n"
+            f"resolution = [{self.width}, {self.height}]\nwhite = {self.white!r}\nblur = {self.blur!r}\n"
+            f"electrons = {self.electrons!r}\nread_noise = {self.read_noise!r}\n"
+            f"[detector]\n{self.detector}"
+            f"[features]\ndraws = {self.draws}\n"
+        )
 
 
 @dataclass
@@ -55,24 +73,13 @@ class Setup:
         return Camera(k, r, -r @ self.eye, *size)
 
     def toml(self, conditions: Conditions) -> str:
-        c = conditions
         lights = [
             f"[[light]]\nposition = {vector(light.position)}\nparallel = {light.share / 2!r}\n"
             f"perpendicular = {light.share / 2!r}\n"
             for light in self.lights
         ]
-        return (
-            f"seed = {self.seed}\nambient = {c.ambient!r}\nbackground = {c.background!r}\n"
-            f"[camera]\neye = {vector(self.eye)}\ntarget = {vector(self.target)}\n"
-            f"{''.join(lights)}"
-            f"[material]\nambient = {c.reflected!r}\ndiffuse = {c.diffuse!r}\n"
-            "s = 0\nd = 1\nm = 0.3\nn = 1.5\nk = 0\n"
-            f"[sensor]\nfocal = {c.focal!r}\nfilm = {vector(c.film)}\n"
-            f"resolution = [{c.width}, {c.height}]\nwhite = {c.white!r}\nblur = {c.blur!r}\n"
-            f"electrons = {c.electrons!r}\nread_noise = {c.read_noise!r}\n"
-            f'[detector]\nmask = "sobel"\nthreshold = {c.threshold!r}\n'
-            f"[features]\ndraws = {c.draws}\n"
-        )
+        camera = f"[camera]\neye = {vector(self.eye)}\ntarget = {vector(self.target)}\n"
+        return conditions.toml(self.seed, camera + "".join(lights))
 
 
 def vector(values) -> str:
@@ -96,7 +103,7 @@ def setups(bounds: Vector, count: int, seed: int) -> list[Setup]:
         towards = direction(random)
         while abs(towards[2]) > 0.98:
             towards = direction(random)
-        eye = centre + towards * radius * random.uniform(6, 9)
+        eye = centre + towards * radius * random.uniform(*AWAY)
         target = centre + direction(random) * radius * 0.15
         number = 1 + i % 2
         shares = [1.0] if number == 1 else [0.7, 0.3]
@@ -105,6 +112,6 @@ def setups(bounds: Vector, count: int, seed: int) -> list[Setup]:
             along = direction(random)
             while along @ towards < 0.2:
                 along = direction(random)
-            lights.append(Light(centre + along * radius * random.uniform(3, 8), share))
+            lights.append(Light(centre + along * radius * random.uniform(*LIT_FROM), share))
         made.append(Setup(eye, target, lights, seed=1000 * seed + i))
     return made

@@ -21,10 +21,16 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         "premio-predict",
         &["premio-visibility", "premio-kernel"],
     ),
+    // Its tests make boundaries of descriptions.
     (
         "match",
         "premio-matching",
-        &["premio-predict", "premio-visibility", "premio-kernel"],
+        &[
+            "premio-predict",
+            "premio-visibility",
+            "premio-kernel",
+            "premio-csg",
+        ],
     ),
     (
         "cli",

@@ -4,15 +4,15 @@
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_predict::agreement::{Agreement, matches};
-use premio_predict::image::shading::Finishes;
-use premio_predict::outline::stage::{Eyes, StageError};
-use premio_predict::outline::{Source, Stage};
-use premio_predict::prediction::{Draft, prediction};
+use premio_predict::outline::Source;
+use premio_predict::outline::stage::StageError;
+use premio_predict::prediction::{self, Draft, Memory, prediction};
 use premio_predict::processing::Domain;
 use premio_predict::render;
 use premio_predict::setup::Setup;
 use premio_predict::subject::Subject;
 use premio_tests::parts::{cube_with_cuts, plate, tee};
+use premio_tests::random;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -43,10 +43,7 @@ fn with_draft<T>(
     setup: &Setup,
     ask: impl FnOnce(&Draft<'_>) -> T,
 ) -> Result<T, StageError> {
-    let eyes = Eyes::new(subject, setup)?;
-    let stage = Stage::new(subject, &eyes)?;
-    let finishes = Finishes::new(subject, &setup.conditions)?;
-    Ok(ask(&Draft::new(&stage, &finishes, &setup.conditions)?))
+    prediction::with_draft(subject, None, setup, &mut Memory::default(), ask)
 }
 
 /// A ring, a ball and a slanted pin: limbs with cusps, and round shadows on round faces.
@@ -163,6 +160,77 @@ fn regions_of_named_cases_show_what_rays_meet() {
     }
     assert!(seen > 100, "{seen} cases");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Views along axes, lights along axes, at the camera and anywhere, about random trees on a grid.
+#[test]
+fn regions_of_random_trees_show_what_rays_meet() {
+    let places = [
+        ([4.0, 0.0, 0.0], [0.0, 0.0, 4.0]),
+        ([0.0, 0.0, 4.0], [0.0, 0.0, 4.0]),
+        ([2.6, 2.0, 2.3], [2.6, 2.0, 2.3]),
+        ([-1.9, 2.4, 1.7], [1.1, 2.9, 4.0]),
+    ];
+    let mut wrong = Vec::new();
+    let (mut views, mut untold, mut all) = (0, 0.0, 0.0);
+    for seed in 0..24u64 {
+        let text = random::tree(seed).to_string();
+        let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+        let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
+            continue;
+        };
+        let Ok(subject) = Subject::new(&part.brep, part.resolution) else {
+            continue;
+        };
+        let (eye, light) = places[seed as usize % places.len()];
+        let setup = setup(&subject, eye, light, "");
+        let seen = with_draft(&subject, &setup, |draft| {
+            regions_show_what_rays_meet(draft, &format!("seed {seed}"), &mut wrong);
+            let area = |told: bool| {
+                let those = draft
+                    .regions
+                    .all
+                    .iter()
+                    .filter(|r| r.seen.is_some() || !told);
+                those.map(|r| r.area).sum::<f64>()
+            };
+            (area(false) - area(true), area(false))
+        });
+        if let Ok((none, area)) = seen {
+            (views, untold, all) = (views + 1, untold + none, all + area);
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(views > 15, "{views}");
+    // What nothing is told of is asked pixel by pixel: right, and slow.
+    assert!(untold < 0.05 * all, "{untold} of {all} pixels");
+}
+
+/// Where a ball's limb runs into the rim of a flat cut there is a sliver between them, thinner than
+/// polylines are fine, across which background and cut are parted.
+#[test]
+fn a_sliver_between_a_limb_and_an_edge_parts_what_is_beside_it() {
+    let ball = json!({"op": "difference", "children": [
+        {"prim": "sphere", "r": 2.5},
+        {"prim": "block", "size": [6.0, 6.0, 6.0], "transform": [{"translate": [-3, -3, 1.0]}]},
+    ]});
+    let part = part(&ball);
+    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    for k in 0..24 {
+        // The limb touches the rim where it is seen from next to the plane of the tangent cone.
+        let tilt = 0.2 + 0.04 * f64::from(k);
+        let eye = [3.0 * tilt.cos(), 0.7, 3.0 * tilt.sin()];
+        let setup = setup(&subject, eye, [1.1, 2.9, 4.0], "");
+        with_draft(&subject, &setup, |draft| {
+            let (last, regions) = draft.regions.all.split_last().unwrap();
+            let untold = regions.iter().filter(|r| r.area > 1.0 && r.seen.is_none());
+            let untold: Vec<_> = untold.map(|r| r.area).collect();
+            assert!(untold.is_empty(), "tilt {tilt}: {untold:?} px");
+            // A few rows of 160 pixels, where limb and rim run into each other at both ends.
+            assert!(last.area < 6.0 * 160.0, "tilt {tilt}: {} px", last.area);
+        })
+        .unwrap();
+    }
 }
 
 #[test]
@@ -312,6 +380,31 @@ fn a_shadow_lies_where_it_is_cast() {
 }
 
 /// On a ball a light is mirrored half-way between the directions to it and to the camera.
+#[test]
+fn a_light_beside_the_camera_casts_no_shadow_that_is_seen() {
+    let part = part(&ring());
+    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let place = PLACES[0].0;
+    let is_of_light = |source: &Source| {
+        matches!(
+            source,
+            Source::EdgeShadow { .. } | Source::LimbShadow { .. } | Source::Terminator { .. }
+        )
+    };
+    let shadows = |light: [f64; 3]| {
+        let setup = setup(&subject, place, light, "");
+        let ask = |draft: &Draft<'_>| {
+            let mut wrong = Vec::new();
+            regions_show_what_rays_meet(draft, "a light by the camera", &mut wrong);
+            assert!(wrong.is_empty(), "{wrong:#?}");
+            draft.arcs.iter().filter(|a| is_of_light(&a.source)).count()
+        };
+        with_draft(&subject, &setup, ask).unwrap()
+    };
+    assert_eq!(shadows(place), 0);
+    assert_ne!(shadows(place.map(|x| 1.1 * x + 0.3)), 0);
+}
+
 #[test]
 fn a_highlight_lies_where_the_light_is_mirrored() {
     let part = part(&json!({"prim": "sphere", "r": 1.0}));

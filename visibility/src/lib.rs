@@ -17,6 +17,7 @@ pub mod limb;
 mod meeting;
 pub mod polynomial;
 pub mod projection;
+mod seen;
 mod shared;
 pub mod sight;
 pub mod strand;

@@ -5,7 +5,7 @@
 //! and never has to be told from zero.
 
 use crate::projection::{Projection, Sight};
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::{Locator, Place};
 use premio_kernel::brep::topology::{FaceId, Sense};
@@ -160,14 +160,6 @@ pub struct Scene<'a> {
     bounds: Box3,
 }
 
-/// Where a line of sight crosses the surface of a face.
-#[derive(Clone, Copy, Debug)]
-struct Crossing {
-    at: f64,
-    touches: bool,
-    face: FaceId,
-}
-
 struct Pierced {
     origin: [f64; 3],
     inverse: [f64; 3],
@@ -288,57 +280,14 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The face that is seen at an image point, and where on it.
-    pub fn nearest(&self, image: &Point2<f64>) -> Option<(FaceId, Point3<f64>)> {
-        let (eye, into) = self.projection.line_of_sight(image);
-        let part = self.bounds();
-        let beyond = (part.centre() - eye).dot(&into) + part.diagonal();
-        if !beyond.is_above_zero() {
-            return None;
-        }
-        let ray = self.ray(&(eye + into * beyond));
-        let mut met = self.crossings(&ray, &|_| Own::No);
-        // The nearest to the eye first, so that the others need not be placed.
-        met.sort_by(|a, b| b.at.total_cmp(&a.at));
-        met.iter().find_map(|crossing| {
-            let p = ray.origin + ray.towards * crossing.at;
-            let seen = self.locator.place(crossing.face, &p) != Place::Outside;
-            seen.then_some((crossing.face, p))
-        })
-    }
-
-    /// Whether a face lies between a point of the face `own` and the eye: what does is left by the line
-    /// of sight through a face turned towards the eye.
-    pub fn is_hidden(&self, p: &Point3<f64>, own: FaceId) -> bool {
-        let through = |face| if face == own { Own::Through } else { Own::No };
-        let ray = self.ray(p);
-        self.crossings(&ray, &through).iter().any(|crossing| {
-            let q = ray.origin + ray.towards * crossing.at;
-            !crossing.touches
-                && self.is_turned(crossing.face, &q, &ray.towards)
-                && self.locator.place(crossing.face, &q) != Place::Outside
-        })
-    }
-
-    /// Where a line of sight crosses the surfaces of faces whose boxes it passes, within them or not.
-    fn crossings(&self, ray: &Ray, own: &impl Fn(FaceId) -> Own) -> Vec<Crossing> {
-        let mut met = Vec::new();
-        for leaf in self.tree.locate_with_selection_function(Pierced::of(ray)) {
-            let face = leaf.data;
-            let own = own(face);
-            let least = self.least(own);
-            let found = self.meetings(ray, self.brep.surface(face), own);
-            for &(at, touches) in &found.at[..found.count] {
-                if at.is_beyond(least) && at.is_short_of(ray.length) {
-                    met.push(Crossing { at, touches, face });
-                }
-            }
-        }
-        met
+    /// The faces whose boxes a line of sight passes.
+    pub(crate) fn passed(&self, ray: &Ray) -> impl Iterator<Item = FaceId> {
+        let leaves = self.tree.locate_with_selection_function(Pierced::of(ray));
+        leaves.map(|leaf| leaf.data)
     }
 
     /// What is this near to the origin of a line of sight passes through it.
-    fn least(&self, own: Own) -> f64 {
+    pub(crate) fn least(&self, own: Own) -> f64 {
         match own {
             Own::No => 4.0 * self.band,
             Own::Through | Own::Tangent => 0.0,
@@ -354,9 +303,20 @@ impl<'a> Scene<'a> {
         own: &impl Fn(FaceId) -> Own,
         report: &mut impl FnMut(Hit),
     ) {
-        for leaf in self.tree.locate_with_selection_function(Pierced::of(ray)) {
-            self.face_hits(ray, leaf.data, asked, own(leaf.data), report);
+        for face in self.passed(ray) {
+            self.face_hits(ray, face, asked, own(face), report);
         }
+    }
+
+    /// Whether any face is met plainly on a line of sight.
+    pub fn is_blocked(&self, ray: &Ray, own: &impl Fn(FaceId) -> Own) -> bool {
+        self.passed(ray).any(|face| {
+            let mut met = false;
+            self.face_hits(ray, face, Asked::All, own(face), &mut |hit| {
+                met |= hit.plain
+            });
+            met
+        })
     }
 
     fn face_hits(
@@ -407,7 +367,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Whether a face is turned towards the eye at a point of it.
-    fn is_turned(&self, face: FaceId, p: &Point3<f64>, towards: &Vector3<f64>) -> bool {
+    pub(crate) fn is_turned(&self, face: FaceId, p: &Point3<f64>, towards: &Vector3<f64>) -> bool {
         let facing = self.brep.outward(face, p).dot(towards);
         facing.is_above_zero()
     }

@@ -1,6 +1,6 @@
 //! Options of the commands about images.
 
-use super::DescriptionOptions;
+use super::{DescriptionOptions, OutputOptions};
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -59,9 +59,8 @@ pub struct SchemaOptions {
     /// Of what
     #[arg(value_enum, value_name = "FORMAT")]
     pub of: SchemaName,
-    /// Where to write [default: standard output]
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputOptions,
 }
 
 /// The published schemas.
@@ -69,6 +68,8 @@ pub struct SchemaOptions {
 pub enum SchemaName {
     /// premio.prediction/1
     Prediction,
+    /// premio.match/1
+    Match,
 }
 
 /// Options of `model`.
@@ -134,6 +135,18 @@ pub struct ModelOutput {
     /// Where to write the model, or the shard [default: standard output]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// The format of the model [default: by the ending of OUT, jsonl unless it is .parquet]
+    #[arg(long, value_enum)]
+    pub format: Option<RecordsFormat>,
+}
+
+/// The formats of models of many setups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RecordsFormat {
+    /// premio.model/1: a record a line, as JSON
+    Jsonl,
+    /// The same as a table, where the program is built with it
+    Parquet,
 }
 
 /// Options of `model` as it predicts.
@@ -196,9 +209,8 @@ pub struct AdviseOptions {
     /// How many threads work [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Where to write [default: standard output]
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputOptions,
 }
 
 /// What is sought.

@@ -1,20 +1,15 @@
 //! `premio advise`: where camera and light are best.
 
-use super::predict::text;
 use crate::arguments::{AdviseOptions, GoalName};
 use crate::diagnostics::{Failure, Voice};
-use crate::interrupt::threads;
+use crate::interrupt::pool;
+use crate::setup::{setups, subject};
 use crate::{input, output};
 use nalgebra::Vector3;
 use premio_predict::advise::{Goal, Judge, Placing, SCHEMA, Score};
-use premio_predict::image::shading::Finishes;
-use premio_predict::model::Setups;
 use premio_predict::outline::Source;
-use premio_predict::outline::stage::StageError;
 use premio_predict::prediction::Memory;
 use premio_predict::setup::Setup;
-use premio_predict::subject::Subject;
-use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write;
@@ -57,13 +52,9 @@ const STEP: f64 = 0.1;
 
 /// Runs the command.
 pub fn run(options: &AdviseOptions, voice: Voice) -> Result<(), Failure> {
-    let (name, text) = text(&options.setups)?;
-    let setups = Setups::from_toml(&text).map_err(|error| Failure::setup(&name, &error, &text))?;
+    let (setups, _) = setups(&options.setups)?;
     let part = input::part(&options.description, voice)?;
-    let failed = |error: StageError| Failure::stage(&part.name, &name, &error);
-    let band = input::resolution_of_views(&part)?;
-    let subject = Subject::new(&part.evaluation.brep, band).map_err(|e| failed(e.into()))?;
-    let finishes = Finishes::new(&subject, &setups.conditions).map_err(failed)?;
+    let (subject, finishes) = subject(&part, &options.setups, &setups.conditions)?;
     let judge = Judge {
         subject: &subject,
         finishes: &finishes,
@@ -73,14 +64,12 @@ pub fn run(options: &AdviseOptions, voice: Voice) -> Result<(), Failure> {
             GoalName::Pose => Goal::Pose,
         },
     };
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads(options.threads))
-        .build();
-    let pool = pool.map_err(|e| Failure::input(format!("threads: {e}")))?;
+    let pool = pool(options.threads)?;
     let keep = usize::from(options.top).max(1);
     let (scored, seen) = pool.install(|| scores(&judge, keep, voice));
     let tried = setups.len();
     let Some(first) = scored.first().cloned() else {
+        let name = options.setups.display();
         return Err(Failure::input(format!(
             "{name}: in none of {tried} setups the part is seen"
         )));
@@ -100,7 +89,7 @@ pub fn run(options: &AdviseOptions, voice: Voice) -> Result<(), Failure> {
             .map(|one| advised(&judge, one, &all[0].1))
             .collect(),
     };
-    let to = options.output.as_deref();
+    let to = options.output.path();
     match voice.is_json() {
         true => output::json(&advice, to),
         false => output::write(words(&advice), to),

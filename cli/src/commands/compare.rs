@@ -1,9 +1,9 @@
 //! `premio compare`: what is predicted, held against what is found in an image.
 
-use super::predict::{setup, with_draft};
 use super::render::rendered;
 use crate::arguments::CompareOptions;
 use crate::diagnostics::{Failure, Voice};
+use crate::setup::{setup, with_draft};
 use crate::{imaging, input, output};
 use premio_predict::agreement::{Agreement, Match, SCHEMA, matches};
 use premio_predict::outline::Source;

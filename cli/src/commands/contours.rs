@@ -12,7 +12,7 @@ use premio_visibility::{Camera, Contours, contours};
 
 /// Runs the command.
 pub fn run(options: &ContoursOptions, voice: Voice) -> Result<(), Failure> {
-    let to = options.output.as_deref();
+    let to = options.output.path();
     if options.sheet.is_asked() {
         return output::write(on_sheet(options, voice)?, to);
     }

@@ -38,10 +38,7 @@ pub fn run(options: &ConvertOptions, voice: Voice) -> Result<(), Failure> {
 fn source(name: &str, options: &ConvertOptions, voice: Voice) -> Result<Source, Failure> {
     let format = input::format(&options.file)?;
     let text = input::bytes(&options.file)?;
-    let how = Options {
-        smooth: options.smooth,
-        part: options.part.clone(),
-    };
+    let how = options.reading.options();
     let source = reader::parse(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
     voice.notes(name, &text, &source.notes);
     Ok(source)

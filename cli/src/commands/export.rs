@@ -14,7 +14,7 @@ use premio_kernel::unit::Unit;
 pub fn run(options: &ExportOptions, voice: Voice) -> Result<(), Failure> {
     refuse_what_is_not_asked(options)?;
     let part = input::part(&options.description, voice)?;
-    let to = options.output.as_deref();
+    let to = options.output.path();
     let working = voice.working("making the file");
     let bytes = match options.format {
         ExportFormat::Json => return output::json(&Model::of(&part.evaluation.brep), to),

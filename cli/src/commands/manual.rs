@@ -16,14 +16,14 @@ pub fn man(options: &ManOptions) -> Result<(), Failure> {
     let mut text = Vec::new();
     let rendered = page.render(&mut text);
     rendered.map_err(|e| Failure::input(e.to_string()))?;
-    output::write(text, options.output.as_deref())
+    output::write(text, options.output.path())
 }
 
 /// Writes the completions of a shell.
 pub fn completions(options: &CompletionsOptions) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_complete::generate(options.shell, &mut built(), "premio", &mut text);
-    output::write(text, options.output.as_deref())
+    output::write(text, options.output.path())
 }
 
 fn built() -> Command {

@@ -9,6 +9,7 @@ pub mod export;
 pub mod fuzz;
 pub mod info;
 pub mod manual;
+pub mod matching;
 pub mod model;
 pub mod predict;
 pub mod render;

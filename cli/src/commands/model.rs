@@ -1,19 +1,16 @@
 //! `premio model`: what many predictions come to.
 
-use super::predict::text;
-use crate::arguments::{MergeOptions, ModelCommand, ModelOptions, ModelRunOptions};
+use crate::arguments::{MergeOptions, ModelCommand, ModelOptions, ModelRunOptions, RecordsFormat};
 use crate::diagnostics::{Failure, Voice};
 use crate::input::Part;
-use crate::interrupt::{stop, threads};
+use crate::interrupt::{pool, stop};
+use crate::model::format;
 use crate::model::run::{Workers, summed};
 use crate::model::shard::{Run, Shard, digest};
+use crate::setup::{setups, subject};
 use crate::{input, output};
-use premio_predict::image::shading::Finishes;
 use premio_predict::model::Setups;
 use premio_predict::model::record::Record;
-use premio_predict::outline::stage::StageError;
-use premio_predict::subject::Subject;
-use rayon::ThreadPoolBuilder;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,23 +29,22 @@ pub fn run(options: &ModelOptions, voice: Voice) -> Result<(), Failure> {
 }
 
 fn predicted(options: &ModelRunOptions, voice: Voice) -> Result<(), Failure> {
-    let (name, text) = text(&options.setups)?;
-    let setups = Setups::from_toml(&text).map_err(|error| Failure::setup(&name, &error, &text))?;
+    let format = format::asked(&options.output)?;
+    if options.shard.is_some() && format != RecordsFormat::Jsonl {
+        let said = "a shard is lines of JSON: what is a table is the model, by `model merge`";
+        return Err(Failure::input(said));
+    }
+    let (setups, text) = setups(&options.setups)?;
     let part = input::part(&options.description, voice)?;
     let run = Run {
         digest: told_apart(&part, options, &text)?,
         part: part.name.clone(),
+        description: part.written.clone(),
         text,
         setups,
     };
-    let failed = |error: StageError| Failure::stage(&part.name, &name, &error);
-    let band = input::resolution_of_views(&part)?;
-    let subject = Subject::new(&part.evaluation.brep, band).map_err(|e| failed(e.into()))?;
-    let finishes = Finishes::new(&subject, &run.setups.conditions).map_err(failed)?;
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads(options.threads))
-        .build();
-    let pool = pool.map_err(|e| Failure::input(format!("threads: {e}")))?;
+    let (subject, finishes) = subject(&part, &options.setups, &run.setups.conditions)?;
+    let pool = pool(options.threads)?;
     let stop = stop()?;
     let bar = voice.progress(run.setups.len() as u64);
     let workers = Workers {
@@ -87,7 +83,8 @@ fn predicted(options: &ModelRunOptions, voice: Voice) -> Result<(), Failure> {
         .map(|i| folder.path.join(format!("{i:08}.shard")))
         .collect();
     let shards = opened(&paths)?;
-    write(&summed_up(&run, &shards, voice)?, to)?;
+    let records = summed_up(&run, &shards, voice)?;
+    output::write(format::bytes(&records, format)?, to)?;
     folder.remove();
     Ok(())
 }
@@ -95,7 +92,7 @@ fn predicted(options: &ModelRunOptions, voice: Voice) -> Result<(), Failure> {
 /// What this part in these setups is told from others by: all that observations depend on.
 fn told_apart(part: &Part, options: &ModelRunOptions, setups: &str) -> Result<String, Failure> {
     let description = input::bytes(&options.description.file)?;
-    let taken = options.description.part.clone().unwrap_or_default();
+    let taken = options.description.reading.part.clone().unwrap_or_default();
     let resolution = part.evaluation.resolution.to_bits().to_le_bytes();
     let version = env!("CARGO_PKG_VERSION").as_bytes();
     Ok(digest([
@@ -177,6 +174,7 @@ fn summed_up(run: &Run, shards: &[Shard], voice: Voice) -> Result<Vec<Record>, F
 }
 
 fn merged(options: &MergeOptions, voice: Voice) -> Result<(), Failure> {
+    let format = format::asked(&options.output)?;
     let mut shards = opened(&options.shards)?;
     shards.sort_by_key(|shard| shard.head.shard[0]);
     let first = shards[0].head.clone();
@@ -208,21 +206,12 @@ fn merged(options: &MergeOptions, voice: Voice) -> Result<(), Failure> {
         .map_err(|error| Failure::setup("the setups of the shards", &error, &first.setups))?;
     let run = Run {
         part: first.part,
+        description: first.description,
         digest: first.digest,
         text: first.setups,
         setups,
     };
-    write(
-        &summed_up(&run, &shards, voice)?,
-        options.output.output.as_deref(),
-    )
-}
-
-fn write(records: &[Record], to: Option<&Path>) -> Result<(), Failure> {
-    let mut text = String::new();
-    for record in records {
-        text += &serde_json::to_string(record).map_err(|e| Failure::input(e.to_string()))?;
-        text.push('\n');
-    }
-    output::write(text, to)
+    let records = summed_up(&run, &shards, voice)?;
+    let to = options.output.output.as_deref();
+    output::write(format::bytes(&records, format)?, to)
 }

@@ -1,8 +1,8 @@
 //! `premio render`: the image of a setup, by rays.
 
-use super::predict::{setup, with_draft};
 use crate::arguments::RenderOptions;
 use crate::diagnostics::{Failure, Voice};
+use crate::setup::{setup, with_draft};
 use crate::{imaging, input};
 use premio_predict::prediction::Draft;
 use premio_predict::processing::Grey;

@@ -3,13 +3,15 @@
 use crate::arguments::{SchemaName, SchemaOptions};
 use crate::diagnostics::Failure;
 use crate::output;
+use premio_matching::report;
 use premio_predict::prediction;
 
 /// Runs the command.
 pub fn run(options: &SchemaOptions) -> Result<(), Failure> {
     let schema = match options.of {
         SchemaName::Prediction => prediction::schema(),
+        SchemaName::Match => report::schema(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(|e| Failure::input(e.to_string()))?;
-    output::write(text + "\n", options.output.as_deref())
+    output::write(text + "\n", options.output.path())
 }

@@ -1,34 +1,27 @@
 //! Random numbers: the same ones for a seed, everywhere and always.
 
-/// Steele, Lea and Flood's generator (2014).
-#[derive(Clone, Debug)]
-pub struct Random(u64);
+use premio_predict::statistics::Random as Bits;
 
-/// The step of the generator's counter: 2^64 over the golden ratio.
-const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+/// Choices out of random bits.
+#[derive(Clone, Debug)]
+pub struct Random(Bits);
 
 impl Random {
     /// The numbers of a seed.
     pub fn new(seed: u64) -> Self {
-        Self(seed)
+        Self(Bits::new(seed))
     }
 
     /// The numbers of a seed for one purpose: other ones than for every other purpose.
     pub fn apart(seed: u64, purpose: u64) -> Self {
         // The states of seeds in a row are the outputs of a generator, so that they are far apart.
-        Self(Self(seed ^ Self(purpose).next()).next())
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(STEP);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        let mixed = seed ^ Bits::new(purpose).bits();
+        Self::new(Bits::new(mixed).bits())
     }
 
     /// A whole number from 0 to `n` - 1; `n` must be positive.
     pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
+        (self.0.bits() % n.max(1) as u64) as usize
     }
 
     /// A whole number from `least` to `most`, both included.
@@ -73,6 +66,19 @@ mod tests {
         assert_ne!(draw(Random::new(3)), draw(Random::new(4)));
         assert_ne!(draw(Random::apart(3, 1)), draw(Random::apart(3, 2)));
         assert_ne!(draw(Random::apart(3, 1)), draw(Random::apart(4, 1)));
+    }
+
+    #[test]
+    fn trees_of_earlier_versions_are_those_of_this_one() {
+        let draw = |mut random: Random| [0; 6].map(|_| random.below(1_000_000));
+        assert_eq!(
+            draw(Random::new(1_234_567)),
+            [365_317, 807_973, 370_423, 82_431, 223_821, 864_054]
+        );
+        assert_eq!(
+            draw(Random::apart(3, 2)),
+            [659_373, 115_999, 618_322, 600_060, 791_917, 713_778]
+        );
     }
 
     #[test]

@@ -1,4 +1,7 @@
 //! Models of many setups: shards in files, and what they come to.
 
+pub mod format;
+#[cfg(feature = "parquet")]
+mod parquet;
 pub mod run;
 pub mod shard;

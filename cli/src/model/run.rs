@@ -7,9 +7,8 @@ use premio_predict::image::shading::Finishes;
 use premio_predict::model::record::{Record, records};
 use premio_predict::model::summary::Summary;
 use premio_predict::model::{Observation, observe};
-use premio_predict::outline::Stage;
-use premio_predict::outline::stage::{Eyes, StageError};
-use premio_predict::prediction::{Draft, Memory};
+use premio_predict::outline::stage::StageError;
+use premio_predict::prediction::{Memory, with_draft};
 use premio_predict::subject::Subject;
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -74,13 +73,10 @@ impl Workers<'_> {
     fn predict(&self, index: usize, memory: &mut Memory) -> Result<Observation, StageError> {
         let setups = &self.run.setups;
         let setup = setups.setup(index, self.subject);
-        let eyes = Eyes::new(self.subject, &setup)?;
-        let stage = Stage::new(self.subject, &eyes)?;
-        let own = std::mem::take(memory);
-        let draft = Draft::within(&stage, self.finishes, &setup.conditions, own)?;
-        let observation = observe(&draft, setups, index, &setup);
-        *memory = draft.into_memory();
-        Ok(observation)
+        let finishes = Some(self.finishes);
+        with_draft(self.subject, finishes, &setup, memory, |draft| {
+            observe(draft, setups, index)
+        })
     }
 }
 
@@ -100,5 +96,6 @@ pub fn summed(run: &Run, shards: &[Shard], bar: &ProgressBar) -> Result<Vec<Reco
             bar.inc(1);
         })?;
     }
-    Ok(records(&summary, &run.part, &run.digest, &run.setups))
+    let part = (run.part.as_str(), &run.description);
+    Ok(records(&summary, part, &run.digest, &run.setups))
 }

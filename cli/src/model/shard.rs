@@ -1,6 +1,8 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
 use crate::diagnostics::Failure;
+use crate::output;
+use premio_predict::model::record::Description;
 use premio_predict::model::{Observation, Setups};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
@@ -13,12 +15,14 @@ use tempfile::NamedTempFile;
 const SCHEMA: &str = "premio.observations/1";
 
 /// The first line of a shard.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Head {
     schema: String,
     /// The part's file.
     pub part: String,
+    /// The part's description.
+    pub description: Description,
     /// What part and setups are told from others by.
     pub digest: String,
     /// The setups, as they were written.
@@ -35,6 +39,7 @@ impl Head {
         Self {
             schema: SCHEMA.to_owned(),
             part: run.part.clone(),
+            description: run.description.clone(),
             digest: run.digest.clone(),
             setups: run.text.clone(),
             shard,
@@ -55,6 +60,8 @@ impl Head {
 pub struct Run {
     /// The part's file.
     pub part: String,
+    /// The part's description.
+    pub description: Description,
     /// What part and setups are told from others by.
     pub digest: String,
     /// The setups, as they were written.
@@ -83,15 +90,13 @@ pub struct Writer {
 impl Writer {
     /// A shard to be.
     pub fn new(path: &Path, head: &Head) -> Result<Self, Failure> {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-        let file = tempfile::Builder::new()
-            .prefix(".premio-")
-            .tempfile_in(folder.unwrap_or(Path::new(".")))
-            .map_err(|e| failed(path, &e))?;
-        let mut writer = Self {
-            out: BufWriter::new(file),
-            path: path.to_owned(),
-        };
+        let path = output::target(path).map_err(|e| failed(path, &e))?;
+        if output::is_no_file(&path) {
+            return Err(failed(&path, &"a shard is a file, and this is none"));
+        }
+        let file = output::temporary(&path).map_err(|e| failed(&path, &e))?;
+        let out = BufWriter::new(file);
+        let mut writer = Self { out, path };
         writer.line(head)?;
         Ok(writer)
     }
@@ -182,16 +187,44 @@ mod tests {
     fn shards_share_the_setups_without_rest() {
         for (count, of) in [(10, 3), (3, 10), (1000, 7), (0, 2)] {
             let head = |index| Head {
-                schema: SCHEMA.to_owned(),
-                part: String::new(),
-                digest: String::new(),
-                setups: String::new(),
                 shard: [index, of],
                 count,
+                ..head()
             };
             let all: Vec<usize> = (1..=of).flat_map(|i| head(i).range()).collect();
             assert_eq!(all, (0..count).collect::<Vec<_>>());
         }
+    }
+
+    fn head() -> Head {
+        Head {
+            schema: SCHEMA.to_owned(),
+            description: Description::default(),
+            part: String::new(),
+            digest: String::new(),
+            setups: String::new(),
+            shard: [1, 1],
+            count: 0,
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_shard_is_as_readable_as_any_other_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let [shard, other] = ["a.shard", "other"].map(|name| folder.path().join(name));
+        Writer::new(&shard, &head()).unwrap().finish().unwrap();
+        std::fs::write(&other, "").unwrap();
+        let [a, b] = [&shard, &other].map(|path| std::fs::metadata(path).unwrap().permissions());
+        assert_eq!(a.mode(), b.mode());
+    }
+
+    #[test]
+    fn a_folder_is_no_place_for_a_shard() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(Writer::new(folder.path(), &head()).is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]

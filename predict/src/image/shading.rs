@@ -3,18 +3,18 @@
 use crate::outline::pierce::front;
 use crate::outline::stage::StageError;
 use crate::outline::{Seen, Stage};
-use crate::reflectance::{Polarisation, Surface};
+use crate::reflectance::{GREEN, Material, Polarisation, Surface};
+use crate::setup::light::Source;
 use crate::setup::{Conditions, SetupError};
 use crate::subject::Subject;
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use std::f64::consts::PI;
 
-/// The materials of a part's faces.
+/// Which material each of a part's faces is of.
 #[derive(Clone, Debug)]
 pub struct Finishes {
-    surfaces: Vec<Surface>,
-    /// By face: an index into `surfaces`.
+    /// By face: an index into [`Conditions::materials`].
     by_face: Vec<usize>,
 }
 
@@ -22,21 +22,34 @@ impl Finishes {
     /// The materials that conditions give the faces of a part.
     pub fn new(subject: &Subject<'_>, conditions: &Conditions) -> Result<Self, StageError> {
         let count = subject.brep.topology.faces.len();
-        let mut surfaces = vec![conditions.material.material()?.surface()];
         let mut by_face = vec![0; count];
-        for finish in &conditions.surfaces {
-            surfaces.push(finish.material.material()?.surface());
+        for (i, finish) in conditions.surfaces.iter().enumerate() {
             for &face in &finish.faces {
                 let place = by_face.get_mut(face as usize);
-                *place.ok_or(StageError::NoFace { face, count })? = surfaces.len() - 1;
+                *place.ok_or(StageError::NoFace { face, count })? = i + 1;
             }
         }
-        Ok(Self { surfaces, by_face })
+        Ok(Self { by_face })
     }
+}
 
-    /// The material of a face.
-    pub fn of(&self, face: FaceId) -> &Surface {
-        &self.surfaces[self.by_face[face.index()]]
+/// A light as it shines on the part.
+#[derive(Clone, Debug)]
+struct Beam {
+    polarisation: Polarisation,
+    /// By material: what it reflects at the light's wavelength.
+    surfaces: Vec<Surface>,
+}
+
+impl Beam {
+    fn new(source: &Source, conditions: &Conditions) -> Result<Self, SetupError> {
+        let [parallel, perpendicular] = source.polarisation;
+        let negative = || SetupError::value("light.parallel", "or `perpendicular` is negative");
+        let materials = conditions.materials(source.wavelength)?;
+        Ok(Self {
+            polarisation: Polarisation::new(parallel, perpendicular).ok_or_else(negative)?,
+            surfaces: materials.iter().map(Material::surface).collect(),
+        })
     }
 }
 
@@ -59,7 +72,10 @@ pub struct Shading<'s> {
     background: f64,
     /// Levels for each unit of radiance on the optical axis.
     gain: f64,
-    polarisations: Vec<Polarisation>,
+    /// By light.
+    beams: Vec<Beam>,
+    /// By material: what of it is the same at every wavelength.
+    surfaces: Vec<Surface>,
 }
 
 impl<'s> Shading<'s> {
@@ -77,12 +93,8 @@ impl<'s> Shading<'s> {
         } else {
             conditions.ambient * PI
         };
-        let polarisation = |[parallel, perpendicular]: [f64; 2]| {
-            Polarisation::new(parallel, perpendicular).ok_or_else(|| {
-                SetupError::value("light.parallel", "or `perpendicular` is negative")
-            })
-        };
-        let polarisations: Result<_, _> = lights.map(|s| polarisation(s.polarisation)).collect();
+        let beams: Result<_, _> = lights.map(|s| Beam::new(s, conditions)).collect();
+        let materials = conditions.materials(GREEN)?;
         Ok(Self {
             stage,
             finishes,
@@ -90,7 +102,8 @@ impl<'s> Shading<'s> {
             ambient: conditions.ambient,
             background: conditions.background,
             gain: conditions.sensor.gain(strength),
-            polarisations: polarisations?,
+            beams: beams?,
+            surfaces: materials.iter().map(Material::surface).collect(),
         })
     }
 
@@ -102,21 +115,22 @@ impl<'s> Shading<'s> {
         viewer: &Vector3<f64>,
         lit: u64,
     ) -> Radiance {
-        let surface = self.finishes.of(face);
+        let material = self.finishes.by_face[face.index()];
         let normal = self.stage.subject.brep.outward(face, p);
-        let around = self.ambient * surface.ambient() * self.openness[face.index()];
+        let around = self.ambient * self.surfaces[material].ambient() * self.openness[face.index()];
         let mut all = Radiance {
             total: around,
             specular: 0.0,
         };
-        for (i, (source, _)) in self.stage.lights.iter().enumerate() {
+        for (i, ((source, _), beam)) in self.stage.lights.iter().zip(&self.beams).enumerate() {
             if lit >> i & 1 == 0 {
                 continue;
             }
             let (towards, strength) = source.from(p);
             let cosine = normal.dot(&towards);
             if cosine > 0.0 {
-                let r = surface.reflectance(&normal, &towards, viewer, self.polarisations[i]);
+                let surface = &beam.surfaces[material];
+                let r = surface.reflectance(&normal, &towards, viewer, beam.polarisation);
                 all.total += strength * cosine * r.total;
                 all.specular += strength * cosine * r.specular;
             }
@@ -182,7 +196,7 @@ impl<'s> Shading<'s> {
 
     /// Whether a face mirrors anything.
     pub fn mirrors(&self, face: FaceId) -> bool {
-        self.finishes.of(face).is_specular()
+        self.surfaces[self.finishes.by_face[face.index()]].is_specular()
     }
 
     /// N·H at the place of a face that is seen at a point of the image: one where the light is

@@ -7,7 +7,6 @@ use crate::feature::group::chains;
 use crate::feature::junction::{Form, Junction, Nodes, junctions};
 use crate::outline::Source;
 use crate::prediction::{Draft, Outcome};
-use crate::setup::Setup;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -110,7 +109,7 @@ fn view(setups: &Setups, setup: usize) -> [f64; 3] {
 }
 
 /// What a setup shows of a part.
-pub fn observe(draft: &Draft<'_>, setups: &Setups, setup: usize, _: &Setup) -> Observation {
+pub fn observe(draft: &Draft<'_>, setups: &Setups, setup: usize) -> Observation {
     let outcome = draft.outcome();
     let groups = groups(draft);
     let told = information(draft, &outcome.evidence);

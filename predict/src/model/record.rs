@@ -5,14 +5,14 @@ use super::setups::Setups;
 use super::summary::{AspectSums, FLOOR, FRAGMENTS, FeatureSums, Summary};
 use crate::outline::Source;
 use crate::statistics::{Interval, Moments, Proportion, Smoothing, Tree};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The name of the format.
 pub const SCHEMA: &str = "premio.model/1";
 
 /// A line of a model.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(tag = "record", rename_all = "lowercase")]
 pub enum Record {
     /// The first line.
@@ -27,13 +27,36 @@ pub enum Record {
     Codetection(Codetection),
 }
 
+/// A part's description, and how it is read: a model is of use without the file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Description {
+    /// The language: the ending of its files.
+    pub language: String,
+    /// The text.
+    pub text: String,
+    /// The part of the text that is meant, if it has several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part: Option<String>,
+    /// Whether primitives with few facets are smooth ones.
+    #[serde(default)]
+    pub smooth: bool,
+    /// The resolution, where it is not the usual one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<f64>,
+    /// Whether only what is proven to coincide does.
+    #[serde(default)]
+    pub exact: bool,
+}
+
 /// What the model is of.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Head {
     /// [`SCHEMA`].
-    pub schema: &'static str,
+    pub schema: String,
     /// The part's file.
     pub part: String,
+    /// The part's description.
+    pub description: Description,
     /// What part and setups are told from others by.
     pub digest: String,
     /// The setups.
@@ -50,6 +73,8 @@ pub struct Head {
     pub other_aspects: u64,
     /// See `features`.
     pub tuples: usize,
+    /// How often relations that are not listed are visible.
+    pub other_tuples: u64,
     /// The middle deviation of the pose: turn in radians, move in the part's unit (geometric mean over
     /// the setups that tell it).
     pub pose: Option<[f64; 2]>,
@@ -60,7 +85,7 @@ pub struct Head {
 }
 
 /// A share with its credible interval of 95 % (Beta(½, ½) posterior).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rate {
     /// The mean.
     pub mean: f64,
@@ -86,7 +111,7 @@ impl Rate {
 }
 
 /// Means and covariances of attributes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Attributes {
     /// Of how many.
     pub count: u64,
@@ -111,7 +136,7 @@ impl Attributes {
 }
 
 /// What is known of a feature.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Feature {
     /// Its place in the order of detectability, from 0.
     pub rank: usize,
@@ -136,7 +161,7 @@ pub struct Feature {
 }
 
 /// A feature in an aspect.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct AspectFeature {
     /// Its rank.
     pub feature: usize,
@@ -149,7 +174,7 @@ pub struct AspectFeature {
 }
 
 /// What is known of an aspect.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Aspect {
     /// Its place in the order of setups, from 0.
     pub rank: usize,
@@ -162,7 +187,7 @@ pub struct Aspect {
 }
 
 /// What is known of a relation.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tuple {
     /// Its place in the order of how often it is kept.
     pub rank: usize,
@@ -179,7 +204,7 @@ pub struct Tuple {
 }
 
 /// A feature in the tree of which are found together.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Together {
     /// Its rank.
     pub feature: usize,
@@ -194,22 +219,28 @@ pub struct Together {
 }
 
 /// Which features are found together: a tree of dependences (Chow and Liu 1968).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Codetection {
     /// The nodes, parents first.
     pub tree: Vec<Together>,
 }
 
 /// The records of a summary, whose two rounds are done.
-pub fn records(summary: &Summary, part: &str, digest: &str, setups: &Setups) -> Vec<Record> {
+pub fn records(
+    summary: &Summary,
+    (part, description): (&str, &Description),
+    digest: &str,
+    setups: &Setups,
+) -> Vec<Record> {
     let order = summary.ranked();
     let rank: BTreeMap<Source, usize> = order.iter().enumerate().map(|(i, s)| (*s, i)).collect();
     let aspects = aspects(summary, &rank);
     let tuples = tuples(summary, &rank);
     let root = |m: &Moments<2>| m.mean().map(|v| [v[0].exp(), v[1].exp()]);
     let head = Head {
-        schema: SCHEMA,
+        schema: SCHEMA.to_owned(),
         part: part.to_owned(),
+        description: description.clone(),
         digest: digest.to_owned(),
         setups: setups.clone(),
         count: summary.setups,
@@ -218,6 +249,7 @@ pub fn records(summary: &Summary, part: &str, digest: &str, setups: &Setups) -> 
         aspects: aspects.len(),
         other_aspects: summary.other_aspects,
         tuples: tuples.len(),
+        other_tuples: summary.other_tuples,
         pose: root(&summary.pose),
         posed: summary.pose.count(),
         chance: chance(summary, 2),
@@ -243,14 +275,14 @@ fn feature(rank: usize, source: Source, sums: &FeatureSums, setups: u64) -> Feat
     Feature {
         rank,
         source,
-        states: sums.states,
-        detectability: Rate::counted(sums.found(), setups),
-        detectability_visible: Rate::counted(sums.found(), sums.visible()),
+        states: sums.sights.states,
+        detectability: Rate::counted(sums.sights.found(), setups),
+        detectability_visible: Rate::counted(sums.sights.found(), sums.sights.visible()),
         reliability: Rate::of(&sums.reliability),
         accuracy: growth.map(|g| [g[0].exp(), g[1].exp()]),
         fragments: *sums.fragments.counts(),
         share: sums.share.mean().map_or(0.0, |m| m[0]),
-        attributes: Attributes::of(&sums.attributes),
+        attributes: Attributes::of(&sums.sights.attributes),
     }
 }
 

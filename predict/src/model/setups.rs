@@ -64,7 +64,8 @@ impl Sphere {
 }
 
 /// Many setups.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written")]
 pub struct Setups {
     /// What they share.
     #[serde(flatten)]
@@ -84,6 +85,14 @@ pub struct Setups {
 
 /// The most setups of one model.
 const MOST: usize = 1 << 32;
+
+impl TryFrom<Written> for Setups {
+    type Error = SetupError;
+
+    fn try_from(written: Written) -> Result<Self, SetupError> {
+        written.setups()
+    }
+}
 
 impl Setups {
     /// The setups that a TOML text describes.
@@ -119,9 +128,7 @@ impl Setups {
         }
         setups.conditions.validate()?;
         let always = setups.conditions.ambient > 0.0 || !setups.lights.is_empty();
-        for (i, light) in setups.lights.iter().enumerate() {
-            light.validate(i)?;
-        }
+        setups.conditions.validate_lights(&setups.lights)?;
         match always || setups.illumination.is_some() {
             true => Ok(setups),
             false => Err(SetupError::Dark),

@@ -1,6 +1,6 @@
 //! Sums over observations: the same whichever way the setups were split among shards.
 
-use super::observation::{ATTRIBUTES, Observation, Relation, Sight};
+use super::observation::{ATTRIBUTES, Observation, Relation, Sight, Tuple};
 use crate::feature::evidence::State;
 use crate::outline::Source;
 use crate::statistics::{Histogram, Moments, Pairs, Proportion, hash};
@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 pub const FRAGMENTS: usize = 8;
 /// How many aspects are kept apart; what else there is counts for the features alone.
 const MOST_ASPECTS: usize = 1024;
+/// How many relations are kept apart.
+const MOST_TUPLES: usize = 1 << 16;
 /// For how many features it is counted which are found together.
 const MOST_PAIRED: usize = 256;
 /// How often a feature has to be found in an aspect for others to be matched to it.
@@ -19,24 +21,16 @@ const LEARNT: u64 = 3;
 /// the cosine and the sine.
 pub const FLOOR: [f64; ATTRIBUTES] = [0.0001, 0.0001, 0.0025, 0.0025, 0.0025];
 
-/// What is counted of a feature.
+/// What is counted of a feature by itself and in every aspect.
 #[derive(Clone, Debug, Default)]
-pub struct FeatureSums {
+pub struct SightSums {
     /// In how many setups it is whole, broken and missed, of those in which it is visible.
     pub states: [u64; 3],
-    /// How many fragments are found.
-    pub fragments: Histogram<FRAGMENTS>,
-    /// The share that is found.
-    pub share: Moments<1>,
     /// The attributes of what is found.
     pub attributes: Moments<ATTRIBUTES>,
-    /// The logarithms by which the pose's deviations grow without it.
-    pub growth: Moments<2>,
-    /// Of the times that it was found and put to the test, how often it was told from all others.
-    pub reliability: Proportion,
 }
 
-impl FeatureSums {
+impl SightSums {
     /// In how many setups it is visible.
     pub fn visible(&self) -> u64 {
         self.states.iter().sum()
@@ -49,12 +43,34 @@ impl FeatureSums {
 
     fn add(&mut self, sight: &Sight) {
         self.states[sight.state.index()] += 1;
-        self.fragments.record(sight.fragments);
-        // What is out of bounds, which no share or attribute is, is left out of the mean.
-        let _ = self.share.record(&[sight.share]);
         if let Some(attributes) = &sight.attributes {
+            // What is out of bounds, which no attribute is, is left out of the mean.
             let _ = self.attributes.record(attributes);
         }
+    }
+}
+
+/// What is counted of a feature.
+#[derive(Clone, Debug, Default)]
+pub struct FeatureSums {
+    /// What is counted in every aspect, too.
+    pub sights: SightSums,
+    /// How many fragments are found.
+    pub fragments: Histogram<FRAGMENTS>,
+    /// The share that is found.
+    pub share: Moments<1>,
+    /// The logarithms by which the pose's deviations grow without it.
+    pub growth: Moments<2>,
+    /// Of the times that it was found and put to the test, how often it was told from all others.
+    pub reliability: Proportion,
+}
+
+impl FeatureSums {
+    fn add(&mut self, sight: &Sight) {
+        self.sights.add(sight);
+        self.fragments.record(sight.fragments);
+        // What is out of bounds, which no share is, is left out of the mean.
+        let _ = self.share.record(&[sight.share]);
         if let Some(growth) = sight.growth.filter(|_| sight.state != State::Missed) {
             let _ = self.growth.record(&growth.map(f64::ln));
         }
@@ -68,10 +84,11 @@ pub struct AspectSums {
     pub setups: u64,
     /// The sum of the cameras' directions.
     pub view: Moments<3>,
-    /// What is counted of the features in it.
-    pub features: BTreeMap<Source, FeatureSums>,
+    /// What is counted of the features in it. Aspects are many: a map's nodes have room for many
+    /// sums, so that these are kept outside of them.
+    pub features: BTreeMap<Source, Box<SightSums>>,
     /// The same of the setups that are learnt from, to match the others by.
-    learnt: BTreeMap<Source, FeatureSums>,
+    learnt: BTreeMap<Source, Box<SightSums>>,
 }
 
 /// What is counted of a relation.
@@ -100,6 +117,8 @@ pub struct Summary {
     pub other_aspects: u64,
     /// By relation: its kind and its features.
     pub tuples: BTreeMap<(Relation, Vec<Source>), TupleSums>,
+    /// How often relations beyond those that are kept apart are visible.
+    pub other_tuples: u64,
     /// How often ends are near to one another by chance, of how many pairs.
     pub chance: [u64; 2],
     /// The logarithms of the pose's deviations: turn and move.
@@ -135,12 +154,7 @@ impl Summary {
         }
         self.add_to_aspect(observation);
         for tuple in &observation.tuples {
-            let source = |m: &u32| observation.sights[*m as usize].source;
-            let members = tuple.members.iter().map(source).collect();
-            let sums = self.tuples.entry((tuple.kind, members)).or_default();
-            sums.visible += 1;
-            sums.seen += u64::from(tuple.seen);
-            sums.kept += u64::from(tuple.seen && tuple.kept);
+            self.add_tuple(observation, tuple);
         }
         for i in 0..2 {
             self.chance[i] += u64::from(observation.chance[i]);
@@ -148,6 +162,19 @@ impl Summary {
         if let Some(pose) = observation.pose {
             let _ = self.pose.record(&pose.map(f64::ln));
         }
+    }
+
+    fn add_tuple(&mut self, observation: &Observation, tuple: &Tuple) {
+        let source = |m: &u32| observation.sights[*m as usize].source;
+        let key = (tuple.kind, tuple.members.iter().map(source).collect());
+        if self.tuples.len() >= MOST_TUPLES && !self.tuples.contains_key(&key) {
+            self.other_tuples += 1;
+            return;
+        }
+        let sums = self.tuples.entry(key).or_default();
+        sums.visible += 1;
+        sums.seen += u64::from(tuple.seen);
+        sums.kept += u64::from(tuple.seen && tuple.kept);
     }
 
     fn add_to_aspect(&mut self, observation: &Observation) {
@@ -169,8 +196,11 @@ impl Summary {
 
     /// The features in falling order of how often they are found.
     pub fn ranked(&self) -> Vec<Source> {
-        let mut all: Vec<(u64, Source)> =
-            self.features.iter().map(|(s, f)| (f.found(), *s)).collect();
+        let mut all: Vec<(u64, Source)> = self
+            .features
+            .iter()
+            .map(|(s, f)| (f.sights.found(), *s))
+            .collect();
         all.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
         all.into_iter().map(|f| f.1).collect()
     }
@@ -243,7 +273,7 @@ struct Likeness {
 }
 
 impl Likeness {
-    fn of(sums: &FeatureSums) -> Option<Self> {
+    fn of(sums: &SightSums) -> Option<Self> {
         if sums.attributes.count() < LEARNT {
             return None;
         }
@@ -260,5 +290,47 @@ impl Likeness {
     fn of_value(&self, value: &SVector<f64, ATTRIBUTES>) -> f64 {
         let off = value - self.mean;
         self.weight - 0.5 * off.dot(&(self.inverse * off))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn relations_beyond_those_kept_apart_are_counted() {
+        let sight = |edge| Sight {
+            source: Source::Edge { edge },
+            length: 1.0,
+            state: State::Missed,
+            fragments: 0,
+            share: 0.0,
+            attributes: None,
+            growth: None,
+        };
+        let pair = |a, b| Tuple {
+            kind: Relation::L,
+            members: vec![a, b],
+            seen: false,
+            kept: false,
+        };
+        let observation = Observation {
+            setup: 0,
+            view: [0.0, 0.0, 1.0],
+            sights: (0..400).map(sight).collect(),
+            tuples: (0..400)
+                .flat_map(|b| (0..b).map(move |a| pair(a, b)))
+                .collect(),
+            chance: [0; 2],
+            pose: None,
+            unseen: None,
+        };
+        let all = observation.tuples.len();
+        let mut summary = Summary::default();
+        summary.add(&observation);
+        summary.add(&observation);
+        assert_eq!(summary.tuples.len(), MOST_TUPLES);
+        assert!(summary.tuples.values().all(|sums| sums.visible == 2));
+        assert_eq!(summary.other_tuples, 2 * (all - MOST_TUPLES) as u64);
     }
 }

@@ -6,8 +6,7 @@
 //! of it; where these do not agree, or the sides of shadows contradict it, every pixel is asked.
 
 use super::arc::{Arc, Side};
-use super::flatten::FINE;
-use super::scanline::{Crossing, LINES, Scanlines, Sections, line_at, line_y};
+use super::scanline::{APART, Crossing, LINES, Scanlines, Sections, line_at, line_y};
 use super::stage::Stage;
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
@@ -17,9 +16,6 @@ use premio_kernel::geometry::surface::Surface;
 const BANDS: usize = 3;
 /// The places in a gap that are asked: of a flat region only the first, its middle.
 const ACROSS: [f64; 3] = [0.5, 0.12, 0.88];
-/// The shortest distance between two arcs, in pixels, that tells that their sides are of one region:
-/// polylines nearer than they are fine may lie the other way about.
-const GAP: f64 = 4.0 * FINE;
 /// Of a smaller region, in pixels, only the middles of gaps are asked.
 const SMALL: f64 = 64.0;
 /// How far beside the middle of a section it is asked, in pixels.
@@ -51,6 +47,18 @@ pub struct Region {
     pub points: Vec<([f64; 2], f64)>,
 }
 
+impl Region {
+    /// A region of which nothing is told so far.
+    fn untold() -> Self {
+        Self {
+            seen: None,
+            area: 0.0,
+            bounds: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+            points: Vec::new(),
+        }
+    }
+}
+
 /// The regions of an image.
 #[derive(Debug)]
 pub struct Regions {
@@ -58,7 +66,8 @@ pub struct Regions {
     pub scanlines: Scanlines,
     /// The sections of the arcs.
     pub sections: Sections,
-    /// The regions; the first is what lies beyond all arcs to the left.
+    /// The regions; the first is what lies beyond all arcs, the last all gaps of lines of which
+    /// neither end tells what they are.
     pub all: Vec<Region>,
     /// By side of a section: its region.
     sides: Vec<u32>,
@@ -109,15 +118,11 @@ impl Regions {
             let root = sets.find(i as u32) as usize;
             if numbers[root] == u32::MAX {
                 numbers[root] = all.len() as u32;
-                all.push(Region {
-                    seen: None,
-                    area: 0.0,
-                    bounds: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
-                    points: Vec::new(),
-                });
+                all.push(Region::untold());
             }
             sides.push(numbers[root]);
         }
+        all.push(Region::untold());
         let mut regions = Self {
             scanlines,
             sections,
@@ -144,28 +149,32 @@ impl Regions {
     pub fn at(&self, [x, y]: [f64; 2]) -> u32 {
         let line = line_at(y).min(self.scanlines.lines().saturating_sub(1));
         let on = self.scanlines.on(line);
-        match on.partition_point(|c| c.x <= x) {
-            0 => on.first().map_or(self.sides[0], |c| self.sides[left_of(c)]),
-            k => self.sides[right_of(&on[k - 1])],
-        }
+        let k = on.partition_point(|c| c.x <= x);
+        self.between(k.checked_sub(1).map(|k| &on[k]), on.get(k))
     }
 
     /// The gaps of a line: the region between each two crossings, from beyond the left on.
     pub fn gaps(&self, line: usize) -> impl Iterator<Item = ([f64; 2], u32)> + '_ {
         let on = self.scanlines.on(line);
-        let first = on.first().map_or(0, |c| self.sides[left_of(c)]);
-        let start = on.first().map_or(f64::INFINITY, |c| c.x);
-        let rest = on.iter().enumerate().map(move |(i, c)| {
-            let next = on.get(i + 1);
-            let end = next.map_or(f64::INFINITY, |n| n.x);
-            // Next to the end of a section the other crossing tells.
-            let region = match next {
-                Some(n) if !c.firm && n.firm => self.sides[left_of(n)],
-                _ => self.sides[right_of(c)],
-            };
-            ([c.x, end], region)
-        });
-        std::iter::once(([f64::NEG_INFINITY, start], first)).chain(rest)
+        (0..=on.len()).map(move |k| {
+            let (from, to) = (k.checked_sub(1).map(|k| &on[k]), on.get(k));
+            let start = from.map_or(f64::NEG_INFINITY, |c| c.x);
+            let end = to.map_or(f64::INFINITY, |c| c.x);
+            ([start, end], self.between(from, to))
+        })
+    }
+
+    /// The region between two crossings that follow one another on a line, or beyond the last.
+    fn between(&self, from: Option<&Crossing>, to: Option<&Crossing>) -> u32 {
+        let (Some(from), Some(to)) = (from, to) else {
+            return self.sides[0];
+        };
+        // Next to the end of a section, or to another arc, the other crossing tells.
+        match (from.firm, to.firm) {
+            (true, _) => self.sides[right_of(from)],
+            (false, true) => self.sides[left_of(to)],
+            (false, false) => self.all.len() as u32 - 1,
+        }
     }
 
     /// Measures the regions, and chooses points of them: of lines spread over a region those with the
@@ -202,7 +211,7 @@ impl Regions {
             }
         }
         for (region, best) in self.all.iter_mut().zip(best) {
-            for (from, to, y) in best.into_iter().filter(|(from, to, _)| to - from > GAP) {
+            for (from, to, y) in best.into_iter().filter(|(from, to, _)| to - from > APART) {
                 let at = |part: f64| ([from + (to - from) * part, y], to - from);
                 region.points.extend(ACROSS.map(at));
             }
@@ -211,12 +220,10 @@ impl Regions {
 
     /// Asks what is seen in every region.
     fn ask(&mut self, stage: &Stage<'_>, arcs: &[Arc]) {
+        let lights = stage.lights.len().max(1);
         let votes = self.votes(arcs, stage.lights.len());
-        for (region, votes) in self
-            .all
-            .iter_mut()
-            .zip(votes.chunks(stage.lights.len().max(1)))
-        {
+        let told = self.all.len() - 1;
+        for (region, votes) in self.all[..told].iter_mut().zip(votes.chunks(lights)) {
             region.seen = seen(stage, region, votes);
         }
         self.doubt(stage, arcs);
@@ -290,7 +297,7 @@ fn join(on: &[Crossing], sets: &mut Sets) {
     }
     for pair in on.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        if a.firm && b.firm && (b.x - a.x) * a.slant.min(b.slant) > GAP {
+        if a.firm && b.firm {
             sets.join(right_of(a), left_of(b));
         }
     }

@@ -1,10 +1,14 @@
 //! Lines across an image, and where arcs cross them: between two crossings there is one region.
 
 use super::arc::{Arc, Side};
+use super::flatten::FINE;
 use std::ops::Range;
 
 /// How many lines are laid through a row of pixels.
 pub const LINES: usize = 8;
+/// The distance between two arcs, in pixels, from which on polylines lie as they do: those that are
+/// nearer than they are fine may lie the other way about.
+pub const APART: f64 = 4.0 * FINE;
 /// So near to the end of an arc's section, in pixels, a crossing may be of the next one as well.
 const LOOSE: f64 = 1.0 / (1 << 20) as f64;
 
@@ -17,7 +21,7 @@ pub struct Crossing {
     pub section: u32,
     /// The side of the section that is to the right on the page.
     pub right: Side,
-    /// Whether it is plainly this section that crosses.
+    /// Whether it is plainly this section that crosses, apart from all others.
     pub firm: bool,
     /// The sine of the angle at which it crosses: what a polyline is off its curve moves the crossing
     /// by as much over this.
@@ -110,7 +114,9 @@ impl Scanlines {
         });
         for line in 0..lines {
             let range = counts[line] as usize..counts[line + 1] as usize;
-            crossings[range].sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+            let on = &mut crossings[range];
+            on.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+            loosen(on);
         }
         Self {
             starts: counts,
@@ -126,6 +132,17 @@ impl Scanlines {
     /// How many lines there are.
     pub fn lines(&self) -> usize {
         self.starts.len() - 1
+    }
+}
+
+/// Notes which crossings of a line are too near to one another for their order to be known.
+fn loosen(on: &mut [Crossing]) {
+    for i in 1..on.len() {
+        let [a, b] = [on[i - 1], on[i]];
+        if (b.x - a.x) * a.slant.min(b.slant) <= APART {
+            on[i - 1].firm = false;
+            on[i].firm = false;
+        }
     }
 }
 

@@ -41,6 +41,9 @@ pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
     let mut found = Vec::new();
     let mut ends = Vec::new();
     for (light, (_, views)) in stage.lights.iter().enumerate() {
+        if stage.is_beside_camera(light) {
+            continue;
+        }
         for view in views {
             let ordinals = ordinals(&view.contours);
             let seen = seen_by_light(stage, view, &ordinals);

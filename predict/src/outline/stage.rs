@@ -175,6 +175,19 @@ impl<'a> Stage<'a> {
         self.view.arcs(&self.ordinals, FINE, window)
     }
 
+    /// Whether a light is so near to the camera that shadows stay behind what casts them: all that is
+    /// seen is lit, within what polylines are drawn to.
+    pub fn is_beside_camera(&self, light: usize) -> bool {
+        let Place::Near(source) = self.lights[light].0.place() else {
+            return false;
+        };
+        let Matrices { k, r, t } = &self.matrices;
+        let eye = Point3::from(-(r.transpose() * t));
+        let nearest = (eye - self.subject.centre).norm() - self.subject.radius;
+        let scale = k[(0, 0)].abs().max(k[(1, 1)].abs());
+        (source - eye).norm() * scale <= FINE * nearest
+    }
+
     /// Whether a light reaches a point of a face that is turned towards it.
     pub fn is_lit(&self, light: usize, p: &Point3<f64>, face: FaceId) -> bool {
         let (_, views) = &self.lights[light];

@@ -11,11 +11,12 @@ use crate::image::shading::{Finishes, Shading};
 use crate::outline::flatten::Window;
 use crate::outline::highlight::add_highlights;
 use crate::outline::shadow::add_shadows;
-use crate::outline::stage::StageError;
+use crate::outline::stage::{Eyes, StageError};
 use crate::outline::{Arc, Regions, Stage};
 use crate::processing::{Detection, Domain, Grey, Workspace};
-use crate::setup::Conditions;
+use crate::setup::{Conditions, Setup};
 use crate::statistics::hash;
+use crate::subject::Subject;
 use std::cell::RefCell;
 
 /// What a prediction is made of.
@@ -40,7 +41,7 @@ pub struct Draft<'s> {
     memory: RefCell<Memory>,
 }
 
-/// The memory of one prediction, for the next one.
+/// The memory of one prediction, used again by the next one.
 #[derive(Debug, Default)]
 pub struct Memory {
     levels: Vec<f32>,
@@ -61,18 +62,36 @@ pub struct Outcome {
     pub counts: Vec<[u32; 3]>,
 }
 
-impl<'s> Draft<'s> {
-    /// The draft of a stage's image under conditions.
-    pub fn new(
-        stage: &'s Stage<'s>,
-        finishes: &'s Finishes,
-        conditions: &'s Conditions,
-    ) -> Result<Self, StageError> {
-        Self::within(stage, finishes, conditions, Memory::default())
-    }
+/// Asks something of the draft of a part's image in a setup.
+///
+/// `finishes` are those of the setup's conditions, where they are known already, as they are of many
+/// setups.
+pub fn with_draft<T>(
+    subject: &Subject<'_>,
+    finishes: Option<&Finishes>,
+    setup: &Setup,
+    memory: &mut Memory,
+    ask: impl FnOnce(&Draft<'_>) -> T,
+) -> Result<T, StageError> {
+    let eyes = Eyes::new(subject, setup)?;
+    let stage = Stage::new(subject, &eyes)?;
+    let own;
+    let finishes = match finishes {
+        Some(known) => known,
+        None => {
+            own = Finishes::new(subject, &setup.conditions)?;
+            &own
+        }
+    };
+    let draft = Draft::within(&stage, finishes, &setup.conditions, std::mem::take(memory))?;
+    let answer = ask(&draft);
+    *memory = draft.into_memory();
+    Ok(answer)
+}
 
-    /// The same in memory that is used again, and given back by [`Self::into_memory`].
-    pub fn within(
+impl<'s> Draft<'s> {
+    /// The draft of a stage's image under conditions, in memory that [`Self::into_memory`] gives back.
+    fn within(
         stage: &'s Stage<'s>,
         finishes: &'s Finishes,
         conditions: &'s Conditions,
@@ -122,7 +141,7 @@ impl<'s> Draft<'s> {
     }
 
     /// The memory it is kept in.
-    pub fn into_memory(self) -> Memory {
+    fn into_memory(self) -> Memory {
         Memory {
             levels: self.image.levels,
             ink: self.ink.into_memory(),
@@ -269,20 +288,19 @@ fn step_response(conditions: &Conditions) -> f64 {
     }
 }
 
-/// Where the part is, if it is not in the image.
+/// Where the part is, if none of its arcs is in the image.
 fn out_of_sight(stage: &Stage<'_>, [width, height]: [usize; 2]) -> String {
     let projection = stage.view.scene.projection;
-    let centre = stage.subject.centre;
-    if projection.depth(&centre) <= 0.0 {
+    let middle = [width, height].map(|n| 0.5 * (n as f64 - 1.0));
+    if stage.seen(middle).is_some() {
+        return "it fills the image, and none of its contours is in it".to_owned();
+    }
+    if projection.depth(&stage.subject.centre) <= 0.0 {
         return "it lies behind the camera".to_owned();
     }
-    let p = projection.project(&centre);
-    let (x, y) = (p.x, p.y);
-    let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
-    match inside {
-        true => "none of its contours is in the image, which it fills, or is hidden in".to_owned(),
-        false => {
-            format!("its middle falls on ({x:.0}, {y:.0}), the image has {width} x {height} pixels")
-        }
-    }
+    let p = projection.project(&stage.subject.centre);
+    format!(
+        "its middle falls on ({:.0}, {:.0}), the image has {width} x {height} pixels",
+        p.x, p.y
+    )
 }

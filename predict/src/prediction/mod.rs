@@ -3,7 +3,7 @@
 mod draft;
 mod levels;
 
-pub use draft::{Draft, Memory, Outcome};
+pub use draft::{Draft, Memory, Outcome, with_draft};
 pub use levels::{
     ArcLevel, BoundaryLevel, Chances, Geometry, ImageLevel, ObjectLevel, Piece, Prediction,
     RegionLevel, SCHEMA, Segment, prediction,

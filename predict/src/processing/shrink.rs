@@ -35,15 +35,10 @@ const fn yokoi(ring: usize) -> usize {
 /// Makes the marked pixels one pixel thick. After non-maximum suppression only what is more than one
 /// thick is looked at.
 pub(super) fn shrink(thinning: Thinning, work: &mut Workspace) {
-    let Workspace {
-        gradient,
-        marks,
-        found,
-        queue,
-    } = work;
+    let (gradient, marks, queue) = (&work.gradient, &mut work.marks, &mut work.queue);
     let every = thinning == Thinning::Shrink;
     queue.clear();
-    let thick = found.iter().copied();
+    let thick = work.found.iter().copied();
     queue.extend(thick.filter(|&p| every || is_removable(marks, p, gradient.width)));
     queue.sort_unstable_by(|&p, &q| {
         let [a, b] = [p, q].map(|place| gradient.size[place as usize]);
@@ -55,7 +50,7 @@ pub(super) fn shrink(thinning: Thinning, work: &mut Workspace) {
         while peel(gradient, marks, queue, uphill) {}
     }
     if queue.len() < before {
-        found.retain(|&place| marks[place as usize] != 0);
+        work.found.retain(|&place| marks[place as usize] != 0);
     }
     queue.clear();
 }

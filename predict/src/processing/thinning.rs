@@ -30,13 +30,8 @@ pub(super) fn connect(detector: &Detector, work: &mut Workspace) {
         return;
     }
     let strong = detector.threshold as f32;
-    let Workspace {
-        gradient,
-        marks,
-        found,
-        queue,
-    } = work;
-    for &place in found.iter() {
+    let (gradient, marks, queue) = (&work.gradient, &mut work.marks, &mut work.queue);
+    for &place in &work.found {
         if gradient.size[place as usize] >= strong {
             marks[place as usize] = 2;
             queue.push(place);
@@ -50,7 +45,7 @@ pub(super) fn connect(detector: &Detector, work: &mut Workspace) {
             }
         }
     }
-    found.retain(|&place| {
+    work.found.retain(|&place| {
         let mark = &mut marks[place as usize];
         *mark -= 1;
         *mark > 0

@@ -1,31 +1,31 @@
 //! Materials by name.
 //!
-//! Only `n` and `k` are measured, by whom each material says; they are for green light of 550 nm.
+//! Only `n` and `k` are measured, by whom each says in [`dispersion`](super::dispersion).
 //! The roughness `m`, the fractions `s` and `d`, the ambient reflectance, and `R_d` where it is given,
 //! are our choice of a likely specimen: they depend on how a surface was made, and whoever knows
 //! better writes them down.
 
-use super::{Constants, Material, SpecularForm};
+use super::dispersion::{ACRYLIC, ALUMINIUM, CELLULOSE, COPPER, Dispersion, IRON};
+use super::{Constants, Material, Optics, SpecularForm};
+use std::ops::RangeInclusive;
+
+/// The wavelength in nanometres of a light that tells none: green.
+pub const GREEN: f64 = 550.0;
 
 /// The names of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Named {
-    /// Aluminium, milled. n and k: A. D. Rakić, Applied Optics 34, 4755 (1995), between the values
-    /// at 516.60 nm (0.8734, 6.2418) and 563.57 nm (1.0728, 6.7839). F(0) = 0.915.
+    /// Aluminium, milled. At 550 nm F(0) = 0.915.
     Aluminium,
-    /// Steel, ground, by the constants of iron. P. B. Johnson and R. W. Christy, Physical Review B 9,
-    /// 5056 (1974), at 549 nm. F(0) = 0.512; steels differ from iron, and among themselves, by some
-    /// hundredths.
+    /// Steel, ground, by the constants of iron. At 550 nm F(0) = 0.512; steels differ from iron, and
+    /// among themselves, by some hundredths.
     Steel,
-    /// Copper, milled. P. B. Johnson and R. W. Christy, Physical Review B 6, 4370 (1972), at
-    /// 548.6 nm. F(0) = 0.619.
+    /// Copper, milled. At 450 nm F(0) = 0.54, at 550 nm 0.62, at 650 nm 0.94: it is red.
     Copper,
-    /// A plastic, pigmented light grey, moulded: polymethyl methacrylate. N. Sultanova, S. Kasarova
-    /// and I. Nikolov, Acta Physica Polonica A 116, 585 (2009): n² − 1 = 1.1819 λ²/(λ² − 0.011313),
-    /// λ in µm. F(0) = 0.039. Its pigment makes it diffuse, so `R_d` is given.
+    /// A plastic, pigmented light grey, moulded: polymethyl methacrylate. At 550 nm F(0) = 0.039. Its
+    /// pigment makes it diffuse, so `R_d` is given.
     Plastic,
-    /// White paper, by its fibres of cellulose. H. Chen et al., RSC Advances 10 (2020), delignified
-    /// wood at 589 nm: 1.525 ± 0.008 to 1.537 ± 0.005. F(0) = 0.044. `R_d` is given: light is
+    /// White paper, by its fibres of cellulose. At 550 nm F(0) = 0.044. `R_d` is given: light is
     /// scattered among the fibres, not at their surface.
     Paper,
 }
@@ -51,9 +51,30 @@ impl Named {
         }
     }
 
-    /// The material of the name.
-    pub fn material(self) -> Material {
-        let metal = |n, k, ambient, m| Constants {
+    fn dispersion(self) -> Dispersion {
+        match self {
+            Self::Aluminium => ALUMINIUM,
+            Self::Steel => IRON,
+            Self::Copper => COPPER,
+            Self::Plastic => ACRYLIC,
+            Self::Paper => CELLULOSE,
+        }
+    }
+
+    /// The wavelengths for which its optical constants are known, in nanometres.
+    pub fn wavelengths(self) -> RangeInclusive<f64> {
+        self.dispersion().range()
+    }
+
+    /// The material of the name under light of a wavelength in nanometres; none where its constants
+    /// are not known.
+    pub fn material(self, wavelength: f64) -> Option<Material> {
+        let optics = self.dispersion().at(wavelength)?;
+        Some(self.specimen(optics))
+    }
+
+    fn specimen(self, Optics { n, k }: Optics) -> Material {
+        let metal = |ambient, m| Constants {
             ambient,
             diffuse: None,
             s: 0.8,
@@ -63,30 +84,27 @@ impl Named {
             k,
             form: SpecularForm::Normalised,
         };
-        let dielectric = |n, ambient, diffuse, s, m| Constants {
+        let dielectric = |ambient, diffuse, s, m| Constants {
             ambient,
             diffuse: Some(diffuse),
             s,
             d: 1.0 - s,
             m,
             n,
-            k: 0.0,
+            k,
             form: SpecularForm::Normalised,
         };
         Material::known(match self {
-            Self::Aluminium => metal(1.015, 6.627, 0.9, 0.25),
-            Self::Steel => metal(2.95, 2.93, 0.5, 0.3),
-            Self::Copper => metal(1.02, 2.577, 0.6, 0.25),
-            Self::Plastic => dielectric(1.493, 0.4, 0.2, 0.4, 0.2),
-            Self::Paper => dielectric(1.53, 0.8, 0.28, 0.05, 0.7),
+            Self::Aluminium => metal(0.9, 0.25),
+            Self::Steel => metal(0.5, 0.3),
+            Self::Copper => metal(0.6, 0.25),
+            Self::Plastic => dielectric(0.4, 0.2, 0.4, 0.2),
+            Self::Paper => dielectric(0.8, 0.28, 0.05, 0.7),
         })
     }
-}
 
-impl Material {
-    /// The material of a name of [`Named`], written as [`Named::name`] does.
-    pub fn named(name: &str) -> Option<Self> {
-        let known = Named::ALL.into_iter().find(|known| known.name() == name);
-        known.map(Named::material)
+    /// The name that is written as [`Self::name`] does.
+    pub fn known(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|known| known.name() == name)
     }
 }

@@ -6,13 +6,14 @@
 //! ambient light is reflected by `R_a`. Angles and formulas are those of the literature where the
 //! printed ones are damaged; each function says its own.
 
+mod dispersion;
 mod library;
 mod material;
 mod microfacet;
 mod optics;
 mod surface;
 
-pub use library::Named;
+pub use library::{GREEN, Named};
 pub use material::{Constants, Material, MaterialError, SpecularForm};
 pub use microfacet::{attenuation, distribution};
 pub use optics::{Optics, Polarisation, Reflectivity};

@@ -106,24 +106,48 @@ fn polarisations_weigh_the_components() {
     }
 }
 
+/// Reflectivities along the normal by the published constants, ((n−1)² + k²)/((n+1)² + k²).
 #[test]
 fn known_materials_reflect_as_published() {
-    for (name, normal) in [
-        ("aluminium", 0.9154),
-        ("steel", 0.5121),
-        ("copper", 0.6194),
-        ("plastic", 0.0391),
-        ("paper", 0.0439),
+    for (name, wavelength, normal) in [
+        ("aluminium", 516.6, 0.9177),
+        ("aluminium", 815.69, 0.8656),
+        ("steel", 549.0, 0.5121),
+        ("copper", 450.9, 0.5392),
+        ("copper", 548.6, 0.6194),
+        ("copper", 659.5, 0.9433),
+        // By Sultanova, Kasarova and Nikolov n is 1.491 at 587.6 nm, the line d of helium.
+        ("plastic", 587.6, 0.0388),
+        ("paper", 589.0, 0.0439),
     ] {
-        let found = Material::named(name).unwrap();
-        assert!((found.optics().normal() - normal).abs() < 1e-4, "{name}");
+        let known = Named::known(name).unwrap();
+        let found = known.material(wavelength).unwrap();
+        let reflected = found.optics().normal();
+        assert!((reflected - normal).abs() < 1e-4, "{name}: {reflected}");
         assert_eq!(Material::new(*found.constants()), Ok(found), "{name}");
         let white = found.diffuse() * PI;
         assert!((0.0..=1.0).contains(&white));
     }
-    assert_eq!(Material::named("unobtainium"), None);
-    let aluminium = Named::Aluminium.material();
+    assert_eq!(Named::known("unobtainium"), None);
+    let aluminium = Named::Aluminium.material(GREEN).unwrap();
     assert!((aluminium.diffuse() - aluminium.optics().normal() / PI).abs() < 1e-16);
+}
+
+#[test]
+fn constants_are_between_what_is_measured_and_nowhere_else() {
+    for known in Named::ALL {
+        let range = known.wavelengths();
+        assert!(range.contains(&GREEN), "{known:?}");
+        for end in [*range.start(), *range.end()] {
+            assert!(known.material(end).is_some(), "{known:?}");
+        }
+        assert_eq!(known.material(range.start() - 1.0), None);
+        assert_eq!(known.material(range.end() + 1.0), None);
+        assert_eq!(known.material(f64::NAN), None);
+    }
+    // Half-way between 582.1 nm (0.70, 2.704) and 616.8 nm (0.30, 3.205).
+    let copper = Named::Copper.material(599.45).unwrap().optics();
+    assert!((copper.n - 0.5).abs() < 1e-12 && (copper.k - 2.9545).abs() < 1e-12);
 }
 
 #[test]
@@ -245,7 +269,7 @@ fn no_more_light_is_reflected_than_comes() {
 
 #[test]
 fn nothing_comes_from_behind_and_nothing_is_infinite() {
-    let surface = Named::Steel.material().surface();
+    let surface = Named::Steel.material(GREEN).unwrap().surface();
     let n = Vector3::z();
     let ask = |l: Vector3<f64>, v: Vector3<f64>| {
         surface.reflectance(&n, &l, &v, Polarisation::UNPOLARISED)

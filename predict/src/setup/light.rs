@@ -1,6 +1,7 @@
 //! Light sources: points, near or far, that shine in every direction.
 
 use super::{SetupError, above_zero, at_least_zero};
+use crate::reflectance::GREEN;
 use nalgebra::{Point3, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -28,7 +29,8 @@ pub struct Light {
     /// Whether dω falls off with the square of the distance, as it does.
     #[serde(default = "yes")]
     pub falloff: bool,
-    /// The wavelength in nanometres, told and not used: constants of materials are for one.
+    /// The wavelength in nanometres, which the optical constants of named materials are taken at;
+    /// green of 550 nm if it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wavelength: Option<f64>,
 }
@@ -64,6 +66,11 @@ impl Light {
         self.parallel + self.perpendicular
     }
 
+    /// Its wavelength in nanometres.
+    pub fn wavelength(&self) -> f64 {
+        self.wavelength.unwrap_or(GREEN)
+    }
+
     /// Whether its values are in their ranges; it is the light number `index`.
     pub fn validate(&self, index: usize) -> Result<(), SetupError> {
         let key = |name: &str| format!("light[{index}].{name}");
@@ -95,6 +102,8 @@ pub struct Source {
     pub intensity: f64,
     /// The shares of I_l that are polarised along and across the plane of incidence.
     pub polarisation: [f64; 2],
+    /// In nanometres.
+    pub wavelength: f64,
     solid_angle: f64,
     /// The distance at which `solid_angle` holds; none without fall-off.
     distance: Option<f64>,
@@ -132,6 +141,7 @@ impl Source {
             place,
             intensity,
             polarisation: [share(light.parallel), share(light.perpendicular)],
+            wavelength: light.wavelength(),
             solid_angle: light.solid_angle,
             distance,
         }

@@ -10,7 +10,7 @@ mod written;
 
 use crate::feature::Criteria;
 use crate::processing::{Detector, DetectorError};
-use crate::reflectance::{Constants, Material, Named};
+use crate::reflectance::{Constants, GREEN, Material, Named};
 use light::Light;
 use schemars::JsonSchema;
 use sensor::Sensor;
@@ -44,6 +44,20 @@ pub enum SetupError {
     /// A material by a name that is not known.
     #[error("no material is called \"{0}\": known are {known}", known = names())]
     Material(String),
+    /// The constants of a material are not known for a light.
+    #[error(
+        "a light of {wavelength} nm: the constants of {material} are known from {from} to {to} nm; give `n` and `k`"
+    )]
+    Wavelength {
+        /// The wavelength in nanometres.
+        wavelength: f64,
+        /// The material's name.
+        material: &'static str,
+        /// From where on its constants are known.
+        from: f64,
+        /// And to where.
+        to: f64,
+    },
     /// The detector's constants are out of their range.
     #[error("the detector: {0}")]
     Detector(#[from] DetectorError),
@@ -63,7 +77,18 @@ impl SetupError {
                 text.find(&quoted).map(|at| at..at + quoted.len())
             }
             Self::Detector(_) => written::place("detector", text),
+            Self::Wavelength { wavelength, .. } => written::wavelength(*wavelength, text),
             Self::Dark => None,
+        }
+    }
+
+    fn wavelength(wavelength: f64, material: Named) -> Self {
+        let known = material.wavelengths();
+        Self::Wavelength {
+            wavelength,
+            material: material.name(),
+            from: *known.start(),
+            to: *known.end(),
         }
     }
 
@@ -114,12 +139,14 @@ impl<'de> Deserialize<'de> for Finish {
 }
 
 impl Finish {
-    /// The constants.
-    pub fn material(&self) -> Result<Material, SetupError> {
+    /// The constants under light of a wavelength in nanometres; those that are given are for whatever
+    /// light there is.
+    pub fn material(&self, wavelength: f64) -> Result<Material, SetupError> {
         match self {
             Self::Named(name) => {
-                let known = Material::named(name);
-                known.ok_or_else(|| SetupError::Material(name.clone()))
+                let known = Named::known(name).ok_or_else(|| SetupError::Material(name.clone()))?;
+                let unknown = || SetupError::wavelength(wavelength, known);
+                known.material(wavelength).ok_or_else(unknown)
             }
             Self::Given(material) => Ok(*material),
         }
@@ -186,12 +213,26 @@ impl Conditions {
         self.sensor.validate()?;
         at_least_zero("ambient", self.ambient)?;
         at_least_zero("background", self.background)?;
-        self.material.material()?;
-        for surface in &self.surfaces {
-            surface.material.material()?;
-        }
+        self.materials(GREEN)?;
         self.detector.validate()?;
         self.features.validate()
+    }
+
+    /// The materials under light of a wavelength in nanometres: that of the part, and those of
+    /// `surfaces`.
+    pub fn materials(&self, wavelength: f64) -> Result<Vec<Material>, SetupError> {
+        let others = self.surfaces.iter().map(|surface| &surface.material);
+        let all = std::iter::once(&self.material).chain(others);
+        all.map(|finish| finish.material(wavelength)).collect()
+    }
+
+    /// Whether the values of lights are in their ranges, also those of what they shine on.
+    pub fn validate_lights(&self, lights: &[Light]) -> Result<(), SetupError> {
+        for (i, light) in lights.iter().enumerate() {
+            light.validate(i)?;
+            self.materials(light.wavelength())?;
+        }
+        Ok(())
     }
 }
 
@@ -208,6 +249,17 @@ pub struct Setup {
     pub conditions: Conditions,
 }
 
+/// The detector that a TOML text describes: the keys of a setup's `[detector]`.
+pub fn detector_from_toml(text: &str) -> Result<Detector, SetupError> {
+    let read = toml::from_str(text).map_err(|error: toml::de::Error| SetupError::Syntax {
+        message: error.message().to_owned(),
+        span: error.span(),
+    });
+    let detector: Detector = read?;
+    detector.validate()?;
+    Ok(detector)
+}
+
 impl Setup {
     /// The setup that a TOML text describes.
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
@@ -221,9 +273,7 @@ impl Setup {
         if self.lights.len() > MOST_LIGHTS {
             return Err(SetupError::value("light", "is there more than 64 times"));
         }
-        for (i, light) in self.lights.iter().enumerate() {
-            light.validate(i)?;
-        }
+        self.conditions.validate_lights(&self.lights)?;
         let shines = |light: &Light| light.intensity() > 0.0;
         match self.lights.iter().any(shines) || self.conditions.ambient > 0.0 {
             true => Ok(()),

@@ -3,7 +3,7 @@
 use super::light::Light;
 use super::sensor::Sensor;
 use super::viewpoint::Viewpoint;
-use super::{Conditions, FacesFinish, Finish, Setup, SetupError};
+use super::{Conditions, FacesFinish, Finish, MOST_LIGHTS, Setup, SetupError};
 use crate::feature::Criteria;
 use crate::model::Setups;
 use crate::model::setups::Sphere;
@@ -127,6 +127,15 @@ pub(super) fn place(key: &str, text: &str) -> Option<Range<usize>> {
     found
 }
 
+/// Where a wavelength is written.
+pub(super) fn wavelength(wavelength: f64, text: &str) -> Option<Range<usize>> {
+    let keys = (0..MOST_LIGHTS).map(|i| place(&format!("light[{i}].wavelength"), text));
+    keys.flatten().find(|span| {
+        let value = text[span.clone()].split(['=', '#']).nth(1);
+        value.and_then(|v| v.trim().parse().ok()) == Some(wavelength)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,6 +185,14 @@ position = [4, 5, 6]
         let error = Setup::from_toml(fractions).unwrap_err();
         assert!(error.to_string().contains("at most 1"), "{error}");
         assert!(error.span(fractions).is_some());
+        let dim = "material = \"copper\"\n[camera]\neye = [1, 2, 3]\n[[light]]\nposition = [1, 2, 3]\nwavelength = 2000 # far\n";
+        let error = Setup::from_toml(dim).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "a light of 2000 nm: the constants of copper are known from 300.9 to 1088 nm; give `n` and `k`"
+        );
+        let span = error.span(dim).map(|s| &dim[s]);
+        assert_eq!(span, Some("wavelength = 2000 # far"));
         let both = "[camera]\neye = [1, 2, 3]\nt = [1, 2, 3]\n";
         assert!(Setup::from_toml(both).is_err());
         let zero = "[camera]\neye = [1, 2, 3]\n[sensor]\nresolution = [0, 480]\n";

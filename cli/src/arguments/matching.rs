@@ -1,0 +1,75 @@
+//! Options of the commands that find parts in pictures.
+
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// What is looked for, and how.
+#[derive(Debug, Args)]
+pub struct SoughtOptions {
+    /// The part: a model of `premio model`, or a description (of which nothing is predicted)
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+    /// The pictures: .png, .pgm or .jpg
+    #[arg(value_name = "IMAGE", required = true)]
+    pub images: Vec<PathBuf>,
+    /// The camera: OpenCV's matrix, {"K": [[fx,0,cx],[0,fy,cy],[0,0,1]], "width": w, "height": h}
+    #[arg(long, value_name = "CAMERA")]
+    pub camera: PathBuf,
+    /// The detector, as in a setup's [detector] (TOML) [default: the model's]
+    #[arg(long, value_name = "FILE")]
+    pub detector: Option<PathBuf>,
+    /// How correspondences are searched
+    #[arg(long, value_enum, default_value_t)]
+    pub strategy: StrategyName,
+    /// Take nothing of the predictions: one detectability for all, no relations
+    #[arg(long)]
+    pub uniform: bool,
+    /// Draw the part where it is found, on the one picture: OUT.png
+    #[arg(long, value_name = "OUT")]
+    pub overlay: Option<PathBuf>,
+    /// Write the poses as the BOP challenge does, for the scoring tools of others
+    #[arg(long, value_name = "OUT")]
+    pub csv: Option<PathBuf>,
+    /// The scene and the object of the CSV; pictures are numbered by their names, or in order
+    #[arg(long, value_name = "SCENE,OBJECT", value_parser = pair, default_value = "1,1")]
+    pub ids: [u32; 2],
+    /// Where to write what is found [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// Options of `match`.
+#[derive(Debug, Args)]
+pub struct MatchOptions {
+    #[command(flatten)]
+    pub sought: SoughtOptions,
+    /// Say in words why the winning correspondences won
+    #[arg(long)]
+    pub explain: bool,
+}
+
+/// Options of `track`.
+#[derive(Debug, Args)]
+pub struct TrackOptions {
+    #[command(flatten)]
+    pub sought: SoughtOptions,
+}
+
+/// How correspondences are searched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum StrategyName {
+    /// Depth-first branch and bound
+    #[default]
+    Bounded,
+    /// IDA*: rounds with a threshold that falls to the greatest bound that was cut
+    Deepening,
+    /// Rounds with a threshold that falls in steps
+    Stepped,
+}
+
+fn pair(text: &str) -> Result<[u32; 2], String> {
+    let told = || "expected SCENE,OBJECT, as in 1,5".to_owned();
+    let (a, b) = text.split_once(',').ok_or_else(told)?;
+    let number = |s: &str| s.trim().parse().map_err(|_| told());
+    Ok([number(a)?, number(b)?])
+}

@@ -1,0 +1,79 @@
+//! The bytes of a model, in the format that is asked for.
+
+use crate::arguments::{ModelOutput, RecordsFormat};
+use crate::diagnostics::Failure;
+use premio_predict::model::record::Record;
+use std::path::Path;
+
+/// The format that is asked for, by its name or by the file's ending; refused where the program
+/// cannot write it, before anything is predicted.
+pub fn asked(output: &ModelOutput) -> Result<RecordsFormat, Failure> {
+    let ending = output.output.as_deref().and_then(Path::extension);
+    let by_ending = match ending.is_some_and(|e| e.eq_ignore_ascii_case("parquet")) {
+        true => RecordsFormat::Parquet,
+        false => RecordsFormat::Jsonl,
+    };
+    let format = output.format.unwrap_or(by_ending);
+    match format == RecordsFormat::Parquet && !cfg!(feature = "parquet") {
+        true => Err(without()),
+        false => Ok(format),
+    }
+}
+
+fn without() -> Failure {
+    Failure::input(
+        "this program is built without Parquet: build it with \
+         `cargo build --release -p premio --features parquet`, or ask for `--format jsonl`",
+    )
+}
+
+/// The bytes of a model.
+pub fn bytes(records: &[Record], format: RecordsFormat) -> Result<Vec<u8>, Failure> {
+    match format {
+        RecordsFormat::Jsonl => lines(records),
+        #[cfg(feature = "parquet")]
+        RecordsFormat::Parquet => {
+            super::parquet::bytes(records).map_err(|e| Failure::input(e.to_string()))
+        }
+        #[cfg(not(feature = "parquet"))]
+        RecordsFormat::Parquet => Err(without()),
+    }
+}
+
+fn lines(records: &[Record]) -> Result<Vec<u8>, Failure> {
+    let mut text = Vec::new();
+    for record in records {
+        serde_json::to_writer(&mut text, record).map_err(|e| Failure::input(e.to_string()))?;
+        text.push(b'\n');
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(format: Option<RecordsFormat>, path: &str) -> Option<RecordsFormat> {
+        let output = Some(path.into());
+        asked(&ModelOutput { output, format }).ok()
+    }
+
+    #[test]
+    fn the_ending_tells_the_format_where_nothing_else_does() {
+        use RecordsFormat::{Jsonl, Parquet};
+        let table = cfg!(feature = "parquet").then_some(Parquet);
+        assert_eq!(of(None, "part.model"), Some(Jsonl));
+        assert_eq!(of(None, "part.parquet"), table);
+        assert_eq!(of(Some(Parquet), "part.model"), table);
+        assert_eq!(of(Some(Jsonl), "part.parquet"), Some(Jsonl));
+    }
+
+    #[cfg(not(feature = "parquet"))]
+    #[test]
+    fn what_is_not_built_in_says_how_to_build_it() {
+        let format = Some(RecordsFormat::Parquet);
+        let output = None;
+        let refused = asked(&ModelOutput { output, format }).unwrap_err();
+        assert!(format!("{refused:?}").contains("--features parquet"));
+    }
+}

@@ -1,0 +1,47 @@
+//! What tests of the program from outside share.
+#![allow(dead_code, reason = "no test needs all of it")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A block with a bore.
+pub const PART: &str = "BASE = BLO(X=6, Y=4, Z=2)
+PART = BASE DIF CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1)
+";
+
+/// The program with these words behind its name, in a folder.
+pub fn command(folder: &Path, words: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
+    command.current_dir(folder).args(words.split_whitespace());
+    command
+}
+
+/// What the program does.
+pub fn premio(folder: &Path, words: &str) -> Output {
+    command(folder, words).output().unwrap()
+}
+
+/// A folder with the part, and with more files.
+pub fn folder(more: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("part.padl", PART)].iter().chain(more) {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+/// The published schema of a format, held against what the program tells of it.
+pub fn published(folder: &Path, format: &str) -> jsonschema::Validator {
+    let output = premio(folder, &format!("schema {format}"));
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let file = format!(
+        "{}/../docs/{format}.schema.json",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    assert_eq!(fs::read_to_string(&file).unwrap(), text, "{file} is old");
+    let schema: serde_json::Value = serde_json::from_str(&text).unwrap();
+    jsonschema::validator_for(&schema).unwrap()
+}

@@ -1,0 +1,59 @@
+//! Any bytes as setups, of one image and of a model: none may panic or hang, what is wrong is told at
+//! a place in the text, and what is read and written again reads the same.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use nalgebra::Point3;
+use premio_predict::model::Setups;
+use premio_predict::setup::light::Source;
+use premio_predict::setup::{Setup, SetupError};
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    match Setup::from_toml(text) {
+        Err(error) => told(&error, text),
+        Ok(setup) => {
+            let again = toml::to_string(&setup).expect("a setup is written");
+            assert_eq!(Setup::from_toml(&again), Ok(setup.clone()), "{again}");
+            used(&setup);
+        }
+    }
+    match Setups::from_toml(text) {
+        Err(error) => told(&error, text),
+        Ok(setups) => {
+            let again = toml::to_string(&setups).expect("setups are written");
+            assert_eq!(Setups::from_toml(&again), Ok(setups.clone()), "{again}");
+            for index in [0, setups.len() - 1] {
+                let [view, light] = setups.directions(index);
+                assert!(view.is_some_and(|v| (v.norm() - 1.0).abs() < 1e-9));
+                assert_eq!(light.is_some(), setups.illumination.is_some());
+            }
+        }
+    }
+});
+
+/// The place of an error is in the text.
+fn told(error: &SetupError, text: &str) {
+    assert!(!error.to_string().is_empty());
+    if let Some(span) = error.span(text) {
+        assert!(text.get(span.clone()).is_some(), "{span:?} {error}\n{text}");
+    }
+}
+
+/// What a part would ask of a setup that is in its ranges.
+fn used(setup: &Setup) {
+    let sensor = &setup.conditions.sensor;
+    let centre = Point3::new(1.0, 2.0, 3.0);
+    if let Ok(matrices) = setup.camera.matrices(sensor, &centre) {
+        assert!(matrices.camera().is_ok());
+    }
+    for light in &setup.lights {
+        let (direction, strength) = Source::new(light, &Point3::origin()).from(&centre);
+        // A light may be at the point itself.
+        let length = direction.norm();
+        assert!(length.is_nan() || (length - 1.0).abs() < 1e-9, "{light:?}");
+        assert!(strength.is_nan() || strength >= 0.0, "{light:?}");
+    }
+}

@@ -1,0 +1,473 @@
+//! The correspondences of predicted arcs and segments of a picture, as a problem of search.
+//!
+//! A segment can be an arc where it runs along it, a few pixels beside it at the most. Its attributes
+//! are how far beside, how much askew, and what share of the arc it covers; pieces that lie end to end
+//! are candidates together, as a broken edge.
+
+use crate::clutter::Clutter;
+use crate::learned::Learned;
+use crate::part::Part;
+use crate::picture::{PIECE, Picture};
+use crate::pose::refine::Pull;
+use crate::predicted::{APART, Arc};
+use crate::search::{Candidate, Feature, Problem, Relation};
+use nalgebra::{Point2, Vector2};
+use premio_predict::processing::Shape;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// How far beside an arc, in pixels, a segment may run.
+const REACH: f64 = 6.0;
+/// The least cosine of the angle between an edge's normal and an arc's.
+const COSINE: f64 = 0.96;
+/// The standard deviation of how far beside an arc its segment runs, in pixels.
+pub const BESIDE: f64 = 1.5;
+/// The standard deviation of an angle, in radians: at best, and of an end in pixels.
+const ASKEW: f64 = 1.0 / 48.0;
+const END: f64 = 1.5;
+/// The angles that are possible, in radians, to either side.
+const ANGLES: f64 = 0.28;
+/// The least share of an arc that a segment covers to be a candidate, and the fewest points.
+const SHARE: f64 = 0.12;
+const FEWEST: usize = 3;
+/// Pieces of one edge lie beside one another by no more than this, in pixels, and share no more of
+/// their length.
+const PIECES: f64 = 1.6;
+const OVERLAP: f64 = 0.3;
+/// Shorter arcs than this, in pixels, are not looked for.
+pub const SHORTEST: f64 = 10.0;
+/// From this share on an edge is whole, from that one down broken.
+pub const WHOLE: f64 = 0.85;
+/// An edge ends in a vertex if it comes as near, in pixels, and goes on no farther.
+const VERTEX: f64 = 9.0;
+
+/// So far beyond it the picture must reach, to tell.
+const BEYOND: f64 = 12.0;
+
+/// What an arc can be, with the edge pixels that say so.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// The segments.
+    pub segments: Vec<u32>,
+    /// The covered share of the arc within the picture.
+    pub share: f64,
+    /// How far beside the arc, in pixels, along its normals.
+    pub offset: f64,
+    /// By point of the arc: the edge, and the piece that it is of.
+    pub hits: Vec<(usize, Point2<f64>, u32)>,
+    /// The length of its longest piece in pixels.
+    pub longest: f64,
+    /// The logarithm of how likely an arc that is found is as whole as this.
+    pub likely: f64,
+    /// At how many of the arc's vertices that are seen it ends, and goes on.
+    pub ends: [u32; 2],
+}
+
+/// A problem, with what its candidates are.
+#[derive(Clone, Debug)]
+pub struct Correspondence {
+    /// The arcs that are looked for, by their numbers, in the order of the problem's features.
+    pub order: Vec<usize>,
+    /// By feature: its length in the picture, in pixels.
+    pub lengths: Vec<f64>,
+    /// By feature and candidate: what it is.
+    pub choices: Vec<Vec<Choice>>,
+    /// The problem.
+    pub problem: Problem,
+}
+
+impl Correspondence {
+    /// The correspondences between predicted arcs and a picture.
+    pub fn new(part: &Part<'_>, learned: &Learned, picture: &Picture, arcs: &[Arc]) -> Self {
+        let inside = |arc: &Arc| {
+            let held = arc.points.iter().filter(|p| picture.edges.reaches(&p.1.at));
+            held.map(|p| p.1.length).sum::<f64>()
+        };
+        let lengths: Vec<f64> = arcs.iter().map(inside).collect();
+        let clutter = Clutter::about(picture, arcs);
+        let long = (0..arcs.len()).filter(|&i| lengths[i] >= SHORTEST);
+        let order = learned.order(long.collect(), arcs);
+        let choices = order.iter().map(|&i| {
+            let found = learned.covered(&arcs[i]);
+            let mut all = choices(&arcs[i], picture);
+            for choice in &mut all {
+                choice.likely = likelihood(lengths[i], choice.share, found);
+            }
+            set_ends(part, picture, arcs, &arcs[i], &mut all);
+            all
+        });
+        let choices: Vec<Vec<Choice>> = choices.collect();
+        let place: BTreeMap<usize, usize> =
+            order.iter().enumerate().map(|(k, &i)| (i, k)).collect();
+        let features = order.iter().zip(&choices).map(|(&i, choices)| {
+            let rates = learned.rates(&arcs[i], arcs);
+            let parent = rates.parent.and_then(|p| place.get(&p).copied());
+            // What the parent's state changes.
+            let at_all = |given: [f64; 2]| match parent {
+                Some(_) => given,
+                None => [rates.alone; 2],
+            };
+            let given = at_all(rates.given);
+            let missed = likelihood(lengths[i], 0.0, learned.covered(&arcs[i]));
+            let askew = ASKEW.hypot(END / lengths[i]);
+            Feature {
+                parent,
+                found: given.map(|p| (p / rates.alone).ln()),
+                missed: given.map(|p| missed + ((1.0 - p) / (1.0 - rates.alone)).ln()),
+                candidates: choices
+                    .iter()
+                    .map(|c| Candidate {
+                        score: c.likely + told(c, &arcs[i], lengths[i], askew, &clutter),
+                        pieces: c.pieces(),
+                    })
+                    .collect(),
+            }
+        });
+        let features: Vec<Feature> = features.collect();
+        let relations = relations(part, learned, picture, arcs, &order, &choices);
+        Self {
+            problem: Problem {
+                features,
+                relations,
+            },
+            lengths: order.iter().map(|&i| lengths[i]).collect(),
+            order,
+            choices,
+        }
+    }
+
+    /// By feature: what an assignment draws the part to, the edges of its candidate.
+    pub fn pulls(&self, arcs: &[Arc], assignment: &[Option<usize>]) -> Vec<Vec<Pull>> {
+        let features = self.order.iter().zip(&self.choices).zip(assignment);
+        let all = features.map(|((&i, choices), choice)| {
+            choice.map_or(Vec::new(), |c| choices[c].pulls(&arcs[i]))
+        });
+        all.collect()
+    }
+}
+
+/// What it tells against a choice that it goes on past a vertex in which its arc ends: about the logarithm
+/// of how much rarer that is than by chance.
+const PAST: f64 = 2.0;
+/// So many pixels of a line are one observation more.
+const LONG: f64 = 24.0;
+
+/// The logarithm of a normal density times a range, in which clutter is anywhere alike.
+fn against(x: f64, deviation: f64, range: f64) -> f64 {
+    let u = x / deviation;
+    (range / (deviation * TAU.sqrt())).ln() - 0.5 * u * u
+}
+
+/// How much less likely clutter covers as much of an arc, of so many pixels in the picture, and runs
+/// along it so, than an edge of its own, in logarithms.
+fn told(choice: &Choice, arc: &Arc, length: f64, askew: f64, clutter: &Clutter) -> f64 {
+    let covered = choice.share.min(1.0) * length;
+    // Pieces that lie end to end are rarer than the longest alone, and less rare than a whole one.
+    let piece = choice.longest.min(covered);
+    let chance = clutter.chance(0.5 * (piece + covered), length, REACH, ANGLES);
+    let told = -chance.ln()
+        + against(choice.offset, BESIDE, 2.0 * REACH)
+        + against(tilt(choice, arc), askew, 2.0 * ANGLES);
+    told.max(-ATTRIBUTE) - PAST * f64::from(choice.ends[1])
+}
+
+impl Choice {
+    /// What it draws an arc to.
+    fn pulls(&self, arc: &Arc) -> Vec<Pull> {
+        let covered: f64 = self.hits.iter().map(|h| arc.points[h.0].1.length).sum();
+        // Edges next to each other are off alike: a line tells as much as its ends, and a little more
+        // if it is long.
+        let weight = (2.0 + covered / LONG) / self.hits.len() as f64;
+        let hits = self.hits.iter().map(|&(k, target, _)| {
+            let (point, seen) = arc.points[k];
+            Pull {
+                point,
+                target,
+                normal: seen.normal,
+                weight,
+            }
+        });
+        hits.collect()
+    }
+
+    /// The pieces that it takes most of: another arc may go on where this one ends.
+    fn pieces(&self) -> Vec<u32> {
+        let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+        for hit in &self.hits {
+            *counts.entry(hit.2).or_default() += 1;
+        }
+        let most = counts.values().copied().max().unwrap_or_default();
+        let taken = |count: usize| count as f64 * APART > 0.6 * PIECE as f64 || count == most;
+        counts
+            .into_iter()
+            .filter(|c| taken(c.1))
+            .map(|c| c.0)
+            .collect()
+    }
+}
+
+/// The logarithm of how likely an arc of so many pixels is covered to a share, where a piece of it is
+/// found so often.
+fn likelihood(length: f64, share: f64, found: f64) -> f64 {
+    let share = share.clamp(0.0, 1.0);
+    // What is next to each other is found or missed together, and the more so the longer it is.
+    let pieces = ONE + MORE * length / (length + STRETCH);
+    pieces * (share * found.ln() + (1.0 - share) * (1.0 - found).ln())
+}
+
+/// As many pieces of an arc are found each by itself, if it is short, and more, if it is long.
+const ONE: f64 = 0.75;
+const MORE: f64 = 1.75;
+/// An arc of so many pixels has half of what it has more if it is long.
+const STRETCH: f64 = 60.0;
+
+/// The most that an attribute tells against a candidate.
+const ATTRIBUTE: f64 = 6.0;
+
+/// How much askew the edges of a choice run, in radians: the slope of their offsets.
+fn tilt(choice: &Choice, arc: &Arc) -> f64 {
+    let mut along = 0.0;
+    let mut places = Vec::with_capacity(arc.points.len());
+    for (_, seen) in &arc.points {
+        places.push(along + 0.5 * seen.length);
+        along += seen.length;
+    }
+    let n = choice.hits.len() as f64;
+    let pairs = choice.hits.iter().map(|&(k, at, _)| {
+        let seen = &arc.points[k].1;
+        (places[k], seen.normal.dot(&(at - seen.at)))
+    });
+    let pairs: Vec<(f64, f64)> = pairs.collect();
+    let [s, o] = [
+        pairs.iter().map(|p| p.0).sum::<f64>() / n,
+        pairs.iter().map(|p| p.1).sum::<f64>() / n,
+    ];
+    let (mut both, mut own) = (0.0, 0.0);
+    for (place, off) in pairs {
+        both += (place - s) * (off - o);
+        own += (place - s) * (place - s);
+    }
+    if own > 0.0 { (both / own).atan() } else { 0.0 }
+}
+
+/// A point of an arc, the edge there, how far beside, and its piece.
+type Run = (usize, Point2<f64>, f64, u32);
+
+/// What runs along an arc: single segments, and those that lie end to end.
+fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
+    let mut by_segment: BTreeMap<u32, Vec<Run>> = BTreeMap::new();
+    let mut inside = 0;
+    for (k, (_, seen)) in arc.points.iter().enumerate() {
+        if !picture.edges.reaches(&seen.at) {
+            continue;
+        }
+        inside += 1;
+        for hit in picture
+            .edges
+            .all_along(&seen.at, &seen.normal, REACH, COSINE)
+        {
+            let at = seen.at + seen.normal * hit.offset;
+            let all = by_segment.entry(hit.segment).or_default();
+            // One pixel a point.
+            if all.last().is_none_or(|last| last.0 != k) {
+                all.push((k, at, hit.offset, hit.piece));
+            }
+        }
+    }
+    let fewest = FEWEST.max((SHARE * f64::from(inside)) as usize);
+    let single = |(&segment, hits): (&u32, &Vec<Run>)| Choice {
+        segments: vec![segment],
+        share: hits.len() as f64 / f64::from(inside),
+        offset: hits.iter().map(|h| h.2).sum::<f64>() / hits.len() as f64,
+        hits: hits.iter().map(|h| (h.0, h.1, h.3)).collect(),
+        longest: hits.iter().map(|h| arc.points[h.0].1.length).sum(),
+        likely: 0.0,
+        ends: [0; 2],
+    };
+    let pieces: Vec<Choice> = by_segment.iter().map(single).collect();
+    let mut all: Vec<Choice> = Vec::new();
+    for seed in pieces.iter().filter(|p| p.hits.len() >= fewest) {
+        let joined = joined(seed, &pieces);
+        let known = |c: &Choice| c.segments == joined.segments;
+        if joined.segments.len() > 1 && !all.iter().any(known) {
+            all.push(joined);
+        }
+        all.push(seed.clone());
+    }
+    all.sort_by(|a, b| {
+        b.share
+            .total_cmp(&a.share)
+            .then_with(|| a.segments.cmp(&b.segments))
+    });
+    all.truncate(MOST);
+    all
+}
+
+/// As many candidates as an arc can have.
+const MOST: usize = 12;
+
+/// A piece with those that lie end to end with it, the longest first.
+fn joined(seed: &Choice, pieces: &[Choice]) -> Choice {
+    let mut whole = seed.clone();
+    let mut order: Vec<&Choice> = pieces.iter().collect();
+    order.sort_by(|a, b| {
+        b.hits
+            .len()
+            .cmp(&a.hits.len())
+            .then_with(|| a.segments.cmp(&b.segments))
+    });
+    for piece in order {
+        let known = |k: usize| whole.hits.iter().any(|h| h.0 == k);
+        let shared = piece.hits.iter().filter(|h| known(h.0)).count();
+        let near = (piece.offset - whole.offset).abs() < PIECES;
+        let other = !whole.segments.contains(&piece.segments[0]);
+        if other && near && (shared as f64) < OVERLAP * piece.hits.len() as f64 {
+            let new: Vec<_> = piece.hits.iter().filter(|h| !known(h.0)).copied().collect();
+            let (n, m) = (whole.hits.len() as f64, new.len() as f64);
+            whole.offset = (whole.offset * n + piece.offset * m) / (n + m);
+            whole.share *= (n + m) / n;
+            whole.hits.extend(new);
+            whole.segments.extend(&piece.segments);
+        }
+    }
+    whole.hits.sort_by_key(|h| h.0);
+    whole.segments.sort_unstable();
+    whole
+}
+
+/// The relations of arcs that meet in a vertex: that their edges do.
+fn relations(
+    part: &Part<'_>,
+    learned: &Learned,
+    picture: &Picture,
+    arcs: &[Arc],
+    order: &[usize],
+    choices: &[Vec<Choice>],
+) -> Vec<Relation> {
+    let mut all = Vec::new();
+    for (b, &j) in order.iter().enumerate() {
+        for (a, &i) in order[..b].iter().enumerate() {
+            let Some(vertex) = part.common(arcs[i].stroke, arcs[j].stroke) else {
+                continue;
+            };
+            let near = |arc: &Arc| nearest(arc, &vertex);
+            // The vertex is seen where both arcs come near it, in the picture.
+            let (Some(p), Some(q)) = (near(&arcs[i]), near(&arcs[j])) else {
+                continue;
+            };
+            if (p.0 - q.0).norm() > VERTEX || !picture.edges.reaches(&p.0) {
+                continue;
+            }
+            let end = |choice: &Choice, (at, outwards): (Point2<f64>, Vector2<f64>)| {
+                let explained = |p: &Point2<f64>| runs_along(arcs, p, &outwards);
+                end(choice, picture, &at, &outwards, explained)
+            };
+            let first: Vec<bool> = choices[a].iter().map(|c| end(c, p)).collect();
+            let second: Vec<bool> = choices[b].iter().map(|c| end(c, q)).collect();
+            let [kept, chance] = learned.junction(&arcs[i].source, &arcs[j].source);
+            let told = |both: bool| match both {
+                true => (kept / chance).ln(),
+                false => ((1.0 - kept) / (1.0 - chance)).ln(),
+            };
+            let mut scores = BTreeMap::new();
+            for (x, &first) in first.iter().enumerate() {
+                for (y, &second) in second.iter().enumerate() {
+                    scores.insert((x, y), told(first && second));
+                }
+            }
+            all.push(Relation {
+                members: [a, b],
+                scores,
+            });
+        }
+    }
+    all
+}
+
+/// The image of the end of an arc that is nearest to a vertex, and the unit vector in which it leaves
+/// there; none where it is not near.
+fn nearest(arc: &Arc, vertex: &nalgebra::Point3<f64>) -> Option<(Point2<f64>, Vector2<f64>)> {
+    let last = arc.points.len().checked_sub(1)?;
+    let distance = |k: usize| (arc.points[k].0 - vertex).norm();
+    let (end, next) = if distance(0) < distance(last) {
+        (0, 1.min(last))
+    } else {
+        (last, last.saturating_sub(1))
+    };
+    let step = (arc.points[end].0 - arc.points[next].0).norm();
+    // Half a step from the end to the vertex.
+    if distance(end) > 2.0 * step || end == next {
+        return None;
+    }
+    let (at, before) = (arc.points[end].1.at, arc.points[next].1.at);
+    Some((at, (at - before).try_normalize(0.0)?))
+}
+
+/// Whether a choice ends at a place, seen along a direction; `explained` tells whether an arc runs on
+/// there.
+fn end(
+    choice: &Choice,
+    picture: &Picture,
+    at: &Point2<f64>,
+    outwards: &Vector2<f64>,
+    explained: impl Fn(&Point2<f64>) -> bool,
+) -> bool {
+    let farthest = farthest(choice, picture, at, outwards);
+    farthest >= -VERTEX && !goes_on(farthest, at, outwards, explained)
+}
+
+/// Whether a choice that reaches so far beyond a place goes on there.
+fn goes_on(
+    farthest: f64,
+    at: &Point2<f64>,
+    outwards: &Vector2<f64>,
+    explained: impl Fn(&Point2<f64>) -> bool,
+) -> bool {
+    farthest > VERTEX && !explained(&(at + outwards * VERTEX))
+}
+
+/// How far beyond a place a choice reaches along a direction.
+fn farthest(choice: &Choice, picture: &Picture, at: &Point2<f64>, outwards: &Vector2<f64>) -> f64 {
+    let straight = |&s: &u32| {
+        // A whole ellipse has no end.
+        let shape = &picture.detection.segments[s as usize].shape;
+        !matches!(shape, Shape::Ellipse { .. })
+    };
+    let ends = choice.segments.iter().filter(|s| straight(s));
+    let ends = ends.flat_map(|&s| picture.ends(s));
+    let along = ends.map(|end| outwards.dot(&(Point2::from(end) - at)));
+    along.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Sets at how many of an arc's vertices that are seen each choice ends, and goes on.
+fn set_ends(part: &Part<'_>, picture: &Picture, arcs: &[Arc], arc: &Arc, choices: &mut [Choice]) {
+    let ends = arc.stroke.and_then(|s| part.strokes[s].ends);
+    for (vertex, _) in ends.into_iter().flatten() {
+        let Some((at, outwards)) = nearest(arc, &vertex) else {
+            continue;
+        };
+        if !picture.edges.reaches(&at) || !picture.edges.reaches(&(at + outwards * BEYOND)) {
+            continue;
+        }
+        for choice in choices.iter_mut() {
+            let explained = |p: &Point2<f64>| runs_along(arcs, p, &outwards);
+            let far = farthest(choice, picture, &at, &outwards);
+            if far >= -VERTEX {
+                choice.ends[usize::from(goes_on(far, &at, &outwards, explained))] += 1;
+            }
+        }
+    }
+}
+
+/// Whether one of the arcs runs through a place about along a direction.
+fn runs_along(arcs: &[Arc], at: &Point2<f64>, direction: &Vector2<f64>) -> bool {
+    let points = arcs.iter().flat_map(|a| &a.points);
+    let mut seen = points.map(|p| &p.1);
+    seen.any(|s| {
+        let across = s.normal.dot(direction).abs();
+        (s.at - at).norm() < PASSES && across < ANGLES
+    })
+}
+
+/// How near, in pixels, an arc passes that an edge is explained by.
+const PASSES: f64 = 5.0;

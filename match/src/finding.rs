@@ -1,0 +1,226 @@
+//! What is found in a picture: poses of the part, with their correspondences.
+
+use crate::camera::Pinhole;
+use crate::hypotheses::INSIDE;
+use crate::part::Part;
+use crate::pose::refine::Pull;
+use crate::predicted::Arc;
+use crate::search::{Effort, Strategy};
+use crate::shape::Shape;
+use crate::worth::{DETERMINED, FEWEST, SMALLEST};
+use nalgebra::{Isometry3, Matrix6};
+use premio_predict::outline::Source;
+
+/// How much work is done at the most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Chains of lines of each kind.
+    pub chains: usize,
+    /// Poses that are settled.
+    pub settled: usize,
+    /// Poses for which correspondences are searched.
+    pub searched: usize,
+    /// Paths that are opened for one pose.
+    pub paths: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            chains: 1500,
+            settled: 40,
+            searched: 12,
+            paths: 20_000,
+        }
+    }
+}
+
+/// How the part is looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// How correspondences are searched.
+    pub strategy: Strategy,
+    /// How much work is done.
+    pub limits: Limits,
+}
+
+/// What a feature of the part is in the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// The feature.
+    pub source: Source,
+    /// Its visible length in the picture, in pixels.
+    pub length: f64,
+    /// What it is: nothing, if it is missed.
+    pub found: Option<Found>,
+    /// What it adds to the score.
+    pub score: f64,
+    /// Of that, what tells against the part: how unlikely it is missed, or so broken.
+    pub against: f64,
+}
+
+/// What a found feature is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// At how many of its vertices that are seen they end, and go on.
+    pub ends: [u32; 2],
+    /// The segments of the picture.
+    pub segments: Vec<u32>,
+    /// The covered share of the feature.
+    pub share: f64,
+    /// How far beside it they run, in pixels.
+    pub offset: f64,
+}
+
+/// A pose with its correspondences.
+#[derive(Clone, Debug)]
+pub struct Match {
+    /// The pose: of the part in the camera's frame.
+    pub pose: Isometry3<f64>,
+    /// The covariance of its error: turn about the camera's axes through the part's origin, in
+    /// radians, and move, in the part's unit.
+    pub covariance: Matrix6<f64>,
+    /// The root mean square distance of edges from contours, in pixels.
+    pub rms: f64,
+    /// The logarithm of how much more likely the picture is with it than if all were clutter.
+    pub score: f64,
+    /// The same against clutter and other things that are like the part as far as it is found.
+    pub ratio: f64,
+    /// The logarithm of the odds that what is found so is the part.
+    pub odds: f64,
+    /// What is told of the part's shape.
+    pub shape: Shape,
+    /// What the pose is fitted to: the logarithm of how many times the space of poses is larger than
+    /// its uncertainty.
+    pub fitted: f64,
+    /// What relations tell for and against it.
+    pub relations: [f64; 2],
+    /// The correspondences, in the order they were searched in.
+    pub pairs: Vec<Pair>,
+    /// What the search took.
+    pub effort: Effort,
+    /// Whether the correspondences are known to be the best.
+    pub complete: bool,
+    /// The predicted arcs at the pose.
+    pub arcs: Vec<Arc>,
+    /// By correspondence: the edges that the pose is fitted to.
+    pub pulls: Vec<Vec<Pull>>,
+}
+
+impl Match {
+    /// The share of the predicted visible length in the picture that is covered.
+    pub fn share(&self) -> f64 {
+        let all = self.length();
+        let covered = self.pairs.iter().map(|p| {
+            let share = p.found.as_ref().map_or(0.0, |f| f.share.min(1.0));
+            p.length * share
+        });
+        if all > 0.0 {
+            covered.sum::<f64>() / all
+        } else {
+            0.0
+        }
+    }
+
+    /// The part of the visible contours that lies in the picture.
+    pub fn inside(&self) -> f64 {
+        let all: f64 = self.arcs.iter().map(|a| a.length).sum();
+        let inside: f64 = self.pairs.iter().map(|p| p.length).sum();
+        if all > 0.0 {
+            (inside / all).min(1.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// How likely the part is there.
+    pub fn probability(&self) -> f64 {
+        1.0 / (1.0 + (-(self.ratio + self.odds)).exp())
+    }
+
+    /// Whether the part is taken to be there.
+    pub fn is_accepted(&self) -> bool {
+        self.ratio + self.odds >= 0.0
+    }
+
+    /// At how many vertices that are seen an edge goes on.
+    pub fn past(&self) -> u32 {
+        let found = self.pairs.iter().filter_map(|p| p.found.as_ref());
+        found.map(|f| f.ends[1]).sum()
+    }
+
+    /// The visible length in the picture, in pixels.
+    pub fn length(&self) -> f64 {
+        self.pairs.iter().map(|p| p.length).sum()
+    }
+
+    /// Whether enough is found to tell the pose of a part.
+    pub fn is_determined(&self, part: &Part<'_>) -> bool {
+        let fewest = FEWEST[usize::from(part.turned)];
+        let enough = self.length() >= SMALLEST && self.inside() >= INSIDE;
+        self.found() >= fewest && self.fitted > DETERMINED && enough
+    }
+
+    /// The correspondences whose edges are farthest off, the farthest first.
+    pub(crate) fn doubted(&self, camera: &Pinhole) -> Vec<usize> {
+        let off = |pull: &Pull| {
+            let at = camera.project(&(self.pose * pull.point));
+            pull.normal.dot(&(at - pull.target)).powi(2)
+        };
+        let taken = self.pulls.iter().enumerate().filter(|p| !p.1.is_empty());
+        let square = |pulls: &[Pull]| pulls.iter().map(off).sum::<f64>() / pulls.len() as f64;
+        let mut all: Vec<(usize, f64)> = taken.map(|(k, pulls)| (k, square(pulls))).collect();
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all.truncate(DOUBTED);
+        all.into_iter().map(|a| a.0).collect()
+    }
+
+    /// The features that are found, and the segments that they are taken to be.
+    pub(crate) fn taken(&self) -> impl Iterator<Item = (Source, &[u32])> {
+        let pairs = self.pairs.iter();
+        pairs.filter_map(|p| Some((p.source, p.found.as_ref()?.segments.as_slice())))
+    }
+
+    /// How many features are found.
+    pub fn found(&self) -> usize {
+        self.pairs.iter().filter(|p| p.found.is_some()).count()
+    }
+}
+
+/// What was looked for, and what came of it.
+#[derive(Clone, Debug, Default)]
+pub struct Finding {
+    /// The best matches, whether or not they are accepted, the best first.
+    pub matches: Vec<Match>,
+    /// The best of those of which too little is seen to tell the pose.
+    pub little: Option<Box<Match>>,
+    /// Chains of lines of the picture.
+    pub chains: [usize; 2],
+    /// Poses that were proposed.
+    pub proposed: usize,
+    /// Whether chains were left out because there were too many.
+    pub cut: bool,
+}
+
+impl Finding {
+    /// The best match.
+    pub fn best(&self) -> Option<&Match> {
+        self.matches.first()
+    }
+
+    /// The matches at other poses that are accepted, too, and no less likely by much; what tells the
+    /// poses of a nearly symmetric part apart is often not seen.
+    pub fn rivals(&self) -> &[Match] {
+        let Some((best, others)) = self.matches.split_first() else {
+            return &[];
+        };
+        let is = |m: &Match| best.is_accepted() && m.is_accepted() && m.ratio > best.ratio - RIVAL;
+        &others[..others.iter().take_while(|m| is(m)).count()]
+    }
+}
+
+/// A match whose ratio is less by this is no rival.
+const RIVAL: f64 = 3.0;
+
+/// So many features of a match are doubted, one after another.
+const DOUBTED: usize = 4;

@@ -1,0 +1,288 @@
+//! Poses that a picture proposes: chains of its lines taken for chains of edges.
+
+use crate::camera::Pinhole;
+use crate::evidence::{COSINE, evidence, eye, seen, visible};
+use crate::part::{self, Part};
+use crate::picture::{self, Picture, Reach};
+use crate::pose::chain::{ImageChain, poses};
+use crate::pose::refine::{Pull, refine};
+use crate::rounds::of_ellipses;
+use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
+use rayon::prelude::*;
+
+/// A pose with what is told of it.
+#[derive(Clone, Debug)]
+pub struct Hypothesis {
+    /// The pose.
+    pub pose: Isometry3<f64>,
+    /// The logarithm of how much more likely the picture is with it than without.
+    pub ratio: f64,
+    /// The number of the picture's chain.
+    pub chain: usize,
+    /// The number of the part's chain.
+    pub of: usize,
+}
+
+/// How many are kept from step to step.
+pub const KEPT: usize = 1000;
+
+/// The poses of all chains of a picture, the most likely first, and how many there were.
+pub fn hypotheses(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    chains: &[Vec<picture::Chain>; 2],
+) -> (Vec<Hypothesis>, usize) {
+    let numbered = [0, 1].map(|kind| chains[kind].iter().map(move |c| (kind, c)));
+    let numbered: Vec<_> = numbered.into_iter().flatten().enumerate().collect();
+    let found: Vec<(Vec<Hypothesis>, usize)> = numbered
+        .par_iter()
+        .map(|&(i, (kind, chain))| of_chain(part, picture, camera, (i, kind), chain))
+        .collect();
+    let (round, rounds) = of_ellipses(part, picture, camera);
+    let count = rounds + found.iter().map(|f| f.1).sum::<usize>();
+    let mut all: Vec<Hypothesis> = found.into_iter().flat_map(|f| f.0).collect();
+    all.extend(round);
+    best_first(&mut all);
+    (distinct(part, camera, all, KEPT), count)
+}
+
+/// Sorts them by falling likelihood; equal ones as they came.
+pub fn best_first(all: &mut [Hypothesis]) {
+    all.sort_by(|a, b| {
+        let order = b.ratio.total_cmp(&a.ratio);
+        order.then((a.chain, a.of).cmp(&(b.chain, b.of)))
+    });
+}
+
+/// The hypotheses that are not like a more likely one, at most so many.
+pub fn distinct(
+    part: &Part<'_>,
+    camera: &Pinhole,
+    all: Vec<Hypothesis>,
+    most: usize,
+) -> Vec<Hypothesis> {
+    let mut kept: Vec<Hypothesis> = Vec::new();
+    let mut images: Vec<[Point2<f64>; 4]> = Vec::new();
+    for next in all {
+        let own = all_images(part, camera, &next.pose);
+        if !images.iter().any(|known| is_one_of(&own, known)) {
+            images.push(own[0]);
+            kept.push(next);
+            if kept.len() == most {
+                break;
+            }
+        }
+    }
+    kept
+}
+
+/// The images of a part's probes at a pose, and at those that its symmetries make of it.
+fn all_images(part: &Part<'_>, camera: &Pinhole, pose: &Isometry3<f64>) -> Vec<[Point2<f64>; 4]> {
+    let probes = part.probes();
+    let image = |s: &Isometry3<f64>| probes.map(|p| camera.project(&(pose * (s * p))));
+    part.symmetries.iter().map(image).collect()
+}
+
+/// Whether probes are where one of the images has them.
+fn is_one_of(images: &[[Point2<f64>; 4]], known: &[Point2<f64>; 4]) -> bool {
+    let size = (known[1] - known[0])
+        .norm()
+        .max((known[2] - known[0]).norm());
+    let near = (SAME * size).max(1.0);
+    let is = |own: &[Point2<f64>; 4]| (0..4).all(|i| (own[i] - known[i]).norm() < near);
+    images.iter().any(is)
+}
+
+/// Whether two poses are one, but for the part's symmetries.
+pub fn is_same(
+    part: &Part<'_>,
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    other: &Isometry3<f64>,
+) -> bool {
+    let images = all_images(part, camera, other);
+    is_one_of(&all_images(part, camera, pose), &images[0])
+}
+
+/// So much of the visible contours must lie in the picture.
+pub const INSIDE: f64 = 0.3;
+/// Poses that put four points within this part of the part's size are one.
+const SAME: f64 = 0.04;
+
+fn of_chain(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    (number, kind): (usize, usize),
+    chain: &picture::Chain,
+) -> (Vec<Hypothesis>, usize) {
+    let points = chain.corners.map(|c| c.at);
+    let beyond = [0, 1].map(|i| points[i] + chain.corners[i].away * chain.corners[i].length);
+    let [rays, beyond] = [points, beyond].map(|p| p.map(|p| camera.ray(&p)));
+    let Some(image) = ImageChain::new(rays, beyond) else {
+        return (Vec::new(), 0);
+    };
+    let mut all = Vec::new();
+    let mut count = 0;
+    for (of, model) in part.chains[kind].iter().enumerate() {
+        for pose in poses(&model.lines, &image) {
+            count += 1;
+            if !fits(part, model, camera, &pose, chain) {
+                continue;
+            }
+            all.extend(plausible(part, picture, camera, pose, [number, of]));
+        }
+    }
+    (all, count)
+}
+
+/// A pose that a chain of the picture and one of the part propose, if it is not unlikely at a first look.
+pub fn plausible(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    pose: Isometry3<f64>,
+    [chain, of]: [usize; 2],
+) -> Option<Hypothesis> {
+    let view = part.view(&eye(&pose));
+    let told = evidence(part, picture, camera, &pose, view, Reach::Coarse);
+    (told.inside() > INSIDE && told.ratio > 0.0).then_some(Hypothesis {
+        pose,
+        ratio: told.ratio,
+        chain,
+        of,
+    })
+}
+
+/// Whether the edges of a chain can be seen in a pose, and are as long as their lines at least.
+fn fits(
+    part: &Part<'_>,
+    model: &part::Chain,
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    chain: &picture::Chain,
+) -> bool {
+    let eye = eye(pose);
+    let behind = |i: usize| {
+        let stroke = &part.strokes[model.strokes[i]];
+        let middle = (stroke.marks.start + stroke.marks.end) / 2;
+        !part.marks[middle].faces(&eye)
+    };
+    if (0..model.strokes.len()).any(behind) {
+        return false;
+    }
+    (0..2).all(|i| {
+        let outer = if i == 0 {
+            model.strokes.first()
+        } else {
+            model.strokes.last()
+        };
+        let length = outer.map_or(0.0, |&s| part.strokes[s].length);
+        let far = model.lines.points[i] + model.lines.away[i] * length;
+        let far = pose * far;
+        if far.z <= 0.0 {
+            return true;
+        }
+        let corner = &chain.corners[i];
+        let reach = corner.away.dot(&(camera.project(&far) - corner.at));
+        // The line may run on into another, but not by much.
+        reach > 0.8 * corner.length.min(2.0 * reach.abs()) && reach > 0.6 * corner.length
+    })
+}
+
+/// The pose that edges near it draw it to, with the likelihood there.
+pub fn drawn(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    start: &Hypothesis,
+    reaches: &[f64],
+) -> Option<Hypothesis> {
+    let mut pose = start.pose;
+    for &reach in reaches {
+        let view = part.view(&eye(&pose));
+        let pulls = pulls(part, picture, camera, &pose, view, reach);
+        if pulls.len() < 8 {
+            return None;
+        }
+        pose = refine(camera, &pose, &pulls, reach, 6)?.pose;
+    }
+    let view = part.view(&eye(&pose));
+    let told = evidence(part, picture, camera, &pose, view, Reach::Fine);
+    (told.inside() > INSIDE).then_some(Hypothesis {
+        pose,
+        ratio: told.ratio,
+        ..*start
+    })
+}
+
+/// The most likely pose that is reached from about one.
+///
+/// Edges that lie side by side draw to wrong places: what is turned and moved a little may be drawn to
+/// better ones.
+pub fn settled(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    start: &Hypothesis,
+) -> Hypothesis {
+    let mut best = start.clone();
+    let middle = start.pose * part.centre;
+    for size in [0.16, 0.08] {
+        for k in 0..6 {
+            for sign in [1.0, -1.0] {
+                let mut axis = Vector3::zeros();
+                axis[k % 3] = sign * size;
+                let pose = if k < 3 {
+                    // About the part's middle.
+                    let turn = UnitQuaternion::from_scaled_axis(axis);
+                    let turn = Isometry3::rotation_wrt_point(turn, middle);
+                    turn * best.pose
+                } else {
+                    let shift = axis * (0.5 * part.radius);
+                    Translation3::from(shift) * best.pose
+                };
+                let next = Hypothesis {
+                    pose,
+                    ..best.clone()
+                };
+                let next = drawn(part, picture, camera, &next, &REACHES);
+                if let Some(next) = next.filter(|n| n.ratio > best.ratio) {
+                    best = next;
+                }
+            }
+        }
+    }
+    best
+}
+
+/// How far, in pixels, marks are drawn to edges, round by round.
+pub const REACHES: [f64; 5] = [12.0, 8.0, 5.0, 3.0, 2.0];
+
+/// The edges that the marks of a part are drawn to.
+pub fn pulls(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    view: &crate::part::View,
+    reach: f64,
+) -> Vec<Pull> {
+    let mut all = Vec::new();
+    for mark in visible(part, view, eye(pose)) {
+        let Some(seen) = seen(camera, pose, mark) else {
+            continue;
+        };
+        let normal: Vector2<f64> = seen.normal;
+        if let Some(hit) = picture.edges.along(&seen.at, &normal, reach, COSINE) {
+            all.push(Pull {
+                point: mark.point,
+                target: seen.at + normal * hit.offset,
+                normal,
+                weight: seen.length.min(20.0),
+            });
+        }
+    }
+    all
+}

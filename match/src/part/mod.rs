@@ -1,0 +1,212 @@
+//! A part as it is looked for: points along its edges, the chains of its straight edges, its
+//! symmetries, and what it hides of itself.
+
+mod marks;
+mod symmetry;
+mod views;
+
+pub use marks::{Mark, Stroke, View};
+pub use symmetry::symmetries;
+
+use crate::learned::Learned;
+use crate::pose::chain::PartChain;
+use nalgebra::{Isometry3, Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::extent;
+use premio_kernel::brep::topology::{EdgeId, VertexId};
+use premio_kernel::geometry::curve::Curve;
+use premio_predict::outline::Source;
+use views::Views;
+
+/// A part that is looked for.
+#[derive(Debug)]
+pub struct Part<'a> {
+    /// Its boundary.
+    pub brep: &'a Brep,
+    /// Its resolution.
+    pub band: f64,
+    /// The middle of its box.
+    pub centre: Point3<f64>,
+    /// Half the diagonal of its box.
+    pub radius: f64,
+    /// Its edges along which the normal jumps.
+    pub strokes: Vec<Stroke>,
+    /// Points along them.
+    pub marks: Vec<Mark>,
+    /// The turns that bring the part onto itself; the first does nothing.
+    pub symmetries: Vec<Isometry3<f64>>,
+    /// Whether it is turned about one axis: all its edges are whole circles about it.
+    pub turned: bool,
+    /// The chains of straight edges with one edge, and with two, between their corners: one of each
+    /// kind that symmetries bring onto each other.
+    pub chains: [Vec<Chain>; 2],
+    views: Views,
+}
+
+/// A chain of three or four straight edges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// The strokes: that which leaves A, those from A to B, that which leaves B.
+    pub strokes: Vec<usize>,
+    /// Where they are.
+    pub lines: PartChain,
+}
+
+impl<'a> Part<'a> {
+    /// A part with a boundary and a resolution, of whose features something is learned.
+    pub fn new(brep: &'a Brep, band: f64, learned: &Learned) -> Self {
+        let states = |edge: EdgeId| learned.states(&Source::Edge { edge: edge.0 });
+        let hull = extent::bounds(brep);
+        let (centre, radius) = (hull.centre(), 0.5 * hull.diagonal());
+        let (strokes, marks) = marks::marks(brep, radius, states);
+        let all = chains(brep, &strokes);
+        let symmetries = symmetries(brep, &strokes, &all[0], radius, centre);
+        Self {
+            brep,
+            band,
+            centre,
+            radius,
+            turned: is_turned(brep, &strokes, radius),
+            views: Views::new(),
+            chains: all.map(|all| representatives(&all, &symmetries, radius)),
+            symmetries,
+            strokes,
+            marks,
+        }
+    }
+
+    /// Whether anything of the part proposes poses: chains of straight edges, or circles.
+    pub fn proposes(&self) -> bool {
+        let round = |s: &Stroke| matches!(self.brep.curve(s.edge), Curve::Circle(_));
+        self.chains.iter().any(|c| !c.is_empty()) || self.strokes.iter().any(round)
+    }
+
+    /// The vertex in which two strokes meet.
+    pub fn common(&self, a: Option<usize>, b: Option<usize>) -> Option<Point3<f64>> {
+        let ends = |s: usize| self.brep.topology.edge(self.strokes[s].edge).ends;
+        let (a, b) = (ends(a?)?, ends(b?)?);
+        let common = a.into_iter().find(|v| b.contains(v))?;
+        Some(self.brep.point(common))
+    }
+
+    /// Four points that tell where the part is: its middle, and three about it.
+    pub fn probes(&self) -> [Point3<f64>; 4] {
+        let [x, y, z] = [0, 1, 2].map(|i| {
+            let mut p = self.centre;
+            p[i] += self.radius;
+            p
+        });
+        [self.centre, x, y, z]
+    }
+
+    /// What is seen of the part from about where an eye is, in the part's frame.
+    pub fn view(&self, eye: &Point3<f64>) -> &View {
+        self.views.from(self, eye)
+    }
+}
+
+/// Whether all edges are whole circles about one axis.
+fn is_turned(brep: &Brep, strokes: &[Stroke], radius: f64) -> bool {
+    let circles = strokes.iter().map(|s| match brep.curve(s.edge) {
+        Curve::Circle(circle) if s.ends.is_none() => Some(circle.frame),
+        _ => None,
+    });
+    let Some(frames) = circles.collect::<Option<Vec<_>>>() else {
+        return false;
+    };
+    let Some(first) = frames.first() else {
+        return false;
+    };
+    frames.iter().all(|f| {
+        let off = (f.origin - first.origin).cross(&first.z).norm();
+        f.z.cross(&first.z).norm() < symmetry::SAME && off < symmetry::SAME * radius
+    })
+}
+
+/// An edge that leaves a vertex.
+#[derive(Clone, Copy, Debug)]
+struct Leaving {
+    stroke: usize,
+    to: VertexId,
+    direction: Vector3<f64>,
+}
+
+/// All chains of straight edges: with one edge, and with two, between the corners.
+fn chains(brep: &Brep, strokes: &[Stroke]) -> [Vec<Chain>; 2] {
+    let mut at: Vec<Vec<Leaving>> = vec![Vec::new(); brep.topology.vertices as usize];
+    for (stroke, s) in strokes.iter().enumerate() {
+        let straight = matches!(brep.curve(s.edge), Curve::Line(_));
+        let Some([a, b]) = brep.topology.edge(s.edge).ends.filter(|_| straight) else {
+            continue;
+        };
+        for (from, to) in [(a, b), (b, a)] {
+            let direction = (brep.point(to) - brep.point(from)).try_normalize(0.0);
+            at[from.0 as usize].extend(direction.map(|direction| Leaving {
+                stroke,
+                to,
+                direction,
+            }));
+        }
+    }
+    let mut all = [Vec::new(), Vec::new()];
+    for a in (0..brep.topology.vertices).map(VertexId) {
+        for first in &at[a.0 as usize] {
+            add(brep, &at, a, &[*first], &mut all[0]);
+            for second in &at[first.to.0 as usize] {
+                if second.stroke != first.stroke && second.to != a {
+                    add(brep, &at, a, &[*first, *second], &mut all[1]);
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Adds the chains that have given edges between their corners.
+fn add(brep: &Brep, at: &[Vec<Leaving>], a: VertexId, path: &[Leaving], all: &mut Vec<Chain>) {
+    let (Some(first), Some(last)) = (path.first(), path.last()) else {
+        return;
+    };
+    let b = last.to;
+    let free = |l: &&Leaving| path.iter().all(|p| p.stroke != l.stroke);
+    for from in at[a.0 as usize].iter().filter(free) {
+        for to in at[b.0 as usize].iter().filter(free) {
+            let between = path.iter().map(|p| p.stroke);
+            let distinct = from.stroke != to.stroke;
+            if distinct && first.stroke != from.stroke {
+                all.push(Chain {
+                    strokes: std::iter::once(from.stroke)
+                        .chain(between)
+                        .chain([to.stroke])
+                        .collect(),
+                    lines: PartChain {
+                        points: [brep.point(a), brep.point(b)],
+                        away: [from.direction, to.direction],
+                    },
+                });
+            }
+        }
+    }
+}
+
+/// One chain of each kind.
+fn representatives(all: &[Chain], symmetries: &[Isometry3<f64>], radius: f64) -> Vec<Chain> {
+    let mut kept: Vec<Chain> = Vec::new();
+    let near = |a: &PartChain, b: &PartChain| {
+        (0..2).all(|i| {
+            (a.points[i] - b.points[i]).norm() < symmetry::SAME * radius
+                && (a.away[i] - b.away[i]).norm() < symmetry::SAME
+        })
+    };
+    for chain in all {
+        let mut images = symmetries.iter().skip(1).map(|s| PartChain {
+            points: chain.lines.points.map(|p| s * p),
+            away: chain.lines.away.map(|d| s * d),
+        });
+        let seen = images.any(|i| kept.iter().any(|k| near(&k.lines, &i)));
+        if !seen {
+            kept.push(chain.clone());
+        }
+    }
+    kept
+}

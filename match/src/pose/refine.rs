@@ -1,0 +1,154 @@
+//! Least squares on SE(3): Levenberg-Marquardt with a robust loss over distances along normals in the
+//! image, in pixels.
+
+use crate::camera::Pinhole;
+use nalgebra::{Isometry3, Matrix6, Point2, Point3, UnitQuaternion, Vector2, Vector3, Vector6};
+
+/// A point of the part whose image lies off an edge by so much along a normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pull {
+    /// The point, in the part's frame.
+    pub point: Point3<f64>,
+    /// Where the edge is in the image.
+    pub target: Point2<f64>,
+    /// The unit normal of the contour in the image.
+    pub normal: Vector2<f64>,
+    /// How much it counts.
+    pub weight: f64,
+}
+
+/// What was refined.
+#[derive(Clone, Copy, Debug)]
+pub struct Refined {
+    /// The pose.
+    pub pose: Isometry3<f64>,
+    /// JᵀWJ: of the turn, in radians about the camera's axes through the part's origin, and of the
+    /// move.
+    pub information: Matrix6<f64>,
+    /// The weighted sum of squared distances, and the sum of weights.
+    pub squares: [f64; 2],
+}
+
+/// The pose after a step: the turn of the part about its origin in the camera's axes, and the move.
+pub fn moved(pose: &Isometry3<f64>, step: &Vector6<f64>) -> Isometry3<f64> {
+    let turn = UnitQuaternion::from_scaled_axis(step.fixed_rows::<3>(0).into_owned());
+    let mut next = *pose;
+    next.rotation = turn * pose.rotation;
+    next.translation.vector += step.fixed_rows::<3>(3);
+    next
+}
+
+/// The distance of a point's image from its edge along the normal, and its derivatives; none where it
+/// is not before the camera.
+pub(crate) fn residual(
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    pull: &Pull,
+) -> Option<(f64, Vector6<f64>)> {
+    let turned = pose.rotation * pull.point.coords;
+    let p = turned + pose.translation.vector;
+    if p.z <= 0.0 {
+        return None;
+    }
+    let at = camera.project(&Point3::from(p));
+    let n = &pull.normal;
+    let off = n.dot(&(at - pull.target));
+    // d(image)/dp, against the normal.
+    let (fx, fy, s) = (camera.focal[0], camera.focal[1], camera.skew);
+    let (x, y) = (p.x / p.z, p.y / p.z);
+    let dx = n.x * fx;
+    let dy = n.x * s + n.y * fy;
+    let g = Vector3::new(dx, dy, -(dx * x + dy * y)) / p.z;
+    let turn = turned.cross(&g);
+    Some((off, Vector6::new(turn.x, turn.y, turn.z, g.x, g.y, g.z)))
+}
+
+/// Tukey's weight of a distance: nothing beyond the scale.
+fn tukey(off: f64, scale: f64) -> f64 {
+    let u = off / scale;
+    if u.abs() >= 1.0 {
+        0.0
+    } else {
+        (1.0 - u * u).powi(2)
+    }
+}
+
+fn normal_equations(
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    pulls: &[Pull],
+    scale: f64,
+) -> (Matrix6<f64>, Vector6<f64>, [f64; 3]) {
+    let mut h = Matrix6::zeros();
+    let mut g = Vector6::zeros();
+    let mut sums = [0.0; 3];
+    for pull in pulls {
+        let Some((off, j)) = residual(camera, pose, pull) else {
+            sums[2] += pull.weight * scale * scale / 6.0;
+            continue;
+        };
+        let w = pull.weight * tukey(off, scale);
+        let u2 = (off / scale).powi(2).min(1.0);
+        // Tukey's loss, (c²/6) (1 - (1 - u²)³), without the ones, in which small distances are lost.
+        sums[2] += pull.weight * scale * scale / 6.0 * u2 * (3.0 - u2 * (3.0 - u2));
+        if w > 0.0 {
+            h.ger(w, &j, &j, 1.0);
+            g += j * (w * off);
+            sums[0] += w * off * off;
+            sums[1] += w;
+        }
+    }
+    (h, g, sums)
+}
+
+/// The pose near one at which images lie nearest to their edges; `scale` is the distance in pixels
+/// from which on one counts no longer.
+pub fn refine(
+    camera: &Pinhole,
+    start: &Isometry3<f64>,
+    pulls: &[Pull],
+    scale: f64,
+    rounds: usize,
+) -> Option<Refined> {
+    let mut pose = *start;
+    let mut damping = DAMPING;
+    let (mut h, mut g, mut sums) = normal_equations(camera, &pose, pulls, scale);
+    for _ in 0..rounds {
+        // What edges tell nothing of, as the turn of a round part about its axis, stays as it is.
+        let floor = [0, 3].map(|i| FLOOR * (h[(i, i)] + h[(i + 1, i + 1)] + h[(i + 2, i + 2)]));
+        let mut damped = h;
+        for i in 0..6 {
+            damped[(i, i)] += damping * h[(i, i)] + floor[i / 3];
+        }
+        let step = -damped.cholesky()?.solve(&g);
+        let next = moved(&pose, &step);
+        let (nh, ng, ns) = normal_equations(camera, &next, pulls, scale);
+        if ns[2] < sums[2] {
+            let gain = sums[2] - ns[2];
+            (pose, h, g, damping) = (next, nh, ng, damping * 0.25);
+            let done = gain < DAMPING * DAMPING * sums[2];
+            sums = ns;
+            if done {
+                break;
+            }
+        } else {
+            damping *= 8.0;
+            if damping > 1.0 / (DAMPING * DAMPING) {
+                break;
+            }
+        }
+    }
+    Some(Refined {
+        pose,
+        information: h,
+        squares: [sums[0], sums[1]],
+    })
+}
+
+/// What is added to the information of a turn or move, in that of all of them.
+const FLOOR: f64 = 1.0 / (1u64 << 36) as f64;
+/// The damping that is begun with.
+const DAMPING: f64 = 1.0 / 1024.0;
+
+#[cfg(test)]
+mod tests;

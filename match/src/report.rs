@@ -1,0 +1,326 @@
+//! What was found, as it is handed on (`premio.match/1`), and a line for the evaluation of others
+//! (the CSV of the BOP challenge, Hodan et al. 2018).
+
+use crate::finding::{Finding, Match};
+use crate::hypotheses::INSIDE;
+use crate::part::Part;
+use crate::picture::Picture;
+use crate::search::Effort;
+use crate::shape::Shape;
+use crate::worth::{FEWEST, SMALLEST, is_flat};
+use nalgebra::{Isometry3, Matrix3};
+use premio_predict::outline::Source;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// The name of the format.
+pub const SCHEMA: &str = "premio.match/1";
+
+/// The schema of [`Report`], as JSON Schema has it.
+pub fn schema() -> schemars::Schema {
+    schemars::schema_for!(Report)
+}
+
+/// A pose: x_camera = R x + t, with the camera's x to the right, y down and z forward (OpenCV).
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct Pose {
+    /// The rotation, row by row.
+    #[serde(rename = "R")]
+    pub r: [[f64; 3]; 3],
+    /// The part's origin in the camera's frame, in the part's unit.
+    pub t: [f64; 3],
+}
+
+impl From<&Isometry3<f64>> for Pose {
+    fn from(pose: &Isometry3<f64>) -> Self {
+        let m: Matrix3<f64> = pose.rotation.to_rotation_matrix().into_inner();
+        Self {
+            r: std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)])),
+            t: pose.translation.vector.into(),
+        }
+    }
+}
+
+/// What a feature of the part is in the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum State {
+    /// Its edge is there.
+    Whole,
+    /// Some of its edge is.
+    Broken,
+    /// It is not.
+    Missed,
+}
+
+/// A correspondence.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct Feature {
+    /// The feature of the part.
+    #[serde(flatten)]
+    pub source: Source,
+    /// Its visible length in the picture, in pixels.
+    pub length: f64,
+    /// What it is there.
+    pub state: State,
+    /// The share of it that is covered.
+    pub share: f64,
+    /// At how many of its vertices that are seen its edge ends, and goes on.
+    pub ends: Option<[u32; 2]>,
+    /// How far beside it, in pixels, its edge runs.
+    pub offset: Option<f64>,
+    /// The ends of the segments that it is.
+    pub segments: Vec<[[f64; 2]; 2]>,
+    /// What it adds to the score, and what of that tells against the part.
+    pub score: f64,
+    /// See `score`.
+    pub against: f64,
+}
+
+/// Another pose of a part, at which it looks about as likely.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct Rival {
+    /// The pose.
+    #[serde(flatten)]
+    pub pose: Pose,
+    /// As the report's.
+    pub ratio: f64,
+}
+
+/// What the search for a part did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
+pub struct Work {
+    /// Segments that the detector found.
+    pub segments: usize,
+    /// Chains of lines with one, and with two, between their corners.
+    pub chains: [usize; 2],
+    /// Poses that they proposed.
+    pub proposed: usize,
+    /// Whether chains or paths were left out, so that something better may have been missed.
+    pub cut: bool,
+    /// The search for the correspondences at the pose.
+    #[serde(flatten)]
+    pub search: Effort,
+    /// Pruned over opened paths.
+    pub pruning: f64,
+}
+
+/// How long it took, in seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
+pub struct Seconds {
+    /// To detect features.
+    pub features: f64,
+    /// To find the pose.
+    pub matching: f64,
+}
+
+/// What was found in a picture.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct Report {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// The picture's file.
+    pub image: String,
+    /// The part's file.
+    pub part: String,
+    /// Whether the part is there.
+    pub found: bool,
+    /// Why it is taken not to be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// How likely it is there.
+    pub probability: f64,
+    /// The logarithm of how much more likely the picture is with the part at the pose than with clutter
+    /// or another thing.
+    pub ratio: Option<f64>,
+    /// The logarithm of the odds that what is found so is the part: the less, the farther edges are off
+    /// its contours, the more of it is cut off by the border, and the less its shape is told. With `ratio`
+    /// the odds of `probability`.
+    pub odds: Option<f64>,
+    /// What is told of the part's shape.
+    pub shape: Option<Shape>,
+    /// The same as `ratio` against clutter alone: what the search maximises.
+    pub score: Option<f64>,
+    /// What of the score the pose is fitted to.
+    pub fitted: Option<f64>,
+    /// What relations add to the score.
+    pub related: Option<f64>,
+    /// The part of the visible contours that lies in the picture, and of that the covered share.
+    pub inside: Option<f64>,
+    /// See `inside`.
+    pub covered: Option<f64>,
+    /// The pose; of what is not found, the likeliest.
+    #[serde(flatten)]
+    pub pose: Option<Pose>,
+    /// The covariance of the pose's error: turn about the camera's axes through the part's origin, in
+    /// radians, and move, in the part's unit; row by row.
+    pub covariance: Option<[[f64; 6]; 6]>,
+    /// The root mean square distance of edges from contours, in pixels.
+    pub rms: Option<f64>,
+    /// The other poses that the part's symmetries make alike.
+    pub alternatives: Vec<Pose>,
+    /// Other poses at which the part is found, too, and that are less likely by a ratio of no more than
+    /// e³, up to symmetries.
+    pub rivals: Vec<Rival>,
+    /// The correspondences.
+    pub features: Vec<Feature>,
+    /// Of a sequence: whether it was looked for anew, rather than from its last pose.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub anew: Option<bool>,
+    /// What the search did.
+    pub work: Work,
+    /// How many pixels of the file make a side of one that lengths and distances are told in: more than
+    /// one of large pictures. Ends of segments are in the file's.
+    pub scale: u32,
+    /// How long it took.
+    pub seconds: Seconds,
+}
+
+impl Report {
+    /// The report of a finding.
+    pub fn new(
+        part: &Part<'_>,
+        [image, name]: [&str; 2],
+        picture: &Picture,
+        finding: &Finding,
+        (scale, seconds): (u32, Seconds),
+    ) -> Self {
+        let best = finding.best();
+        let found = best.is_some_and(Match::is_accepted);
+        Self {
+            schema: SCHEMA.to_owned(),
+            image: image.to_owned(),
+            part: name.to_owned(),
+            found,
+            reason: (!found).then(|| reason(part, picture, finding)),
+            probability: best.map_or(0.0, Match::probability),
+            ratio: best.map(|m| m.ratio),
+            odds: best.map(|m| m.odds),
+            shape: best.map(|m| m.shape),
+            score: best.map(|m| m.score),
+            fitted: best.map(|m| m.fitted),
+            inside: best.map(Match::inside),
+            covered: best.map(Match::share),
+            related: best.map(|m| m.relations.iter().sum()),
+            pose: best.map(|m| Pose::from(&m.pose)),
+            covariance: best
+                .map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m.covariance[(i, j)]))),
+            rms: best.map(|m| m.rms),
+            alternatives: best.map_or(Vec::new(), |m| {
+                let others = part.symmetries.iter().skip(1);
+                others.map(|s| Pose::from(&(m.pose * s))).collect()
+            }),
+            rivals: rivals(finding),
+            features: best.map_or(Vec::new(), |m| features(m, picture, scale)),
+            anew: None,
+            work: work(picture, finding),
+            scale,
+            seconds,
+        }
+    }
+
+    /// The line of the BOP challenge: scene, image and object, score, R and t, and the time.
+    pub fn bop(&self, [scene, image, object]: [u32; 3]) -> Option<String> {
+        let pose = self.pose.filter(|_| self.found)?;
+        let words = |all: &[f64]| {
+            let words: Vec<String> = all.iter().map(f64::to_string).collect();
+            words.join(" ")
+        };
+        let (r, t) = (words(&pose.r.concat()), words(&pose.t));
+        let time = self.seconds.features + self.seconds.matching;
+        Some(format!(
+            "{scene},{image},{object},{},{r},{t},{time}",
+            self.probability
+        ))
+    }
+}
+
+/// The first line of the BOP challenge's CSV.
+pub const BOP: &str = "scene_id,im_id,obj_id,score,R,t,time";
+
+fn work(picture: &Picture, finding: &Finding) -> Work {
+    let best = finding.best();
+    let search = best.map(|m| m.effort).unwrap_or_default();
+    Work {
+        segments: picture.detection.segments.len(),
+        chains: finding.chains,
+        proposed: finding.proposed,
+        cut: finding.cut || best.is_some_and(|m| !m.complete),
+        search,
+        pruning: search.ratio(),
+    }
+}
+
+fn rivals(finding: &Finding) -> Vec<Rival> {
+    let rivals = finding.rivals().iter().map(|m| Rival {
+        pose: Pose::from(&m.pose),
+        ratio: m.ratio,
+    });
+    rivals.collect()
+}
+
+fn features(found: &Match, picture: &Picture, scale: u32) -> Vec<Feature> {
+    // The middles of pixels that are means of others lie between those.
+    let side = f64::from(scale);
+    let given = |v: f64| side * (v + 0.5) - 0.5;
+    let features = found.pairs.iter().map(|pair| {
+        let is = pair.found.as_ref();
+        let share = is.map_or(0.0, |f| f.share.min(1.0));
+        Feature {
+            source: pair.source,
+            length: pair.length,
+            state: match is {
+                None => State::Missed,
+                Some(_) if share >= crate::correspondence::WHOLE => State::Whole,
+                Some(_) => State::Broken,
+            },
+            share,
+            offset: is.map(|f| f.offset),
+            ends: is.map(|f| f.ends),
+            segments: is.map_or(Vec::new(), |f| {
+                let ends = f.segments.iter();
+                let ends = ends.map(|&s| picture.ends(s).map(|p| p.map(given)));
+                ends.collect()
+            }),
+            score: pair.score,
+            against: pair.against,
+        }
+    });
+    features.collect()
+}
+
+/// Why a part is taken not to be there.
+fn reason(part: &Part<'_>, picture: &Picture, finding: &Finding) -> String {
+    if !part.proposes() {
+        return "the part has neither straight edges that meet nor round ones, which poses are found by"
+            .to_owned();
+    }
+    let segments = picture.detection.segments.len();
+    let Some(best) = finding.best() else {
+        return match (segments, finding.proposed, &finding.little) {
+            (0, ..) => "the detector finds no segment in the picture".to_owned(),
+            (_, 0, _) => {
+                format!("none of {segments} segments make corners that the part's could be")
+            }
+            (_, _, Some(few)) => format!(
+                "at its likeliest place {} features are found, in {:.0} pixels of contour, which are {:.0} \
+                 % of it: a pose takes {}, {SMALLEST} and {:.0} %",
+                few.found(),
+                few.length(),
+                100.0 * few.inside(),
+                FEWEST[usize::from(part.turned)],
+                100.0 * INSIDE
+            ),
+            (_, n, None) => format!("none of {n} poses that its corners propose fits the picture"),
+        };
+    };
+    let (found, all) = (best.found(), best.pairs.len());
+    let others = match is_flat(best) {
+        true => "all of it could be a figure on a flat thing",
+        false => "other things look as much like it",
+    };
+    format!(
+        "at its likeliest place {found} of {all} features are found, {:.0} % of their length: {others}",
+        100.0 * best.share()
+    )
+}

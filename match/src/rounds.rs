@@ -1,0 +1,74 @@
+//! Poses that ellipses of a picture propose: taken for circular edges of the part.
+
+use crate::camera::Pinhole;
+use crate::hypotheses::{Hypothesis, plausible};
+use crate::part::Part;
+use crate::picture::Picture;
+use crate::pose::circle::{circles, edge_poses};
+use premio_kernel::geometry::curve::Curve;
+use premio_predict::processing::Shape;
+use rayon::prelude::*;
+
+/// An arc of an ellipse with fewer edge pixels tells no circle.
+const SHORTEST: u32 = 40;
+/// How many turns about a circle's axis are tried where the part tells them apart.
+const TURNS: usize = 24;
+/// As many ellipses are taken, the longest first.
+const MOST: usize = 64;
+
+/// The poses that the ellipses of a picture propose, and how many there were.
+pub fn of_ellipses(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+) -> (Vec<Hypothesis>, usize) {
+    let turns = if part.turned { 1 } else { TURNS };
+    let conics = conics(picture);
+    let found: Vec<(Vec<Hypothesis>, usize)> = conics
+        .par_iter()
+        .enumerate()
+        .map(|(number, conic)| of_ellipse(part, picture, camera, (number, conic), turns))
+        .collect();
+    let count = found.iter().map(|f| f.1).sum();
+    (found.into_iter().flat_map(|f| f.0).collect(), count)
+}
+
+/// The conics of elliptic segments.
+fn conics(picture: &Picture) -> Vec<[f64; 6]> {
+    let segments = picture.detection.segments.iter();
+    let mut all: Vec<(u32, [f64; 6])> = segments
+        .filter_map(|s| match s.shape {
+            Shape::Ellipse { conic, .. } | Shape::Arc { conic, .. } => {
+                let length = s.range[1] - s.range[0];
+                (length >= SHORTEST).then_some((length, conic))
+            }
+            Shape::Line { .. } => None,
+        })
+        .collect();
+    all.sort_by_key(|c| std::cmp::Reverse(c.0));
+    all.truncate(MOST);
+    all.into_iter().map(|c| c.1).collect()
+}
+
+fn of_ellipse(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    (number, conic): (usize, &[f64; 6]),
+    turns: usize,
+) -> (Vec<Hypothesis>, usize) {
+    let (mut all, mut count) = (Vec::new(), 0);
+    for (of, stroke) in part.strokes.iter().enumerate() {
+        let Curve::Circle(circle) = part.brep.curve(stroke.edge) else {
+            continue;
+        };
+        for seen in circles(conic, camera, circle.radius) {
+            for pose in edge_poses(&circle.frame, &seen, turns) {
+                count += 1;
+                let names = [usize::MAX - number, of];
+                all.extend(plausible(part, picture, camera, pose, names));
+            }
+        }
+    }
+    (all, count)
+}

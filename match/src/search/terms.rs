@@ -1,0 +1,130 @@
+//! A problem as a sum over its features and over pairs of them, with the choices that are left of it.
+
+use super::problem::Problem;
+use std::collections::BTreeMap;
+
+/// The number of a choice of a feature: 0 if it is missed, k + 1 for its candidate k.
+pub type Choice = usize;
+
+/// What two features add together, by the choices of both: their relations, and what the state of a
+/// parent does to its child.
+pub struct Link {
+    /// The features; the first comes before the second.
+    pub members: [usize; 2],
+    scores: Vec<f64>,
+    columns: usize,
+}
+
+impl Link {
+    fn new(problem: &Problem, members: [usize; 2]) -> Self {
+        let [rows, columns] = members.map(|f| problem.features[f].candidates.len() + 1);
+        Self {
+            members,
+            scores: vec![0.0; rows * columns],
+            columns,
+        }
+    }
+
+    /// What choices of both add.
+    pub fn score(&self, first: Choice, second: Choice) -> f64 {
+        self.scores[first * self.columns + second]
+    }
+
+    /// What they add where a feature is one of them, and the other is its neighbour.
+    pub fn between(&self, feature: usize, own: Choice, other: Choice) -> f64 {
+        match self.members[0] == feature {
+            true => self.score(own, other),
+            false => self.score(other, own),
+        }
+    }
+
+    /// The neighbour of a feature.
+    pub fn other(&self, feature: usize) -> usize {
+        self.members[usize::from(self.members[0] == feature)]
+    }
+}
+
+/// The terms of a problem's score.
+pub struct Terms<'a> {
+    /// The problem.
+    pub problem: &'a Problem,
+    /// By feature and choice: what it adds by itself.
+    pub own: Vec<Vec<f64>>,
+    /// By pair of features.
+    pub links: Vec<Link>,
+    /// By feature: its links, and those whose later member it is.
+    pub all: Vec<Vec<usize>>,
+    /// See `all`.
+    pub closing: Vec<Vec<usize>>,
+    /// By feature: the choices that are left.
+    pub live: Vec<Vec<Choice>>,
+}
+
+impl<'a> Terms<'a> {
+    /// The terms of a problem, with all choices.
+    pub fn new(problem: &'a Problem) -> Self {
+        let features = problem.features.len();
+        let (mut links, mut own) = (BTreeMap::new(), Vec::with_capacity(features));
+        for (f, feature) in problem.features.iter().enumerate() {
+            let choices = 0..=feature.candidates.len();
+            let score = |choice: Choice, parent| feature.score(choice.checked_sub(1), parent);
+            let Some(parent) = feature.parent else {
+                own.push(choices.map(|c| score(c, false)).collect());
+                continue;
+            };
+            own.push(vec![0.0; choices.end() + 1]);
+            let link = links.entry([parent, f]);
+            let link: &mut Link = link.or_insert_with(|| Link::new(problem, [parent, f]));
+            for (i, added) in link.scores.iter_mut().enumerate() {
+                *added += score(i % link.columns, i >= link.columns);
+            }
+        }
+        for relation in &problem.relations {
+            let link = links.entry(relation.members);
+            let link = link.or_insert_with(|| Link::new(problem, relation.members));
+            // Pairs of candidates that are not there are passed over.
+            for (&(a, b), added) in relation.scores.iter().filter(|s| s.0.1 + 1 < link.columns) {
+                if let Some(score) = link.scores.get_mut((a + 1) * link.columns + b + 1) {
+                    *score += added;
+                }
+            }
+        }
+        let links: Vec<Link> = links.into_values().collect();
+        let mut all = vec![Vec::new(); features];
+        let mut closing = vec![Vec::new(); features];
+        for (i, link) in links.iter().enumerate() {
+            closing[link.members[1]].push(i);
+            for member in link.members {
+                all[member].push(i);
+            }
+        }
+        let live = own.iter().map(|o: &Vec<f64>| (0..o.len()).collect());
+        Self {
+            problem,
+            live: live.collect(),
+            own,
+            links,
+            all,
+            closing,
+        }
+    }
+
+    /// The pieces that a choice uses.
+    pub fn pieces(&self, feature: usize, choice: Choice) -> &'a [u32] {
+        let candidates = &self.problem.features[feature].candidates;
+        choice.checked_sub(1).map_or(&[], |c| &candidates[c].pieces)
+    }
+
+    /// By link and choice of its later member: the most that it can add.
+    pub fn ceilings(&self) -> Vec<Vec<f64>> {
+        let ceiling = |link: &Link| {
+            let firsts = &self.live[link.members[0]];
+            let most = |second| {
+                let all = firsts.iter().map(|&first| link.score(first, second));
+                all.fold(f64::NEG_INFINITY, f64::max)
+            };
+            (0..link.columns).map(most).collect()
+        };
+        self.links.iter().map(ceiling).collect()
+    }
+}

@@ -1,0 +1,364 @@
+//! Parts found in pictures that the program renders: poses planted, parts that are not there, clutter.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options as Reading, read};
+use premio_matching::camera::Pinhole;
+use premio_matching::finding::{Finding, Limits, Match, Options};
+use premio_matching::learned::Learned;
+use premio_matching::look::Look;
+use premio_matching::part::Part;
+use premio_matching::picture::{Picture, detector};
+use premio_matching::search::Strategy;
+use premio_predict::prediction::{Memory, with_draft};
+use premio_predict::processing::Grey;
+use premio_predict::render;
+use premio_predict::setup::Setup;
+use premio_predict::subject::Subject;
+use premio_tests::parts::cube_with_cuts;
+use rayon::ThreadPoolBuilder;
+use serde_json::{Value, json};
+
+const SIZE: [usize; 2] = [320, 240];
+const FOCAL: f64 = 350.0;
+
+fn part(json: &Value) -> Evaluation {
+    let text = json.to_string();
+    let tree = read("part", text.as_bytes(), Format::Json, &Reading::default()).unwrap();
+    evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
+}
+
+fn camera() -> Pinhole {
+    let (cx, cy) = (0.5 * (SIZE[0] as f64 - 1.0), 0.5 * (SIZE[1] as f64 - 1.0));
+    Pinhole::of(&Matrix3::new(FOCAL, 0.0, cx, 0.0, FOCAL, cy, 0.0, 0.0, 1.0)).unwrap()
+}
+
+/// A camera at `eye` that looks at the part's middle with z upwards, both in the part's radius about it.
+fn pose(subject: &Subject<'_>, eye: [f64; 3], beside: [f64; 3]) -> Isometry3<f64> {
+    let at = |d: [f64; 3]| subject.centre + Vector3::from(d) * subject.radius;
+    let (eye, target) = (at(eye), at(beside));
+    let z = (target - eye).normalize();
+    let x = z.cross(&Vector3::z()).normalize();
+    let r = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(r));
+    Isometry3::from_parts(Translation3::from(-(turn * eye.coords)), turn)
+}
+
+/// The picture of a part at a pose, with noise.
+fn picture(subject: &Subject<'_>, pose: &Isometry3<f64>, seed: u64) -> Grey {
+    let k = camera();
+    let r = pose.rotation.to_rotation_matrix();
+    let row = |i: usize| format!("[{}, {}, {}]", r[(i, 0)], r[(i, 1)], r[(i, 2)]);
+    let t = pose.translation.vector;
+    let light = pose.inverse() * nalgebra::Point3::new(0.6 * t.z, -0.9 * t.z, 0.1 * t.z);
+    let text = format!(
+        "ambient = 0.3\nbackground = 0.02\n[camera]\n\
+         K = [[{f}, 0, {cx}], [0, {f}, {cy}], [0, 0, 1]]\nR = [{}, {}, {}]\nt = [{}, {}, {}]\n\
+         [[light]]\nposition = [{}, {}, {}]\n[material]\nambient = 0.3\ndiffuse = 0.25\n\
+         s = 0\nd = 1\nm = 0.3\nn = 1.5\nk = 0\n\
+         [sensor]\nresolution = [{}, {}]\nwhite = 200\nblur = 0.6\nelectrons = 10000\nread_noise = 1\n",
+        row(0),
+        row(1),
+        row(2),
+        t.x,
+        t.y,
+        t.z,
+        light.x,
+        light.y,
+        light.z,
+        SIZE[0],
+        SIZE[1],
+        f = FOCAL,
+        cx = k.centre[0],
+        cy = k.centre[1],
+    );
+    let setup = Setup::from_toml(&text).unwrap();
+    let drawn = with_draft(subject, None, &setup, &mut Memory::default(), |draft| {
+        let levels = render::rows(&draft.shading, SIZE[0], 0..SIZE[1]);
+        render::finished(levels, &draft.conditions.sensor, seed)
+    });
+    drawn.unwrap()
+}
+
+fn sought<'a>(evaluation: &'a Evaluation, learned: &Learned) -> Part<'a> {
+    Part::new(&evaluation.brep, evaluation.resolution, learned)
+}
+
+/// Asks something of a part that is looked for in a picture.
+fn looked<T>(
+    part: &Part<'_>,
+    picture: &Picture,
+    options: &Options,
+    ask: impl FnOnce(&Look<'_>) -> T,
+) -> T {
+    ask(&Look {
+        part,
+        learned: &Learned::nothing(),
+        picture,
+        camera: &camera(),
+        options,
+    })
+}
+
+fn look(part: &Part<'_>, grey: &Grey, options: &Options) -> Finding {
+    let picture = Picture::new(grey, &detector());
+    looked(part, &picture, options, |look| look.find())
+}
+
+/// How far a pose is off another, of those that the part's symmetries make alike: of the middle, in the
+/// part's radius, and in radians.
+fn off(part: &Part<'_>, found: &Isometry3<f64>, truth: &Isometry3<f64>) -> [f64; 2] {
+    let each = part.symmetries.iter().map(|s| {
+        let pose = found * s;
+        let moved = (pose * part.centre - truth * part.centre).norm() / part.radius;
+        [moved, pose.rotation.angle_to(&truth.rotation)]
+    });
+    each.min_by(|a, b| (a[0] + a[1]).total_cmp(&(b[0] + b[1])))
+        .unwrap()
+}
+
+const EYES: [[f64; 3]; 3] = [[3.1, 2.4, 2.6], [-3.6, 1.9, 2.2], [2.2, -3.4, 2.9]];
+
+#[test]
+fn a_part_is_found_where_it_is() {
+    let evaluation = part(&cube_with_cuts());
+    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &Learned::nothing());
+    for (seed, eye) in (1..).zip(EYES) {
+        let truth = pose(&subject, eye, [0.15, -0.1, 0.05]);
+        let grey = picture(&subject, &truth, seed);
+        let finding = look(&part, &grey, &Options::default());
+        let best = finding.best().unwrap();
+        assert!(best.is_accepted(), "{eye:?}: ratio {}", best.ratio);
+        let [moved, turned] = off(&part, &best.pose, &truth);
+        assert!(moved < 0.02 && turned < 0.02, "{eye:?}: {moved} {turned}");
+        assert!(best.found() * 2 > best.pairs.len(), "{:?}", best.pairs);
+    }
+}
+
+/// Pixels tell angles: a part a thousand million times as large, or as small, is as far away.
+#[test]
+fn a_part_of_any_size_is_found() {
+    let poses = [1.0, 1e9, 1e-9].map(|unit| {
+        let block = json!({"prim": "block", "size": [3.0 * unit, 2.0 * unit, 4.0 * unit]});
+        let evaluation = part(&block);
+        let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+        let part = sought(&evaluation, &Learned::nothing());
+        // One picture for all: that of the block of the first size.
+        let first = self::part(&json!({"prim": "block", "size": [3.0, 2.0, 4.0]}));
+        let one = Subject::new(&first.brep, first.resolution).unwrap();
+        let grey = picture(&one, &pose(&one, EYES[0], [0.0; 3]), 5);
+        let best = look(&part, &grey, &Options::default()).matches.remove(0);
+        assert!(best.is_accepted());
+        let truth = pose(&subject, EYES[0], [0.0; 3]);
+        let [moved, turned] = off(&part, &best.pose, &truth);
+        assert!(moved < 0.02 && turned < 0.02, "{unit}: {moved} {turned}");
+        best.ratio
+    });
+    let same = |a: f64, b: f64| (a - b).abs() < 1e-6;
+    assert!(poses.iter().all(|r| same(*r, poses[0])), "{poses:?}");
+}
+
+/// A cube with a pocket in its bottom, seen from above: which side is the bottom is not told, so that
+/// more than one pose is, the right one among them.
+#[test]
+fn poses_that_look_alike_are_told() {
+    let block = |size: [f64; 3], at: [f64; 3]| json!({"prim": "block", "size": size, "transform": [{"translate": at}]});
+    let cube = block([2.0; 3], [0.0; 3]);
+    let pocket = block([1.0, 1.0, 0.5], [0.5, 0.5, 0.0]);
+    let evaluation = part(&json!({"op": "difference", "children": [cube, pocket]}));
+    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &Learned::nothing());
+    let truth = pose(&subject, EYES[0], [0.0; 3]);
+    let finding = look(&part, &picture(&subject, &truth, 7), &Options::default());
+    let best = finding.best().unwrap();
+    let all: Vec<&Match> = std::iter::once(best).chain(finding.rivals()).collect();
+    assert!(all.len() > 1, "{:?}", finding.matches.len());
+    let right = |m: &&&Match| off(&part, &m.pose, &truth).iter().all(|x| *x < 0.02);
+    assert_eq!(all.iter().filter(right).count(), 1);
+}
+
+/// Seen along an axis a cube is a square, as many things are: too little to be told.
+#[test]
+fn a_face_alone_is_not_taken_for_a_block() {
+    let evaluation = part(&json!({"prim": "block", "size": [2.0, 2.0, 2.0]}));
+    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &Learned::nothing());
+    let grey = picture(&subject, &pose(&subject, [0.0, -4.0, 0.0], [0.0; 3]), 2);
+    let finding = look(&part, &grey, &Options::default());
+    assert!(finding.best().is_none());
+    assert!(finding.little.is_some_and(|few| few.found() <= 4));
+}
+
+/// A plate with a raised middle, nearly from the front: two rectangles in one another, which a deep block
+/// fits as well that is turned so that its side is as wide as the rim.
+#[test]
+fn a_frame_is_not_taken_for_a_block() {
+    let frame = part(&json!({"op": "union", "children": [
+        {"prim": "block", "size": [2.0, 1.5, 0.05]},
+        {"prim": "block", "size": [1.9, 1.4, 0.1],
+            "transform": [{"translate": [0.05, 0.05, 0.0]}]},
+    ]}));
+    let subject = Subject::new(&frame.brep, frame.resolution).unwrap();
+    let block = part(&json!({"prim": "block", "size": [2.0, 1.5, 1.0]}));
+    let block = sought(&block, &Learned::nothing());
+    for (i, eye) in [[0.2, -0.4, 4.0], [-0.6, -0.3, 4.0], [0.9, -0.9, 4.0]]
+        .into_iter()
+        .enumerate()
+    {
+        let grey = picture(&subject, &pose(&subject, eye, [0.0; 3]), i as u64);
+        let finding = look(&block, &grey, &Options::default());
+        let best = finding.best();
+        assert!(
+            best.is_none_or(|m| !m.is_accepted()),
+            "{:?}",
+            best.map(|m| m.shape)
+        );
+    }
+}
+
+/// A shaft with a collar: no straight edge; ellipses propose its poses, and limbs tell them.
+#[test]
+fn a_round_part_is_found_but_for_its_turn() {
+    let evaluation = part(&json!({"op": "union", "children": [
+        {"prim": "cylinder", "r": 2.0, "h": 1.0},
+        {"prim": "cylinder", "r": 1.0, "h": 4.0},
+    ]}));
+    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &Learned::nothing());
+    assert!(part.turned);
+    for (seed, eye) in (1..).zip(EYES) {
+        let truth = pose(&subject, eye, [0.1, 0.1, 0.0]);
+        let grey = picture(&subject, &truth, seed);
+        let finding = look(&part, &grey, &Options::default());
+        let best = finding.best().unwrap();
+        let moved = (best.pose * part.centre - truth * part.centre).norm() / part.radius;
+        let tilted = (best.pose * Vector3::z()).angle(&(truth * Vector3::z()));
+        assert!(moved < 0.03 && tilted < 0.03, "{eye:?}: {moved} {tilted}");
+        // No vertices: less is told of it than of a block.
+        assert!(best.ratio > 0.0, "{eye:?}: ratio {}", best.ratio);
+    }
+}
+
+#[test]
+fn all_strategies_give_the_same_correspondences() {
+    let evaluation = part(&cube_with_cuts());
+    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &Learned::nothing());
+    let truth = pose(&subject, EYES[0], [0.0; 3]);
+    let grey = picture(&subject, &truth, 7);
+    let by = |strategy| {
+        let options = Options {
+            strategy,
+            ..Options::default()
+        };
+        let finding = look(&part, &grey, &options);
+        let best = finding.best().unwrap();
+        assert!(best.complete, "{strategy:?}");
+        (best.pose, best.score)
+    };
+    let bounded = by(Strategy::Bounded);
+    assert_eq!(by(Strategy::Stepped), bounded);
+    assert_eq!(by(Strategy::Deepening), bounded);
+}
+
+#[test]
+fn what_is_found_does_not_depend_on_threads() {
+    let evaluation = part(&cube_with_cuts());
+    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &Learned::nothing());
+    let truth = pose(&subject, EYES[1], [0.0; 3]);
+    let grey = picture(&subject, &truth, 3);
+    let with = |threads: usize| {
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let finding = pool.install(|| look(&part, &grey, &Options::default()));
+        let told = |m: &Match| (m.pose, m.ratio, m.effort);
+        finding.matches.iter().map(told).collect::<Vec<_>>()
+    };
+    assert_eq!(with(1), with(3));
+}
+
+#[test]
+fn a_part_that_is_not_there_is_not_found() {
+    let other = part(&json!({"op": "union", "children": [
+        {"prim": "torus", "R": 3.0, "r": 1.0},
+        {"prim": "block", "size": [6.0, 1.0, 1.0]},
+    ]}));
+    let subject = Subject::new(&other.brep, other.resolution).unwrap();
+    let evaluation = part(&cube_with_cuts());
+    let part = sought(&evaluation, &Learned::nothing());
+    for (seed, eye) in (1..).zip(EYES) {
+        let grey = picture(&subject, &pose(&subject, eye, [0.0; 3]), seed);
+        let finding = look(&part, &grey, &Options::default());
+        let accepted = finding.best().filter(|m| m.is_accepted());
+        assert!(
+            accepted.is_none(),
+            "{eye:?}: {:?}",
+            accepted.map(|m| m.ratio)
+        );
+    }
+}
+
+#[test]
+fn an_empty_picture_holds_nothing() {
+    let evaluation = part(&cube_with_cuts());
+    let part = sought(&evaluation, &Learned::nothing());
+    for (width, height) in [(SIZE[0], SIZE[1]), (1, 1), (0, 0), (3, 200)] {
+        let grey = Grey::of(width, height, |_, _| 90.0);
+        let finding = look(&part, &grey, &Options::default());
+        assert!(finding.best().is_none());
+        assert_eq!(finding.proposed, 0);
+    }
+}
+
+/// Thousands of segments: the work is bounded, and what is left out is told.
+#[test]
+fn clutter_bounds_the_work() {
+    let evaluation = part(&cube_with_cuts());
+    let part = sought(&evaluation, &Learned::nothing());
+    // Tiles of two levels, shifted from row to row.
+    let grey = Grey::of(SIZE[0], SIZE[1], |x, y| {
+        let row = y / 14;
+        let tile = (x + 5 * row) / 17;
+        if (tile + row) % 2 == 0 { 60.0 } else { 170.0 }
+    });
+    let options = Options {
+        limits: Limits {
+            chains: 20,
+            settled: 4,
+            searched: 2,
+            paths: 500,
+        },
+        ..Options::default()
+    };
+    let finding = look(&part, &grey, &options);
+    assert!(finding.cut);
+    assert!(finding.chains.iter().all(|c| *c <= 20));
+    for found in &finding.matches {
+        assert!(found.effort.opened <= 501);
+    }
+}
+
+#[test]
+fn a_part_is_followed_from_picture_to_picture() {
+    let evaluation = part(&cube_with_cuts());
+    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &Learned::nothing());
+    let mut last = pose(&subject, [3.1, 2.4, 2.6], [0.0; 3]);
+    for k in 1..5u32 {
+        let turn = 0.04 * f64::from(k);
+        let eye = [3.1 - turn, 2.4 + turn, 2.6 - 0.5 * turn];
+        let truth = pose(&subject, eye, [0.0; 3]);
+        let grey = picture(&subject, &truth, u64::from(k));
+        let seen = Picture::new(&grey, &detector());
+        let next = looked(&part, &seen, &Options::default(), |look| look.follow(&last));
+        let next = next.unwrap_or_else(|| panic!("lost in picture {k}"));
+        let [moved, turned] = off(&part, &next.pose, &truth);
+        assert!(moved < 0.02 && turned < 0.02, "{k}: {moved} {turned}");
+        last = next.pose;
+    }
+}

@@ -1,0 +1,68 @@
+//! What is seen along a line of sight: the face nearest to the eye, and whether one hides a point.
+//!
+//! Only what decides is placed in its face: where a line crosses surfaces costs less to tell than
+//! whether it does so within the faces.
+
+use crate::sight::{Own, Ray, Scene};
+use nalgebra::{Point2, Point3};
+use premio_kernel::brep::locate::Place;
+use premio_kernel::brep::topology::FaceId;
+use premio_kernel::number::sign::Sign;
+
+/// Where a line of sight crosses the surface of a face.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    at: f64,
+    touches: bool,
+    face: FaceId,
+}
+
+impl Scene<'_> {
+    /// The face that is seen at an image point, and where on it.
+    pub fn nearest(&self, image: &Point2<f64>) -> Option<(FaceId, Point3<f64>)> {
+        let (eye, into) = self.projection.line_of_sight(image);
+        let part = self.bounds();
+        let beyond = (part.centre() - eye).dot(&into) + part.diagonal();
+        if !beyond.is_above_zero() {
+            return None;
+        }
+        let ray = self.ray(&(eye + into * beyond));
+        let mut met = self.crossings(&ray, &|_| Own::No);
+        // The nearest to the eye first, so that the others need not be placed.
+        met.sort_by(|a, b| b.at.total_cmp(&a.at));
+        met.iter().find_map(|crossing| {
+            let p = ray.origin + ray.towards * crossing.at;
+            let seen = self.locator.place(crossing.face, &p) != Place::Outside;
+            seen.then_some((crossing.face, p))
+        })
+    }
+
+    /// Whether a face lies between a point of the face `own` and the eye: what does is left by the line
+    /// of sight through a face turned towards the eye.
+    pub fn is_hidden(&self, p: &Point3<f64>, own: FaceId) -> bool {
+        let through = |face| if face == own { Own::Through } else { Own::No };
+        let ray = self.ray(p);
+        self.crossings(&ray, &through).iter().any(|crossing| {
+            let q = ray.origin + ray.towards * crossing.at;
+            !crossing.touches
+                && self.is_turned(crossing.face, &q, &ray.towards)
+                && self.locator.place(crossing.face, &q) != Place::Outside
+        })
+    }
+
+    /// Where a line of sight crosses the surfaces of faces whose boxes it passes, within them or not.
+    fn crossings(&self, ray: &Ray, own: &impl Fn(FaceId) -> Own) -> Vec<Crossing> {
+        let mut met = Vec::new();
+        for face in self.passed(ray) {
+            let own = own(face);
+            let least = self.least(own);
+            let found = self.meetings(ray, self.brep.surface(face), own);
+            for &(at, touches) in &found.at[..found.count] {
+                if at.is_beyond(least) && at.is_short_of(ray.length) {
+                    met.push(Crossing { at, touches, face });
+                }
+            }
+        }
+        met
+    }
+}

@@ -22,23 +22,24 @@ pub enum Method {
 
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 16.0;
-/// Where in a piece its faces in front are counted: the first place, and those asked where the
-/// answer there was not plain. Not in the middle: there a symmetric part has its special points.
+/// Where in a piece its faces in front are counted, one after the other until an answer is plain. Not
+/// in the middle: there a symmetric part has its special points.
 const PLACES: [f64; 3] = [0.47, 0.31, 0.73];
 
 /// The count for a piece of a strand over [lo, hi].
 pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Count {
     let at = |part: f64| count_at(scene, strand, lo + (hi - lo) * part);
-    let first = at(PLACES[0]);
-    if first.plain {
-        return first;
+    let mut unplain = Vec::with_capacity(PLACES.len());
+    for place in PLACES {
+        let count = at(place);
+        if count.plain {
+            return count;
+        }
+        unplain.push(count);
     }
-    // Contours that fall on one another are unplain everywhere, and the three agree; a place that
-    // happens to be next to something is outvoted.
-    let mut three = [first, at(PLACES[1]), at(PLACES[2])];
-    three.sort_by_key(|c| c.qi);
-    let [_, middle, _] = three;
-    middle
+    // Contours that fall on one another are unplain everywhere, and the counts agree.
+    unplain.sort_by_key(|c| c.qi);
+    unplain.swap_remove(PLACES.len() / 2)
 }
 
 fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {

@@ -14,6 +14,10 @@ const FINE: f64 = 3.0 / 16.0;
 /// How much larger the distances from one line may be than from those of its pieces.
 const LOOSER: f64 = 1.25;
 
+/// Pieces of so many pixels tell themselves how far edges are off their curves: where all of them are
+/// straight a curve has to be about as near, however near it is.
+const TELLING: usize = 24;
+
 /// As many points as tell an ellipse from a line with noise.
 const FEWEST: usize = 8;
 
@@ -33,8 +37,10 @@ struct Pieces<'a> {
     points: &'a [[f64; 2]],
     /// Where each begins, and at last the end of the chain.
     breaks: Vec<usize>,
-    /// The sum of squared distances of each from its line.
+    /// The sum of squared distances of each from its curve.
     squares: Vec<f64>,
+    /// Whether the curve of each is an ellipse.
+    bent: Vec<bool>,
     tolerance: f64,
     /// How many pixels next to a corner the mask may pull.
     blurred: usize,
@@ -102,6 +108,7 @@ impl<'a> Fitter<'a> {
         };
         Pieces {
             squares: breaks.windows(2).map(square).collect(),
+            bent: vec![false; breaks.len() - 1],
             points,
             breaks,
             tolerance: self.detector.corner,
@@ -208,7 +215,6 @@ impl Pieces<'_> {
             let range = 0..self.points.len();
             return vec![Stretch { range, bent }];
         }
-        let mut bent = vec![false; count];
         let mut pairs: Vec<_> = (1..count).map(|i| self.held(i - 1..i + 1)).collect();
         loop {
             let told = pairs.iter().enumerate();
@@ -218,10 +224,10 @@ impl Pieces<'_> {
             };
             self.breaks.remove(i + 1);
             self.squares.remove(i + 1);
-            bent.remove(i + 1);
+            self.bent.remove(i + 1);
             pairs.remove(i);
             let length = self.breaks[i + 1] - self.breaks[i];
-            (self.squares[i], bent[i]) = (rms * rms * length as f64, kind);
+            (self.squares[i], self.bent[i]) = (rms * rms * length as f64, kind);
             for k in [i.checked_sub(1), Some(i)].into_iter().flatten() {
                 if k < pairs.len() {
                     pairs[k] = self.held(k..k + 2);
@@ -229,7 +235,7 @@ impl Pieces<'_> {
             }
         }
         let ranges = self.breaks.windows(2).map(|b| b[0]..b[1]);
-        let stretches = ranges.zip(bent);
+        let stretches = ranges.zip(self.bent);
         stretches
             .map(|(range, bent)| Stretch { range, bent })
             .collect()
@@ -252,7 +258,11 @@ impl Pieces<'_> {
                 distances.map(|(i, d)| if inner.contains(&i) { d } else { 0.5 * d });
             return distances.all(near).then_some((false, fit.rms));
         }
-        let limit = rms.max(FINE);
+        let limit = if self.tell(pieces.clone()) {
+            LOOSER * rms
+        } else {
+            rms.max(FINE)
+        };
         if points.len() < FEWEST || !self.turns_one_way(pieces) {
             return None;
         }
@@ -266,6 +276,12 @@ impl Pieces<'_> {
             .iter()
             .all(|&p| near(distance_to_conic(&fit.conic, p)));
         (all && runs_along(points, fit.centre)).then_some((true, fit.rms))
+    }
+
+    /// Whether all of some pieces are straight and long enough to tell how far edges are off lines.
+    fn tell(&self, mut pieces: Range<usize>) -> bool {
+        let length = |k: usize| self.breaks[k + 1] - self.breaks[k];
+        pieces.all(|k| !self.bent[k] && length(k) >= TELLING)
     }
 
     /// How many points at each end of a stretch a corner may bend.

@@ -213,6 +213,56 @@ fn a_half_circle_is_an_arc() {
     }
 }
 
+/// Two edges that meet at an angle of so many degrees, 300 and 45 pixels long, with some noise; where
+/// the picture ends no edge is found.
+fn bend(degrees: f64) -> Grey {
+    let slope = degrees.to_radians().tan();
+    let mut grey = draw(80, 350, |x, y| {
+        x > 30.3 + 0.1 * y + slope * (y - 305.0).max(0.0)
+    });
+    let mut seed = 7;
+    for level in &mut grey.levels {
+        *level += noise(&mut seed);
+    }
+    grey
+}
+
+#[test]
+fn a_slight_bend_is_a_corner_and_no_arc() {
+    let detector = Detector {
+        mask: Mask::Gaussian { sigma: 1.0 },
+        ..Detector::default()
+    };
+    for degrees in [2.0, 2.5, 3.0, 5.0] {
+        let found = detect(&detector, &bend(degrees));
+        let lines = |s: &Segment| matches!(s.shape, Shape::Line { .. });
+        assert!(
+            found.segments.iter().all(lines),
+            "{degrees}: {:?}",
+            found.segments
+        );
+        assert_eq!(found.segments.len(), 2, "{degrees}");
+        let ends = ends_of_lines(&found);
+        let gap = distance(ends[0][1], ends[1][0]).min(distance(ends[0][0], ends[1][1]));
+        assert!(gap < 3.0, "{degrees}: {ends:?}");
+    }
+}
+
+/// An arc that bends as little on a way as long is one all the same.
+#[test]
+fn a_flat_arc_is_an_arc() {
+    for radius in [400.0, 1500.0, 3000.0] {
+        let grey = draw(80, 420, |x, y| {
+            (x - 40.0 - radius).hypot(y - 210.0) < radius
+        });
+        let found = detect(&Detector::default(), &grey);
+        let [segment] = &found.segments[..] else {
+            panic!("{radius}: {:?}", found.segments);
+        };
+        assert!(matches!(segment.shape, Shape::Arc { .. }), "{radius}");
+    }
+}
+
 #[test]
 fn an_ellipse_and_a_slot() {
     let ellipse = |x: f64, y: f64| ((x - 60.0) / 40.0).powi(2) + ((y - 50.0) / 15.0).powi(2) < 1.0;

@@ -156,7 +156,7 @@ impl Match {
 
     /// Whether enough is found to tell the pose of a part.
     pub fn is_determined(&self, part: &Part<'_>) -> bool {
-        let fewest = FEWEST[usize::from(part.turned)];
+        let fewest = FEWEST[usize::from(part.axis.is_some())];
         let enough = self.length() >= SMALLEST && self.inside() >= INSIDE;
         self.found() >= fewest && self.fitted > DETERMINED && enough
     }

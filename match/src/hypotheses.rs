@@ -81,7 +81,7 @@ pub fn distinct(
 fn all_images(part: &Part<'_>, camera: &Pinhole, pose: &Isometry3<f64>) -> Vec<[Point2<f64>; 4]> {
     let probes = part.probes();
     let image = |s: &Isometry3<f64>| probes.map(|p| camera.project(&(pose * (s * p))));
-    part.symmetries.iter().map(image).collect()
+    part.turns().map(image).collect()
 }
 
 /// Whether probes are where one of the images has them.

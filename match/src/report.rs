@@ -9,6 +9,7 @@ use crate::search::Effort;
 use crate::shape::Shape;
 use crate::worth::{FEWEST, SMALLEST, is_flat};
 use nalgebra::{Isometry3, Matrix3};
+use premio_kernel::geometry::frame::Frame;
 use premio_predict::outline::Source;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -37,6 +38,24 @@ impl From<&Isometry3<f64>> for Pose {
         Self {
             r: std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)])),
             t: pose.translation.vector.into(),
+        }
+    }
+}
+
+/// An axis of a part, in its frame.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct Axis {
+    /// A point of it.
+    pub point: [f64; 3],
+    /// Its unit direction.
+    pub direction: [f64; 3],
+}
+
+impl From<&Frame> for Axis {
+    fn from(frame: &Frame) -> Self {
+        Self {
+            point: frame.origin.into(),
+            direction: frame.z.into(),
         }
     }
 }
@@ -159,6 +178,9 @@ pub struct Report {
     pub rms: Option<f64>,
     /// The other poses that the part's symmetries make alike.
     pub alternatives: Vec<Pose>,
+    /// Of a part that is turned about an axis, the axis, in the part's frame: the pose may be turned
+    /// about it by any angle.
+    pub axis: Option<Axis>,
     /// Other poses at which the part is found, too, and that are less likely by a ratio of no more than
     /// e³, up to symmetries.
     pub rivals: Vec<Rival>,
@@ -207,9 +229,10 @@ impl Report {
                 .map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m.covariance[(i, j)]))),
             rms: best.map(|m| m.rms),
             alternatives: best.map_or(Vec::new(), |m| {
-                let others = part.symmetries.iter().skip(1);
+                let others = part.turns().skip(1);
                 others.map(|s| Pose::from(&(m.pose * s))).collect()
             }),
+            axis: part.axis.as_ref().map(Axis::from),
             rivals: rivals(finding),
             features: best.map_or(Vec::new(), |m| features(m, picture, scale)),
             anew: None,
@@ -308,7 +331,7 @@ fn reason(part: &Part<'_>, picture: &Picture, finding: &Finding) -> String {
                 few.found(),
                 few.length(),
                 100.0 * few.inside(),
-                FEWEST[usize::from(part.turned)],
+                FEWEST[usize::from(part.axis.is_some())],
                 100.0 * INSIDE
             ),
             (_, n, None) => format!("none of {n} poses that its corners propose fits the picture"),

@@ -1,10 +1,12 @@
 //! Poses that ellipses of a picture propose: taken for circular edges of the part.
 
 use crate::camera::Pinhole;
+use crate::evidence::eye;
 use crate::hypotheses::{Hypothesis, plausible};
-use crate::part::Part;
+use crate::part::{Part, Stroke};
 use crate::picture::Picture;
 use crate::pose::circle::{circles, edge_poses};
+use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_predict::processing::Shape;
 use rayon::prelude::*;
@@ -22,7 +24,7 @@ pub fn of_ellipses(
     picture: &Picture,
     camera: &Pinhole,
 ) -> (Vec<Hypothesis>, usize) {
-    let turns = if part.turned { 1 } else { TURNS };
+    let turns = if part.axis.is_some() { 1 } else { TURNS };
     let conics = conics(picture);
     let found: Vec<(Vec<Hypothesis>, usize)> = conics
         .par_iter()
@@ -58,17 +60,27 @@ fn of_ellipse(
     turns: usize,
 ) -> (Vec<Hypothesis>, usize) {
     let (mut all, mut count) = (Vec::new(), 0);
-    for (of, stroke) in part.strokes.iter().enumerate() {
+    for &of in &part.circles {
+        let stroke = &part.strokes[of];
         let Curve::Circle(circle) = part.brep.curve(stroke.edge) else {
             continue;
         };
         for seen in circles(conic, camera, circle.radius) {
             for pose in edge_poses(&circle.frame, &seen, turns) {
                 count += 1;
+                if !faces(part, stroke, &eye(&pose)) {
+                    continue;
+                }
                 let names = [usize::MAX - number, of];
                 all.extend(plausible(part, picture, camera, pose, names));
             }
         }
     }
     (all, count)
+}
+
+/// Whether any of a stroke can be seen from an eye.
+fn faces(part: &Part<'_>, stroke: &Stroke, eye: &Point3<f64>) -> bool {
+    let mut marks = part.marks[stroke.marks.clone()].iter();
+    marks.any(|mark| mark.faces(eye))
 }

@@ -109,7 +109,7 @@ fn look(part: &Part<'_>, grey: &Grey, options: &Options) -> Finding {
 /// How far a pose is off another, of those that the part's symmetries make alike: of the middle, in the
 /// part's radius, and in radians.
 fn off(part: &Part<'_>, found: &Isometry3<f64>, truth: &Isometry3<f64>) -> [f64; 2] {
-    let each = part.symmetries.iter().map(|s| {
+    let each = part.turns().map(|s| {
         let pose = found * s;
         let moved = (pose * part.centre - truth * part.centre).norm() / part.radius;
         [moved, pose.rotation.angle_to(&truth.rotation)]
@@ -227,7 +227,7 @@ fn a_round_part_is_found_but_for_its_turn() {
     ]}));
     let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
     let part = sought(&evaluation, &Learned::nothing());
-    assert!(part.turned);
+    assert!(part.axis.is_some());
     for (seed, eye) in (1..).zip(EYES) {
         let truth = pose(&subject, eye, [0.1, 0.1, 0.0]);
         let grey = picture(&subject, &truth, seed);

@@ -6,7 +6,7 @@ mod symmetry;
 mod views;
 
 pub use marks::{Mark, Stroke, View};
-pub use symmetry::symmetries;
+pub use symmetry::Symmetry;
 
 use crate::learned::Learned;
 use crate::pose::chain::PartChain;
@@ -15,6 +15,7 @@ use premio_kernel::brep::Brep;
 use premio_kernel::brep::extent;
 use premio_kernel::brep::topology::{EdgeId, VertexId};
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::frame::Frame;
 use premio_predict::outline::Source;
 use views::Views;
 
@@ -34,9 +35,12 @@ pub struct Part<'a> {
     /// Points along them.
     pub marks: Vec<Mark>,
     /// The turns that bring the part onto itself; the first does nothing.
-    pub symmetries: Vec<Isometry3<f64>>,
-    /// Whether it is turned about one axis: all its edges are whole circles about it.
-    pub turned: bool,
+    pub symmetries: Vec<Symmetry>,
+    /// Of a part that is turned about one axis, all edges whole circles about it, the axis: z, through
+    /// the origin.
+    pub axis: Option<Frame>,
+    /// The strokes that are circles, whole or not: one of those that symmetries bring onto each other.
+    pub circles: Vec<usize>,
     /// The chains of straight edges with one edge, and with two, between their corners: one of each
     /// kind that symmetries bring onto each other.
     pub chains: [Vec<Chain>; 2],
@@ -60,13 +64,15 @@ impl<'a> Part<'a> {
         let (centre, radius) = (hull.centre(), 0.5 * hull.diagonal());
         let (strokes, marks) = marks::marks(brep, radius, states);
         let all = chains(brep, &strokes);
-        let symmetries = symmetries(brep, &strokes, &all[0], radius, centre);
+        let axis = symmetry::axis(brep, &strokes, radius);
+        let symmetries = symmetry::symmetries(brep, (&strokes, &marks), radius, axis.as_ref());
         Self {
             brep,
             band,
             centre,
             radius,
-            turned: is_turned(brep, &strokes, radius),
+            axis,
+            circles: circles(brep, &strokes, &symmetries),
             views: Views::new(),
             chains: all.map(|all| representatives(&all, &symmetries, radius)),
             symmetries,
@@ -77,8 +83,12 @@ impl<'a> Part<'a> {
 
     /// Whether anything of the part proposes poses: chains of straight edges, or circles.
     pub fn proposes(&self) -> bool {
-        let round = |s: &Stroke| matches!(self.brep.curve(s.edge), Curve::Circle(_));
-        self.chains.iter().any(|c| !c.is_empty()) || self.strokes.iter().any(round)
+        self.chains.iter().any(|c| !c.is_empty()) || !self.circles.is_empty()
+    }
+
+    /// The turns that bring the part onto itself; the first does nothing.
+    pub fn turns(&self) -> impl Iterator<Item = &Isometry3<f64>> {
+        self.symmetries.iter().map(|s| &s.turn)
     }
 
     /// The vertex in which two strokes meet.
@@ -89,8 +99,12 @@ impl<'a> Part<'a> {
         Some(self.brep.point(common))
     }
 
-    /// Four points that tell where the part is: its middle, and three about it.
+    /// Four points that tell where the part is: its middle, and three about it; of a part that is turned
+    /// about an axis, which may be turned by any angle, all on that.
     pub fn probes(&self) -> [Point3<f64>; 4] {
+        if let Some(axis) = &self.axis {
+            return [0.0, 1.0, -1.0, 0.5].map(|k| axis.point(0.0, 0.0, k * self.radius));
+        }
         let [x, y, z] = [0, 1, 2].map(|i| {
             let mut p = self.centre;
             p[i] += self.radius;
@@ -105,22 +119,12 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Whether all edges are whole circles about one axis.
-fn is_turned(brep: &Brep, strokes: &[Stroke], radius: f64) -> bool {
-    let circles = strokes.iter().map(|s| match brep.curve(s.edge) {
-        Curve::Circle(circle) if s.ends.is_none() => Some(circle.frame),
-        _ => None,
-    });
-    let Some(frames) = circles.collect::<Option<Vec<_>>>() else {
-        return false;
-    };
-    let Some(first) = frames.first() else {
-        return false;
-    };
-    frames.iter().all(|f| {
-        let off = (f.origin - first.origin).cross(&first.z).norm();
-        f.z.cross(&first.z).norm() < symmetry::SAME && off < symmetry::SAME * radius
-    })
+/// The circles among strokes, one of those that symmetries bring onto each other.
+fn circles(brep: &Brep, strokes: &[Stroke], symmetries: &[Symmetry]) -> Vec<usize> {
+    let round = |s: &usize| matches!(brep.curve(strokes[*s].edge), Curve::Circle(_));
+    let first = |s: &usize| symmetries.iter().all(|known| known.images[*s] >= *s);
+    let all = 0..strokes.len();
+    all.filter(|s| round(s) && first(s)).collect()
 }
 
 /// An edge that leaves a vertex.
@@ -190,7 +194,7 @@ fn add(brep: &Brep, at: &[Vec<Leaving>], a: VertexId, path: &[Leaving], all: &mu
 }
 
 /// One chain of each kind.
-fn representatives(all: &[Chain], symmetries: &[Isometry3<f64>], radius: f64) -> Vec<Chain> {
+fn representatives(all: &[Chain], symmetries: &[Symmetry], radius: f64) -> Vec<Chain> {
     let mut kept: Vec<Chain> = Vec::new();
     let near = |a: &PartChain, b: &PartChain| {
         (0..2).all(|i| {
@@ -200,8 +204,8 @@ fn representatives(all: &[Chain], symmetries: &[Isometry3<f64>], radius: f64) ->
     };
     for chain in all {
         let mut images = symmetries.iter().skip(1).map(|s| PartChain {
-            points: chain.lines.points.map(|p| s * p),
-            away: chain.lines.away.map(|d| s * d),
+            points: chain.lines.points.map(|p| s.turn * p),
+            away: chain.lines.away.map(|d| s.turn * d),
         });
         let seen = images.any(|i| kept.iter().any(|k| near(&k.lines, &i)));
         if !seen {

@@ -1,79 +1,232 @@
 //! The turns that bring a part onto itself.
+//!
+//! Such a turn keeps the middle of all edges where it is, and is told by where it brings two of them. Of
+//! the two that are the most unlike all others there are the fewest places to bring them.
 
-use super::Chain;
-use super::marks::Stroke;
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion};
+use super::marks::{Mark, Stroke};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use premio_kernel::brep::Brep;
+use premio_kernel::brep::topology::EdgeId;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::frame::Frame;
+use std::f64::consts::PI;
 
 /// Places and directions are the same within this part of the part's size.
 pub const SAME: f64 = 1.0 / (1 << 20) as f64;
+/// The same, of what several steps lead to.
+const NEAR: f64 = 64.0 * SAME;
+/// The same, of directions next to a place.
+const ALONG: f64 = 16.0 * NEAR;
+/// The least distance from the middle, in the part's size, and the least sine between two directions
+/// from there, that tell a turn.
+const APART: f64 = 1.0 / 64.0;
 
-/// The turns that bring the straight chains, and with them all edges, onto one another; the first
-/// does nothing. A part without such chains has no other that is known.
+/// A turn that brings a part onto itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Symmetry {
+    /// The turn.
+    pub turn: Isometry3<f64>,
+    /// By stroke: that which it is brought onto.
+    pub images: Vec<usize>,
+}
+
+/// The turns that bring all edges with their faces onto one another; the first does nothing. Of a part
+/// that is turned about an `axis` only those that bring the axis elsewhere.
+///
+/// Not all are found of a part whose edges have their middles on one line without being circles about
+/// it.
 pub fn symmetries(
     brep: &Brep,
-    strokes: &[Stroke],
-    chains: &[Chain],
+    (strokes, marks): (&[Stroke], &[Mark]),
     radius: f64,
-    centre: Point3<f64>,
-) -> Vec<Isometry3<f64>> {
-    let mut all = vec![Isometry3::identity()];
-    // A chain that is no plane one fixes a turn; the rarest length makes the fewest candidates.
-    let Some((first, frame)) = chains.iter().find_map(|c| Some((c, frame(c)?))) else {
-        return all;
+    axis: Option<&Frame>,
+) -> Vec<Symmetry> {
+    let edges = Edges::new(brep, strokes, marks, radius);
+    let mut all = vec![Symmetry {
+        turn: Isometry3::identity(),
+        images: (0..strokes.len()).collect(),
+    }];
+    let turns = match axis {
+        Some(axis) => vec![UnitQuaternion::from_scaled_axis(axis.x * PI)],
+        None => edges.turns(),
     };
-    let points = probes(brep, strokes);
-    for other in chains {
-        let Some(to) = self::frame(other) else {
-            continue;
-        };
-        let alike = |a: f64, b: f64| (a - b).abs() < SAME * radius;
-        let [l, m] = [first, other].map(|c| (c.lines.points[1] - c.lines.points[0]).norm());
-        if !alike(l, m) {
-            continue;
-        }
-        let rotation = to * frame.transpose();
-        let rotation = Rotation3::from_matrix_unchecked(rotation);
-        let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
-        let shift = other.lines.points[0] - rotation * first.lines.points[0];
+    for rotation in turns {
+        let shift = edges.middle - rotation * edges.middle;
         let turn = Isometry3::from_parts(Translation3::from(shift), rotation);
-        let still = (turn * centre - centre).norm() < SAME * radius;
-        let new = |s: &Isometry3<f64>| {
-            s.rotation.angle_to(&turn.rotation) > SAME
-                || (s * centre - turn * centre).norm() > SAME * radius
-        };
-        if still && all.iter().all(new) && holds(&turn, &points, radius) {
-            all.push(turn);
+        let known = |s: &Symmetry| s.turn.rotation.angle_to(&turn.rotation) < SAME;
+        if !all.iter().any(known)
+            && let Some(images) = edges.images(&turn)
+        {
+            all.push(Symmetry { turn, images });
         }
     }
     all
 }
 
-/// The frame of a chain: its middle line, and its first outer line across it.
-fn frame(chain: &Chain) -> Option<Matrix3<f64>> {
-    let [a, b] = chain.lines.points;
-    let z = (b - a).try_normalize(0.0)?;
-    let d = chain.lines.away[0];
-    let x = (d - z * z.dot(&d)).try_normalize(SAME)?;
+/// The axis that all edges are whole circles about, if there is one.
+pub fn axis(brep: &Brep, strokes: &[Stroke], radius: f64) -> Option<Frame> {
+    let circles = strokes.iter().map(|s| match brep.curve(s.edge) {
+        Curve::Circle(circle) if s.ends.is_none() => Some(circle.frame),
+        _ => None,
+    });
+    let frames = circles.collect::<Option<Vec<_>>>()?;
+    let first = *frames.first()?;
+    let about = |f: &Frame| {
+        let off = (f.origin - first.origin).cross(&first.z).norm();
+        f.z.cross(&first.z).norm() < SAME && off < SAME * radius
+    };
+    frames.iter().all(about).then_some(first)
+}
+
+/// What two places on both sides of an edge tell: the outward normals of its faces, and the
+/// directions into them.
+type Sides = [[Vector3<f64>; 2]; 2];
+
+/// The edges of a part.
+struct Edges<'a> {
+    brep: &'a Brep,
+    strokes: &'a [Stroke],
+    radius: f64,
+    /// The middle of all.
+    middle: Point3<f64>,
+    /// By stroke: from there to its own middle.
+    to: Vec<Vector3<f64>>,
+    /// By stroke: three points, and what lies on both sides there.
+    points: Vec<[(Point3<f64>, Sides); 3]>,
+}
+
+impl<'a> Edges<'a> {
+    fn new(brep: &'a Brep, strokes: &'a [Stroke], marks: &[Mark], radius: f64) -> Self {
+        let mean = |s: &Stroke| {
+            let own = &marks[s.marks.clone()];
+            own.iter().map(|m| m.point.coords).sum::<Vector3<f64>>() / own.len() as f64
+        };
+        let means: Vec<Vector3<f64>> = strokes.iter().map(mean).collect();
+        let lengths: f64 = strokes.iter().map(|s| s.length).sum();
+        let sum: Vector3<f64> = strokes.iter().zip(&means).map(|(s, m)| m * s.length).sum();
+        let middle = sum / lengths.max(f64::MIN_POSITIVE);
+        let three = |s: &Stroke| {
+            let own = &marks[s.marks.clone()];
+            [0, own.len() / 2, own.len() - 1].map(|k| {
+                let mark = &own[k];
+                (mark.point, sides(brep, s.edge, mark.parameter))
+            })
+        };
+        Self {
+            brep,
+            strokes,
+            radius,
+            middle: middle.into(),
+            to: means.iter().map(|m| m - middle).collect(),
+            points: strokes.iter().map(three).collect(),
+        }
+    }
+
+    /// Whether two strokes are alike, as far as their lengths and distances from the middle tell.
+    fn alike(&self, a: usize, b: usize) -> bool {
+        let [s, t] = [a, b].map(|k| &self.strokes[k]);
+        let same = |x: f64, y: f64| (x - y).abs() < NEAR * self.radius;
+        same(s.length, t.length)
+            && same(self.to[a].norm(), self.to[b].norm())
+            && s.ends.is_some() == t.ends.is_some()
+    }
+
+    /// Of some strokes that with the fewest like it.
+    fn rarest(&self, of: impl Iterator<Item = usize>) -> Option<usize> {
+        let count = |&a: &usize| {
+            let all = 0..self.strokes.len();
+            all.filter(|&b| self.alike(a, b)).count()
+        };
+        of.min_by_key(count)
+    }
+
+    /// The turns about the middle that bring two strokes onto others like them.
+    fn turns(&self) -> Vec<UnitQuaternion<f64>> {
+        let all = 0..self.strokes.len();
+        let away = |k: &usize| self.to[*k].norm() > APART * self.radius;
+        let Some(a) = self.rarest(all.clone().filter(away)) else {
+            return Vec::new();
+        };
+        let aside = |k: &usize| {
+            let [v, w] = [a, *k].map(|k| self.to[k].normalize());
+            v.cross(&w).norm() > APART
+        };
+        let Some(b) = self.rarest(all.clone().filter(away).filter(aside)) else {
+            return Vec::new();
+        };
+        let Some(from) = frame(&self.to[a], &self.to[b]) else {
+            return Vec::new();
+        };
+        let apart = |a: usize, b: usize| (self.to[a] - self.to[b]).norm();
+        let mut turns = Vec::new();
+        for c in all.clone().filter(|&c| self.alike(a, c)) {
+            for d in all.clone().filter(|&d| self.alike(b, d)) {
+                if (apart(a, b) - apart(c, d)).abs() > NEAR * self.radius {
+                    continue;
+                }
+                turns.extend(frame(&self.to[c], &self.to[d]).map(|to| {
+                    let rotation = Rotation3::from_matrix_unchecked(to * from.transpose());
+                    UnitQuaternion::from_rotation_matrix(&rotation)
+                }));
+            }
+        }
+        turns
+    }
+
+    /// By stroke that which a turn brings it onto, with its faces; none if there is none of any.
+    fn images(&self, turn: &Isometry3<f64>) -> Option<Vec<usize>> {
+        let all = 0..self.strokes.len();
+        let image = |a: usize| {
+            all.clone()
+                .find(|&b| self.alike(a, b) && self.is(turn, a, b))
+        };
+        all.clone().map(image).collect()
+    }
+
+    /// Whether a turn brings a stroke with its faces onto another.
+    fn is(&self, turn: &Isometry3<f64>, a: usize, b: usize) -> bool {
+        let near = |p: &Vector3<f64>, q: &Vector3<f64>| (p - q).norm() < NEAR * self.radius;
+        if !near(&(turn.rotation * self.to[a]), &self.to[b]) {
+            return false;
+        }
+        let edge = self.strokes[b].edge;
+        let curve = self.brep.curve(edge);
+        self.points[a].iter().all(|(point, own)| {
+            let to = turn * point;
+            let parameter = curve.parameter(&to);
+            let others = sides(self.brep, edge, parameter);
+            let own = own.map(|side| side.map(|v| turn.rotation * v));
+            let same = |k: usize, l: usize| (0..2).all(|i| along(&own[k][i], &others[l][i]));
+            near(&to.coords, &curve.point(parameter).coords)
+                && (same(0, 0) && same(1, 1) || same(0, 1) && same(1, 0))
+        })
+    }
+}
+
+fn along(v: &Vector3<f64>, w: &Vector3<f64>) -> bool {
+    (v - w).norm() < ALONG
+}
+
+/// What lies on both sides of an edge where its curve has a parameter.
+fn sides(brep: &Brep, edge: EdgeId, parameter: f64) -> Sides {
+    let curve = brep.curve(edge);
+    let (point, tangent) = (curve.point(parameter), curve.tangent(parameter));
+    let coedges = &brep.topology.edge(edge).coedges;
+    let side = |k: usize| {
+        let id = coedges[k.min(coedges.len() - 1)];
+        let normal = brep.outward(brep.topology.face_of(id), &point);
+        let run = tangent * brep.topology.coedge(id).sense.sign::<f64>();
+        [normal, normal.cross(&run)]
+    };
+    [side(0), side(1)]
+}
+
+/// A frame along one vector, aside of it towards another.
+fn frame(v: &Vector3<f64>, w: &Vector3<f64>) -> Option<Matrix3<f64>> {
+    let z = v.try_normalize(0.0)?;
+    let x = (w - z * z.dot(w)).try_normalize(0.0)?;
     Some(Matrix3::from_columns(&[x, z.cross(&x), z]))
 }
 
-/// Three points of every stroke: where they are tells it.
-fn probes(brep: &Brep, strokes: &[Stroke]) -> Vec<[Point3<f64>; 3]> {
-    let of = |s: &Stroke| {
-        let [a, b] = brep.range(s.edge);
-        [a, 0.5 * (a + b), b].map(|t| brep.curve(s.edge).point(t))
-    };
-    strokes.iter().map(of).collect()
-}
-
-/// Whether a turn brings every stroke onto one.
-fn holds(turn: &Isometry3<f64>, strokes: &[[Point3<f64>; 3]], radius: f64) -> bool {
-    let near = |a: &Point3<f64>, b: &Point3<f64>| (a - b).norm() < 64.0 * SAME * radius;
-    strokes.iter().all(|own| {
-        let [a, m, b] = own.map(|p| turn * p);
-        strokes.iter().any(|[x, y, z]| {
-            near(&m, y) && (near(&a, x) && near(&b, z) || near(&a, z) && near(&b, x))
-        })
-    })
-}
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,123 @@
+//! How many turns bring a part onto itself, by hand.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use crate::learned::Learned;
+use crate::part::Part;
+use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use std::fmt::Write;
+
+fn check(text: &str, turns: usize, circles: usize) {
+    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let evaluation = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
+    let part = Part::new(&evaluation.brep, evaluation.resolution, &Learned::nothing());
+    let found = (part.symmetries.len(), part.circles.len());
+    assert_eq!(found, (turns, circles), "{text}");
+    for symmetry in &part.symmetries {
+        let mut images = symmetry.images.clone();
+        images.sort_unstable();
+        assert!(images.into_iter().eq(0..part.strokes.len()), "{text}");
+    }
+}
+
+fn at(primitive: &str, [x, y, z]: [f64; 3]) -> String {
+    format!(r#"{{"prim": {primitive}, "transform": [{{"translate": [{x}, {y}, {z}]}}]}}"#)
+}
+
+fn block([x, y, z]: [f64; 3]) -> String {
+    let middle = [-0.5 * x, -0.5 * y, -0.5 * z];
+    at(&format!(r#""block", "size": [{x}, {y}, {z}]"#), middle)
+}
+
+fn cylinder(r: f64, h: f64, [x, y, z]: [f64; 3]) -> String {
+    let primitive = format!(r#""cylinder", "r": {r}, "h": {h}"#);
+    at(&primitive, [x, y, z - 0.5 * h])
+}
+
+fn less(body: &str, others: &[String]) -> String {
+    of("difference", body, others)
+}
+
+fn of(op: &str, body: &str, others: &[String]) -> String {
+    let mut text = format!(r#"{{"op": "{op}", "children": [{body}"#);
+    for other in others {
+        write!(text, ", {other}").unwrap();
+    }
+    text + "]}"
+}
+
+fn holes_about(count: u32) -> Vec<String> {
+    let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / f64::from(count) + 0.3;
+    let place = |k| [2.0 * angle(k).cos(), 2.0 * angle(k).sin(), 0.0];
+    (0..count).map(|k| cylinder(0.4, 3.0, place(k))).collect()
+}
+
+#[test]
+fn of_blocks() {
+    check(&block([1.0, 2.0, 3.0]), 4, 0);
+    check(&block([2.0, 2.0, 3.0]), 8, 0);
+    check(&block([2.0, 2.0, 2.0]), 24, 0);
+    // Two rims of a hole through the middle of the square sides.
+    let hole = [cylinder(0.5, 9.0, [0.0; 3])];
+    check(&less(&block([2.0, 2.0, 3.0]), &hole), 8, 1);
+    // And beside it.
+    let hole = [cylinder(0.5, 9.0, [0.2, 0.1, 0.0])];
+    check(&less(&block([2.0, 2.0, 3.0]), &hole), 1, 2);
+    let hole = [cylinder(0.5, 9.0, [0.2, 0.0, 0.0])];
+    check(&less(&block([2.0, 2.0, 3.0]), &hole), 2, 1);
+}
+
+/// Rows of holes: of nine the middle one, those at the corners and those between them are three kinds.
+#[test]
+fn of_plates_with_holes() {
+    let places = [-1.0, 0.0, 1.0];
+    let holes = places.map(|x| places.map(|y| cylinder(0.3, 9.0, [x, y, 0.0])));
+    check(&less(&block([4.0, 4.0, 1.0]), &holes.concat()), 8, 3);
+    let none_in_one_corner = &holes.concat()[1..];
+    // The diagonal is an axis; eight holes on both sides, four of them on it.
+    check(&less(&block([4.0, 4.0, 1.0]), none_in_one_corner), 2, 8);
+}
+
+/// A wedge's sides are all unlike but where the two that meet at the right angle are one length.
+#[test]
+fn of_wedges() {
+    check(r#"{"prim": "wedge", "size": [1.0, 2.0, 3.0]}"#, 1, 0);
+    check(r#"{"prim": "wedge", "size": [1.0, 3.0, 1.0]}"#, 2, 0);
+}
+
+/// Holes about an axis, of which the middle of the box is not where the axis is.
+#[test]
+fn of_flanges() {
+    let disc = cylinder(3.0, 1.0, [0.0; 3]);
+    for count in [3, 4, 5, 6] {
+        let holes = holes_about(count);
+        check(&less(&disc, &holes), 2 * count as usize, 2);
+        // With a boss on one side: both rims of holes and disc, and both edges of the boss.
+        let boss = [cylinder(1.0, 2.0, [0.0, 0.0, 1.0])];
+        let flange = of("union", &disc, &boss);
+        check(&less(&flange, &holes), count as usize, 6);
+    }
+}
+
+/// What is turned about an axis may be brought onto itself upside down.
+#[test]
+fn of_turned_parts() {
+    let shaft = cylinder(1.0, 6.0, [0.0; 3]);
+    check(&shaft, 2, 1);
+    let collar = |z| [cylinder(2.0, 1.0, [0.0, 0.0, z])];
+    check(&of("union", &shaft, &collar(0.0)), 2, 3);
+    check(&of("union", &shaft, &collar(1.0)), 1, 6);
+    // A hole across: its edges are no circles, and have their middles on a line with its own axis.
+    let across = r#"{"prim": "cylinder", "r": 0.5, "h": 8, "transform": [{"translate": [0, 0, -4]}, {"rotate": [[1, 0, 0], 90]}]}"#;
+    check(&less(&shaft, &[across.to_owned()]), 4, 1);
+}
+
+/// One side is the other's but for the sense of a bulge: the edges alone do not tell.
+#[test]
+fn of_a_bulge_and_a_hollow() {
+    let ball = |z: f64| at(r#""sphere", "r": 1.0"#, [0.0, 0.0, z]);
+    let both = of("union", &block([4.0, 4.0, 2.0]), &[ball(1.0), ball(-1.0)]);
+    check(&both, 8, 1);
+    let bulge = of("union", &block([4.0, 4.0, 4.0]), &[ball(2.0)]);
+    check(&less(&bulge, &[ball(-2.0)]), 4, 2);
+}

@@ -181,6 +181,33 @@ const OFF: f64 = 1.0;
 /// So many marks are all asked.
 const FEW: usize = 64;
 
+/// So many marks are asked at a glance, where there are many more; of fewer in the picture none is told.
+const GLANCE: usize = 32;
+/// At a pose that is about right a greater share of the marks has edges near.
+const AT_LEAST: f64 = 0.25;
+
+/// Whether so few of some marks have an edge near that a pose is not worth a closer look.
+pub fn is_unlikely(
+    part: &Part<'_>,
+    picture: &Picture,
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    view: &View,
+) -> bool {
+    let stride = part.marks.len() / GLANCE;
+    if stride <= 3 {
+        return false;
+    }
+    let (mut asked, mut found) = (0, 0);
+    for mark in visible(part, view, eye(pose)).step_by(stride) {
+        let seen = seen(camera, pose, mark);
+        let near = seen.and_then(|seen| near(picture, &seen, Reach::Coarse));
+        asked += usize::from(near.is_some());
+        found += usize::from(near.is_some_and(|near| near > 0.0));
+    }
+    asked >= GLANCE / 4 && (found as f64) < AT_LEAST * asked as f64
+}
+
 /// What a picture tells of a pose.
 pub fn evidence(
     part: &Part<'_>,

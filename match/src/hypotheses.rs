@@ -1,7 +1,7 @@
 //! Poses that a picture proposes: chains of its lines taken for chains of edges.
 
 use crate::camera::Pinhole;
-use crate::evidence::{COSINE, evidence, eye, seen, visible};
+use crate::evidence::{COSINE, evidence, eye, is_unlikely, seen, visible};
 use crate::part::{self, Part};
 use crate::picture::{self, Picture, Reach};
 use crate::pose::chain::{ImageChain, poses};
@@ -146,6 +146,9 @@ pub fn plausible(
     [chain, of]: [usize; 2],
 ) -> Option<Hypothesis> {
     let view = part.view(&eye(&pose));
+    if is_unlikely(part, picture, camera, &pose, view) {
+        return None;
+    }
     let told = evidence(part, picture, camera, &pose, view, Reach::Coarse);
     (told.inside() > INSIDE && told.ratio > 0.0).then_some(Hypothesis {
         pose,
@@ -200,9 +203,12 @@ pub fn drawn(
     reaches: &[f64],
 ) -> Option<Hypothesis> {
     let mut pose = start.pose;
-    for &reach in reaches {
+    // So many edges tell a pose well enough that more come only at the last.
+    let stride = 1 + part.marks.len() / MANY;
+    for (k, &reach) in reaches.iter().enumerate() {
         let view = part.view(&eye(&pose));
-        let pulls = pulls(part, picture, camera, &pose, view, reach);
+        let stride = if k + 1 < reaches.len() { stride } else { 1 };
+        let pulls = pulls(part, picture, camera, &pose, view, (reach, stride));
         if pulls.len() < 8 {
             return None;
         }
@@ -260,17 +266,20 @@ pub fn settled(
 /// How far, in pixels, marks are drawn to edges, round by round.
 pub const REACHES: [f64; 5] = [12.0, 8.0, 5.0, 3.0, 2.0];
 
-/// The edges that the marks of a part are drawn to.
-pub fn pulls(
+/// Of more marks only some are drawn to edges at first.
+const MANY: usize = 300;
+
+/// The edges that the marks of a part, or one in so many, are drawn to.
+fn pulls(
     part: &Part<'_>,
     picture: &Picture,
     camera: &Pinhole,
     pose: &Isometry3<f64>,
     view: &crate::part::View,
-    reach: f64,
+    (reach, stride): (f64, usize),
 ) -> Vec<Pull> {
     let mut all = Vec::new();
-    for mark in visible(part, view, eye(pose)) {
+    for mark in visible(part, view, eye(pose)).step_by(stride) {
         let Some(seen) = seen(camera, pose, mark) else {
             continue;
         };

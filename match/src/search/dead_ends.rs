@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 const RIVALS: usize = 3;
 
 /// Leaves the choices of a problem that are no dead ends; tells how many were.
-pub fn eliminate(terms: &mut Terms<'_>) -> u64 {
+pub fn eliminate(terms: &mut Terms) -> u64 {
     let users = users(terms);
     let mut eliminated = 0;
     loop {
@@ -38,7 +38,7 @@ pub fn eliminate(terms: &mut Terms<'_>) -> u64 {
 /// By piece: the features and choices that use it.
 type Users = BTreeMap<u32, Vec<(usize, Choice)>>;
 
-fn users(terms: &Terms<'_>) -> Users {
+fn users(terms: &Terms) -> Users {
     let mut users = Users::new();
     for (feature, choices) in terms.live.iter().enumerate() {
         for &choice in choices {
@@ -51,7 +51,7 @@ fn users(terms: &Terms<'_>) -> Users {
 }
 
 /// The choices of a feature that add the most by themselves and at best with others.
-fn rivals(terms: &Terms<'_>, feature: usize) -> Vec<Choice> {
+fn rivals(terms: &Terms, feature: usize) -> Vec<Choice> {
     let most = |own: Choice| {
         let links = terms.all[feature].iter().map(|&l| {
             let link = &terms.links[l];
@@ -69,7 +69,7 @@ fn rivals(terms: &Terms<'_>, feature: usize) -> Vec<Choice> {
 /// Whether a rival can take the place of a choice in any assignment: what it uses besides is used by no
 /// other feature.
 fn is_free(
-    terms: &Terms<'_>,
+    terms: &Terms,
     users: &Users,
     feature: usize,
     choice: Choice,
@@ -82,7 +82,7 @@ fn is_free(
 }
 
 /// How much more a rival adds than a choice, whatever the others are.
-fn gain(terms: &Terms<'_>, feature: usize, choice: Choice, rival: Choice) -> f64 {
+fn gain(terms: &Terms, feature: usize, choice: Choice, rival: Choice) -> f64 {
     let own = terms.own[feature][rival] - terms.own[feature][choice];
     let pieces = terms.pieces(feature, choice);
     let links = terms.all[feature].iter().map(|&l| {

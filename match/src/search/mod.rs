@@ -114,7 +114,7 @@ pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
 
 /// A search under way.
 struct State<'a> {
-    terms: &'a Terms<'a>,
+    terms: &'a Terms,
     effort: Effort,
     most: u64,
     best: Option<(f64, Assignment)>,

@@ -2,33 +2,42 @@
 
 use super::problem::Assignment;
 use super::terms::{Choice, Terms};
-use std::collections::BTreeSet;
 
 /// A path, with its score and bound.
 pub struct Path<'a> {
-    terms: &'a Terms<'a>,
+    terms: &'a Terms,
     choices: Vec<Choice>,
     /// By length: the score up to there.
     scores: Vec<f64>,
-    used: BTreeSet<u32>,
+    /// By piece: whether an assignment uses it.
+    used: Vec<bool>,
     /// By link and choice of its later member: the most that it can add.
     ceilings: Vec<Vec<f64>>,
+    /// By feature that is left: the most that it can add.
+    most: Vec<f64>,
+    /// By length: what `most` was of the features that the last assignment bears on.
+    before: Vec<Vec<f64>>,
 }
 
 impl<'a> Path<'a> {
     /// The path of length zero.
-    pub fn new(terms: &'a Terms<'a>) -> Self {
-        Self {
+    pub fn new(terms: &'a Terms) -> Self {
+        let mut path = Self {
             terms,
             choices: Vec::new(),
             scores: vec![0.0],
-            used: BTreeSet::new(),
+            used: vec![false; terms.count],
             ceilings: terms.ceilings(),
-        }
+            most: Vec::new(),
+            before: Vec::new(),
+        };
+        let all = 0..terms.own.len();
+        path.most = all.map(|feature| path.most(feature)).collect();
+        path
     }
 
     /// The complete path of the most promising choices, one after another.
-    pub fn promising(terms: &'a Terms<'a>) -> Self {
+    pub fn promising(terms: &'a Terms) -> Self {
         let mut path = Self::new(terms);
         while let Some(&choice) = path.next().first() {
             path.push(choice);
@@ -53,14 +62,15 @@ impl<'a> Path<'a> {
 
     /// What no completion has more than.
     pub fn bound(&self) -> f64 {
-        let left = self.choices.len()..self.terms.own.len();
-        let most = left.map(|feature| {
-            let free = |c: &&Choice| self.is_free(feature, **c);
-            let choices = self.terms.live[feature].iter().filter(free);
-            let added = choices.map(|&c| self.added(feature, c));
-            added.fold(f64::NEG_INFINITY, f64::max)
-        });
-        self.score() + most.sum::<f64>()
+        self.score() + self.most[self.choices.len()..].iter().sum::<f64>()
+    }
+
+    /// The most that a feature that is left can add.
+    fn most(&self, feature: usize) -> f64 {
+        let free = |c: &&Choice| self.is_free(feature, **c);
+        let choices = self.terms.live[feature].iter().filter(free);
+        let added = choices.map(|&c| self.added(feature, c));
+        added.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The choices for the next feature that use no piece twice, the most promising first.
@@ -77,7 +87,7 @@ impl<'a> Path<'a> {
 
     fn is_free(&self, feature: usize, choice: Choice) -> bool {
         let pieces = self.terms.pieces(feature, choice);
-        pieces.iter().all(|p| !self.used.contains(p))
+        pieces.iter().all(|&p| !self.used[p as usize])
     }
 
     /// What a choice adds by itself and with the features before it; with those that are not assigned,
@@ -95,21 +105,36 @@ impl<'a> Path<'a> {
 
     /// Assigns the next feature.
     pub fn push(&mut self, choice: Choice) {
+        let terms = self.terms;
         let feature = self.choices.len();
         let added = self.added(feature, choice);
         self.scores.push(self.score() + added);
-        self.used.extend(self.terms.pieces(feature, choice));
+        self.uses(feature, choice, true);
         self.choices.push(choice);
+        let others = &terms.others[feature];
+        let before = others.iter().map(|&other| self.most[other]).collect();
+        self.before.push(before);
+        for &other in others {
+            self.most[other] = self.most(other);
+        }
     }
 
     /// Takes the last assignment back.
     pub fn pop(&mut self) {
-        self.scores.pop();
-        let Some(choice) = self.choices.pop() else {
+        let (Some(choice), Some(before)) = (self.choices.pop(), self.before.pop()) else {
             return;
         };
-        for piece in self.terms.pieces(self.choices.len(), choice) {
-            self.used.remove(piece);
+        self.scores.pop();
+        let feature = self.choices.len();
+        self.uses(feature, choice, false);
+        for (&other, most) in self.terms.others[feature].iter().zip(before) {
+            self.most[other] = most;
+        }
+    }
+
+    fn uses(&mut self, feature: usize, choice: Choice, used: bool) {
+        for &piece in self.terms.pieces(feature, choice) {
+            self.used[piece as usize] = used;
         }
     }
 }

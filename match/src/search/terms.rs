@@ -1,7 +1,7 @@
 //! A problem as a sum over its features and over pairs of them, with the choices that are left of it.
 
-use super::problem::Problem;
-use std::collections::BTreeMap;
+use super::problem::{Candidate, Problem};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The number of a choice of a feature: 0 if it is missed, k + 1 for its candidate k.
 pub type Choice = usize;
@@ -45,9 +45,7 @@ impl Link {
 }
 
 /// The terms of a problem's score.
-pub struct Terms<'a> {
-    /// The problem.
-    pub problem: &'a Problem,
+pub struct Terms {
     /// By feature and choice: what it adds by itself.
     pub own: Vec<Vec<f64>>,
     /// By pair of features.
@@ -58,11 +56,17 @@ pub struct Terms<'a> {
     pub closing: Vec<Vec<usize>>,
     /// By feature: the choices that are left.
     pub live: Vec<Vec<Choice>>,
+    /// By feature: those after it that its choice bears on, by a link or by a piece that both can use.
+    pub others: Vec<Vec<usize>>,
+    /// How many pieces there are.
+    pub count: usize,
+    /// By feature and candidate: the pieces that it uses, numbered anew.
+    pieces: Vec<Vec<Vec<u32>>>,
 }
 
-impl<'a> Terms<'a> {
+impl Terms {
     /// The terms of a problem, with all choices.
-    pub fn new(problem: &'a Problem) -> Self {
+    pub fn new(problem: &Problem) -> Self {
         let features = problem.features.len();
         let (mut links, mut own) = (BTreeMap::new(), Vec::with_capacity(features));
         for (f, feature) in problem.features.iter().enumerate() {
@@ -99,9 +103,12 @@ impl<'a> Terms<'a> {
             }
         }
         let live = own.iter().map(|o: &Vec<f64>| (0..o.len()).collect());
+        let (pieces, count) = numbered(problem);
         Self {
-            problem,
             live: live.collect(),
+            others: others(&pieces, &links),
+            pieces,
+            count,
             own,
             links,
             all,
@@ -110,9 +117,9 @@ impl<'a> Terms<'a> {
     }
 
     /// The pieces that a choice uses.
-    pub fn pieces(&self, feature: usize, choice: Choice) -> &'a [u32] {
-        let candidates = &self.problem.features[feature].candidates;
-        choice.checked_sub(1).map_or(&[], |c| &candidates[c].pieces)
+    pub fn pieces(&self, feature: usize, choice: Choice) -> &[u32] {
+        let candidates = &self.pieces[feature];
+        choice.checked_sub(1).map_or(&[], |c| &candidates[c])
     }
 
     /// By link and choice of its later member: the most that it can add.
@@ -127,4 +134,38 @@ impl<'a> Terms<'a> {
         };
         self.links.iter().map(ceiling).collect()
     }
+}
+
+/// By feature and candidate the pieces that it uses, numbered one after the other, and how many there
+/// are.
+fn numbered(problem: &Problem) -> (Vec<Vec<Vec<u32>>>, usize) {
+    let mut numbers = BTreeMap::new();
+    let mut number = |piece: &u32| {
+        let next = numbers.len() as u32;
+        *numbers.entry(*piece).or_insert(next)
+    };
+    let mut of = |candidate: &Candidate| candidate.pieces.iter().map(&mut number).collect();
+    let features = problem.features.iter();
+    let all = features.map(|f| f.candidates.iter().map(&mut of).collect());
+    (all.collect(), numbers.len())
+}
+
+/// See [`Terms::others`].
+fn others(pieces: &[Vec<Vec<u32>>], links: &[Link]) -> Vec<Vec<usize>> {
+    let mut all = vec![BTreeSet::new(); pieces.len()];
+    for link in links {
+        all[link.members[0]].insert(link.members[1]);
+    }
+    let mut users: BTreeMap<u32, BTreeSet<usize>> = BTreeMap::new();
+    for (feature, candidates) in pieces.iter().enumerate() {
+        for &piece in candidates.iter().flatten() {
+            users.entry(piece).or_default().insert(feature);
+        }
+    }
+    for users in users.values() {
+        for &first in users {
+            all[first].extend(users.range(first + 1..));
+        }
+    }
+    all.into_iter().map(|o| o.into_iter().collect()).collect()
 }

@@ -37,12 +37,11 @@ impl Scene<'_> {
         })
     }
 
-    /// Whether a face lies between a point of the face `own` and the eye: what does is left by the line
-    /// of sight through a face turned towards the eye.
-    pub fn is_hidden(&self, p: &Point3<f64>, own: FaceId) -> bool {
-        let through = |face| if face == own { Own::Through } else { Own::No };
+    /// Whether a face lies between a point and the eye, with what `own` says about those through it: what
+    /// does is left by the line of sight through a face turned towards the eye.
+    pub fn is_hidden(&self, p: &Point3<f64>, own: &impl Fn(FaceId) -> Own) -> bool {
         let ray = self.ray(p);
-        self.crossings(&ray, &through).iter().any(|crossing| {
+        self.crossings(&ray, own).iter().any(|crossing| {
             let q = ray.origin + ray.towards * crossing.at;
             !crossing.touches
                 && self.is_turned(crossing.face, &q, &ray.towards)

@@ -13,7 +13,7 @@ use crate::pose::chain::PartChain;
 use nalgebra::{Isometry3, Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::extent;
-use premio_kernel::brep::topology::{EdgeId, VertexId};
+use premio_kernel::brep::topology::{EdgeId, FaceId, VertexId};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
 use premio_predict::outline::Source;
@@ -89,6 +89,17 @@ impl<'a> Part<'a> {
     /// The turns that bring the part onto itself; the first does nothing.
     pub fn turns(&self) -> impl Iterator<Item = &Isometry3<f64>> {
         self.symmetries.iter().map(|s| &s.turn)
+    }
+
+    /// The faces on both sides of a mark of an edge.
+    fn faces(&self, mark: &Mark) -> [FaceId; 2] {
+        let coedges = &self
+            .brep
+            .topology
+            .edge(self.strokes[mark.stroke].edge)
+            .coedges;
+        let side = |k: usize| coedges[k.min(coedges.len() - 1)];
+        [0, 1].map(|k| self.brep.topology.face_of(side(k)))
     }
 
     /// The vertex in which two strokes meet.

@@ -3,17 +3,20 @@
 use super::Part;
 use super::marks::{Mark, View};
 use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::topology::FaceId;
 use premio_predict::sphere::{Lattice, Sampling, points};
 use premio_visibility::camera::Camera;
-use premio_visibility::contour::{Contour, Kind, Piece};
-use premio_visibility::view::contours;
+use premio_visibility::projection::Projection;
+use premio_visibility::sight::{Own, Scene};
+use premio_visibility::strand::{Junctions, LimbArc, limb_arcs};
+use premio_visibility::view::part_size;
 use std::sync::OnceLock;
 
 /// How many directions there are.
 const DIRECTIONS: usize = 320;
 /// How far the eyes are from the middle of the part, in its radius.
 const DISTANCE: f64 = 6.0;
-/// How many marks a piece of a limb has.
+/// How many marks a limb has.
 const MARKS: usize = 24;
 
 /// The views of a part.
@@ -48,71 +51,142 @@ impl Views {
 }
 
 /// The view from a direction; where there is none, nothing is hidden.
+///
+/// It is asked at marks alone, and needs no junctions of contours, which most of the time of a whole
+/// view goes to.
 fn view(part: &Part<'_>, direction: &Vector3<f64>) -> View {
     let eye = part.centre + direction * (DISTANCE * part.radius);
-    let nothing = || View {
-        hidden: vec![false; part.marks.len()],
-        limbs: Vec::new(),
-    };
-    let Ok(camera) = Camera::perspective(eye, part.centre, Vector3::z(), 1.0) else {
-        return nothing();
-    };
-    match contours(part.brep, &camera, part.band) {
-        Ok(contours) => of(part, &contours.contours, &eye),
-        Err(_) => nothing(),
-    }
-}
-
-/// What contours that an eye sees tell of the marks of a part.
-pub fn of(part: &Part<'_>, contours: &[Contour], eye: &Point3<f64>) -> View {
     let mut view = View {
         hidden: vec![false; part.marks.len()],
         limbs: Vec::new(),
     };
-    let mut by_edge = vec![None; part.brep.topology.edges.len()];
-    for contour in contours {
-        match (contour.kind, contour.edge) {
-            (Kind::Boundary, Some(edge)) => by_edge[edge.0 as usize] = Some(contour),
-            (Kind::Limb, _) => limb(part, contour, &mut view.limbs),
-            _ => {}
-        }
+    let Ok(camera) = Camera::perspective(eye, part.centre, Vector3::z(), 1.0) else {
+        return view;
+    };
+    let projection = Projection::new(&camera, part_size(part.brep));
+    let scene = Scene::new(part.brep, &projection, part.band);
+    if scene.eye_inside() {
+        return view;
     }
-    for stroke in &part.strokes {
-        let Some(contour) = by_edge[stroke.edge.0 as usize] else {
-            continue;
-        };
-        for i in stroke.marks.clone() {
-            let mark = &part.marks[i];
-            // What the own faces hide is asked where the eye really is.
-            view.hidden[i] = mark.faces(eye) && !is_visible(contour, mark.parameter);
+    for (hidden, mark) in view.hidden.iter_mut().zip(&part.marks) {
+        // What the own faces hide is asked where the eye really is.
+        *hidden = mark.faces(&eye) && is_hidden(&scene, mark, part.faces(mark), Own::Through);
+    }
+    let mut junctions = Junctions::new(&projection, part.brep.topology.vertices as usize);
+    if let Ok(limbs) = limb_arcs(&scene, &mut junctions) {
+        for (number, arc) in limbs.arcs.iter().enumerate() {
+            let stroke = part.strokes.len() + number;
+            let visible = |mark: &Mark| !is_hidden(&scene, mark, [arc.face; 2], Own::Tangent);
+            view.limbs.extend(limb(arc, stroke).filter(visible));
         }
     }
     view
 }
 
-fn is_visible(contour: &Contour, t: f64) -> bool {
-    contour.pieces.iter().any(|piece| {
-        let [from, to] = piece.t;
-        let t = contour.curve3.in_cycle(t, from);
-        piece.visible && t >= from && t <= to
+/// Whether anything lies before a mark on faces that a line of sight leaves so.
+fn is_hidden(scene: &Scene<'_>, mark: &Mark, faces: [FaceId; 2], leaves: Own) -> bool {
+    let own = |face| {
+        if faces.contains(&face) {
+            leaves
+        } else {
+            Own::No
+        }
+    };
+    scene.is_hidden(&mark.point, &own)
+}
+
+/// The marks of a limb.
+fn limb(arc: &LimbArc, stroke: usize) -> impl Iterator<Item = Mark> {
+    let [from, to] = arc.range;
+    (0..MARKS).map(move |k| {
+        let parameter = from + (to - from) * (k as f64 + 0.5) / MARKS as f64;
+        Mark {
+            point: arc.curve.point(parameter),
+            tangent: arc.curve.tangent(parameter),
+            normals: None,
+            parameter,
+            stroke,
+            step: arc.curve.speed(parameter) * (to - from) / MARKS as f64,
+        }
     })
 }
 
-/// The marks of the visible pieces of a limb.
-fn limb(part: &Part<'_>, contour: &Contour, marks: &mut Vec<Mark>) {
-    let stroke = part.strokes.len() + contour.id as usize;
-    for Piece { t: [from, to], .. } in contour.pieces.iter().filter(|p| p.visible) {
-        for k in 0..MARKS {
-            let parameter = from + (to - from) * (k as f64 + 0.5) / MARKS as f64;
-            let point = contour.curve3.point(parameter);
-            marks.push(Mark {
-                point,
-                tangent: contour.curve3.tangent(parameter),
-                normals: None,
-                parameter,
-                stroke,
-                step: contour.curve3.speed(parameter) * (to - from) / MARKS as f64,
-            });
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+    use super::*;
+    use crate::learned::Learned;
+    use premio_csg::boundary::{EvaluationOptions, evaluate};
+    use premio_csg::reader::{Format, Options, read};
+    use premio_visibility::contour::{Contour, Kind, Piece};
+    use premio_visibility::view::contours;
+
+    /// A plate with a hole, a boss and a ball: edges and limbs that hide one another.
+    const PART: &str = r#"{"op": "union", "children": [
+        {"op": "difference", "children": [
+            {"prim": "block", "size": [6, 4, 1]},
+            {"prim": "cylinder", "r": 0.7, "h": 4, "transform": [{"translate": [4.5, 2.5, -1]}]}
+        ]},
+        {"prim": "cylinder", "r": 0.9, "h": 2.5, "transform": [{"translate": [1.5, 1.5, 0.5]}]},
+        {"prim": "sphere", "r": 0.8, "transform": [{"translate": [3, 1.2, 1.3]}]}
+    ]}"#;
+
+    fn is_visible(contour: &Contour, t: f64) -> bool {
+        let within = |piece: &&Piece| {
+            let [from, to] = piece.t;
+            let t = contour.curve3.in_cycle(t, from);
+            t >= from && t <= to
+        };
+        contour
+            .pieces
+            .iter()
+            .find(within)
+            .is_some_and(|p| p.visible)
+    }
+
+    #[test]
+    fn marks_are_hidden_where_contours_are() {
+        let tree = read("part", PART.as_bytes(), Format::Json, &Options::default()).unwrap();
+        let evaluation = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
+        let part = Part::new(&evaluation.brep, evaluation.resolution, &Learned::nothing());
+        let (mut hidden, mut limbs) = (0, 0);
+        for direction in part.views.directions.iter().step_by(7) {
+            let view = view(&part, direction);
+            let eye = part.centre + direction * (DISTANCE * part.radius);
+            let camera = Camera::perspective(eye, part.centre, Vector3::z(), 1.0).unwrap();
+            let all = contours(part.brep, &camera, part.band).unwrap().contours;
+            for (mark, &known) in part.marks.iter().zip(&view.hidden) {
+                let edge = Some(part.strokes[mark.stroke].edge);
+                let contour = all.iter().find(|c| c.edge == edge).unwrap();
+                let visible = is_visible(contour, mark.parameter);
+                assert_eq!(
+                    visible,
+                    mark.faces(&eye) && !known,
+                    "{direction:?} {mark:?}"
+                );
+                hidden += usize::from(known);
+            }
+            // So much of every limb's length is visible, within a mark at each end of a piece.
+            for contour in all.iter().filter(|c| c.kind == Kind::Limb) {
+                let length = |p: &Piece| p.t[1] - p.t[0];
+                let shown = contour.pieces.iter().filter(|p| p.visible).map(length);
+                let share = shown.sum::<f64>() / contour.pieces.iter().map(length).sum::<f64>();
+                let own = |m: &&Mark| {
+                    let curve = &contour.curve3;
+                    let t = curve.in_cycle(curve.parameter(&m.point), contour.pieces[0].t[0]);
+                    let within = contour.pieces.iter().any(|p| t >= p.t[0] && t <= p.t[1]);
+                    within && (curve.point(t) - m.point).norm() < part.band.sqrt()
+                };
+                let marks = view.limbs.iter().filter(own).count() as f64 / MARKS as f64;
+                let allowed = 2.0 * contour.pieces.len() as f64 / MARKS as f64;
+                assert!(
+                    (marks - share).abs() <= allowed,
+                    "{direction:?} {marks} {share}"
+                );
+                limbs += 1;
+            }
         }
+        assert!(hidden > 100 && limbs > 100, "{hidden} {limbs}");
     }
 }

@@ -68,13 +68,7 @@ fn rivals(terms: &Terms, feature: usize) -> Vec<Choice> {
 
 /// Whether a rival can take the place of a choice in any assignment: what it uses besides is used by no
 /// other feature.
-fn is_free(
-    terms: &Terms,
-    users: &Users,
-    feature: usize,
-    choice: Choice,
-    rival: Choice,
-) -> bool {
+fn is_free(terms: &Terms, users: &Users, feature: usize, choice: Choice, rival: Choice) -> bool {
     let own = terms.pieces(feature, choice);
     let besides = terms.pieces(feature, rival).iter();
     let mut others = besides.filter(|p| !own.contains(p)).flat_map(|p| &users[p]);

@@ -11,7 +11,7 @@ use premio_kernel::brep::topology::FaceId;
 use premio_visibility::camera::{Camera, CameraError};
 use premio_visibility::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece};
 use premio_visibility::projection::Projection;
-use premio_visibility::sight::Scene;
+use premio_visibility::sight::{Own, Scene};
 use premio_visibility::{ViewError, contours};
 use std::collections::HashMap;
 
@@ -192,10 +192,11 @@ impl<'a> Stage<'a> {
     pub fn is_lit(&self, light: usize, p: &Point3<f64>, face: FaceId) -> bool {
         let (_, views) = &self.lights[light];
         let before = |v: &&Sightings<'_>| views.len() == 1 || v.scene.projection.depth(p) > 0.0;
+        let own = |other| if other == face { Own::Through } else { Own::No };
         views
             .iter()
             .find(before)
-            .is_some_and(|v| !v.scene.is_hidden(p, face))
+            .is_some_and(|v| !v.scene.is_hidden(p, &own))
     }
 
     /// The face that is seen at a point of the image, and where on it.

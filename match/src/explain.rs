@@ -22,13 +22,14 @@ pub fn explained(best: &Match, report: &Report) -> String {
     let _ = writeln!(
         text,
         "odds {:.1}: edges {:.2} px off contours, {:.0} % of these in the picture; the shape told by {:.1}, \
-         denied by {:.1}, {:.0} % apart from one plane; {} edges go on past a vertex",
+         denied by {:.1}, {:.0} % apart from one plane, {:.0} % framed; {} edges go on past a vertex",
         best.odds,
         best.rms,
         100.0 * best.inside(),
         best.shape.told,
         best.shape.denied,
         100.0 * best.shape.relief,
+        100.0 * best.framed,
         best.past()
     );
     if !report.rivals.is_empty() {

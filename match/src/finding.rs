@@ -90,6 +90,9 @@ pub struct Match {
     pub odds: f64,
     /// What is told of the part's shape.
     pub shape: Shape,
+    /// How much of what is found runs along the picture's rows and columns, from nothing to one: all of
+    /// it, some along either.
+    pub framed: f64,
     /// What the pose is fitted to: the logarithm of how many times the space of poses is larger than
     /// its uncertainty.
     pub fitted: f64,

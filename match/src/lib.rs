@@ -9,6 +9,7 @@ pub mod correspondence;
 pub mod evidence;
 pub mod explain;
 pub mod finding;
+mod framed;
 pub mod hypotheses;
 pub mod learned;
 pub mod look;

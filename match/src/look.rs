@@ -4,6 +4,7 @@
 use crate::camera::Pinhole;
 use crate::correspondence::{BESIDE, Correspondence};
 use crate::finding::{Finding, Found, Match, Options, Pair};
+use crate::framed::framed;
 use crate::hypotheses::{
     Hypothesis, REACHES, best_first, distinct, drawn, hypotheses, is_same, settled,
 };
@@ -138,6 +139,7 @@ impl Look<'_> {
             ratio: 0.0,
             odds: 0.0,
             shape: Shape::default(),
+            framed: 0.0,
             fitted: fitted(self.part, self.camera, self.picture.size, &pose, &told),
             relations: related(problem, solution),
             pairs: pairs(problem, &arcs, solution),
@@ -154,6 +156,7 @@ impl Look<'_> {
     fn judged(&self, found: Match) -> Match {
         let mut judged = found;
         judged.shape = Shape::of(self.part, self.camera, &judged);
+        judged.framed = framed(self.picture, &judged.pairs);
         judged.odds = odds(&judged, self.picture.straightness);
         judged
     }

@@ -7,7 +7,7 @@ use crate::part::Part;
 use crate::picture::Picture;
 use crate::search::Effort;
 use crate::shape::Shape;
-use crate::worth::{FEWEST, SMALLEST, is_flat};
+use crate::worth::{FEWEST, SMALLEST, is_figure};
 use nalgebra::{Isometry3, Matrix3};
 use premio_kernel::geometry::frame::Frame;
 use premio_predict::outline::Source;
@@ -158,6 +158,9 @@ pub struct Report {
     pub odds: Option<f64>,
     /// What is told of the part's shape.
     pub shape: Option<Shape>,
+    /// How much of what is found runs along the picture's rows and columns, from nothing to one: all of
+    /// it, some along either, as of what is drawn or framed.
+    pub framed: Option<f64>,
     /// The same as `ratio` against clutter alone: what the search maximises.
     pub score: Option<f64>,
     /// What of the score the pose is fitted to.
@@ -219,6 +222,7 @@ impl Report {
             ratio: best.map(|m| m.ratio),
             odds: best.map(|m| m.odds),
             shape: best.map(|m| m.shape),
+            framed: best.map(|m| m.framed),
             score: best.map(|m| m.score),
             fitted: best.map(|m| m.fitted),
             inside: best.map(Match::inside),
@@ -338,8 +342,8 @@ fn reason(part: &Part<'_>, picture: &Picture, finding: &Finding) -> String {
         };
     };
     let (found, all) = (best.found(), best.pairs.len());
-    let others = match is_flat(best) {
-        true => "all of it could be a figure on a flat thing",
+    let others = match is_figure(best) {
+        true => "all of it could be a figure on a flat thing, or a frame",
         false => "other things look as much like it",
     };
     format!(

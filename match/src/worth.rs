@@ -54,6 +54,9 @@ const SHAPE: f64 = 6.0;
 const FLAT: f64 = 10.0;
 const RELIEF: f64 = 0.09;
 const FIGURE: [f64; 2] = [5.0, 8.0];
+/// What it tells that all runs along the picture's rows and columns, where little is told of the shape:
+/// it may be drawn, or a frame.
+const FRAMED: f64 = 20.0;
 /// The nearest and the farthest place of a part, in its radius.
 const DEPTHS: [f64; 2] = [1.5, 75.0];
 
@@ -61,8 +64,8 @@ const DEPTHS: [f64; 2] = [1.5, 75.0];
 /// found. What the pose is fitted to is not told by it (`fitted`).
 ///
 /// The weights, and those of [`odds`], are those that part the right poses from the wrong ones best in
-/// the pictures of `tests/pictures/find.py`, and in 166 others in which no part is; `ODDS` is where no
-/// wrong one of the former is accepted.
+/// the pictures of `tests/pictures/find.py`, and in others in which no part is; `ODDS` is where no wrong
+/// one of the former is accepted.
 pub fn ratio(found: &Match, straightness: f64) -> f64 {
     let [related, unrelated] = found.relations;
     let against: f64 = found.pairs.iter().map(|p| p.against.min(0.0)).sum();
@@ -97,17 +100,28 @@ pub fn odds(found: &Match, straightness: f64) -> f64 {
         - PAST * f64::from(found.past())
         + TOLD * (shape.clamp(-SHAPE, SHAPE) - SHAPE)
         - FLAT * flat(&found.shape)
+        - FRAMED * framed(found)
 }
 
-/// Whether what is found lies about one plane and tells little of its shape.
-pub fn is_flat(found: &Match) -> bool {
-    flat(&found.shape) > 0.5
+/// Whether what is found lies about one plane, or along the picture's rows and columns, and tells little
+/// of its shape.
+pub fn is_figure(found: &Match) -> bool {
+    flat(&found.shape).max(framed(found)) > 0.5
+}
+
+/// From one, if what is found runs along rows and columns and tells little of its shape, to nothing.
+fn framed(found: &Match) -> f64 {
+    found.framed * (1.0 - figure(&found.shape))
 }
 
 /// From one, if what is found lies about one plane and tells little of its shape, to nothing.
 fn flat(shape: &Shape) -> f64 {
-    let figure = (shape.ratio() - FIGURE[0]) / (FIGURE[1] - FIGURE[0]);
-    1.0 - (shape.relief / RELIEF).max(figure).clamp(0.0, 1.0)
+    1.0 - (shape.relief / RELIEF).max(figure(shape)).min(1.0)
+}
+
+/// From nothing to one, how far a figure's shape is told.
+fn figure(shape: &Shape) -> f64 {
+    ((shape.ratio() - FIGURE[0]) / (FIGURE[1] - FIGURE[0])).clamp(0.0, 1.0)
 }
 
 /// What relations tell for and against an assignment.

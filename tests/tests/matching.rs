@@ -218,6 +218,37 @@ fn a_frame_is_not_taken_for_a_block() {
     }
 }
 
+/// A drawn chessboard, and pictures side by side: squares could be the sides of cubes.
+#[test]
+fn what_is_drawn_is_not_taken_for_a_cube() {
+    let board = |x: usize, y: usize| ((x / 120 + (y + 9) / 83) % 2) as f32 * 255.0;
+    let panels = |x: usize, y: usize| match x % 140 < 4 || y % 140 < 4 {
+        true => 255.0,
+        false => 40.0 + ((x / 140 + 2 * (y / 140)) % 5) as f32 * 35.0,
+    };
+    let drawn: [&dyn Fn(usize, usize) -> f32; 2] = [&board, &panels];
+    let cube = part(&json!({"prim": "block", "size": [1.0, 1.0, 1.0]}));
+    let cube = sought(&cube, &Learned::nothing());
+    for draw in drawn {
+        let grey = Grey::of(640, 480, draw);
+        let look = Look {
+            part: &cube,
+            learned: &Learned::nothing(),
+            picture: &Picture::new(&grey, &detector()),
+            camera: &Pinhole {
+                focal: [700.0, 700.0],
+                centre: [319.5, 239.5],
+                skew: 0.0,
+            },
+            options: &Options::default(),
+        };
+        let finding = look.find();
+        let best = finding.best().unwrap();
+        assert!(!best.is_accepted(), "{} {}", best.ratio, best.odds);
+        assert!(best.framed > 0.9, "{}", best.framed);
+    }
+}
+
 /// A shaft with a collar: no straight edge; ellipses propose its poses, and limbs tell them.
 #[test]
 fn a_round_part_is_found_but_for_its_turn() {

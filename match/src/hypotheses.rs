@@ -24,7 +24,11 @@ pub struct Hypothesis {
 }
 
 /// How many are kept from step to step.
-pub const KEPT: usize = 1000;
+const KEPT: usize = 1000;
+/// So many are kept though the picture tells against them, as long as it does so by no more than this: of a
+/// part half of whose edges are as dark as what is behind them, all poses are unlikely at a first look.
+const UNLIKELY: usize = 100;
+const LEAST: f64 = -40.0;
 
 /// The poses of all chains of a picture, the most likely first, and how many there were.
 pub fn hypotheses(
@@ -44,6 +48,8 @@ pub fn hypotheses(
     let mut all: Vec<Hypothesis> = found.into_iter().flat_map(|f| f.0).collect();
     all.extend(round);
     best_first(&mut all);
+    let likely = all.partition_point(|h| h.ratio > 0.0);
+    all.truncate(likely.max(UNLIKELY));
     (distinct(part, camera, all, KEPT), count)
 }
 
@@ -150,7 +156,7 @@ pub fn plausible(
         return None;
     }
     let told = evidence(part, picture, camera, &pose, view, Reach::Coarse);
-    (told.inside() > INSIDE && told.ratio > 0.0).then_some(Hypothesis {
+    (told.inside() > INSIDE && told.ratio > LEAST).then_some(Hypothesis {
         pose,
         ratio: told.ratio,
         chain,

@@ -201,7 +201,7 @@ pub struct Finding {
     pub chains: [usize; 2],
     /// Poses that were proposed.
     pub proposed: usize,
-    /// Whether chains were left out because there were too many.
+    /// Whether chains or ellipses were left out because there were too many.
     pub cut: bool,
 }
 

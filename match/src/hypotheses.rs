@@ -30,27 +30,42 @@ const KEPT: usize = 1000;
 const UNLIKELY: usize = 100;
 const LEAST: f64 = -40.0;
 
-/// The poses of all chains of a picture, the most likely first, and how many there were.
+/// Poses that are proposed.
+#[derive(Clone, Debug)]
+pub struct Proposed {
+    /// Those that are plausible.
+    pub hypotheses: Vec<Hypothesis>,
+    /// How many there were.
+    pub count: usize,
+    /// Whether some were left out because there were too many.
+    pub cut: bool,
+}
+
+/// The poses that chains and ellipses of a picture propose, the most likely first.
 pub fn hypotheses(
     part: &Part<'_>,
     picture: &Picture,
     camera: &Pinhole,
     chains: &[Vec<picture::Chain>; 2],
-) -> (Vec<Hypothesis>, usize) {
+) -> Proposed {
     let numbered = [0, 1].map(|kind| chains[kind].iter().map(move |c| (kind, c)));
     let numbered: Vec<_> = numbered.into_iter().flatten().enumerate().collect();
     let found: Vec<(Vec<Hypothesis>, usize)> = numbered
         .par_iter()
         .map(|&(i, (kind, chain))| of_chain(part, picture, camera, (i, kind), chain))
         .collect();
-    let (round, rounds) = of_ellipses(part, picture, camera);
-    let count = rounds + found.iter().map(|f| f.1).sum::<usize>();
+    let round = of_ellipses(part, picture, camera);
+    let count = round.count + found.iter().map(|f| f.1).sum::<usize>();
     let mut all: Vec<Hypothesis> = found.into_iter().flat_map(|f| f.0).collect();
-    all.extend(round);
+    all.extend(round.hypotheses);
     best_first(&mut all);
     let likely = all.partition_point(|h| h.ratio > 0.0);
     all.truncate(likely.max(UNLIKELY));
-    (distinct(part, camera, all, KEPT), count)
+    Proposed {
+        hypotheses: distinct(part, camera, all, KEPT),
+        count,
+        cut: round.cut,
+    }
 }
 
 /// Sorts them by falling likelihood; equal ones as they came.

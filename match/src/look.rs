@@ -45,8 +45,9 @@ impl Look<'_> {
         } = *self;
         let limits = &self.options.limits;
         let all = chains(&picture.lines, limits.chains);
-        let (first, proposed) = hypotheses(part, picture, camera, &all);
-        let mut drawn: Vec<Hypothesis> = first
+        let proposed = hypotheses(part, picture, camera, &all);
+        let mut drawn: Vec<Hypothesis> = proposed
+            .hypotheses
             .par_iter()
             .filter_map(|h| drawn(part, picture, camera, h, &REACHES))
             .collect();
@@ -70,8 +71,8 @@ impl Look<'_> {
             matches,
             little: few.into_iter().next().map(Box::new),
             chains: [all[0].len(), all[1].len()],
-            proposed,
-            cut: all.iter().any(|a| a.len() == limits.chains),
+            proposed: proposed.count,
+            cut: proposed.cut || all.iter().any(|a| a.len() == limits.chains),
         }
     }
 

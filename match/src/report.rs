@@ -115,7 +115,7 @@ pub struct Work {
     pub chains: [usize; 2],
     /// Poses that they proposed.
     pub proposed: usize,
-    /// Whether chains or paths were left out, so that something better may have been missed.
+    /// Whether chains, ellipses or paths were left out, so that something better may have been missed.
     pub cut: bool,
     /// The search for the correspondences at the pose.
     #[serde(flatten)]

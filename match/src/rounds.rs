@@ -2,7 +2,7 @@
 
 use crate::camera::Pinhole;
 use crate::evidence::eye;
-use crate::hypotheses::{Hypothesis, plausible};
+use crate::hypotheses::{Hypothesis, Proposed, plausible};
 use crate::part::{Part, Stroke};
 use crate::picture::Picture;
 use crate::pose::circle::{circles, edge_poses};
@@ -15,27 +15,34 @@ use rayon::prelude::*;
 const SHORTEST: u32 = 40;
 /// How many turns about a circle's axis are tried where the part tells them apart.
 const TURNS: usize = 24;
-/// As many ellipses are taken, the longest first.
+/// As many ellipses are taken, the longest first: of a part with many circles fewer, so that there are about
+/// so many poses, but no fewer than this.
 const MOST: usize = 64;
+const POSES: usize = 150_000;
+const FEWEST: usize = 8;
 
-/// The poses that the ellipses of a picture propose, and how many there were.
-pub fn of_ellipses(
-    part: &Part<'_>,
-    picture: &Picture,
-    camera: &Pinhole,
-) -> (Vec<Hypothesis>, usize) {
+/// The poses that the ellipses of a picture propose.
+pub fn of_ellipses(part: &Part<'_>, picture: &Picture, camera: &Pinhole) -> Proposed {
     let turns = if part.axis.is_some() { 1 } else { TURNS };
-    let conics = conics(picture);
+    // Two circles are seen as an ellipse, and each can be an edge's in either sense.
+    let each = (4 * part.circles.len() * turns).max(1);
+    let mut conics = conics(picture);
+    let most = (POSES / each).clamp(FEWEST, MOST);
+    let cut = conics.len() > most && !part.circles.is_empty();
+    conics.truncate(most);
     let found: Vec<(Vec<Hypothesis>, usize)> = conics
         .par_iter()
         .enumerate()
         .map(|(number, conic)| of_ellipse(part, picture, camera, (number, conic), turns))
         .collect();
-    let count = found.iter().map(|f| f.1).sum();
-    (found.into_iter().flat_map(|f| f.0).collect(), count)
+    Proposed {
+        count: found.iter().map(|f| f.1).sum(),
+        hypotheses: found.into_iter().flat_map(|f| f.0).collect(),
+        cut,
+    }
 }
 
-/// The conics of elliptic segments.
+/// The conics of elliptic segments, the longest first.
 fn conics(picture: &Picture) -> Vec<[f64; 6]> {
     let segments = picture.detection.segments.iter();
     let mut all: Vec<(u32, [f64; 6])> = segments
@@ -48,7 +55,6 @@ fn conics(picture: &Picture) -> Vec<[f64; 6]> {
         })
         .collect();
     all.sort_by_key(|c| std::cmp::Reverse(c.0));
-    all.truncate(MOST);
     all.into_iter().map(|c| c.1).collect()
 }
 

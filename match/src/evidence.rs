@@ -178,37 +178,36 @@ pub const COSINE: f64 = 0.98;
 /// How far an edge may be off its contour, in pixels, before it counts less.
 const OFF: f64 = 1.0;
 
-/// So many marks are all asked.
-const FEW: usize = 64;
+/// So many marks are asked at a glance, where there are many more; fewer in the picture tell nothing.
+const GLANCE: usize = 64;
+const FEWEST: usize = 8;
+/// At a pose that is about right a greater share of the marks that face the eye has edges near.
+const AT_LEAST: f64 = 0.2;
 
-/// So many marks are asked at a glance, where there are many more; of fewer in the picture none is told.
-const GLANCE: usize = 32;
-/// At a pose that is about right a greater share of the marks has edges near.
-const AT_LEAST: f64 = 0.25;
-
-/// Whether so few of some marks have an edge near that a pose is not worth a closer look.
+/// Whether so few of some marks have an edge near that a pose is not worth a closer look. What the part
+/// hides of itself is not asked yet.
 pub fn is_unlikely(
     part: &Part<'_>,
     picture: &Picture,
     camera: &Pinhole,
     pose: &Isometry3<f64>,
-    view: &View,
 ) -> bool {
     let stride = part.marks.len() / GLANCE;
     if stride <= 3 {
         return false;
     }
+    let eye = eye(pose);
     let (mut asked, mut found) = (0, 0);
-    for mark in visible(part, view, eye(pose)).step_by(stride) {
+    for mark in part.marks.iter().step_by(stride).filter(|m| m.faces(&eye)) {
         let seen = seen(camera, pose, mark);
         let near = seen.and_then(|seen| near(picture, &seen, Reach::Coarse));
         asked += usize::from(near.is_some());
         found += usize::from(near.is_some_and(|near| near > 0.0));
     }
-    asked >= GLANCE / 4 && (found as f64) < AT_LEAST * asked as f64
+    asked >= FEWEST && (found as f64) < AT_LEAST * asked as f64
 }
 
-/// What a picture tells of a pose.
+/// What a picture tells of a pose. At a first look, of a coarse reach, the view is a glimpse.
 pub fn evidence(
     part: &Part<'_>,
     picture: &Picture,
@@ -217,15 +216,14 @@ pub fn evidence(
     view: &View,
     reach: Reach,
 ) -> Evidence {
-    // At a first look a few marks are enough.
     let stride = match reach {
-        Reach::Coarse if part.marks.len() > FEW => 3,
-        _ => 1,
+        Reach::Coarse => part.stride(),
+        Reach::Fine => 1,
     };
     let eye = eye(pose);
     let mut sum = Evidence::default();
     let mut claimed: Vec<(usize, Seen)> = Vec::new();
-    for mark in visible(part, view, eye).step_by(stride) {
+    for mark in visible(part, view, eye) {
         let Some(seen) = seen(camera, pose, mark) else {
             sum.outside += OBSERVATION;
             continue;

@@ -166,10 +166,10 @@ pub fn plausible(
     pose: Isometry3<f64>,
     [chain, of]: [usize; 2],
 ) -> Option<Hypothesis> {
-    let view = part.view(&eye(&pose));
-    if is_unlikely(part, picture, camera, &pose, view) {
+    if is_unlikely(part, picture, camera, &pose) {
         return None;
     }
+    let view = part.glimpse(&eye(&pose));
     let told = evidence(part, picture, camera, &pose, view, Reach::Coarse);
     (told.inside() > INSIDE && told.ratio > LEAST).then_some(Hypothesis {
         pose,

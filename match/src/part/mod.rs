@@ -128,7 +128,25 @@ impl<'a> Part<'a> {
     pub fn view(&self, eye: &Point3<f64>) -> &View {
         self.views.from(self, eye)
     }
+
+    /// The same of one mark in so many as [`Self::stride`] says.
+    pub fn glimpse(&self, eye: &Point3<f64>) -> &View {
+        self.views.glimpse(self, eye)
+    }
+
+    /// At a first look one mark in so many is enough.
+    pub fn stride(&self) -> usize {
+        match self.marks.len() {
+            0..=FEW => 1,
+            count => THIRD.max(count / MANY),
+        }
+    }
 }
+
+/// So many marks are all asked at a first look; of more every third, and of many about so many.
+const FEW: usize = 64;
+const THIRD: usize = 3;
+const MANY: usize = 256;
 
 /// The circles among strokes, one of those that symmetries bring onto each other.
 fn circles(brep: &Brep, strokes: &[Stroke], symmetries: &[Symmetry]) -> Vec<usize> {

@@ -23,6 +23,8 @@ const MARKS: usize = 24;
 #[derive(Debug)]
 pub struct Views {
     directions: Vec<Vector3<f64>>,
+    /// Of one mark in so many, and of all.
+    glimpses: Vec<OnceLock<View>>,
     views: Vec<OnceLock<View>>,
 }
 
@@ -31,6 +33,7 @@ impl Views {
         let all = points(Lattice::Fibonacci, Sampling::Count(DIRECTIONS), &[]);
         let directions = all.unwrap_or_else(|_| vec![Vector3::z()]);
         Self {
+            glimpses: directions.iter().map(|_| OnceLock::new()).collect(),
             views: directions.iter().map(|_| OnceLock::new()).collect(),
             directions,
         }
@@ -38,6 +41,17 @@ impl Views {
 
     /// The view from the direction nearest to that of an eye.
     pub fn from(&self, part: &Part<'_>, eye: &Point3<f64>) -> &View {
+        let nearest = self.nearest(part, eye);
+        self.views[nearest].get_or_init(|| view(part, &self.directions[nearest], 1))
+    }
+
+    /// The same of one mark in so many as the part has a [`Part::stride`]: all others are as if hidden.
+    pub fn glimpse(&self, part: &Part<'_>, eye: &Point3<f64>) -> &View {
+        let nearest = self.nearest(part, eye);
+        self.glimpses[nearest].get_or_init(|| view(part, &self.directions[nearest], part.stride()))
+    }
+
+    fn nearest(&self, part: &Part<'_>, eye: &Point3<f64>) -> usize {
         let towards = eye - part.centre;
         let mut best = (0, f64::NEG_INFINITY);
         for (i, d) in self.directions.iter().enumerate() {
@@ -46,18 +60,19 @@ impl Views {
                 best = (i, cosine);
             }
         }
-        self.views[best.0].get_or_init(|| view(part, &self.directions[best.0]))
+        best.0
     }
 }
 
-/// The view from a direction; where there is none, nothing is hidden.
+/// The view of one mark in so many from a direction; where there is none, nothing is hidden.
 ///
 /// It is asked at marks alone, and needs no junctions of contours, which most of the time of a whole
 /// view goes to.
-fn view(part: &Part<'_>, direction: &Vector3<f64>) -> View {
+fn view(part: &Part<'_>, direction: &Vector3<f64>, stride: usize) -> View {
     let eye = part.centre + direction * (DISTANCE * part.radius);
+    let others = (0..part.marks.len()).map(|i| i % stride != 0);
     let mut view = View {
-        hidden: vec![false; part.marks.len()],
+        hidden: others.collect(),
         limbs: Vec::new(),
     };
     let Ok(camera) = Camera::perspective(eye, part.centre, Vector3::z(), 1.0) else {
@@ -68,7 +83,8 @@ fn view(part: &Part<'_>, direction: &Vector3<f64>) -> View {
     if scene.eye_inside() {
         return view;
     }
-    for (hidden, mark) in view.hidden.iter_mut().zip(&part.marks) {
+    let asked = view.hidden.iter_mut().zip(&part.marks).step_by(stride);
+    for (hidden, mark) in asked {
         // What the own faces hide is asked where the eye really is.
         *hidden = mark.faces(&eye) && is_hidden(&scene, mark, part.faces(mark), Own::Through);
     }
@@ -77,7 +93,8 @@ fn view(part: &Part<'_>, direction: &Vector3<f64>) -> View {
         for (number, arc) in limbs.arcs.iter().enumerate() {
             let stroke = part.strokes.len() + number;
             let visible = |mark: &Mark| !is_hidden(&scene, mark, [arc.face; 2], Own::Tangent);
-            view.limbs.extend(limb(arc, stroke).filter(visible));
+            let marks = limb(arc, stroke).skip(stride / 2).step_by(stride);
+            view.limbs.extend(marks.filter(visible));
         }
     }
     view
@@ -152,7 +169,7 @@ mod tests {
         let part = Part::new(&evaluation.brep, evaluation.resolution, &Learned::nothing());
         let (mut hidden, mut limbs) = (0, 0);
         for direction in part.views.directions.iter().step_by(7) {
-            let view = view(&part, direction);
+            let view = view(&part, direction, 1);
             let eye = part.centre + direction * (DISTANCE * part.radius);
             let camera = Camera::perspective(eye, part.centre, Vector3::z(), 1.0).unwrap();
             let all = contours(part.brep, &camera, part.band).unwrap().contours;

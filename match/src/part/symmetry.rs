@@ -6,9 +6,11 @@
 use super::marks::{Mark, Stroke};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::topology::EdgeId;
+use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::Surface;
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// Places and directions are the same within this part of the part's size.
@@ -63,7 +65,7 @@ pub fn symmetries(
     all
 }
 
-/// The axis that all edges are whole circles about, if there is one.
+/// The axis that all edges are whole circles about, and what no edge bounds as well, if there is one.
 pub fn axis(brep: &Brep, strokes: &[Stroke], radius: f64) -> Option<Frame> {
     let circles = strokes.iter().map(|s| match brep.curve(s.edge) {
         Curve::Circle(circle) if s.ends.is_none() => Some(circle.frame),
@@ -75,7 +77,18 @@ pub fn axis(brep: &Brep, strokes: &[Stroke], radius: f64) -> Option<Frame> {
         let off = (f.origin - first.origin).cross(&first.z).norm();
         f.z.cross(&first.z).norm() < SAME && off < SAME * radius
     };
-    frames.iter().all(about).then_some(first)
+    // What no edge bounds has its own axis, or a centre that lies on it.
+    let turned = |face: &FaceId| match brep.surface(*face) {
+        Surface::Sphere(s) => {
+            (s.frame.origin - first.origin).cross(&first.z).norm() < SAME * radius
+        }
+        Surface::Torus(s) => about(&s.frame),
+        Surface::Cylinder(s) => about(&s.frame),
+        Surface::Cone(s) => about(&s.frame),
+        Surface::Plane(_) => true,
+    };
+    let others = others(brep, strokes);
+    (frames.iter().all(about) && others.iter().all(turned)).then_some(first)
 }
 
 /// What two places on both sides of an edge tell: the outward normals of its faces, and the
@@ -93,6 +106,8 @@ struct Edges<'a> {
     to: Vec<Vector3<f64>>,
     /// By stroke: three points, and what lies on both sides there.
     points: Vec<[(Point3<f64>, Sides); 3]>,
+    /// The faces that no stroke bounds.
+    others: Vec<FaceId>,
 }
 
 impl<'a> Edges<'a> {
@@ -119,6 +134,7 @@ impl<'a> Edges<'a> {
             middle: middle.into(),
             to: means.iter().map(|m| m - middle).collect(),
             points: strokes.iter().map(three).collect(),
+            others: others(brep, strokes),
         }
     }
 
@@ -180,7 +196,39 @@ impl<'a> Edges<'a> {
             all.clone()
                 .find(|&b| self.alike(a, b) && self.is(turn, a, b))
         };
-        all.clone().map(image).collect()
+        let stays = |&a: &FaceId| self.others.iter().any(|&b| self.carries(turn, a, b));
+        let stay = self.others.iter().all(stays);
+        stay.then(|| all.clone().map(image).collect())?
+    }
+
+    /// Whether a turn brings the surface of a face onto that of another.
+    fn carries(&self, turn: &Isometry3<f64>, a: FaceId, b: FaceId) -> bool {
+        let [s, t] = [a, b].map(|f| self.brep.surface(f));
+        let same = |x: f64, y: f64| (x - y).abs() < NEAR * self.radius;
+        let to = |f: &Frame, g: &Frame| turn * f.origin - g.origin;
+        let at = |f: &Frame, g: &Frame| same(to(f, g).norm(), 0.0);
+        let turned = |f: &Frame, g: &Frame| along(&(turn.rotation * f.z), &g.z);
+        let parallel = |f: &Frame, g: &Frame| turned(f, g) || along(&(turn.rotation * f.z), &-g.z);
+        let held = match (s, t) {
+            (Surface::Sphere(s), Surface::Sphere(t)) => {
+                at(&s.frame, &t.frame) && same(s.radius, t.radius)
+            }
+            (Surface::Torus(s), Surface::Torus(t)) => {
+                let sizes = same(s.major, t.major) && same(s.minor, t.minor);
+                sizes && at(&s.frame, &t.frame) && parallel(&s.frame, &t.frame)
+            }
+            (Surface::Cylinder(s), Surface::Cylinder(t)) => {
+                let off = to(&s.frame, &t.frame).cross(&t.frame.z).norm();
+                same(off, 0.0) && parallel(&s.frame, &t.frame) && same(s.radius, t.radius)
+            }
+            (Surface::Cone(s), Surface::Cone(t)) => {
+                at(&s.frame, &t.frame) && turned(&s.frame, &t.frame) && (s.sin - t.sin).abs() < NEAR
+            }
+            // A plane without an edge along which the normal jumps lies between bent faces.
+            (Surface::Plane(_), Surface::Plane(_)) => true,
+            _ => false,
+        };
+        held && self.brep.sense(a) == self.brep.sense(b)
     }
 
     /// Whether a turn brings a stroke with its faces onto another.
@@ -201,6 +249,14 @@ impl<'a> Edges<'a> {
                 && (same(0, 0) && same(1, 1) || same(0, 1) && same(1, 0))
         })
     }
+}
+
+/// The faces that no stroke bounds.
+fn others(brep: &Brep, strokes: &[Stroke]) -> Vec<FaceId> {
+    let bounded = strokes.iter().flat_map(|s| brep.topology.faces_of(s.edge));
+    let bounded: BTreeSet<u32> = bounded.map(|f| f.0).collect();
+    let all = brep.topology.face_ids();
+    all.filter(|f| !bounded.contains(&f.0)).collect()
 }
 
 fn along(v: &Vector3<f64>, w: &Vector3<f64>) -> bool {

@@ -125,24 +125,16 @@ fn of_a_bulge_and_a_hollow() {
 /// A ball or a ring beside a part has no edge, and is a part of it all the same.
 #[test]
 fn of_what_has_no_edges() {
-    let aside = at(r#""sphere", "r": 0.5"#, [0.0, 5.0, 0.0]);
-    check(
-        &of("union", &block([2.0, 2.0, 3.0]), &[aside.clone()]),
-        2,
-        0,
-    );
-    let above = at(r#""sphere", "r": 0.5"#, [0.0, 0.0, 5.0]);
-    check(
-        &of("union", &block([2.0, 2.0, 3.0]), &[above.clone()]),
-        4,
-        0,
-    );
+    let aside = [at(r#""sphere", "r": 0.5"#, [0.0, 5.0, 0.0])];
+    check(&of("union", &block([2.0, 2.0, 3.0]), &aside), 2, 0);
+    let above = [at(r#""sphere", "r": 0.5"#, [0.0, 0.0, 5.0])];
+    check(&of("union", &block([2.0, 2.0, 3.0]), &above), 4, 0);
     let ring = at(r#""torus", "R": 4.0, "r": 0.5"#, [0.0; 3]);
     check(&of("union", &block([2.0, 2.0, 3.0]), &[ring]), 8, 0);
     let shaft = cylinder(1.0, 4.0, [0.0; 3]);
-    check(&of("union", &shaft, &[above]), 1, 2);
+    check(&of("union", &shaft, &above), 1, 2);
     // No longer turned about its axis: no middle of an edge tells by how much.
-    check(&of("union", &shaft, &[aside]), 1, 2);
+    check(&of("union", &shaft, &aside), 1, 2);
 }
 
 /// As large and as far away as it may be, and a hole by no more off the middle than is told.

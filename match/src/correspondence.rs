@@ -33,6 +33,8 @@ const FEWEST: usize = 3;
 /// Pieces of one edge lie beside one another by no more than this, in pixels, and share no more of
 /// their length.
 const PIECES: f64 = 1.6;
+/// They are no more askew than this, in standard deviations.
+const PARALLEL: f64 = 3.0;
 const OVERLAP: f64 = 0.3;
 /// Shorter arcs than this, in pixels, are not looked for.
 pub const SHORTEST: f64 = 10.0;
@@ -287,7 +289,7 @@ fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
     let pieces: Vec<Choice> = by_segment.iter().map(single).collect();
     let mut all: Vec<Choice> = Vec::new();
     for seed in pieces.iter().filter(|p| p.hits.len() >= fewest) {
-        let joined = joined(seed, &pieces);
+        let joined = joined(arc, seed, &pieces);
         let known = |c: &Choice| c.segments == joined.segments;
         if joined.segments.len() > 1 && !all.iter().any(known) {
             all.push(joined);
@@ -307,7 +309,7 @@ fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
 const MOST: usize = 12;
 
 /// A piece with those that lie end to end with it, the longest first.
-fn joined(seed: &Choice, pieces: &[Choice]) -> Choice {
+fn joined(arc: &Arc, seed: &Choice, pieces: &[Choice]) -> Choice {
     let mut whole = seed.clone();
     let mut order: Vec<&Choice> = pieces.iter().collect();
     order.sort_by(|a, b| {
@@ -321,7 +323,9 @@ fn joined(seed: &Choice, pieces: &[Choice]) -> Choice {
         let shared = piece.hits.iter().filter(|h| known(h.0)).count();
         let near = (piece.offset - whole.offset).abs() < PIECES;
         let other = !whole.segments.contains(&piece.segments[0]);
-        if other && near && (shared as f64) < OVERLAP * piece.hits.len() as f64 {
+        let askew = ASKEW.hypot(END / piece.longest);
+        let along = tilt(piece, arc).abs() < PARALLEL * askew;
+        if other && near && along && (shared as f64) < OVERLAP * piece.hits.len() as f64 {
             let new: Vec<_> = piece.hits.iter().filter(|h| !known(h.0)).copied().collect();
             let (n, m) = (whole.hits.len() as f64, new.len() as f64);
             whole.offset = (whole.offset * n + piece.offset * m) / (n + m);

@@ -131,7 +131,11 @@ fn a_part_is_found_by_its_description_and_by_its_model() {
         let csv = fs::read_to_string(folder.path().join("pose.csv")).unwrap();
         let mut lines = csv.lines();
         assert_eq!(lines.next(), Some("scene_id,im_id,obj_id,score,R,t,time"));
-        assert!(lines.next().unwrap().starts_with("1,1,1,0."));
+        let line: Vec<&str> = lines.next().unwrap().split(',').collect();
+        assert_eq!(line[..3], ["1", "1", "1"]);
+        // The score is the probability.
+        let score: f64 = line[3].parse().unwrap();
+        assert_eq!(score, number(&report["probability"]));
     }
 }
 

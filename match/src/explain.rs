@@ -21,10 +21,13 @@ pub fn explained(best: &Match, report: &Report) -> String {
     );
     let _ = writeln!(
         text,
-        "odds {:.1}: edges {:.2} px off contours, {:.0} % of these in the picture; the shape told by {:.1}, \
-         denied by {:.1}, {:.0} % apart from one plane, {:.0} % framed; {} edges go on past a vertex",
+        "odds {:.1}: edges {:.2} px off contours (as wholes {:.2}, beside that {:.2}; off lines {:.2}), {:.0} % \
+         of these in the picture; the shape told by {:.1}, denied by {:.1}, {:.0} % apart from one plane, {:.0} % framed; {} edges go on past a vertex",
         best.odds,
         best.rms,
+        best.astray.wholes,
+        best.astray.edges,
+        report.straightness,
         100.0 * best.inside(),
         best.shape.told,
         best.shape.denied,

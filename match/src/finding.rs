@@ -1,5 +1,6 @@
 //! What is found in a picture: poses of the part, with their correspondences.
 
+use crate::astray::Astray;
 use crate::camera::Pinhole;
 use crate::hypotheses::INSIDE;
 use crate::part::Part;
@@ -82,6 +83,8 @@ pub struct Match {
     pub covariance: Matrix6<f64>,
     /// The root mean square distance of edges from contours, in pixels.
     pub rms: f64,
+    /// How far features are off as wholes, and their edges beside that.
+    pub astray: Astray,
     /// The logarithm of how much more likely the picture is with it than if all were clutter.
     pub score: f64,
     /// The same against clutter and other things that are like the part as far as it is found.

@@ -3,6 +3,7 @@
 //! What the detector finds in a picture ([`picture`]) is matched with what is predicted of a part
 //! ([`part`]).
 
+pub mod astray;
 pub mod camera;
 pub mod clutter;
 pub mod correspondence;

@@ -1,6 +1,7 @@
 //! The part looked for in a picture: from chains of lines to poses, from poses to correspondences, and
 //! back, until they stay.
 
+use crate::astray::Astray;
 use crate::camera::Pinhole;
 use crate::correspondence::{BESIDE, Correspondence};
 use crate::finding::{Finding, Found, Match, Options, Pair};
@@ -136,6 +137,7 @@ impl Look<'_> {
             pose,
             covariance: inverse * rms.max(LEAST).powi(2),
             rms,
+            astray: Astray::default(),
             score: solution.score,
             ratio: 0.0,
             odds: 0.0,
@@ -156,6 +158,7 @@ impl Look<'_> {
     /// The match, with what it tells of the part's shape, and the odds that it is the part.
     fn judged(&self, found: Match) -> Match {
         let mut judged = found;
+        judged.astray = Astray::of(self.camera, &judged.pose, &judged.pulls);
         judged.shape = Shape::of(self.part, self.camera, &judged);
         judged.framed = framed(self.picture, &judged.pairs);
         judged.odds = odds(&judged, self.picture.straightness);

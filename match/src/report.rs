@@ -1,6 +1,7 @@
 //! What was found, as it is handed on (`premio.match/1`), and a line for the evaluation of others
 //! (the CSV of the BOP challenge, Hodan et al. 2018).
 
+use crate::astray::Astray;
 use crate::finding::{Finding, Match};
 use crate::hypotheses::INSIDE;
 use crate::part::Part;
@@ -158,6 +159,9 @@ pub struct Report {
     pub odds: Option<f64>,
     /// What is told of the part's shape.
     pub shape: Option<Shape>,
+    /// How far features are off as wholes, and their edges beside that: of another thing that is like the
+    /// part the former is more.
+    pub astray: Option<Astray>,
     /// How much of what is found runs along the picture's rows and columns, from nothing to one: all of
     /// it, some along either, as of what is drawn or framed.
     pub framed: Option<f64>,
@@ -179,6 +183,8 @@ pub struct Report {
     pub covariance: Option<[[f64; 6]; 6]>,
     /// The root mean square distance of edges from contours, in pixels.
     pub rms: Option<f64>,
+    /// How far edges are off lines in the picture, for long ones: as far may `rms` be.
+    pub straightness: f64,
     /// The other poses that the part's symmetries make alike.
     pub alternatives: Vec<Pose>,
     /// Of a part that is turned about an axis, the axis, in the part's frame: the pose may be turned
@@ -222,6 +228,7 @@ impl Report {
             ratio: best.map(|m| m.ratio),
             odds: best.map(|m| m.odds),
             shape: best.map(|m| m.shape),
+            astray: best.map(|m| m.astray),
             framed: best.map(|m| m.framed),
             score: best.map(|m| m.score),
             fitted: best.map(|m| m.fitted),
@@ -232,6 +239,7 @@ impl Report {
             covariance: best
                 .map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m.covariance[(i, j)]))),
             rms: best.map(|m| m.rms),
+            straightness: picture.straightness,
             alternatives: best.map_or(Vec::new(), |m| {
                 let others = part.turns().skip(1);
                 others.map(|s| Pose::from(&(m.pose * s))).collect()

@@ -1,6 +1,7 @@
 //! What a match is worth: how much more likely the picture is with the part there than with clutter, or
 //! with other things that look like it as far as it is found.
 
+use crate::astray::Astray;
 use crate::camera::Pinhole;
 use crate::correspondence::Correspondence;
 use crate::finding::Match;
@@ -18,7 +19,7 @@ pub const DETERMINED: f64 = 15.0;
 pub const SMALLEST: f64 = 320.0;
 /// The logarithm of the odds that a part is there of usual size, all of it in the picture and found, and
 /// fitting as well as lines do, before anything is found: see [`ratio`].
-const ODDS: f64 = 4.1;
+const ODDS: f64 = 7.5;
 
 /// From about so much on what is found tells less and less: pictures are of things, and many things are
 /// alike; what is not found of the part tells them apart.
@@ -33,30 +34,34 @@ const SHARE: [f64; 2] = [10.0, 0.8];
 /// What it tells that edges are farther off the contours than they are off lines, by the logarithm:
 /// between poses of the part, and besides, against another thing; and how far, in pixels, both are off
 /// at least.
-const ROUGH: [f64; 2] = [2.0, 9.0];
+const ROUGH: [f64; 2] = [2.0, 12.0];
 const SMOOTH: f64 = 0.11;
+/// What it tells that features are off as wholes, by the logarithm of how many times as far as their edges
+/// are off beside that: up to so much, and how far, in pixels, both are off at least.
+const ASTRAY: [f64; 2] = [3.4, 1.5];
+const SLIGHT: f64 = 0.05;
 /// What it tells that the border of the picture cuts contours off, by the logarithm of what is left:
 /// what is out of the picture can be anything.
-const CUT: f64 = 13.6;
+const CUT: f64 = 15.5;
 /// What it tells that features are missed, by their share, and that contours are long, by the logarithm
 /// of their pixels over these.
-const MISSED: f64 = 32.0;
+const MISSED: f64 = 37.0;
 const LONG: f64 = 4.9;
 const USUALLY: f64 = 640.0;
 /// What it tells that an edge goes on past a vertex of the part, for each.
 const PAST: f64 = 2.2;
 /// What it tells that the shape is not told, by the logarithm of its ratio to this: from so much on,
 /// either way, it tells no more.
-const TOLD: f64 = 0.8;
+const TOLD: f64 = 1.3;
 const SHAPE: f64 = 6.0;
 /// What it tells that all could be a figure on a flat thing, for which less than so much lies apart from
 /// it; and from which ratio on, up to which, the figure's shape tells as well: a rectangle's does not.
-const FLAT: f64 = 10.0;
+const FLAT: f64 = 14.0;
 const RELIEF: f64 = 0.09;
 const FIGURE: [f64; 2] = [5.0, 8.0];
 /// What it tells that all runs along the picture's rows and columns, where little is told of the shape:
 /// it may be drawn, or a frame.
-const FRAMED: f64 = 20.0;
+const FRAMED: f64 = 22.0;
 /// The nearest and the farthest place of a part, in its radius.
 const DEPTHS: [f64; 2] = [1.5, 75.0];
 
@@ -87,6 +92,12 @@ fn rough(found: &Match, straightness: f64) -> f64 {
     (contours / lines).ln().max(0.0)
 }
 
+/// The logarithm of how many times as far as their edges beside that features are off as wholes.
+fn astray(off: &Astray) -> f64 {
+    let times = (off.wholes + SLIGHT) / (off.edges + SLIGHT);
+    times.ln().clamp(-ASTRAY[1], ASTRAY[1])
+}
+
 /// The logarithm of the odds that it is the part where something is found that is as like it as this:
 /// a part fits better than other things do, is in the picture and large, all of it is found, and its
 /// shape is told.
@@ -101,6 +112,7 @@ pub fn odds(found: &Match, straightness: f64) -> f64 {
         + TOLD * (shape.clamp(-SHAPE, SHAPE) - SHAPE)
         - FLAT * flat(&found.shape)
         - FRAMED * framed(found)
+        - ASTRAY[0] * astray(&found.astray)
 }
 
 /// Whether what is found lies about one plane, or along the picture's rows and columns, and tells little

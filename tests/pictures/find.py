@@ -7,7 +7,8 @@ middle, in millimetres, and of its turn, modulo the turns that bring the part on
 - castle_simu: the pose is exact. The tower is described as a block, which it nearly is: its top is open.
 - teabox_stereo: left and right are found each on its own, and compared through the known extrinsic.
 - cube_cylinder: only the first frame has a pose, good to 2 pixels.
-- lego_square: no pose. Four bricks, with the gaps between them; their studs are not described.
+- lego_square: no pose. Four bricks, with the gaps between them, and how light each is; their studs are
+  not described.
 
 A part that is not in a picture and is found there is a false accept; all pictures of other sets count,
 but those of a cube for a cube: they are alike but for their distance. `--without` names a folder of
@@ -53,6 +54,8 @@ class Sought:
     middle: list[float]
     # Folders with pictures of what looks like it.
     alike: list[str] = field(default_factory=list)
+    # Of its solids that are not all as light, the reflectance by the lowest x and y.
+    shades: dict[tuple[float, float], float] = field(default_factory=dict)
 
 
 TEABOX = {
@@ -118,6 +121,8 @@ PARTS = [
         "lego_square",
         LEGO,
         [24, 24, 4.8],
+        # A bright one, two that are darker, and one as dark as the plate they stand on, told by eye.
+        shades={(0.1, 0.1): 0.3, (32.1, 0.1): 0.2, (16.1, 32.1): 0.12, (0.1, 16.1): 0.03},
     ),
 ]
 SETUPS = """
@@ -159,7 +164,28 @@ class Program:
         stem = part.name.replace(" ", "").replace(":", "_")
         description = self.folder / f"{stem}.json"
         description.write_text(json.dumps(part.description))
-        return self.learned(description, SETUPS)
+        return self.learned(description, SETUPS + self.surfaces(description, part.shades))
+
+    def surfaces(self, description: Path, shades: dict[tuple[float, float], float]) -> str:
+        """The tables of a setup that say how light the faces of each solid are."""
+        if not shades:
+            return ""
+        exported = self.folder / "boundary.json"
+        self.run(["export", description, "--format", "json", "-o", exported])
+        shells: dict[int, list[dict]] = {}
+        for face in json.loads(exported.read_text())["faces"]:
+            shells.setdefault(face["shell"], []).append(face)
+
+        def lowest(faces: list[dict], axis: int) -> float:
+            planes = [f["surface"] for f in faces]
+            return min(p["origin"][axis] for p in planes if abs(p["normal"][axis]) > 0.5)
+
+        tables = []
+        for faces in shells.values():
+            shade = shades[lowest(faces, 0), lowest(faces, 1)]
+            material = f"{{ diffuse = {shade}, ambient = {shade}, s = 0, d = 1, m = 0.3, n = 1.5, k = 0 }}"
+            tables.append(f"[[surface]]\nfaces = {[f['id'] for f in faces]}\nmaterial = {material}\n")
+        return "".join(tables)
 
     def learned(self, description: Path, text: str) -> Path:
         setups, model = self.folder / "setups.toml", self.folder / f"{description.stem}.model"

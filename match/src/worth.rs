@@ -38,7 +38,7 @@ const ROUGH: [f64; 2] = [2.0, 12.0];
 const SMOOTH: f64 = 0.11;
 /// What it tells that features are off as wholes, by the logarithm of how many times as far as their edges
 /// are off beside that: up to so much, and how far, in pixels, both are off at least.
-const ASTRAY: [f64; 2] = [3.4, 1.5];
+const ASTRAY: [f64; 2] = [3.4, 3.0];
 const SLIGHT: f64 = 0.05;
 /// What it tells that the border of the picture cuts contours off, by the logarithm of what is left:
 /// what is out of the picture can be anything.

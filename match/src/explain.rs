@@ -21,8 +21,9 @@ pub fn explained(best: &Match, report: &Report) -> String {
     );
     let _ = writeln!(
         text,
-        "odds {:.1}: edges {:.2} px off contours (as wholes {:.2}, beside that {:.2}; off lines {:.2}), {:.0} % \
-         of these in the picture; the shape told by {:.1}, denied by {:.1}, {:.0} % apart from one plane, {:.0} % framed; {} edges go on past a vertex",
+        "odds {:.1}: edges {:.2} px off contours (as wholes {:.2}, beside that {:.2}; off lines {:.2}), \
+         {:.0} % of these in the picture; the shape told by {:.1}, denied by {:.1}, {:.0} % apart from one \
+         plane, {:.0} % framed; {} edges go on past a vertex",
         best.odds,
         best.rms,
         best.astray.wholes,

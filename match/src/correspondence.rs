@@ -5,14 +5,14 @@
 //! are candidates together, as a broken edge.
 
 use crate::clutter::Clutter;
+use crate::ends::Ends;
 use crate::learned::Learned;
 use crate::part::Part;
 use crate::picture::{PIECE, Picture};
 use crate::pose::refine::Pull;
 use crate::predicted::{APART, Arc};
-use crate::search::{Candidate, Feature, Problem, Relation};
-use nalgebra::{Point2, Vector2};
-use premio_predict::processing::Shape;
+use crate::search::{Candidate, Feature, Problem};
+use nalgebra::Point2;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -40,11 +40,6 @@ const OVERLAP: f64 = 0.3;
 pub const SHORTEST: f64 = 10.0;
 /// From this share on an edge is whole, from that one down broken.
 pub const WHOLE: f64 = 0.85;
-/// An edge ends in a vertex if it comes as near, in pixels, and goes on no farther.
-const VERTEX: f64 = 9.0;
-
-/// So far beyond it the picture must reach, to tell.
-const BEYOND: f64 = 12.0;
 
 /// What an arc can be, with the edge pixels that say so.
 #[derive(Clone, Debug)]
@@ -95,10 +90,15 @@ impl Correspondence {
             for choice in &mut all {
                 choice.likely = likelihood(lengths[i], choice.share, found);
             }
-            set_ends(part, picture, arcs, &arcs[i], &mut all);
             all
         });
-        let choices: Vec<Vec<Choice>> = choices.collect();
+        let mut choices: Vec<Vec<Choice>> = choices.collect();
+        let ends = Ends::of(part, picture, arcs, &order, &choices);
+        for (k, all) in choices.iter_mut().enumerate() {
+            for (c, choice) in all.iter_mut().enumerate() {
+                choice.ends = ends.counts(k, c);
+            }
+        }
         let place: BTreeMap<usize, usize> =
             order.iter().enumerate().map(|(k, &i)| (i, k)).collect();
         let features = order.iter().zip(&choices).map(|(&i, choices)| {
@@ -126,11 +126,10 @@ impl Correspondence {
             }
         });
         let features: Vec<Feature> = features.collect();
-        let relations = relations(part, learned, picture, arcs, &order, &choices);
         Self {
             problem: Problem {
                 features,
-                relations,
+                relations: ends.relations(learned, arcs, &order),
             },
             lengths: order.iter().map(|&i| lengths[i]).collect(),
             order,
@@ -338,140 +337,3 @@ fn joined(arc: &Arc, seed: &Choice, pieces: &[Choice]) -> Choice {
     whole.segments.sort_unstable();
     whole
 }
-
-/// The relations of arcs that meet in a vertex: that their edges do.
-fn relations(
-    part: &Part<'_>,
-    learned: &Learned,
-    picture: &Picture,
-    arcs: &[Arc],
-    order: &[usize],
-    choices: &[Vec<Choice>],
-) -> Vec<Relation> {
-    let mut all = Vec::new();
-    for (b, &j) in order.iter().enumerate() {
-        for (a, &i) in order[..b].iter().enumerate() {
-            let Some(vertex) = part.common(arcs[i].stroke, arcs[j].stroke) else {
-                continue;
-            };
-            let near = |arc: &Arc| nearest(arc, &vertex);
-            // The vertex is seen where both arcs come near it, in the picture.
-            let (Some(p), Some(q)) = (near(&arcs[i]), near(&arcs[j])) else {
-                continue;
-            };
-            if (p.0 - q.0).norm() > VERTEX || !picture.edges.reaches(&p.0) {
-                continue;
-            }
-            let end = |choice: &Choice, (at, outwards): (Point2<f64>, Vector2<f64>)| {
-                let explained = |p: &Point2<f64>| runs_along(arcs, p, &outwards);
-                end(choice, picture, &at, &outwards, explained)
-            };
-            let first: Vec<bool> = choices[a].iter().map(|c| end(c, p)).collect();
-            let second: Vec<bool> = choices[b].iter().map(|c| end(c, q)).collect();
-            let [kept, chance] = learned.junction(&arcs[i].source, &arcs[j].source);
-            let told = |both: bool| match both {
-                true => (kept / chance).ln(),
-                false => ((1.0 - kept) / (1.0 - chance)).ln(),
-            };
-            let mut scores = BTreeMap::new();
-            for (x, &first) in first.iter().enumerate() {
-                for (y, &second) in second.iter().enumerate() {
-                    scores.insert((x, y), told(first && second));
-                }
-            }
-            all.push(Relation {
-                members: [a, b],
-                scores,
-            });
-        }
-    }
-    all
-}
-
-/// The image of the end of an arc that is nearest to a vertex, and the unit vector in which it leaves
-/// there; none where it is not near.
-fn nearest(arc: &Arc, vertex: &nalgebra::Point3<f64>) -> Option<(Point2<f64>, Vector2<f64>)> {
-    let last = arc.points.len().checked_sub(1)?;
-    let distance = |k: usize| (arc.points[k].0 - vertex).norm();
-    let (end, next) = if distance(0) < distance(last) {
-        (0, 1.min(last))
-    } else {
-        (last, last.saturating_sub(1))
-    };
-    let step = (arc.points[end].0 - arc.points[next].0).norm();
-    // Half a step from the end to the vertex.
-    if distance(end) > 2.0 * step || end == next {
-        return None;
-    }
-    let (at, before) = (arc.points[end].1.at, arc.points[next].1.at);
-    Some((at, (at - before).try_normalize(0.0)?))
-}
-
-/// Whether a choice ends at a place, seen along a direction; `explained` tells whether an arc runs on
-/// there.
-fn end(
-    choice: &Choice,
-    picture: &Picture,
-    at: &Point2<f64>,
-    outwards: &Vector2<f64>,
-    explained: impl Fn(&Point2<f64>) -> bool,
-) -> bool {
-    let farthest = farthest(choice, picture, at, outwards);
-    farthest >= -VERTEX && !goes_on(farthest, at, outwards, explained)
-}
-
-/// Whether a choice that reaches so far beyond a place goes on there.
-fn goes_on(
-    farthest: f64,
-    at: &Point2<f64>,
-    outwards: &Vector2<f64>,
-    explained: impl Fn(&Point2<f64>) -> bool,
-) -> bool {
-    farthest > VERTEX && !explained(&(at + outwards * VERTEX))
-}
-
-/// How far beyond a place a choice reaches along a direction.
-fn farthest(choice: &Choice, picture: &Picture, at: &Point2<f64>, outwards: &Vector2<f64>) -> f64 {
-    let straight = |&s: &u32| {
-        // A whole ellipse has no end.
-        let shape = &picture.detection.segments[s as usize].shape;
-        !matches!(shape, Shape::Ellipse { .. })
-    };
-    let ends = choice.segments.iter().filter(|s| straight(s));
-    let ends = ends.flat_map(|&s| picture.ends(s));
-    let along = ends.map(|end| outwards.dot(&(Point2::from(end) - at)));
-    along.fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// Sets at how many of an arc's vertices that are seen each choice ends, and goes on.
-fn set_ends(part: &Part<'_>, picture: &Picture, arcs: &[Arc], arc: &Arc, choices: &mut [Choice]) {
-    let ends = arc.stroke.and_then(|s| part.strokes[s].ends);
-    for (vertex, _) in ends.into_iter().flatten() {
-        let Some((at, outwards)) = nearest(arc, &vertex) else {
-            continue;
-        };
-        if !picture.edges.reaches(&at) || !picture.edges.reaches(&(at + outwards * BEYOND)) {
-            continue;
-        }
-        for choice in choices.iter_mut() {
-            let explained = |p: &Point2<f64>| runs_along(arcs, p, &outwards);
-            let far = farthest(choice, picture, &at, &outwards);
-            if far >= -VERTEX {
-                choice.ends[usize::from(goes_on(far, &at, &outwards, explained))] += 1;
-            }
-        }
-    }
-}
-
-/// Whether one of the arcs runs through a place about along a direction.
-fn runs_along(arcs: &[Arc], at: &Point2<f64>, direction: &Vector2<f64>) -> bool {
-    let points = arcs.iter().flat_map(|a| &a.points);
-    let mut seen = points.map(|p| &p.1);
-    seen.any(|s| {
-        let across = s.normal.dot(direction).abs();
-        (s.at - at).norm() < PASSES && across < ANGLES
-    })
-}
-
-/// How near, in pixels, an arc passes that an edge is explained by.
-const PASSES: f64 = 5.0;

@@ -7,6 +7,7 @@ pub mod astray;
 pub mod camera;
 pub mod clutter;
 pub mod correspondence;
+mod ends;
 pub mod evidence;
 pub mod explain;
 pub mod finding;

@@ -102,14 +102,6 @@ impl<'a> Part<'a> {
         [0, 1].map(|k| self.brep.topology.face_of(side(k)))
     }
 
-    /// The vertex in which two strokes meet.
-    pub fn common(&self, a: Option<usize>, b: Option<usize>) -> Option<Point3<f64>> {
-        let ends = |s: usize| self.brep.topology.edge(self.strokes[s].edge).ends;
-        let (a, b) = (ends(a?)?, ends(b?)?);
-        let common = a.into_iter().find(|v| b.contains(v))?;
-        Some(self.brep.point(common))
-    }
-
     /// Four points that tell where the part is: its middle, and three about it; of a part that is turned
     /// about an axis, which may be turned by any angle, all on that.
     pub fn probes(&self) -> [Point3<f64>; 4] {

@@ -24,28 +24,48 @@ pub struct Astray {
 }
 
 impl Astray {
-    /// How far the edges are off that the features of a part at a pose are drawn to.
-    pub fn of(camera: &Pinhole, pose: &Isometry3<f64>, features: &[Vec<Pull>]) -> Self {
-        let (mut sums, mut weights) = ([0.0; 2], 0.0);
-        for pulls in features {
-            let seen = pulls.iter().filter_map(|pull| {
-                let (off, _) = residual(camera, pose, pull)?;
-                Some((off, pull))
-            });
-            let seen: Vec<(f64, &Pull)> = seen.collect();
-            let Some(left) = left(&seen) else { continue };
-            for ((off, pull), left) in seen.iter().zip(left) {
-                sums[0] += pull.weight * (off - left) * (off - left);
-                sums[1] += pull.weight * left * left;
-                weights += pull.weight;
-            }
-        }
-        let [wholes, edges] = match weights > 0.0 {
-            true => sums.map(|sum| (sum / weights).sqrt()),
-            false => [0.0; 2],
-        };
-        Self { wholes, edges }
+    /// How far the edges are off that each feature of a part at a pose is drawn to; none of those that are
+    /// drawn to nothing.
+    pub fn each(
+        camera: &Pinhole,
+        pose: &Isometry3<f64>,
+        features: &[Vec<Pull>],
+    ) -> Vec<Option<Self>> {
+        let squares = features.iter().map(|pulls| squares(camera, pose, pulls));
+        squares.map(|s| s.map(Self::root)).collect()
     }
+
+    /// The same of all features together.
+    pub fn of(camera: &Pinhole, pose: &Isometry3<f64>, features: &[Vec<Pull>]) -> Self {
+        let squares = features.iter().filter_map(|p| squares(camera, pose, p));
+        let sum = squares.reduce(|a, b| [0, 1, 2].map(|i| a[i] + b[i]));
+        sum.map_or_else(Self::default, Self::root)
+    }
+
+    /// Of weighted squares, and the sum of weights.
+    fn root([wholes, edges, weight]: [f64; 3]) -> Self {
+        Self {
+            wholes: (wholes / weight).sqrt(),
+            edges: (edges / weight).sqrt(),
+        }
+    }
+}
+
+/// The weighted squares of how far a feature's edges are off as a whole, and beside that, and the sum of
+/// weights; none where there is no weight.
+fn squares(camera: &Pinhole, pose: &Isometry3<f64>, pulls: &[Pull]) -> Option<[f64; 3]> {
+    let seen = pulls.iter().filter_map(|pull| {
+        let (off, _) = residual(camera, pose, pull)?;
+        Some((off, pull))
+    });
+    let seen: Vec<(f64, &Pull)> = seen.collect();
+    let mut sums = [0.0; 3];
+    for ((off, pull), left) in seen.iter().zip(left(&seen)?) {
+        sums[0] += pull.weight * (off - left) * (off - left);
+        sums[1] += pull.weight * left * left;
+        sums[2] += pull.weight;
+    }
+    (sums[2] > 0.0).then_some(sums)
 }
 
 /// How far the edges of one feature are off when it is moved, turned and scaled to be nearest to them.

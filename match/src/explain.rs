@@ -1,14 +1,33 @@
 //! Why a match won, in words.
 
 use crate::finding::Match;
-use crate::report::{Report, State};
+use crate::report::{Feature, Report, State};
 use premio_predict::outline::Source;
 use std::fmt::Write;
 
-/// What tells for and against a match: feature by feature, and what its pose was fitted to.
-pub fn explained(best: &Match, report: &Report) -> String {
+/// What tells for and against the likeliest match, if there is any: feature by feature, and what its pose
+/// was fitted to; and why a part is not found.
+pub fn explained(best: Option<&Match>, report: &Report) -> String {
+    let mut text = match &report.reason {
+        Some(reason) => format!("not found: {reason}\n"),
+        None => String::new(),
+    };
+    if let Some(best) = best {
+        text += &weighed(best, report);
+    }
+    text += &worked(report);
+    let mut order: Vec<_> = report.features.iter().collect();
+    order.sort_by(|a, b| b.score.total_cmp(&a.score));
+    for feature in order {
+        text += &told(feature);
+    }
+    text
+}
+
+/// What a match weighs, and of what.
+fn weighed(best: &Match, report: &Report) -> String {
     let mut text = String::new();
-    let verdict = if report.found { "found" } else { "not found" };
+    let verdict = if report.found { "found" } else { "likeliest" };
     let _ = writeln!(
         text,
         "{verdict}, probability {:.3}: ratio {:.1} (score {:.1} against clutter, {:.1} fitted by the pose, \
@@ -40,7 +59,13 @@ pub fn explained(best: &Match, report: &Report) -> String {
         let count = report.rivals.len();
         let _ = writeln!(text, "{count} more poses are about as likely (`rivals`)");
     }
+    text
+}
+
+/// What the search did.
+fn worked(report: &Report) -> String {
     let work = &report.work;
+    let mut text = String::new();
     let _ = writeln!(
         text,
         "{} segments, {} + {} chains proposed {} poses; correspondences: {} choices eliminated, {} \
@@ -57,29 +82,30 @@ pub fn explained(best: &Match, report: &Report) -> String {
         work.search.rounds,
         if work.cut { "; some were left out" } else { "" }
     );
-    let mut order: Vec<_> = report.features.iter().collect();
-    order.sort_by(|a, b| b.score.total_cmp(&a.score));
-    for feature in order {
-        let state = match feature.state {
-            State::Whole => "whole",
-            State::Broken => "broken",
-            State::Missed => "missed",
-        };
-        let beside = feature
-            .offset
-            .map_or(String::new(), |o| format!(", {o:+.2} px beside it"));
-        let _ = writeln!(
-            text,
-            "  {:+6.1}  {} {} {state}: {:.0} % of {:.0} px{beside} (against it {:.1})",
-            feature.score,
-            feature.source.word(),
-            number(&feature.source),
-            100.0 * feature.share,
-            feature.length,
-            feature.against
-        );
-    }
     text
+}
+
+/// What a feature adds.
+fn told(feature: &Feature) -> String {
+    let state = match feature.state {
+        State::Whole => "whole",
+        State::Broken => "broken",
+        State::Missed => "missed",
+    };
+    let beside = feature.offset.zip(feature.astray);
+    let beside = beside.map_or(String::new(), |(offset, off)| {
+        let rms = off.wholes.hypot(off.edges);
+        format!(", {offset:+.2} px beside it at first, {rms:.2} at last")
+    });
+    format!(
+        "  {:+6.1}  {} {} {state}: {:.0} % of {:.0} px{beside} (against it {:.1})\n",
+        feature.score,
+        feature.source.word(),
+        number(&feature.source),
+        100.0 * feature.share,
+        feature.length,
+        feature.against
+    )
 }
 
 /// The number of a feature.

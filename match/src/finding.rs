@@ -71,6 +71,8 @@ pub struct Found {
     pub share: f64,
     /// How far beside it they run, in pixels.
     pub offset: f64,
+    /// How far they are off it at the pose of the match.
+    pub astray: Astray,
 }
 
 /// A pose with its correspondences.

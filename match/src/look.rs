@@ -159,6 +159,12 @@ impl Look<'_> {
     fn judged(&self, found: Match) -> Match {
         let mut judged = found;
         judged.astray = Astray::of(self.camera, &judged.pose, &judged.pulls);
+        let each = Astray::each(self.camera, &judged.pose, &judged.pulls);
+        for (pair, astray) in judged.pairs.iter_mut().zip(each) {
+            if let (Some(found), Some(astray)) = (&mut pair.found, astray) {
+                found.astray = astray;
+            }
+        }
         judged.shape = Shape::of(self.part, self.camera, &judged);
         judged.framed = framed(self.picture, &judged.pairs);
         judged.odds = odds(&judged, self.picture.straightness);
@@ -232,6 +238,7 @@ fn pairs(problem: &Correspondence, arcs: &[Arc], solution: &Solution) -> Vec<Pai
                 ends: choice.ends,
                 share: choice.share,
                 offset: choice.offset,
+                astray: Astray::default(),
             }
         });
         all.push(Pair {

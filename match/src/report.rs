@@ -89,6 +89,8 @@ pub struct Feature {
     pub ends: Option<[u32; 2]>,
     /// How far beside it, in pixels, its edge runs.
     pub offset: Option<f64>,
+    /// How far the edge is off its contour at the pose, as root mean squares in pixels.
+    pub astray: Option<Astray>,
     /// The ends of the segments that it is.
     pub segments: Vec<[[f64; 2]; 2]>,
     /// What it adds to the score, and what of that tells against the part.
@@ -311,6 +313,7 @@ fn features(found: &Match, picture: &Picture, scale: u32) -> Vec<Feature> {
             },
             share,
             offset: is.map(|f| f.offset),
+            astray: is.map(|f| f.astray),
             ends: is.map(|f| f.ends),
             segments: is.map_or(Vec::new(), |f| {
                 let ends = f.segments.iter();

@@ -49,9 +49,9 @@ pub fn find(options: &MatchOptions, voice: Voice) -> Result<(), Failure> {
         let look = sought_for.look(&part, &learned, picture, camera);
         (look.find(), None)
     };
-    let told = |sight: &Sight| match (sight.finding.best(), options.explain) {
-        (Some(best), true) => Some(explained(best, &sight.report)),
-        _ => None,
+    let told = |sight: &Sight| {
+        let explain = options.explain;
+        explain.then(|| explained(sight.finding.best(), &sight.report))
     };
     each(&options.sought, &sought_for, &part, look, told, voice)
 }

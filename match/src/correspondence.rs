@@ -288,7 +288,10 @@ fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
     let pieces: Vec<Choice> = by_segment.iter().map(single).collect();
     let mut all: Vec<Choice> = Vec::new();
     for seed in pieces.iter().filter(|p| p.hits.len() >= fewest) {
-        let joined = joined(arc, seed, &pieces);
+        let joined = match is_along(seed, arc) {
+            true => joined(arc, seed, &pieces),
+            false => seed.clone(),
+        };
         let known = |c: &Choice| c.segments == joined.segments;
         if joined.segments.len() > 1 && !all.iter().any(known) {
             all.push(joined);
@@ -307,6 +310,11 @@ fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
 /// As many candidates as an arc can have.
 const MOST: usize = 12;
 
+/// Whether a piece runs as an arc does, so that it can be one of several that it is broken into.
+fn is_along(piece: &Choice, arc: &Arc) -> bool {
+    tilt(piece, arc).abs() < PARALLEL * ASKEW.hypot(END / piece.longest)
+}
+
 /// A piece with those that lie end to end with it, the longest first.
 fn joined(arc: &Arc, seed: &Choice, pieces: &[Choice]) -> Choice {
     let mut whole = seed.clone();
@@ -322,9 +330,11 @@ fn joined(arc: &Arc, seed: &Choice, pieces: &[Choice]) -> Choice {
         let shared = piece.hits.iter().filter(|h| known(h.0)).count();
         let near = (piece.offset - whole.offset).abs() < PIECES;
         let other = !whole.segments.contains(&piece.segments[0]);
-        let askew = ASKEW.hypot(END / piece.longest);
-        let along = tilt(piece, arc).abs() < PARALLEL * askew;
-        if other && near && along && (shared as f64) < OVERLAP * piece.hits.len() as f64 {
+        if other
+            && near
+            && is_along(piece, arc)
+            && (shared as f64) < OVERLAP * piece.hits.len() as f64
+        {
             let new: Vec<_> = piece.hits.iter().filter(|h| !known(h.0)).copied().collect();
             let (n, m) = (whole.hits.len() as f64, new.len() as f64);
             whole.offset = (whole.offset * n + piece.offset * m) / (n + m);

@@ -42,7 +42,8 @@ fn weighed(best: &Match, report: &Report) -> String {
         text,
         "odds {:.1}: edges {:.2} px off contours (as wholes {:.2}, beside that {:.2}; off lines {:.2}), \
          {:.0} % of these in the picture; the shape told by {:.1}, denied by {:.1}, {:.0} % apart from one \
-         plane, {:.0} % framed; {} edges go on past a vertex",
+         plane, {:.0} % framed; {:.0} % of the carriers found, the rest untold by {:.1}; {} edges go on \
+         past a vertex",
         best.odds,
         best.rms,
         best.astray.wholes,
@@ -53,6 +54,8 @@ fn weighed(best: &Match, report: &Report) -> String {
         best.shape.denied,
         100.0 * best.shape.relief,
         100.0 * best.framed,
+        100.0 * best.shape.carriers,
+        best.shape.untold,
         best.past()
     );
     if !report.rivals.is_empty() {

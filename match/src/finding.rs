@@ -11,6 +11,10 @@ use crate::shape::Shape;
 use crate::worth::{DETERMINED, FEWEST, SMALLEST};
 use nalgebra::{Isometry3, Matrix6};
 use premio_predict::outline::Source;
+use std::cmp::Ordering;
+
+/// An edge that is off a feature as a whole by more pixels than these runs beside it.
+const BESIDE: f64 = 2.0;
 
 /// How much work is done at the most.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +62,14 @@ pub struct Pair {
     pub score: f64,
     /// Of that, what tells against the part: how unlikely it is missed, or so broken.
     pub against: f64,
+}
+
+impl Pair {
+    /// Whether the feature is not found, or only an edge that runs beside it.
+    pub(crate) fn is_missed(&self) -> bool {
+        let found = self.found.as_ref();
+        found.is_none_or(|f| f.astray.wholes > BESIDE)
+    }
 }
 
 /// What a found feature is.
@@ -141,14 +153,47 @@ impl Match {
         }
     }
 
+    /// What tells for the part at this pose rather than for clutter and other things, all together.
+    pub fn weight(&self) -> f64 {
+        self.ratio + self.odds
+    }
+
+    /// How much likelier it is the part than a thing that is like all of it that something is found of, and
+    /// lacks the rest: the logarithm of the odds. However much is found does not tell these apart.
+    fn whole(&self) -> f64 {
+        PIECE + self.shape.untold
+    }
+
+    /// Whether it may as well be a piece of the part.
+    pub fn is_piece(&self) -> bool {
+        self.whole() < 0.0
+    }
+
     /// How likely the part is there.
     pub fn probability(&self) -> f64 {
-        1.0 / (1.0 + (-(self.ratio + self.odds)).exp())
+        let pieces = match self.shape.untold < 0.0 {
+            true => (-self.whole()).exp(),
+            false => 0.0,
+        };
+        1.0 / (1.0 + (-self.weight() / REPEATED).exp() + pieces)
     }
 
     /// Whether the part is taken to be there.
     pub fn is_accepted(&self) -> bool {
-        self.ratio + self.odds >= 0.0
+        self.weight() >= 0.0 && !self.is_piece()
+    }
+
+    /// Orders the likelier before the less likely, and what is accepted before what is not.
+    pub(crate) fn order(&self, other: &Self) -> Ordering {
+        let accepted = other.is_accepted().cmp(&self.is_accepted());
+        accepted.then(other.weight().total_cmp(&self.weight()))
+    }
+
+    /// The share of the visible length in the picture that is missed, or whose edges run beside it.
+    pub fn missed(&self) -> f64 {
+        let missed = self.pairs.iter().filter(|p| p.is_missed());
+        let missed: f64 = missed.map(|p| p.length).sum();
+        missed / self.length().max(f64::MIN_POSITIVE)
     }
 
     /// At how many vertices that are seen an edge goes on.
@@ -222,12 +267,19 @@ impl Finding {
         let Some((best, others)) = self.matches.split_first() else {
             return &[];
         };
-        let is = |m: &Match| best.is_accepted() && m.is_accepted() && m.ratio > best.ratio - RIVAL;
+        let near = |m: &Match| m.weight() > best.weight() - RIVAL * REPEATED;
+        let is = |m: &Match| best.is_accepted() && m.is_accepted() && near(m);
         &others[..others.iter().take_while(|m| is(m)).count()]
     }
 }
 
-/// A match whose ratio is less by this is no rival.
+/// How much rarer than the part things are that are like all of it that something is found of, and lack
+/// the rest: the logarithm of the odds, before it is looked for.
+const PIECE: f64 = 6.0;
+/// What edges tell is told by others, too: sums of logarithms are so many times too large for odds to be
+/// those at which poses are right in the known pictures.
+const REPEATED: f64 = 3.5;
+/// A match whose odds are less by this, as a logarithm, is no rival.
 const RIVAL: f64 = 3.0;
 
 /// So many features of a match are doubted, one after another.

@@ -61,13 +61,14 @@ impl Look<'_> {
         best_first(&mut settled);
         let best = distinct(part, camera, settled, limits.searched);
         let mut matches: Vec<Match> = best.par_iter().filter_map(|h| self.at(&h.pose)).collect();
-        likeliest_first(&mut matches);
+        matches.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
         let rest = matches.split_off(matches.len().min(IMPROVED));
         let mut matches: Vec<Match> = matches.into_par_iter().map(|m| self.improved(m)).collect();
         matches.extend(rest);
-        let matches = different(part, camera, matches);
-        let judged = matches.into_par_iter().map(|m| self.judged(m));
-        let (matches, few): (Vec<Match>, Vec<Match>) = judged.partition(|m| m.is_determined(part));
+        let judged = matches.into_par_iter().map(|m| self.judged(m)).collect();
+        let matches = different(part, camera, judged);
+        let (matches, few): (Vec<Match>, Vec<Match>) =
+            matches.into_iter().partition(|m| m.is_determined(part));
         Finding {
             matches,
             little: few.into_iter().next().map(Box::new),
@@ -207,7 +208,7 @@ const LEAST: f64 = 0.2;
 
 /// The matches at different poses, the likeliest of each.
 fn different(part: &Part<'_>, camera: &Pinhole, mut matches: Vec<Match>) -> Vec<Match> {
-    likeliest_first(&mut matches);
+    matches.sort_by(Match::order);
     let mut all: Vec<Match> = Vec::new();
     for next in matches {
         if !all
@@ -218,10 +219,6 @@ fn different(part: &Part<'_>, camera: &Pinhole, mut matches: Vec<Match>) -> Vec<
         }
     }
     all
-}
-
-fn likeliest_first(matches: &mut [Match]) {
-    matches.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
 }
 
 fn pairs(problem: &Correspondence, arcs: &[Arc], solution: &Solution) -> Vec<Pair> {

@@ -107,6 +107,8 @@ pub struct Rival {
     pub pose: Pose,
     /// As the report's.
     pub ratio: f64,
+    /// See `ratio`.
+    pub probability: f64,
 }
 
 /// What the search for a part did.
@@ -156,8 +158,10 @@ pub struct Report {
     /// or another thing.
     pub ratio: Option<f64>,
     /// The logarithm of the odds that what is found so is the part: the less, the farther edges are off
-    /// its contours, the more of it is cut off by the border, and the less its shape is told. With `ratio`
-    /// the odds of `probability`.
+    /// its contours, the more of it is missed or cut off by the border, and the less its shape is told.
+    /// Its sum with `ratio`, over 3.5, is the logarithm of the odds of `probability`, as what edges tell is
+    /// told by others, too; where nothing is found of some carriers (`shape`), the odds are less, that it
+    /// is the part rather than a piece of it.
     pub odds: Option<f64>,
     /// What is told of the part's shape.
     pub shape: Option<Shape>,
@@ -192,8 +196,8 @@ pub struct Report {
     /// Of a part that is turned about an axis, the axis, in the part's frame: the pose may be turned
     /// about it by any angle.
     pub axis: Option<Axis>,
-    /// Other poses at which the part is found, too, and that are less likely by a ratio of no more than
-    /// e³, up to symmetries.
+    /// Other poses at which the part is found, too, and whose odds are less by no more than e³, up to
+    /// symmetries.
     pub rivals: Vec<Rival>,
     /// The correspondences.
     pub features: Vec<Feature>,
@@ -292,6 +296,7 @@ fn rivals(finding: &Finding) -> Vec<Rival> {
     let rivals = finding.rivals().iter().map(|m| Rival {
         pose: Pose::from(&m.pose),
         ratio: m.ratio,
+        probability: m.probability(),
     });
     rivals.collect()
 }
@@ -353,9 +358,10 @@ fn reason(part: &Part<'_>, picture: &Picture, finding: &Finding) -> String {
         };
     };
     let (found, all) = (best.found(), best.pairs.len());
-    let others = match is_figure(best) {
-        true => "all of it could be a figure on a flat thing, or a frame",
-        false => "other things look as much like it",
+    let others = match (is_figure(best), best.is_piece()) {
+        (true, _) => "all of it could be a figure on a flat thing, or a frame",
+        (_, true) => "it could be another thing, which is like what is found and lacks the rest",
+        _ => "other things look as much like it",
     };
     format!(
         "at its likeliest place {found} of {all} features are found, {:.0} % of their length: {others}",

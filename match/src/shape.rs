@@ -43,6 +43,12 @@ pub struct Shape {
     /// The share of what is found that does not lie about one plane face's contour: nothing, if all of
     /// it could be a figure on a flat thing.
     pub relief: f64,
+    /// The share of the carriers whose contours are visible, in the picture or out of it, that something is
+    /// found of.
+    pub carriers: f64,
+    /// Of the others, how unlikely it is that their features are missed, or out of the picture, where they
+    /// are there: a logarithm.
+    pub untold: f64,
 }
 
 impl Shape {
@@ -52,7 +58,14 @@ impl Shape {
         let pairs = found.pairs.iter().zip(&found.pulls);
         let well = pairs.filter(|(pair, _)| pair.score > 0.0);
         let features = well.map(|(pair, pulls)| (pair.source, pulls.as_slice()));
-        Self::told_by(part, camera, &found.pose, features)
+        let visible = carriers(part, found.arcs.iter().map(|arc| arc.source));
+        let there = found.pairs.iter().filter(|pair| !pair.is_missed());
+        let there = carriers(part, there.map(|pair| pair.source));
+        Self {
+            carriers: there.len() as f64 / visible.len().max(1) as f64,
+            untold: untold(part, found, &visible, &there),
+            ..Self::told_by(part, camera, &found.pose, features)
+        }
     }
 
     /// What edges tell that features of a part are drawn to at a pose.
@@ -76,6 +89,8 @@ impl Shape {
             told,
             denied,
             relief: relief(part, &drawn),
+            carriers: 1.0,
+            untold: 0.0,
         }
     }
 
@@ -126,13 +141,54 @@ impl Drawn {
     }
 }
 
+/// The carriers that features are of.
+fn carriers(part: &Part<'_>, features: impl Iterator<Item = Source>) -> BTreeSet<usize> {
+    let surface = |face: FaceId| part.brep.geometry.patches[face.0 as usize].surface;
+    let faces = features.flat_map(|source| faces(part, source));
+    faces.map(surface).collect()
+}
+
+/// See [`Shape::untold`].
+fn untold(
+    part: &Part<'_>,
+    found: &Match,
+    visible: &BTreeSet<usize>,
+    there: &BTreeSet<usize>,
+) -> f64 {
+    let of = |source| carriers(part, std::iter::once(source));
+    let missed = found.pairs.iter().filter(|pair| pair.found.is_none());
+    let missed = missed.filter(|pair| !of(pair.source).is_subset(there));
+    let missed: f64 = missed.map(|pair| pair.against.min(0.0)).sum();
+    let out = visible.difference(there).map(|carrier| {
+        let is = |source| of(source).contains(carrier);
+        let arcs = found.arcs.iter().filter(|arc| is(arc.source));
+        let pairs = found.pairs.iter().filter(|pair| is(pair.source));
+        let inside: f64 = pairs.map(|pair| pair.length).sum();
+        1.0 - (inside / arcs.map(|arc| arc.length).sum::<f64>()).min(1.0)
+    });
+    let out = out.sum::<f64>() / visible.len().max(1) as f64;
+    missed + OUT * (1.0 - out).max(f64::MIN_POSITIVE).ln()
+}
+
+/// How unlikely it is that the border of the picture cuts carriers off, by the logarithm of the share of
+/// those that are left.
+const OUT: f64 = 25.0;
+
+/// The faces that a feature is of.
+fn faces(part: &Part<'_>, source: Source) -> Vec<FaceId> {
+    match source {
+        Source::Edge { edge } => part.brep.topology.faces_of(EdgeId(edge)).take(2).collect(),
+        Source::Limb { face, .. } => vec![FaceId(face)],
+        // A part is looked for by its own contours.
+        _ => Vec::new(),
+    }
+}
+
 /// How a point of a feature moves where the carrier of each of its faces is offset by a unit.
 fn moves(part: &Part<'_>, source: Source, point: &Point3<f64>) -> Vec<(FaceId, Vector3<f64>)> {
     let brep = part.brep;
-    match source {
-        Source::Edge { edge } => {
-            let faces: Vec<FaceId> = brep.topology.faces_of(EdgeId(edge)).take(2).collect();
-            let [a, b] = faces[..] else { return Vec::new() };
+    match faces(part, source)[..] {
+        [a, b] => {
             let [m, n] = [a, b].map(|f| brep.outward(f, point));
             // In the plane of both normals, by one along its own, by nothing along the other.
             let c = m.dot(&n);
@@ -142,11 +198,7 @@ fn moves(part: &Part<'_>, source: Source, point: &Point3<f64>) -> Vec<(FaceId, V
             let way = |k: usize| m * dual[(0, k)] + n * dual[(1, k)];
             vec![(a, way(0)), (b, way(1))]
         }
-        Source::Limb { face, .. } => {
-            let face = FaceId(face);
-            vec![(face, brep.outward(face, point))]
-        }
-        // A part is looked for by its own contours.
+        [face] if matches!(source, Source::Limb { .. }) => vec![(face, brep.outward(face, point))],
         _ => Vec::new(),
     }
 }

@@ -39,7 +39,7 @@ impl Look<'_> {
             let good = found.is_determined(part) && found.is_accepted();
             (good && is_near(part, camera, last, &found.pose)).then_some(found)
         });
-        all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+        all.min_by(Match::order)
     }
 
     /// What became of a picture of a sequence: the match, and whether it was looked for anew.

@@ -1,7 +1,6 @@
 //! What a match is worth: how much more likely the picture is with the part there than with clutter, or
 //! with other things that look like it as far as it is found.
 
-use crate::astray::Astray;
 use crate::camera::Pinhole;
 use crate::correspondence::Correspondence;
 use crate::finding::Match;
@@ -17,9 +16,9 @@ pub const FEWEST: [usize; 2] = [5, 3];
 pub const DETERMINED: f64 = 15.0;
 /// A part whose visible contours are shorter, in pixels, is too small.
 pub const SMALLEST: f64 = 320.0;
-/// The logarithm of the odds that a part is there of usual size, all of it in the picture and found, and
-/// fitting as well as lines do, before anything is found: see [`ratio`].
-const ODDS: f64 = 7.5;
+/// The logarithm of the odds that a part is there that is in the picture and found with all its carriers,
+/// and fits as well as lines do, before anything is found: see [`ratio`].
+const ODDS: f64 = 4.4;
 
 /// From about so much on what is found tells less and less: pictures are of things, and many things are
 /// alike; what is not found of the part tells them apart.
@@ -34,34 +33,38 @@ const SHARE: [f64; 2] = [10.0, 0.8];
 /// What it tells that edges are farther off the contours than they are off lines, by the logarithm:
 /// between poses of the part, and besides, against another thing; and how far, in pixels, both are off
 /// at least.
-const ROUGH: [f64; 2] = [2.0, 12.0];
+const ROUGH: [f64; 2] = [2.0, 5.2];
 const SMOOTH: f64 = 0.11;
-/// What it tells that features are off as wholes, by the logarithm of how many times as far as their edges
-/// are off beside that: up to so much, and how far, in pixels, both are off at least.
-const ASTRAY: [f64; 2] = [3.4, 3.0];
+/// What it tells that features are off as wholes, on the average of them, by the logarithm of how many
+/// times as far as their edges are off beside that: up to so much, and how far, in pixels, both are off
+/// at least.
+const ASTRAY: [f64; 2] = [4.8, 3.0];
 const SLIGHT: f64 = 0.05;
 /// What it tells that the border of the picture cuts contours off, by the logarithm of what is left:
 /// what is out of the picture can be anything.
-const CUT: f64 = 15.5;
-/// What it tells that features are missed, by their share, and that contours are long, by the logarithm
-/// of their pixels over these.
-const MISSED: f64 = 37.0;
-const LONG: f64 = 4.9;
-const USUALLY: f64 = 640.0;
+const CUT: f64 = 9.0;
+/// What it tells that features are missed, by their share of the length, and that little is found, by the
+/// logarithm of its length in pixels to this.
+const MISSED: f64 = 19.5;
+const LITTLE: f64 = 10.2;
+const ENOUGH: f64 = 640.0;
 /// What it tells that an edge goes on past a vertex of the part, for each.
-const PAST: f64 = 2.2;
+const PAST: f64 = 3.0;
 /// What it tells that the shape is not told, by the logarithm of its ratio to this: from so much on,
 /// either way, it tells no more.
-const TOLD: f64 = 1.3;
+const TOLD: f64 = 1.0;
 const SHAPE: f64 = 6.0;
+/// What it tells that nothing is found of some carriers, by the logarithm of the share of the others: what
+/// is found may be all that there is.
+const CARRIERS: f64 = 19.5;
 /// What it tells that all could be a figure on a flat thing, for which less than so much lies apart from
 /// it; and from which ratio on, up to which, the figure's shape tells as well: a rectangle's does not.
-const FLAT: f64 = 14.0;
+const FLAT: f64 = 22.0;
 const RELIEF: f64 = 0.09;
 const FIGURE: [f64; 2] = [5.0, 8.0];
 /// What it tells that all runs along the picture's rows and columns, where little is told of the shape:
 /// it may be drawn, or a frame.
-const FRAMED: f64 = 22.0;
+const FRAMED: f64 = 34.0;
 /// The nearest and the farthest place of a part, in its radius.
 const DEPTHS: [f64; 2] = [1.5, 75.0];
 
@@ -92,27 +95,32 @@ fn rough(found: &Match, straightness: f64) -> f64 {
     (contours / lines).ln().max(0.0)
 }
 
-/// The logarithm of how many times as far as their edges beside that features are off as wholes.
-fn astray(off: &Astray) -> f64 {
-    let times = (off.wholes + SLIGHT) / (off.edges + SLIGHT);
-    times.ln().clamp(-ASTRAY[1], ASTRAY[1])
+/// The logarithm of how many times as far as their edges beside that features are off as wholes, on the
+/// average of those that are found.
+fn astray(found: &Match) -> f64 {
+    let features = found.pairs.iter().filter_map(|p| p.found.as_ref());
+    let times = features.map(|f| {
+        let [wholes, edges] = [f.astray.wholes, f.astray.edges].map(|off| off + SLIGHT);
+        (wholes / edges).ln().clamp(-ASTRAY[1], ASTRAY[1])
+    });
+    times.sum::<f64>() / found.found().max(1) as f64
 }
 
 /// The logarithm of the odds that it is the part where something is found that is as like it as this:
-/// a part fits better than other things do, is in the picture and large, all of it is found, and its
-/// shape is told.
+/// a part fits better than other things do, is in the picture, all of it is found, which is not little,
+/// and its shape is told.
 pub fn odds(found: &Match, straightness: f64) -> f64 {
     let inside = found.inside().max(f64::MIN_POSITIVE);
-    let missed = 1.0 - found.found() as f64 / found.pairs.len().max(1) as f64;
-    let length = (found.length().max(1.0) / USUALLY).ln();
+    let length = found.share() * found.length() / ENOUGH;
     let shape = found.shape.ratio();
-    ODDS - ROUGH[1] * rough(found, straightness) + CUT * inside.ln() - MISSED * missed
-        + LONG * length
+    ODDS - ROUGH[1] * rough(found, straightness) - ASTRAY[0] * astray(found) + CUT * inside.ln()
+        - MISSED * found.missed()
+        + LITTLE * length.clamp(f64::MIN_POSITIVE, 1.0).ln()
         - PAST * f64::from(found.past())
         + TOLD * (shape.clamp(-SHAPE, SHAPE) - SHAPE)
+        + CARRIERS * found.shape.carriers.max(f64::MIN_POSITIVE).ln()
         - FLAT * flat(&found.shape)
         - FRAMED * framed(found)
-        - ASTRAY[0] * astray(&found.astray)
 }
 
 /// Whether what is found lies about one plane, or along the picture's rows and columns, and tells little

@@ -249,6 +249,29 @@ fn what_is_drawn_is_not_taken_for_a_cube() {
     }
 }
 
+/// A cube is found in its pictures, and the cube with a tube beside it is not, wherever the tube may be
+/// hidden, or out of the picture.
+#[test]
+fn a_piece_of_a_part_is_not_the_part() {
+    let cube = json!({"prim": "block", "size": [1.0, 1.0, 1.0]});
+    let tube = json!({"prim": "cylinder", "r": 0.48, "h": 3.0,
+        "transform": [{"translate": [2.0, 0.4, 0.0]}]});
+    let both = part(&json!({"op": "union", "children": [cube, tube]}));
+    let cube = part(&cube);
+    let subject = Subject::new(&cube.brep, cube.resolution).unwrap();
+    let [cube, both] = [&cube, &both].map(|e| sought(e, &Learned::nothing()));
+    for (seed, eye) in (1..).zip(EYES) {
+        for beside in [[0.0; 3], [0.9, 0.2, 0.0]] {
+            let truth = pose(&subject, eye, beside);
+            let grey = picture(&subject, &truth, seed);
+            let [alone, more] = [&cube, &both].map(|p| look(p, &grey, &Options::default()));
+            let [alone, more] = [alone, more].map(|f| f.best().map(|m| m.is_accepted()));
+            assert_eq!(alone, Some(true), "{eye:?} {beside:?}");
+            assert_ne!(more, Some(true), "{eye:?} {beside:?}");
+        }
+    }
+}
+
 /// A shaft with a collar: no straight edge; ellipses propose its poses, and limbs tell them.
 #[test]
 fn a_round_part_is_found_but_for_its_turn() {

@@ -147,3 +147,28 @@ fn edges_of_another_block_deny_this_one() {
         "{another:?}"
     );
 }
+
+/// A block with a rod upon it has six planes, one at the rod's end, and the rod's own carrier. From a
+/// corner the block's edges are of all its six, outlines being of faces that are turned away, too; the
+/// rod's limbs and rims are of its two, and of the face that it stands on.
+#[test]
+fn carriers_are_counted_that_features_are_of() {
+    let part = evaluated(
+        r#"{"op": "union", "children": [
+            {"prim": "block", "size": [2.0, 1.5, 1.0], "transform": [{"translate": [-1.0, -0.75, -0.5]}]},
+            {"prim": "cylinder", "r": 0.3, "h": 1.0, "transform": [{"translate": [0.0, 0.0, 0.0]}]}
+        ]}"#,
+    );
+    let learned = Learned::nothing();
+    let part = Part::new(&part.brep, part.resolution, &learned);
+    let all = arcs(&part, &CAMERA, &turned(2.2, 0.3), SIZE).unwrap();
+    let visible: Vec<Source> = all.iter().map(|arc| arc.source).collect();
+    let count = |is: &dyn Fn(&[FaceId]) -> bool| {
+        let there = visible.iter().filter(|s| is(&faces(&part, **s)));
+        carriers(&part, there.copied()).len()
+    };
+    let is_flat = |f: &FaceId| matches!(part.brep.surface(*f), Surface::Plane(_));
+    assert_eq!(count(&|_| true), 8);
+    assert_eq!(count(&|f| f.iter().all(is_flat)), 6);
+    assert_eq!(count(&|f| !f.iter().all(is_flat)), 3);
+}

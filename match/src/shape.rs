@@ -156,17 +156,22 @@ fn untold(
     there: &BTreeSet<usize>,
 ) -> f64 {
     let of = |source| carriers(part, std::iter::once(source));
+    // By carrier: how long its contours are in the picture, and in all.
+    let mut lengths: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+    let inside = found.pairs.iter().map(|pair| (pair.source, pair.length, 0));
+    let all = found.arcs.iter().map(|arc| (arc.source, arc.length, 1));
+    for (source, length, which) in inside.chain(all) {
+        for carrier in of(source).difference(there) {
+            lengths.entry(*carrier).or_default()[which] += length;
+        }
+    }
+    let out = lengths
+        .values()
+        .map(|[inside, all]| 1.0 - (inside / all).min(1.0));
+    let out = out.sum::<f64>() / visible.len().max(1) as f64;
     let missed = found.pairs.iter().filter(|pair| pair.found.is_none());
     let missed = missed.filter(|pair| !of(pair.source).is_subset(there));
     let missed: f64 = missed.map(|pair| pair.against.min(0.0)).sum();
-    let out = visible.difference(there).map(|carrier| {
-        let is = |source| of(source).contains(carrier);
-        let arcs = found.arcs.iter().filter(|arc| is(arc.source));
-        let pairs = found.pairs.iter().filter(|pair| is(pair.source));
-        let inside: f64 = pairs.map(|pair| pair.length).sum();
-        1.0 - (inside / arcs.map(|arc| arc.length).sum::<f64>()).min(1.0)
-    });
-    let out = out.sum::<f64>() / visible.len().max(1) as f64;
     missed + OUT * (1.0 - out).max(f64::MIN_POSITIVE).ln()
 }
 

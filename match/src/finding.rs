@@ -159,9 +159,10 @@ impl Match {
     }
 
     /// How much likelier it is the part than a thing that is like all of it that something is found of, and
-    /// lacks the rest: the logarithm of the odds. However much is found does not tell these apart.
+    /// lacks the rest: the logarithm of the odds. What is found does not tell these apart, but the more
+    /// it tells of the shape, the rarer are things that are like it.
     fn whole(&self) -> f64 {
-        PIECE + self.shape.untold
+        PIECE[0] + self.shape.told / PIECE[1] + self.shape.untold
     }
 
     /// Whether it may as well be a piece of the part.
@@ -274,8 +275,9 @@ impl Finding {
 }
 
 /// How much rarer than the part things are that are like all of it that something is found of, and lack
-/// the rest: the logarithm of the odds, before it is looked for.
-const PIECE: f64 = 6.0;
+/// the rest: the logarithm of the odds before it is looked for, and of how much told of the shape they
+/// are one more.
+const PIECE: [f64; 2] = [5.0, 7.0];
 /// What edges tell is told by others, too: sums of logarithms are so many times too large for odds to be
 /// those at which poses are right in the known pictures.
 const REPEATED: f64 = 3.5;

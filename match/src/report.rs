@@ -358,7 +358,7 @@ fn reason(part: &Part<'_>, picture: &Picture, finding: &Finding) -> String {
         };
     };
     let (found, all) = (best.found(), best.pairs.len());
-    let others = match (is_figure(best), best.is_piece()) {
+    let others = match (is_figure(best), best.weight() >= 0.0) {
         (true, _) => "all of it could be a figure on a flat thing, or a frame",
         (_, true) => "it could be another thing, which is like what is found and lacks the rest",
         _ => "other things look as much like it",

@@ -24,22 +24,21 @@ pub struct Astray {
 }
 
 impl Astray {
-    /// How far the edges are off that each feature of a part at a pose is drawn to; none of those that are
-    /// drawn to nothing.
-    pub fn each(
+    /// How far the edges are off that the features of a part at a pose are drawn to: of all together, and
+    /// of each; none of those that are drawn to nothing.
+    pub fn of(
         camera: &Pinhole,
         pose: &Isometry3<f64>,
         features: &[Vec<Pull>],
-    ) -> Vec<Option<Self>> {
+    ) -> (Self, Vec<Option<Self>>) {
         let squares = features.iter().map(|pulls| squares(camera, pose, pulls));
-        squares.map(|s| s.map(Self::root)).collect()
-    }
-
-    /// The same of all features together.
-    pub fn of(camera: &Pinhole, pose: &Isometry3<f64>, features: &[Vec<Pull>]) -> Self {
-        let squares = features.iter().filter_map(|p| squares(camera, pose, p));
-        let sum = squares.reduce(|a, b| [0, 1, 2].map(|i| a[i] + b[i]));
-        sum.map_or_else(Self::default, Self::root)
+        let squares: Vec<Option<[f64; 3]>> = squares.collect();
+        let sum = squares.iter().flatten().copied();
+        let sum = sum.reduce(|a, b| [0, 1, 2].map(|i| a[i] + b[i]));
+        (
+            sum.map_or_else(Self::default, Self::root),
+            squares.iter().map(|s| s.map(Self::root)).collect(),
+        )
     }
 
     /// Of weighted squares, and the sum of weights.
@@ -126,7 +125,7 @@ mod tests {
     }
 
     fn of(pulls: Vec<Pull>) -> Astray {
-        Astray::of(&CAMERA, &Isometry3::identity(), &[pulls])
+        Astray::of(&CAMERA, &Isometry3::identity(), &[pulls]).0
     }
 
     #[test]

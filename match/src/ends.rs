@@ -84,10 +84,9 @@ impl Ends {
                     .flat_map(|p| second.iter().map(move |q| (p, q)));
                 if let Some((p, q)) = tips.find(|(p, q)| p.meets(q)) {
                     let [i, j] = [a, b].map(|k| &arcs[order[k]].source);
-                    let [kept, chance] = learned.junction(i, j);
                     all.push(Relation {
                         members: [a, b],
-                        scores: scores(p, q, [kept, chance]),
+                        scores: scores(p, q, learned.junction(i, j)),
                     });
                 }
             }
@@ -194,4 +193,19 @@ fn runs_along(arcs: &[Arc], at: &Point2<f64>, direction: &Vector2<f64>) -> bool 
     let points = arcs.iter().flat_map(|a| &a.points);
     let mut seen = points.map(|p| &p.1);
     seen.any(|s| (s.at - at).norm() < PASSES && s.normal.dot(direction).abs() < ACROSS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_ends_in_a_vertex_within_nine_pixels_or_goes_on_as_another() {
+        assert_eq!(end(-9.5, false), End::Short);
+        assert_eq!(end(f64::NEG_INFINITY, true), End::Short);
+        assert_eq!(end(-8.5, false), End::There);
+        assert_eq!(end(8.5, false), End::There);
+        assert_eq!(end(9.5, false), End::Past);
+        assert_eq!(end(9.5, true), End::There);
+    }
 }

@@ -8,7 +8,7 @@ use crate::pose::refine::Pull;
 use crate::predicted::Arc;
 use crate::search::{Effort, Strategy};
 use crate::shape::Shape;
-use crate::worth::{DETERMINED, FEWEST, SMALLEST};
+use crate::worth::{DETERMINED, FEWEST, PIECE, REPEATED, SMALLEST};
 use nalgebra::{Isometry3, Matrix6};
 use premio_predict::outline::Source;
 use std::cmp::Ordering;
@@ -170,13 +170,10 @@ impl Match {
         self.whole() < 0.0
     }
 
-    /// How likely the part is there.
+    /// How likely the part is there, rather than the likelier of both: something else, or a piece of it.
     pub fn probability(&self) -> f64 {
-        let pieces = match self.shape.untold < 0.0 {
-            true => (-self.whole()).exp(),
-            false => 0.0,
-        };
-        1.0 / (1.0 + (-self.weight() / REPEATED).exp() + pieces)
+        let odds = (self.weight() / REPEATED).min(self.whole());
+        1.0 / (1.0 + (-odds).exp())
     }
 
     /// Whether the part is taken to be there.
@@ -274,13 +271,6 @@ impl Finding {
     }
 }
 
-/// How much rarer than the part things are that are like all of it that something is found of, and lack
-/// the rest: the logarithm of the odds before it is looked for, and of how much told of the shape they
-/// are one more.
-const PIECE: [f64; 2] = [5.0, 7.0];
-/// What edges tell is told by others, too: sums of logarithms are so many times too large for odds to be
-/// those at which poses are right in the known pictures.
-const REPEATED: f64 = 3.5;
 /// A match whose odds are less by this, as a logarithm, is no rival.
 const RIVAL: f64 = 3.0;
 

@@ -159,8 +159,8 @@ impl Look<'_> {
     /// The match, with what it tells of the part's shape, and the odds that it is the part.
     fn judged(&self, found: Match) -> Match {
         let mut judged = found;
-        judged.astray = Astray::of(self.camera, &judged.pose, &judged.pulls);
-        let each = Astray::each(self.camera, &judged.pose, &judged.pulls);
+        let (all, each) = Astray::of(self.camera, &judged.pose, &judged.pulls);
+        judged.astray = all;
         for (pair, astray) in judged.pairs.iter_mut().zip(each) {
             if let (Some(found), Some(astray)) = (&mut pair.found, astray) {
                 found.astray = astray;

@@ -65,6 +65,13 @@ const FIGURE: [f64; 2] = [5.0, 8.0];
 /// What it tells that all runs along the picture's rows and columns, where little is told of the shape:
 /// it may be drawn, or a frame.
 const FRAMED: f64 = 34.0;
+/// How much rarer than the part things are that are like all of it that something is found of, and lack
+/// the rest: the logarithm of the odds before it is looked for, and of how much told of the shape they
+/// are one more.
+pub const PIECE: [f64; 2] = [5.0, 7.0];
+/// What edges tell is told by others, too: sums of logarithms are so many times too large for odds to be
+/// those at which poses are right in the known pictures.
+pub const REPEATED: f64 = 3.5;
 /// The nearest and the farthest place of a part, in its radius.
 const DEPTHS: [f64; 2] = [1.5, 75.0];
 

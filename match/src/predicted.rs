@@ -5,7 +5,7 @@ use crate::evidence::{Seen, seen};
 use crate::part::{Mark, Part};
 use nalgebra::{Isometry3, Point3};
 use premio_predict::outline::Source;
-use premio_visibility::contour::{Contour, Kind};
+use premio_visibility::contour::Contour;
 use premio_visibility::view::{ViewError, contours};
 use std::collections::BTreeMap;
 
@@ -46,12 +46,12 @@ pub fn arcs(
     let mut ordinals: BTreeMap<u32, u32> = BTreeMap::new();
     let mut all = Vec::new();
     for contour in &contours.contours {
-        let (source, stroke) = match (contour.kind, contour.edge) {
-            (Kind::Boundary, Some(edge)) => {
+        let (source, stroke) = match contour.edge {
+            Some(edge) => {
                 let stroke = by_edge.get(&edge.0).copied();
                 (Source::Edge { edge: edge.0 }, stroke)
             }
-            _ => {
+            None => {
                 let face = contour.faces.first().map_or(0, |f| f.0);
                 let next = ordinals.entry(face).or_default();
                 *next += 1;
@@ -59,7 +59,7 @@ pub fn arcs(
                 (Source::Limb { face, ordinal }, None)
             }
         };
-        if contour.kind == Kind::Boundary && stroke.is_none() {
+        if contour.smooth {
             // The normal does not jump along it: it is not seen.
             continue;
         }

@@ -15,7 +15,8 @@ pub const SCHEMA: &str = "premio.contours/1";
 pub enum Kind {
     /// An edge of the part (definition 4.1 of the paper).
     Boundary,
-    /// A curve along which the line of sight touches a face (definition 4.2).
+    /// A curve along which the line of sight touches the part (definition 4.2): inside a face, or
+    /// along a smooth edge whose faces are turned differently.
     Limb,
 }
 
@@ -97,7 +98,7 @@ pub struct Piece {
     pub samples: Option<Vec<[f64; 3]>>,
 }
 
-/// A contour: the projection of an edge or of a limb of one face.
+/// A contour: the projection of an edge, of a part of one, or of a limb inside a face.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contour {
     /// Its place in the list.
@@ -106,9 +107,9 @@ pub struct Contour {
     pub kind: Kind,
     /// Whether it is a boundary along which the normal does not jump.
     pub smooth: bool,
-    /// The faces along it; of a limb its face, for both of its sheets.
+    /// The faces along it; of a limb inside a face that face, for both of its sheets.
     pub faces: Vec<FaceId>,
-    /// The edge, of a boundary.
+    /// The edge, of a boundary and of a limb along a smooth edge.
     pub edge: Option<EdgeId>,
     /// The curve in space.
     #[serde(serialize_with = "serial::curve")]
@@ -137,6 +138,8 @@ pub struct Contours {
     pub schema: &'static str,
     /// The viewpoint.
     pub camera: Camera,
+    /// What lies this near to each other coincides, in the part's unit.
+    pub resolution: f64,
     /// The contours.
     pub contours: Vec<Contour>,
     /// The junctions.

@@ -8,6 +8,7 @@ pub mod correction;
 pub mod crossing;
 pub mod drawing;
 pub mod edgewise;
+pub mod facing;
 pub mod graphs;
 pub mod image;
 pub mod image_box;

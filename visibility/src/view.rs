@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece, SCHEMA, Seconds};
 use crate::edgewise::Edgewise;
+use crate::facing::is_limb;
 use crate::image::{Image, image};
 use crate::image_box::ImageBox;
 use crate::invisibility::{Method, pieces};
@@ -114,6 +115,7 @@ pub fn contours_by(
     Ok(Contours {
         schema: SCHEMA,
         camera: camera.clone(),
+        resolution: band,
         contours,
         junctions,
         seconds,
@@ -157,6 +159,28 @@ struct Source<'a> {
     marks: Vec<(f64, u32)>,
 }
 
+impl Source<'_> {
+    /// The parts between stops, which are parameters in order with their junctions; a closed arc
+    /// without any stays closed.
+    fn cut(&self, mut stops: Vec<(f64, Option<u32>)>) -> Vec<Self> {
+        let [lo, hi] = self.range;
+        let closed = self.closed && stops.is_empty();
+        if let (true, Some(&(t, id))) = (self.closed, stops.first()) {
+            stops.push((t + (hi - lo), id));
+        } else {
+            stops.insert(0, (lo, self.ends[0]));
+            stops.push((hi, self.ends[1]));
+        }
+        let part = |pair: &[(f64, Option<u32>)]| Self {
+            range: [pair[0].0, pair[1].0],
+            closed,
+            ends: [pair[0].1, pair[1].1],
+            ..self.clone()
+        };
+        stops.windows(2).map(part).collect()
+    }
+}
+
 struct Weave<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
@@ -176,24 +200,56 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             };
             let uses = entity.coedges.iter();
             let faces = uses.map(|&c| (topology.face_of(c), topology.coedge(c).sense));
-            let source = Source {
+            let whole = Source {
                 curve: brep.curve(edge),
                 range: brep.range(edge),
                 closed: entity.ends.is_none(),
                 ends,
-                contour: self.contours.len() as u32,
+                contour: 0,
                 edge: Some(edge),
                 faces: faces.collect(),
                 limb: false,
                 marks: limbs.on_edges[edge.index()].clone(),
             };
-            let seen = self.image(&source);
-            let contour = self.contour(&source, &seen, Kind::Boundary);
-            self.contours.push(Contour {
-                smooth: entity.smooth,
-                ..contour
-            });
-            self.strand(source, seen);
+            if !entity.smooth {
+                self.edge(whole, Kind::Boundary, false);
+                continue;
+            }
+            for (part, kind) in self.smooth_parts(whole, edge) {
+                self.edge(part, kind, kind == Kind::Boundary);
+            }
+        }
+    }
+
+    /// Makes a contour of an edge, or of a part of it.
+    fn edge(&mut self, mut source: Source<'a>, kind: Kind, smooth: bool) {
+        source.contour = self.contours.len() as u32;
+        let seen = self.image(&source);
+        let contour = self.contour(&source, &seen, kind);
+        self.contours.push(Contour { smooth, ..contour });
+        self.strand(source, seen);
+    }
+
+    /// A smooth edge, cut where it begins or ceases to be the limb.
+    fn smooth_parts(&self, whole: Source<'a>, edge: EdgeId) -> Vec<(Source<'a>, Kind)> {
+        let kind = |range: [f64; 2]| match is_limb(self.scene, edge, range) {
+            true => Kind::Limb,
+            false => Kind::Boundary,
+        };
+        let mut stops: Vec<(f64, Option<u32>)> = Vec::new();
+        let [lo, hi] = whole.range;
+        for &(t, id) in &whole.marks {
+            let t = whole.curve.in_cycle(t, lo);
+            if t.lies_between(whole.range) || whole.closed {
+                stops.push((t, Some(id)));
+            }
+        }
+        stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let parts = whole.cut(stops);
+        let kinds: Vec<Kind> = parts.iter().map(|part| kind(part.range)).collect();
+        match kinds.windows(2).all(|pair| pair[0] == pair[1]) {
+            true => vec![(whole, kinds.first().copied().unwrap_or(kind([lo, hi])))],
+            false => parts.into_iter().zip(kinds).collect(),
         }
     }
 
@@ -226,7 +282,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
 
     fn contour(&self, source: &Source<'_>, seen: &Image, kind: Kind) -> Contour {
         let mut faces: Vec<FaceId> = source.faces.iter().map(|f| f.0).collect();
-        if kind == Kind::Limb {
+        if source.limb {
             faces.push(source.faces[0].0);
         }
         Contour {
@@ -259,7 +315,6 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         if least.is_beyond(projection.near) {
             return self.push(source, seen);
         }
-        let [lo, hi] = source.range;
         let plane = Plane {
             frame: Frame::about(
                 projection.origin() + projection.axis() * projection.near,
@@ -279,28 +334,14 @@ impl<'a> Weave<'_, 'a, '_, '_> {
             },
         );
         cuts.sort_by(f64::total_cmp);
-        let mut stops: Vec<(f64, Option<u32>)> = Vec::new();
-        for t in cuts {
+        let junctions = &mut *self.junctions;
+        let stops = cuts.into_iter().map(|t| {
             let p = source.curve.point(t);
-            let id = self.junctions.add(JunctionKind::Cut, Site::Alone, &p);
-            stops.push((t, Some(id)));
-        }
-        let whole = source.closed && stops.is_empty();
-        if let (true, Some(&(t, id))) = (source.closed, stops.first()) {
-            stops.push((t + (hi - lo), id));
-        } else {
-            stops.insert(0, (lo, source.ends[0]));
-            stops.push((hi, source.ends[1]));
-        }
-        for pair in stops.windows(2) {
-            let middle = source.curve.point(0.5 * (pair[0].0 + pair[1].0));
+            (t, Some(junctions.add(JunctionKind::Cut, Site::Alone, &p)))
+        });
+        for part in source.cut(stops.collect()) {
+            let middle = source.curve.point(0.5 * (part.range[0] + part.range[1]));
             if projection.depth(&middle).is_beyond(projection.near) {
-                let part = Source {
-                    range: [pair[0].0, pair[1].0],
-                    closed: whole,
-                    ends: [pair[0].1, pair[1].1],
-                    ..source.clone()
-                };
                 let seen = self.image(&part);
                 self.push(part, seen);
             }

@@ -214,26 +214,30 @@ impl<N: Number> Surface<N> {
     /// The normal curvature of the surface at `p` in the unit tangent direction `t`, positive
     /// where the surface bends towards its inside.
     pub fn normal_curvature(&self, p: &Point3<N>, t: &Vector3<N>) -> N {
+        self.second_form(p, t, t)
+    }
+
+    /// The second fundamental form at `p` of two tangent vectors, positive where the surface bends
+    /// towards its inside: dN(a)·b, how the outward normal changes along `a`, measured along `b`.
+    pub fn second_form(&self, p: &Point3<N>, a: &Vector3<N>, b: &Vector3<N>) -> N {
         let f = self.frame();
         let q = f.coordinates(p);
-        let t = f.components(t);
+        let (a, b) = (f.components(a), f.components(b));
+        // The component of a tangent vector along the parallel circle, for a distance from the axis.
+        let along = |t: &Vector3<N>, rho: N| (q.x * t.y - q.y * t.x) / rho;
         match self {
             Self::Plane(_) => N::ZERO,
-            Self::Cylinder(s) => {
-                let along = (q.x * t.y - q.y * t.x) / s.radius;
-                along * along / s.radius
-            }
+            Self::Cylinder(s) => along(&a, s.radius) * along(&b, s.radius) / s.radius,
             Self::Cone(s) => {
                 let rho = q.x.hypot(q.y);
-                let along = (q.x * t.y - q.y * t.x) / rho;
-                along * along * s.cos / rho
+                along(&a, rho) * along(&b, rho) * s.cos / rho
             }
-            Self::Sphere(s) => N::ONE / s.radius,
+            Self::Sphere(s) => a.dot(&b) / s.radius,
             Self::Torus(s) => {
                 let rho = q.x.hypot(q.y);
-                let along = (q.x * t.y - q.y * t.x) / rho;
+                let parallel = along(&a, rho) * along(&b, rho);
                 let cos = (rho - s.major) / s.minor;
-                along * along * cos / rho + (N::ONE - along * along) / s.minor
+                parallel * cos / rho + (a.dot(&b) - parallel) / s.minor
             }
         }
     }

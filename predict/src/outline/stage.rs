@@ -9,7 +9,7 @@ use crate::subject::{Subject, SubjectError};
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_visibility::camera::{Camera, CameraError};
-use premio_visibility::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece};
+use premio_visibility::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
 use premio_visibility::projection::Projection;
 use premio_visibility::sight::{Own, Scene};
 use premio_visibility::{ViewError, contours};
@@ -241,9 +241,9 @@ impl Sightings<'_> {
 /// By contour: which limb of its face it is.
 pub fn ordinals(contours: &Contours) -> Vec<u32> {
     let mut count: HashMap<FaceId, u32> = HashMap::new();
-    let ordinal = |contour: &Contour| match contour.kind {
-        Kind::Boundary => 0,
-        Kind::Limb => {
+    let ordinal = |contour: &Contour| match contour.edge {
+        Some(_) => 0,
+        None => {
             let next = count.entry(contour.faces[0]).or_default();
             *next += 1;
             *next - 1

@@ -197,6 +197,12 @@ fn conic_image(
     }
 }
 
+/// The parameters in a range at which the image of a conic that is seen edge-on folds back.
+pub fn folds_of_conic(curve: &Curve, range: [f64; 2], projection: &Projection) -> Vec<f64> {
+    // At any resolution it is seen edge-on.
+    image(curve, range, projection, f64::INFINITY).turns(range)
+}
+
 /// The line that the three columns lie on.
 fn flat(map: Matrix3<f64>, basis: Basis) -> Image {
     let c = [map.column(0), map.column(1), map.column(2)];

@@ -175,6 +175,13 @@ impl Projection {
         }
     }
 
+    /// The length in the image, in the units of the camera, of a unit length in space across the line
+    /// of sight to a point, where it is largest.
+    pub fn magnification(&self, p: &Point3<f64>) -> f64 {
+        let linear = self.affine.fixed_view::<2, 2>(0, 0);
+        linear.norm() / self.scale(p)
+    }
+
     /// The image of a point, in the units of the camera.
     pub fn project(&self, p: &Point3<f64>) -> Point2<f64> {
         self.image(&self.homogeneous(p))

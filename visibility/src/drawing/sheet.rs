@@ -461,6 +461,7 @@ mod tests {
             strokes: Vec::new(),
             extent: [-high, high],
             distance: 1.0,
+            tolerance: 0.0,
             to_scale: true,
         }
     }

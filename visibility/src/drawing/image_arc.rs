@@ -1,0 +1,386 @@
+//! Arcs in the image that do not fold back on themselves: segments, arcs of ellipses, and arcs of
+//! projected curves.
+
+use super::Shape;
+use nalgebra::{Point2, Vector2};
+use std::f64::consts::TAU;
+use std::rc::Rc;
+
+/// An ellipse: centre + cos s major + sin s minor, the minor half axis to the left of the major one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse {
+    /// The centre.
+    pub centre: Point2<f64>,
+    /// The longer half axis, of the parameter 0.
+    pub major: Vector2<f64>,
+    /// The ratio of the other half axis.
+    pub ratio: f64,
+}
+
+impl Ellipse {
+    /// The ellipse of the six coefficients a x² + b x y + c y² + d x + e y + f = 0; none for other
+    /// conics.
+    pub fn from_coefficients(&[a, b, c, d, e, f]: &[f64; 6]) -> Option<Self> {
+        let det = 4.0 * a * c - b * b;
+        if det <= 0.0 {
+            return None;
+        }
+        let x = (b * e - 2.0 * c * d) / det;
+        let y = (b * d - 2.0 * a * e) / det;
+        let level = -(f + 0.5 * (d * x + e * y));
+        let mean = 0.5 * (a + c);
+        let spread = (0.5 * (a - c)).hypot(0.5 * b);
+        let sign = level.signum();
+        let (small, large) = (sign * mean - spread, sign * mean + spread);
+        if small <= 0.0 || level == 0.0 {
+            return None;
+        }
+        // The smaller eigenvalue belongs to the longer axis.
+        let turn = 0.5 * (sign * b).atan2(sign * (a - c)) + TAU / 4.0;
+        let long = (level.abs() / small).sqrt();
+        let short = (level.abs() / large).sqrt();
+        (long.is_finite() && short.is_finite()).then(|| Self {
+            centre: Point2::new(x, y),
+            major: Vector2::new(turn.cos(), turn.sin()) * long,
+            ratio: short / long,
+        })
+    }
+
+    fn minor(&self) -> Vector2<f64> {
+        Vector2::new(-self.major.y, self.major.x) * self.ratio
+    }
+
+    /// The point with a parameter.
+    pub fn point(&self, s: f64) -> Point2<f64> {
+        self.centre + self.major * s.cos() + self.minor() * s.sin()
+    }
+
+    /// The coordinates of a point in units of the half axes.
+    fn coordinates(&self, p: &Point2<f64>) -> Vector2<f64> {
+        let (d, minor) = (p - self.centre, self.minor());
+        let along = |axis: &Vector2<f64>| d.dot(axis) / axis.norm_squared();
+        Vector2::new(along(&self.major), along(&minor))
+    }
+
+    /// The parameter of a point on the ellipse.
+    pub fn angle(&self, p: &Point2<f64>) -> f64 {
+        let q = self.coordinates(p);
+        q.y.atan2(q.x)
+    }
+
+    /// How far a point is from the ellipse, to first order.
+    pub fn distance(&self, p: &Point2<f64>) -> f64 {
+        let q = self.coordinates(p);
+        let (long, short) = (self.major.norm(), self.major.norm() * self.ratio);
+        let slope = 2.0 * (q.x / long).hypot(q.y / short);
+        (q.norm_squared() - 1.0).abs() / slope
+    }
+}
+
+/// A point of a projected curve, with the curve's parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The parameter.
+    pub t: f64,
+    /// The image point.
+    pub point: Point2<f64>,
+}
+
+/// An arc in the image, with a parameter over a range.
+#[derive(Clone)]
+pub enum ImageArc<'c> {
+    /// A straight segment; the parameter runs from 0 to 1.
+    Segment([Point2<f64>; 2]),
+    /// An arc of an ellipse, by its parameters.
+    Elliptic {
+        /// The ellipse.
+        ellipse: Ellipse,
+        /// The parameters, increasing by at most one turn.
+        range: [f64; 2],
+    },
+    /// The projection of an arc in space, by its parameter.
+    Projected {
+        /// The image of a parameter.
+        curve: Rc<dyn Fn(f64) -> Point2<f64> + 'c>,
+        /// Points along it, so that the polyline of them is within the drawing's distance.
+        samples: Vec<Sample>,
+    },
+}
+
+/// The point of an arc that is nearest to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Its parameter.
+    pub t: f64,
+    /// How far away it is.
+    pub distance: f64,
+}
+
+impl ImageArc<'_> {
+    /// The range of the parameter.
+    pub fn range(&self) -> [f64; 2] {
+        match self {
+            Self::Segment(_) => [0.0, 1.0],
+            Self::Elliptic { range, .. } => *range,
+            Self::Projected { samples, .. } => [samples[0].t, samples[samples.len() - 1].t],
+        }
+    }
+
+    /// The point with a parameter.
+    pub fn point(&self, t: f64) -> Point2<f64> {
+        match self {
+            Self::Segment([a, b]) => a + (b - a) * t,
+            Self::Elliptic { ellipse, .. } => ellipse.point(t),
+            Self::Projected { curve, .. } => curve(t),
+        }
+    }
+
+    /// Both ends.
+    pub fn ends(&self) -> [Point2<f64>; 2] {
+        self.range().map(|t| self.point(t))
+    }
+
+    /// The length, of a projected curve that of its polyline.
+    pub fn length(&self) -> f64 {
+        match self {
+            Self::Segment([a, b]) => (b - a).norm(),
+            Self::Elliptic { ellipse, range } => {
+                // Ramanujan's approximation: it only says which arc is longer.
+                let (a, b) = (ellipse.major.norm(), ellipse.major.norm() * ellipse.ratio);
+                let around = 3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt();
+                0.5 * around * (range[1] - range[0])
+            }
+            Self::Projected { samples, .. } => {
+                let steps = samples.windows(2).map(|s| (s[1].point - s[0].point).norm());
+                steps.sum()
+            }
+        }
+    }
+
+    /// How far its points are from its start at the most, or about so far.
+    pub fn reach(&self) -> f64 {
+        let [lo, hi] = self.range();
+        let start = self.point(lo);
+        let places = match self {
+            Self::Projected { samples, .. } => samples.iter().map(|s| s.point).collect(),
+            _ => vec![self.point(0.5 * (lo + hi)), self.point(hi)],
+        };
+        let away = places.iter().map(|p| (p - start).norm());
+        away.fold(0.0, f64::max)
+    }
+
+    /// How far the polyline of a projected curve may be off it, by how much it turns between samples.
+    pub fn deviation(&self) -> f64 {
+        let Self::Projected { samples, .. } = self else {
+            return 0.0;
+        };
+        // The arc over a chord is no farther from it than its ends are from each other.
+        let steps = samples.windows(3).map(|s| {
+            let [a, b] = [s[1].point - s[0].point, s[2].point - s[1].point];
+            let turn = a.perp(&b).abs() / (a.norm() * b.norm());
+            let step = a.norm().max(b.norm());
+            if turn.is_finite() { turn * step } else { step }
+        });
+        let few = match samples.len() {
+            2 => (samples[1].point - samples[0].point).norm(),
+            _ => 0.0,
+        };
+        steps.fold(few, f64::max)
+    }
+
+    /// The lower left and the upper right corner of a box that holds the arc's polyline or ellipse.
+    pub fn bounds(&self) -> [Point2<f64>; 2] {
+        match self {
+            Self::Segment([a, b]) => [a.inf(b), a.sup(b)],
+            Self::Elliptic { ellipse, .. } => {
+                let (m, n) = (ellipse.major, ellipse.minor());
+                let reach = Vector2::new(m.x.hypot(n.x), m.y.hypot(n.y));
+                [ellipse.centre - reach, ellipse.centre + reach]
+            }
+            Self::Projected { samples, .. } => {
+                let first = samples[0].point;
+                let all = samples.iter().map(|s| s.point);
+                all.fold([first, first], |[lo, hi], p| [lo.inf(&p), hi.sup(&p)])
+            }
+        }
+    }
+
+    /// The point of the arc that is nearest to `p`.
+    pub fn nearest(&self, p: &Point2<f64>) -> Nearest {
+        match self {
+            Self::Segment([a, b]) => {
+                let d = b - a;
+                let t = ((p - a).dot(&d) / d.norm_squared()).clamp(0.0, 1.0);
+                self.at(t, p)
+            }
+            Self::Elliptic { ellipse, range } => {
+                let [lo, hi] = *range;
+                let s = lo + (ellipse.angle(p) - lo).rem_euclid(TAU);
+                // Beyond the end, the nearer of both ends.
+                let ends = [lo, hi].map(|t| self.at(t, p));
+                let end = match ends[0].distance <= ends[1].distance {
+                    true => ends[0],
+                    false => ends[1],
+                };
+                let inside = Nearest {
+                    t: s,
+                    distance: ellipse.distance(p),
+                };
+                match s <= hi && inside.distance <= end.distance {
+                    true => inside,
+                    false => end,
+                }
+            }
+            Self::Projected { samples, .. } => self.nearest_projected(samples, p),
+        }
+    }
+
+    fn at(&self, t: f64, p: &Point2<f64>) -> Nearest {
+        Nearest {
+            t,
+            distance: (self.point(t) - p).norm(),
+        }
+    }
+
+    /// Around the nearest sample, by golden sections.
+    fn nearest_projected(&self, samples: &[Sample], p: &Point2<f64>) -> Nearest {
+        let last = samples.len() - 1;
+        let away = |i: &usize| (samples[*i].point - p).norm();
+        let near = (0..=last).min_by(|i, j| away(i).total_cmp(&away(j)));
+        let near = near.unwrap_or(0);
+        let mut lo = samples[near.saturating_sub(1)].t;
+        let mut hi = samples[(near + 1).min(last)].t;
+        let golden = 0.5 * (5.0f64.sqrt() - 1.0);
+        let inner = |lo: f64, hi: f64| [hi - golden * (hi - lo), lo + golden * (hi - lo)];
+        let mut tried = inner(lo, hi).map(|t| self.at(t, p));
+        for _ in 0..GOLDEN_STEPS {
+            match tried[0].distance < tried[1].distance {
+                true => {
+                    hi = tried[1].t;
+                    tried = [self.at(inner(lo, hi)[0], p), tried[0]];
+                }
+                false => {
+                    lo = tried[0].t;
+                    tried = [tried[1], self.at(inner(lo, hi)[1], p)];
+                }
+            }
+        }
+        let known = [samples[near].t, samples[0].t, samples[last].t].map(|t| self.at(t, p));
+        let all = tried.into_iter().chain(known);
+        let nearest = all.min_by(|a, b| a.distance.total_cmp(&b.distance));
+        nearest.unwrap_or(known[0])
+    }
+
+    /// How far a point is from the arc's polyline, or from the arc where it is a segment or elliptic.
+    pub fn rough_distance(&self, p: &Point2<f64>) -> f64 {
+        let Self::Projected { samples, .. } = self else {
+            return self.nearest(p).distance;
+        };
+        let steps = samples.windows(2).map(|s| {
+            let d = s[1].point - s[0].point;
+            let square = d.norm_squared();
+            let t = if square > 0.0 {
+                (p - s[0].point).dot(&d) / square
+            } else {
+                0.0
+            };
+            (s[0].point + d * t.clamp(0.0, 1.0) - p).norm()
+        });
+        steps.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The arc over a part of its range.
+    #[must_use]
+    pub fn part(&self, [lo, hi]: [f64; 2]) -> Self {
+        match self {
+            Self::Segment(_) => Self::Segment([self.point(lo), self.point(hi)]),
+            Self::Elliptic { ellipse, .. } => Self::Elliptic {
+                ellipse: *ellipse,
+                range: [lo, hi],
+            },
+            Self::Projected { curve, samples } => {
+                let end = |t: f64| Sample { t, point: curve(t) };
+                let inner = samples.iter().filter(|s| lo < s.t && s.t < hi);
+                let mut part = vec![end(lo)];
+                part.extend(inner);
+                part.push(end(hi));
+                Self::Projected {
+                    curve: curve.clone(),
+                    samples: part,
+                }
+            }
+        }
+    }
+
+    /// The shape of the arc.
+    pub fn shape(&self) -> Shape {
+        match self {
+            Self::Segment(ends) => Shape::Line(*ends),
+            Self::Elliptic { ellipse, range } => Shape::Ellipse {
+                centre: ellipse.centre,
+                major: ellipse.major,
+                ratio: ellipse.ratio,
+                from: range[0],
+                sweep: (range[1] - range[0]).min(TAU),
+            },
+            Self::Projected { samples, .. } => {
+                Shape::Path(samples.iter().map(|s| s.point).collect())
+            }
+        }
+    }
+}
+
+/// Each narrows the bracket by 0.618: after so many it is as narrow as doubles tell a minimum.
+const GOLDEN_STEPS: u32 = 44;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ellipse() -> Ellipse {
+        Ellipse {
+            centre: Point2::new(1.0, 2.0),
+            major: Vector2::new(3.0, 4.0),
+            ratio: 0.4,
+        }
+    }
+
+    /// (x - 1)²/9 + (y + 2)²/4 = 1.
+    #[test]
+    fn an_ellipse_has_its_half_axes() {
+        let six = [4.0, 0.0, 9.0, -8.0, 36.0, 4.0];
+        let found = Ellipse::from_coefficients(&six).unwrap();
+        assert!((found.centre - Point2::new(1.0, -2.0)).norm() < 1e-12);
+        assert!((found.major.norm() - 3.0).abs() < 1e-12 && found.major.y.abs() < 1e-12);
+        assert!((found.ratio - 2.0 / 3.0).abs() < 1e-12);
+        assert!(Ellipse::from_coefficients(&[1.0, 0.0, -1.0, 0.0, 0.0, -1.0]).is_none());
+    }
+
+    #[test]
+    fn what_lies_on_an_arc_is_found_there() {
+        let ellipse = ellipse();
+        let elliptic = ImageArc::Elliptic {
+            ellipse,
+            range: [5.0, 8.0],
+        };
+        let samples = (0..=40).map(|k| {
+            let t = 5.0 + 3.0 * f64::from(k) / 40.0;
+            let point = ellipse.point(t);
+            Sample { t, point }
+        });
+        let projected = ImageArc::Projected {
+            curve: Rc::new(move |t| ellipse.point(t)),
+            samples: samples.collect(),
+        };
+        for arc in [elliptic, projected] {
+            for t in [5.0, 5.3, 6.9, 7.77, 8.0] {
+                let found = arc.nearest(&ellipse.point(t));
+                assert!((found.t - t).abs() < 1e-6, "{t} {found:?}");
+                assert!(found.distance < 1e-7);
+            }
+            // Beyond the end the end is the nearest.
+            let found = arc.nearest(&ellipse.point(8.2));
+            assert!((found.t - 8.0).abs() < 1e-6 && found.distance > 0.1);
+        }
+    }
+}

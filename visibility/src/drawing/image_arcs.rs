@@ -1,0 +1,232 @@
+//! The image arcs of contours: runs of pieces of one visibility, cut where the image folds back.
+
+use super::Layer;
+use super::image_arc::{Ellipse, ImageArc, Sample};
+use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece};
+use crate::image::folds_of_conic;
+use crate::projection::Projection;
+use nalgebra::Point2;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::number::sign::ROUNDING;
+use std::f64::consts::TAU;
+use std::rc::Rc;
+
+/// An image arc with what it shows.
+pub struct DrawnArc<'c> {
+    /// Its form.
+    pub arc: ImageArc<'c>,
+    /// What it shows.
+    pub layer: Layer,
+    /// Whether nothing hides it.
+    pub visible: bool,
+}
+
+/// An ellipse thinner than this is drawn as a polyline.
+const THIN: f64 = 1.0 / 4096.0;
+
+/// How much of the pieces before and after a junction tells whether the image folds there.
+const NEXT_TO: f64 = 1.0 / 64.0;
+
+/// How often an arc is halved at the most for its polyline.
+const HALVINGS: u32 = 16;
+
+/// What image arcs are made with.
+pub struct ArcMaker<'c> {
+    /// The contours.
+    pub contours: &'c Contours,
+    /// The projection of their camera.
+    pub projection: &'c Projection,
+    /// How far a polyline may be off its curve.
+    pub distance: f64,
+}
+
+impl<'c> ArcMaker<'c> {
+    /// The image of a point of a contour, with y up.
+    pub fn point(&self, contour: &Contour, t: f64) -> Point2<f64> {
+        let p = self.projection.project(&contour.curve3.point(t));
+        match self.projection.y_down {
+            true => Point2::new(p.x, -p.y),
+            false => p,
+        }
+    }
+
+    /// The image arcs of a contour. What is seen end-on has none.
+    pub fn arcs(&self, contour: &'c Contour, out: &mut Vec<DrawnArc<'c>>) {
+        let layer = match (contour.kind, contour.smooth) {
+            (Kind::Limb, _) => Layer::Limb,
+            (Kind::Boundary, true) => Layer::Smooth,
+            (Kind::Boundary, false) => Layer::Boundary,
+        };
+        for Run { range, visible } in self.runs(contour) {
+            let mut put = |arc| {
+                out.push(DrawnArc {
+                    arc,
+                    layer,
+                    visible,
+                });
+            };
+            match &contour.curve2 {
+                ImageCurve::Point { .. } => {}
+                ImageCurve::Line { .. } => put(self.segment(contour, range)),
+                ImageCurve::Conic { coefficients } => {
+                    put(match self.elliptic(contour, coefficients, range) {
+                        Some(arc) => arc,
+                        None => self.projected(contour, range),
+                    });
+                }
+                ImageCurve::Projected => put(self.projected(contour, range)),
+            }
+        }
+    }
+
+    /// Neighbouring pieces of one visibility taken together, unless the image folds back between them.
+    fn runs(&self, contour: &Contour) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        let mut before: Option<&Piece> = None;
+        for piece in &contour.pieces {
+            let goes_on = before.is_some_and(|before| {
+                before.visible == piece.visible
+                    && before.t[1] == piece.t[0]
+                    && !self.folds(contour, before, piece)
+            });
+            match runs.last_mut() {
+                Some(run) if goes_on => run.range[1] = piece.t[1],
+                _ => runs.push(Run {
+                    range: piece.t,
+                    visible: piece.visible,
+                }),
+            }
+            before = Some(piece);
+        }
+        runs
+    }
+
+    /// Whether the image folds back from one piece to the next. On a line that makes no difference.
+    fn folds(&self, contour: &Contour, before: &Piece, after: &Piece) -> bool {
+        if matches!(contour.curve2, ImageCurve::Line { .. }) {
+            return false;
+        }
+        let junction = before
+            .end
+            .and_then(|id| self.contours.junctions.get(id as usize));
+        if junction.is_some_and(|j| j.kind == JunctionKind::Turn) {
+            return true;
+        }
+        let t = before.t[1];
+        let next_to = [
+            t - (t - before.t[0]) * NEXT_TO,
+            t + (after.t[1] - t) * NEXT_TO,
+        ];
+        let [p, q] = next_to.map(|s| self.point(contour, s));
+        let at = self.point(contour, t);
+        (at - p).dot(&(q - at)) < 0.0
+    }
+
+    /// The segment that an image on a line covers.
+    fn segment(&self, contour: &Contour, [lo, hi]: [f64; 2]) -> ImageArc<'c> {
+        let mut stops = vec![lo, hi];
+        if !matches!(contour.curve3, Curve::Line(_)) {
+            stops.extend(folds_of_conic(&contour.curve3, [lo, hi], self.projection));
+        }
+        let points: Vec<Point2<f64>> = stops.iter().map(|&t| self.point(contour, t)).collect();
+        let pairs = points
+            .iter()
+            .flat_map(|p| points.iter().map(move |q| [*p, *q]));
+        let longest = pairs.max_by(|a, b| {
+            let length = |[p, q]: &[Point2<f64>; 2]| (q - p).norm();
+            length(a).total_cmp(&length(b))
+        });
+        ImageArc::Segment(longest.unwrap_or([points[0]; 2]))
+    }
+
+    /// The arc of an ellipse; none of other conics and of a thin one.
+    fn elliptic(
+        &self,
+        contour: &Contour,
+        k: &[f64; 6],
+        [lo, hi]: [f64; 2],
+    ) -> Option<ImageArc<'c>> {
+        let flip = if self.projection.y_down { -1.0 } else { 1.0 };
+        let six = [k[0], k[1] * flip, k[2], k[3], k[4] * flip, k[5]];
+        let ellipse = Ellipse::from_coefficients(&six)?;
+        (ellipse.ratio > THIN).then_some(())?;
+        let is_whole = |p: f64| hi - lo >= p * (1.0 - ROUNDING);
+        let is_conic = matches!(contour.curve3, Curve::Circle(_) | Curve::Ellipse(_));
+        let angle = |t: f64| ellipse.angle(&self.point(contour, t));
+        let from = angle(lo);
+        if is_conic && contour.curve3.period().is_some_and(is_whole) {
+            let range = [from, from + TAU];
+            return Some(ImageArc::Elliptic { ellipse, range });
+        }
+        let middle = (angle(0.5 * (lo + hi)) - from).rem_euclid(TAU);
+        let sweep = (angle(hi) - from).rem_euclid(TAU);
+        // Run backwards, if the middle is not between the ends.
+        let (from, sweep) = match middle <= sweep {
+            true => (from, sweep),
+            false => (from + sweep, TAU - sweep),
+        };
+        let range = [from, from + sweep];
+        Some(ImageArc::Elliptic { ellipse, range })
+    }
+
+    fn projected(&self, contour: &'c Contour, [lo, hi]: [f64; 2]) -> ImageArc<'c> {
+        let sample = |t: f64| Sample {
+            t,
+            point: self.point(contour, t),
+        };
+        let mut samples = vec![sample(lo)];
+        for pair in contour.curve3.breaks(lo, hi).windows(2) {
+            let ends = [sample(pair[0]), sample(pair[1])];
+            self.refine(&sample, ends, 0, &mut samples);
+        }
+        let (projection, curve) = (self.projection, &contour.curve3);
+        let image = move |t: f64| {
+            let p = projection.project(&curve.point(t));
+            match projection.y_down {
+                true => Point2::new(p.x, -p.y),
+                false => p,
+            }
+        };
+        ImageArc::Projected {
+            curve: Rc::new(image),
+            samples,
+        }
+    }
+
+    /// Adds the samples after the first of two, so that the polyline is within the distance.
+    fn refine(
+        &self,
+        sample: &impl Fn(f64) -> Sample,
+        [a, b]: [Sample; 2],
+        depth: u32,
+        out: &mut Vec<Sample>,
+    ) {
+        let chord = b.point - a.point;
+        let square = chord.norm_squared();
+        // From the chord, not from its line: next to a cusp the image runs on and comes back.
+        let deviation = |s: &Sample| {
+            let d = s.point - a.point;
+            let foot = match square > 0.0 {
+                true => d.dot(&chord) / square,
+                false => 0.0,
+            };
+            (d - chord * foot.clamp(0.0, 1.0)).norm()
+        };
+        let inner = [0.25, 0.5, 0.75].map(|part| sample(a.t + (b.t - a.t) * part));
+        let worst = inner.iter().map(deviation).fold(0.0, f64::max);
+        // Half the distance: the largest deviation lies between the three places.
+        if depth >= HALVINGS || (depth >= 1 && worst <= 0.5 * self.distance) {
+            out.push(b);
+            return;
+        }
+        let middle = inner[1];
+        self.refine(sample, [a, middle], depth + 1, out);
+        self.refine(sample, [middle, b], depth + 1, out);
+    }
+}
+
+/// Pieces that are drawn as one.
+struct Run {
+    range: [f64; 2],
+    visible: bool,
+}

@@ -414,14 +414,15 @@ pub enum ProfileChoice {
 
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
-        use Profile::{Deep, Grid, Near, Tangent, Wide};
-        const CHOICES: [ProfileChoice; 6] = [
+        use Profile::{Deep, Grid, Near, Parts, Tangent, Wide};
+        const CHOICES: [ProfileChoice; 7] = [
             ProfileChoice::All,
             ProfileChoice::One(Grid),
             ProfileChoice::One(Near),
             ProfileChoice::One(Tangent),
             ProfileChoice::One(Deep),
             ProfileChoice::One(Wide),
+            ProfileChoice::One(Parts),
         ];
         &CHOICES
     }

@@ -92,10 +92,23 @@ pub struct Node {
     pub steps: Vec<Step>,
 }
 
+/// Which exact number a length or an angle of a model stands for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+pub enum Notation {
+    /// The value of the f64.
+    #[default]
+    Binary,
+    /// The shortest decimal that is read as the f64, as a person writes it.
+    Decimal,
+}
+
 /// A tree. Every node but the root, which is the last one, is the child of exactly one other.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Model {
     nodes: Vec<Node>,
+    /// What its numbers stand for.
+    #[serde(default)]
+    pub notation: Notation,
 }
 
 /// What is met on the way through a model.
@@ -146,6 +159,12 @@ impl Model {
         model
     }
 
+    /// A model without nodes.
+    pub fn with_notation(notation: Notation) -> Self {
+        let nodes = Vec::new();
+        Self { nodes, notation }
+    }
+
     /// Adds a primitive.
     pub fn leaf(&mut self, primitive: Primitive, steps: Vec<Step>) -> NodeId {
         let kind = Kind::Leaf(primitive);
@@ -162,7 +181,11 @@ impl Model {
 
     /// An operation on whole models.
     pub fn join(op: Operation, models: &[&Self], steps: Vec<Step>) -> Self {
-        let mut all = Self::default();
+        let mut all = Self::with_notation(
+            models
+                .first()
+                .map_or_else(Notation::default, |m| m.notation),
+        );
         let roots = models.iter().map(|model| all.take_in(model)).collect();
         all.operation(op, roots, steps);
         all
@@ -220,7 +243,7 @@ impl Model {
                 children.iter().for_each(|&child| wanted[child] = true);
             }
         }
-        let mut part = Self::default();
+        let mut part = Self::with_notation(self.notation);
         let mut new_id = vec![0; self.nodes.len()];
         for (id, node) in self.nodes.iter().enumerate().filter(|&(id, _)| wanted[id]) {
             new_id[id] = part.nodes.len();
@@ -238,7 +261,7 @@ impl Model {
     /// The model without some of its primitives. Operations that have no child left go, too, and
     /// those with one child become that child.
     pub fn without(&self, gone: impl Fn(NodeId) -> bool) -> Self {
-        let mut fewer = Self::default();
+        let mut fewer = Self::with_notation(self.notation);
         let mut new_id: Vec<Option<NodeId>> = vec![None; self.nodes.len()];
         for (id, node) in self.nodes.iter().enumerate() {
             let steps = node.steps.clone();

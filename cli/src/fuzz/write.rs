@@ -1,13 +1,13 @@
 //! Models as text: padl, csg (as OpenSCAD flattens) and json.
 
-use super::model::{Axis, Kind, Model, Operation, Primitive, Step};
+use super::model::{Axis, Kind, Model, Notation, Operation, Primitive, Step};
 use premio_csg::builder::{Builder, Part};
 use premio_csg::moves::{self, Moves};
 use premio_csg::primitive::{self, PrimitiveError};
 use premio_csg::reader::{self, Description, Options, ReadError};
 use premio_csg::tree;
 use premio_csg::writer;
-use premio_kernel::number::rational::{Rational, from_f64};
+use premio_kernel::number::rational::{Rational, from_decimal, from_f64};
 
 pub use premio_csg::reader::Format;
 
@@ -30,10 +30,11 @@ pub fn read(text: &str, format: Format) -> Result<Description, ReadError> {
 fn built(model: &Model) -> (Builder, Part) {
     let mut builder = Builder::new();
     let mut parts: Vec<Part> = Vec::with_capacity(model.nodes().len());
+    let exact = |value: f64| number(value, model.notation);
     for node in model.nodes() {
         let part = match &node.kind {
             // A length that makes no solid makes nothing.
-            Kind::Leaf(primitive) => match exact(primitive) {
+            Kind::Leaf(primitive) => match solid(primitive, &exact) {
                 Ok(primitive) => builder.primitive(primitive),
                 Err(_) => Part::EMPTY,
             },
@@ -42,17 +43,24 @@ fn built(model: &Model) -> (Builder, Part) {
                 builder.operation(operation(*op), &children)
             }
         };
-        parts.push(builder.moved(part, placed(&node.steps)));
+        parts.push(builder.moved(part, placed(&node.steps, &exact)));
     }
     (builder, parts.last().copied().unwrap_or(Part::EMPTY))
 }
 
-/// The exact value of a double of a model, which is finite.
-fn number(value: f64) -> Rational {
-    from_f64(value).unwrap_or(Rational::ZERO)
+/// The exact number that an f64 of a model stands for, which is finite.
+fn number(value: f64, notation: Notation) -> Rational {
+    let exact = match notation {
+        Notation::Binary => from_f64(value),
+        Notation::Decimal => from_decimal(&value.to_string()).ok(),
+    };
+    exact.unwrap_or(Rational::ZERO)
 }
 
-fn exact(primitive: &Primitive) -> Result<primitive::Primitive, PrimitiveError> {
+fn solid(
+    primitive: &Primitive,
+    number: &impl Fn(f64) -> Rational,
+) -> Result<primitive::Primitive, PrimitiveError> {
     use primitive::Primitive as Exact;
     match *primitive {
         Primitive::Block(size) => Exact::block(size.map(number)),
@@ -72,7 +80,7 @@ fn operation(op: Operation) -> tree::Operation {
     }
 }
 
-fn placed(steps: &[Step]) -> Moves {
+fn placed(steps: &[Step], number: &impl Fn(f64) -> Rational) -> Moves {
     let mut moves = Moves::new();
     for step in steps {
         let step = match *step {

@@ -3,6 +3,7 @@
 mod deep;
 mod grid;
 mod near;
+mod parts;
 mod tangent;
 mod wide;
 
@@ -25,16 +26,19 @@ pub enum Profile {
     Deep,
     /// One operation on 8 to 1500 primitives, most in a lattice
     Wide,
+    /// A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing
+    Parts,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
         Self::Deep,
         Self::Wide,
+        Self::Parts,
     ];
 
     /// The name, as it is written on the command line.
@@ -45,6 +49,7 @@ impl Profile {
             Self::Tangent => "tangent",
             Self::Deep => "deep",
             Self::Wide => "wide",
+            Self::Parts => "parts",
         }
     }
 
@@ -56,6 +61,7 @@ impl Profile {
             Self::Tangent => tangent::model(seed),
             Self::Deep => deep::model(seed),
             Self::Wide => wide::model(seed),
+            Self::Parts => parts::model(seed),
         }
     }
 }
@@ -83,6 +89,7 @@ mod tests {
                     Profile::Tangent => 4,
                     Profile::Deep => 3001,
                     Profile::Wide => 1501,
+                    Profile::Parts => 80,
                 };
                 assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
             }
@@ -109,5 +116,13 @@ mod tests {
             })
         };
         insta::assert_debug_snapshot!("large", [&texts[3], &texts[4]].map(sum));
+        let parts: Vec<String> = (0..4)
+            .map(|seed| write(&Profile::Parts.model(seed), Format::Padl))
+            .collect();
+        insta::assert_snapshot!("parts", parts.join("\n"));
+        let parts: Vec<u64> = (4..200)
+            .map(|seed| sum(&write(&Profile::Parts.model(seed), Format::Padl)))
+            .collect();
+        insta::assert_debug_snapshot!("more_parts", parts.iter().fold(0u64, |a, b| a ^ b));
     }
 }

@@ -1,0 +1,78 @@
+//! Parts that a person would model: plates, brackets, flanges, shafts, housings, bearings.
+//!
+//! What touches, lies in one plane or has one axis does so exactly, as it is drawn; then about half
+//! of the parts are turned about odd axes and moved.
+
+mod draft;
+mod flat;
+mod hollow;
+mod round;
+mod turned;
+
+use crate::fuzz::model::{Axis, Model, NodeId, Step};
+use crate::fuzz::random::Random;
+use draft::Draft;
+
+/// What sets this profile's numbers apart.
+const PURPOSE: u64 = 5;
+
+/// The kinds of parts, those with many variants more often.
+const KINDS: [fn(&mut Draft<'_>) -> NodeId; 20] = [
+    flat::plate,
+    flat::plate,
+    flat::bracket,
+    flat::bracket,
+    flat::clevis,
+    flat::link,
+    flat::link,
+    flat::wedge,
+    turned::flange,
+    turned::flange,
+    turned::shaft,
+    turned::shaft,
+    turned::bearing,
+    turned::pulley,
+    round::rounded_box,
+    round::rounded_box,
+    round::dome,
+    round::knob,
+    hollow::housing,
+    hollow::elbow,
+];
+
+/// A part of 2 to 60 primitives with lengths of 0 to 3 decimals, all of one part of as many.
+pub(super) fn model(seed: u64) -> Model {
+    let random = &mut Random::apart(seed, PURPOSE);
+    let kind = random.choose(&KINDS);
+    let mut draft = Draft::new(random);
+    let part = kind(&mut draft);
+    let mut model = draft.model;
+    let steps = match random.once_in(2) {
+        true => Vec::new(),
+        false => placement(random),
+    };
+    if let Some(root) = model.node_mut(part) {
+        root.steps.extend(steps);
+    }
+    model
+}
+
+/// One to three turns by whole degrees or tenths of them, and a shift as a rule.
+fn placement(random: &mut Random) -> Vec<Step> {
+    let mut steps = Vec::new();
+    for _ in 0..random.between(1, 3) {
+        let degrees = match random.below(3) {
+            0 => random.between(1, 3599) as f64 / 10.0,
+            1 => random.choose(&[15.0, 30.0, 45.0, 60.0, 90.0, 180.0]),
+            _ => random.between(1, 359) as f64,
+        };
+        steps.push(Step::Turn(Axis::any(random), degrees));
+    }
+    if !random.once_in(3) {
+        let unit = random.choose(&[1.0, 10.0, 1000.0]);
+        steps.push(Step::Shift([0; 3].map(|_| {
+            random.sign() * random.below(100_000) as f64 / (1000.0 * unit)
+        })));
+    }
+    steps
+}

@@ -361,6 +361,9 @@ pub struct FuzzOptions {
     /// Evaluate each tree once more with no decision made in doubles, and compare
     #[arg(long)]
     pub unfiltered: bool,
+    /// Draw five views, follow the boundary of the shadow in each, and read the sheets back
+    #[arg(long)]
+    pub sheets: bool,
     /// Count the pieces of five views again, and look for missing contours
     #[arg(long)]
     pub views: bool,

@@ -4,6 +4,9 @@
 use super::window::{Seen, Window};
 use premio_kernel::geometry::curve::Curve;
 use premio_visibility::Contours;
+use premio_visibility::drawing::Layer;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
 
 /// Into how many parts each smooth stretch of a curve is cut before anything is asked.
 const PARTS: usize = 16;
@@ -12,7 +15,8 @@ const PARTS: usize = 16;
 #[derive(Debug)]
 pub(super) struct Images<'a> {
     window: &'a Window,
-    cells: Vec<Cell<'a>>,
+    /// The cells with boxes that hold them, and in them what may come near.
+    cells: RTree<GeomWithData<Rectangle<[f64; 2]>, Cell<'a>>>,
 }
 
 /// What passes close to a point of the image.
@@ -22,6 +26,8 @@ pub(super) struct Passing {
     pub depth: [f64; 2],
     /// Whether the piece is visible.
     pub visible: bool,
+    /// What a drawing shows it as.
+    pub layer: Layer,
 }
 
 /// A stretch of a curve with the images of its ends and of its middle.
@@ -29,6 +35,7 @@ pub(super) struct Passing {
 struct Cell<'a> {
     curve: &'a Curve,
     visible: bool,
+    layer: Layer,
     t: [f64; 3],
     seen: [Seen; 3],
 }
@@ -82,14 +89,21 @@ impl<'a> Cell<'a> {
                 depths.into_iter().fold(f64::NEG_INFINITY, f64::max),
             ],
             visible: self.visible,
+            layer: self.layer,
         }
+    }
+
+    /// A box that the stretch does not leave.
+    fn hull(&self) -> Rectangle<[f64; 2]> {
+        let ([lo, hi], grown) = (self.corners(), self.size());
+        Rectangle::from_corners(lo.map(|x| x - grown), hi.map(|x| x + grown))
     }
 }
 
 impl<'a> Images<'a> {
     /// The images of all pieces.
     pub fn of(seen: &'a Contours, window: &'a Window) -> Self {
-        let mut cells = Vec::new();
+        let mut cells: Vec<Cell<'_>> = Vec::new();
         for contour in &seen.contours {
             for piece in &contour.pieces {
                 let breaks = contour.curve3.breaks(piece.t[0], piece.t[1]);
@@ -103,20 +117,26 @@ impl<'a> Images<'a> {
                     cells.extend(points.windows(3).step_by(2).map(|p| Cell {
                         curve: &contour.curve3,
                         visible: piece.visible,
+                        layer: Layer::from_contour(contour),
                         t: [p[0].0, p[1].0, p[2].0],
                         seen: [p[0].1, p[1].1, p[2].1],
                     }));
                 }
             }
         }
-        Self { window, cells }
+        let leaves = cells.into_iter().map(|c| GeomWithData::new(c.hull(), c));
+        Self {
+            window,
+            cells: RTree::bulk_load(leaves.collect()),
+        }
     }
 
     /// Whether a piece that suits passes `at` closer than `near` (up to a factor of about four).
     pub fn any(&self, at: [f64; 2], near: f64, suits: impl Fn(&Passing) -> bool) -> bool {
         let mut todo: Vec<Cell<'_>> = Vec::new();
-        for cell in &self.cells {
-            todo.push(*cell);
+        let around = AABB::from_corners(at.map(|x| x - near), at.map(|x| x + near));
+        for leaf in self.cells.locate_in_envelope_intersecting(around) {
+            todo.push(leaf.data);
             while let Some(cell) = todo.pop() {
                 if !cell.may_pass(at, near) {
                     continue;

@@ -4,17 +4,24 @@
 mod images;
 mod outlines;
 mod recount;
+mod shadow;
+mod sheets;
+mod strokes;
 pub mod views;
 mod window;
 
 pub use outlines::{Lack, Missing, Outlines};
 pub use recount::{Recount, WrongPiece};
+pub use shadow::ShadowOutline;
+pub use sheets::{SheetFault, SheetReport};
 
 use premio_csg::boundary::Evaluation;
 use premio_csg::rays::{Clearance, Estimate, Material};
 use premio_csg::tree::Tree;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
+use premio_visibility::drawing::{self, Drawing};
+use premio_visibility::projection::Projection;
 use premio_visibility::{Camera, contours};
 use std::fmt;
 
@@ -40,6 +47,10 @@ pub enum Subject {
     View(String),
     /// The contours of a view against the changes between neighbouring lines of sight.
     Contours(String),
+    /// The boundary of the part's shadow in a view against the visible strokes of its drawing.
+    Outline(String),
+    /// The sheet of a view, written and read back, against its contours.
+    Sheet(String),
 }
 
 /// What a check finds.
@@ -132,6 +143,12 @@ impl<'a> Checker<'a> {
             around
                 .into_iter()
                 .flat_map(|v| self.view(&v.name, &v.camera)),
+        );
+        let around = views::around(&self.evaluation.bounds);
+        report.checks.extend(
+            around
+                .into_iter()
+                .flat_map(|v| self.sheet(&v.name, &v.camera)),
         );
         report
     }
@@ -242,6 +259,41 @@ impl<'a> Checker<'a> {
         ]
     }
 
+    /// Draws what a camera sees, follows the boundary of the shadow, and reads the sheet back. None of a
+    /// view that is refused.
+    pub fn sheet(&self, name: &str, camera: &Camera) -> Vec<Check> {
+        let Some(resolution) = self.evaluation.resolution_of_views() else {
+            return Vec::new();
+        };
+        let Ok(seen) = contours(&self.evaluation.brep, camera, resolution) else {
+            return Vec::new();
+        };
+        let clearance = self.clearance();
+        let projection = Projection::new(camera, clearance.size);
+        let drawing = Drawing::new(&seen, &drawing::Options::default());
+        let size = (drawing.extent[1] - drawing.extent[0]).norm();
+        // In the image lengths are as many times greater as the part is.
+        let near = clearance.shift * size / clearance.size;
+        let tolerance = shadow::Tolerance {
+            image: near + drawing.tolerance + 2.0 * drawing.distance,
+            sliver: clearance.sliver,
+        };
+        let outline = ShadowOutline::new(&self.material, &projection, &drawing, tolerance);
+        let sheet = SheetReport::new(&seen, &self.evaluation.bounds);
+        vec![
+            Check {
+                subject: Subject::Outline(name.to_owned()),
+                finding: Finding::of(outline.missing.is_empty()),
+                detail: outline.to_string(),
+            },
+            Check {
+                subject: Subject::Sheet(name.to_owned()),
+                finding: Finding::of(sheet.faults.is_empty()),
+                detail: sheet.to_string(),
+            },
+        ]
+    }
+
     fn clearance(&self) -> Clearance {
         let size = self.evaluation.bounds.diagonal();
         let known = self.evaluation;
@@ -266,6 +318,8 @@ impl fmt::Display for Subject {
             Self::Bounds => f.write_str("bounds"),
             Self::View(name) => write!(f, "view {name}"),
             Self::Contours(name) => write!(f, "contours in {name}"),
+            Self::Outline(name) => write!(f, "outline in {name}"),
+            Self::Sheet(name) => write!(f, "sheet of {name}"),
         }
     }
 }

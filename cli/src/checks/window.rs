@@ -3,7 +3,7 @@
 //! Image coordinates are those in the plane at depth one (in the part's unit for an orthographic
 //! camera), in any turn about the optical axis: enough to tell what is near what.
 
-use nalgebra::Point3;
+use nalgebra::{Point2, Point3};
 use premio_csg::rays::Ray;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::frame::Frame;
@@ -67,6 +67,16 @@ impl Window {
         let scale = if self.central { depth } else { 1.0 };
         let at = [self.frame.x, self.frame.y].map(|axis| axis.dot(&d) / scale);
         Seen { at, depth }
+    }
+
+    /// The place of a point of a drawing, whose y is up.
+    pub fn of_drawing(&self, projection: &Projection, p: &Point2<f64>) -> [f64; 2] {
+        let image = match projection.y_down {
+            true => Point2::new(p.x, -p.y),
+            false => *p,
+        };
+        let (origin, into) = projection.line_of_sight(&image);
+        self.image(&(origin + into)).at
     }
 
     /// The line of sight of an image point, with the depth as its parameter.

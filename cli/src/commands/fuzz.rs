@@ -111,6 +111,7 @@ fn plan(options: &FuzzOptions) -> Result<Plan, Failure> {
             resolution: options.resolution,
             strict: options.strict,
             views: options.views,
+            sheets: options.sheets,
             unfiltered: options.unfiltered,
             rays: options.rays,
         },

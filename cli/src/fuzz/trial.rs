@@ -32,6 +32,9 @@ pub struct Terms {
     pub strict: bool,
     /// Whether views are counted again.
     pub views: bool,
+    /// Whether sheets of views are read back.
+    #[serde(default)]
+    pub sheets: bool,
     /// Whether the tree is evaluated once more with no decision made in doubles.
     #[serde(default)]
     pub unfiltered: bool,
@@ -57,6 +60,10 @@ pub enum Wrong {
     View,
     /// A contour of a view is missing.
     Contours,
+    /// The boundary of the part's shadow in a view is not drawn.
+    Outline,
+    /// A sheet, read back, is not what the contours are.
+    Sheet,
     /// The evaluation, or a check, panicked.
     Panic,
     /// The process ended without an answer: its stack or its memory ran over, or it was aborted.
@@ -78,6 +85,8 @@ impl Wrong {
             Self::Filter => "filter",
             Self::View => "view",
             Self::Contours => "contours",
+            Self::Outline => "outline",
+            Self::Sheet => "sheet",
             Self::Panic => "panic",
             Self::Crash => "crash",
             Self::Time => "time",
@@ -198,11 +207,18 @@ pub fn examine(model: &Model, terms: &Terms) -> Outcome {
     }
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(terms.rays as usize);
-    if terms.views && report.holds() {
+    if report.holds() {
         let all = views::around(&evaluation.bounds);
-        let wanted = all.iter().filter(|v| VIEWS.contains(&v.name.as_str()));
-        let checks = wanted.flat_map(|v| checker.view(&v.name, &v.camera));
-        report.checks.extend(checks);
+        for view in all.iter().filter(|v| VIEWS.contains(&v.name.as_str())) {
+            if terms.views {
+                report.checks.extend(checker.view(&view.name, &view.camera));
+            }
+            if terms.sheets {
+                report
+                    .checks
+                    .extend(checker.sheet(&view.name, &view.camera));
+            }
+        }
     }
     let mut faults = faults(&report);
     faults.extend(sums(model, &evaluation, terms));
@@ -244,6 +260,8 @@ fn faults(report: &Report) -> Vec<Fault> {
             Subject::Bounds => Wrong::Bounds,
             Subject::View(_) => Wrong::View,
             Subject::Contours(_) => Wrong::Contours,
+            Subject::Outline(_) => Wrong::Outline,
+            Subject::Sheet(_) => Wrong::Sheet,
         };
         let text = text(check);
         Fault { kind, text }

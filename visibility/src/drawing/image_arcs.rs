@@ -2,7 +2,7 @@
 
 use super::Layer;
 use super::image_arc::{Ellipse, ImageArc, Sample};
-use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece};
+use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
 use crate::image::folds_of_conic;
 use crate::projection::Projection;
 use nalgebra::Point2;
@@ -52,11 +52,7 @@ impl<'c> ArcMaker<'c> {
 
     /// The image arcs of a contour. What is seen end-on has none.
     pub fn arcs(&self, contour: &'c Contour, out: &mut Vec<DrawnArc<'c>>) {
-        let layer = match (contour.kind, contour.smooth) {
-            (Kind::Limb, _) => Layer::Limb,
-            (Kind::Boundary, true) => Layer::Smooth,
-            (Kind::Boundary, false) => Layer::Boundary,
-        };
+        let layer = Layer::from_contour(contour);
         for Run { range, visible } in self.runs(contour) {
             let mut put = |arc| {
                 out.push(DrawnArc {

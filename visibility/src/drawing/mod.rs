@@ -13,7 +13,7 @@ pub mod sheet;
 mod supports;
 pub mod svg;
 
-use crate::contour::{Contour, Contours};
+use crate::contour::{Contour, Contours, Kind};
 use crate::projection::{Projection, Sight};
 use image_arcs::ArcMaker;
 use nalgebra::{Point2, Vector2};
@@ -32,6 +32,15 @@ pub enum Layer {
 impl Layer {
     /// All layers.
     pub const ALL: [Self; 3] = [Self::Boundary, Self::Limb, Self::Smooth];
+
+    /// What a contour is drawn as.
+    pub fn from_contour(contour: &Contour) -> Self {
+        match (contour.kind, contour.smooth) {
+            (Kind::Limb, _) => Self::Limb,
+            (Kind::Boundary, true) => Self::Smooth,
+            (Kind::Boundary, false) => Self::Boundary,
+        }
+    }
 
     /// The name used in outputs.
     pub fn name(self) -> &'static str {

@@ -71,30 +71,40 @@ impl Page {
         let minor = nalgebra::Vector2::new(-major.y, major.x) * *ratio;
         let point = |s: f64| self.at(&(centre + major * s.cos() + minor * s.sin()));
         let (x, y) = point(*from);
-        let _ = write!(out, "M{} {}", short(x), short(y));
+        let _ = write!(out, "M{} {}", long(x), long(y));
         let (rx, ry) = (major.norm() * self.scale, major.norm() * ratio * self.scale);
         // The page's y is down, so the angle turns over and the arc runs against the clock.
         let turn = -major.y.atan2(major.x).to_degrees();
-        // Up to half a turn at once: a longer arc is ambiguous where it nearly closes.
-        let parts = if *sweep > TAU / 2.0 { 2 } else { 1 };
+        // At most a quarter at once: next to half a turn the centre depends on the root of the radius'
+        // last digit.
+        let parts = (sweep / (TAU / 4.0)).ceil().clamp(1.0, 4.0) as u32;
         for k in 1..=parts {
             let (x, y) = point(from + sweep * f64::from(k) / f64::from(parts));
             let _ = write!(
                 out,
                 "A{} {} {} 0 0 {} {}",
-                short(rx),
-                short(ry),
-                short(turn),
-                short(x),
-                short(y)
+                long(rx),
+                long(ry),
+                long(turn),
+                long(x),
+                long(y)
             );
         }
     }
 }
 
-/// A number with as many digits as the page can show.
+/// A length with as many digits as the page can show.
 fn short(x: f64) -> String {
-    let text = format!("{x:.4}");
+    trimmed(format!("{x:.4}"))
+}
+
+/// A number of an arc with some digits more: the centre follows from the ends, and where an ellipse is
+/// thin what they are off across it counts along it by the ratio.
+fn long(x: f64) -> String {
+    trimmed(format!("{x:.7}"))
+}
+
+fn trimmed(text: String) -> String {
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" {
         "0".to_owned()

@@ -1,0 +1,163 @@
+//! Whether the outline is drawn: the boundary of the part's shadow lies on visible strokes.
+//!
+//! The shadow is where lines of sight meet material, which rays on the tree tell. Lines are drawn
+//! across the image, and a small circle around every end of a visible stroke; where one of them
+//! enters or leaves the shadow a visible stroke must pass, and no smooth edge.
+
+use super::strokes::{Strokes, is_outline, point};
+use nalgebra::{Point2, Vector2};
+use premio_csg::rays::{Material, Ray};
+use premio_visibility::drawing::Drawing;
+use premio_visibility::projection::{Projection, Sight};
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+/// How many lines are drawn across the image, and into how many steps each is cut.
+const LINES: usize = 48;
+const STEPS: usize = 96;
+/// Around how many ends of strokes the outline is followed, and in how many steps.
+const ENDS: usize = 64;
+const AROUND: usize = 24;
+/// The radius of these circles, as a part of the drawing's size.
+const RADIUS: f64 = 1.0 / 512.0;
+/// How often the place of a change is halved.
+const HALVINGS: u32 = 40;
+/// The powers of the plastic number, by which Roberts's sequence steps through the unit square.
+const SPREAD: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+/// How many places are named.
+const NAMED: usize = 5;
+
+/// What was found of the outline.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShadowOutline {
+    /// How many places of the shadow's boundary lie on a visible stroke.
+    pub drawn: usize,
+    /// The places that do not, in the image.
+    pub missing: Vec<[f64; 2]>,
+}
+
+/// The lines of sight of a view, and what is near.
+struct Shadow<'a> {
+    material: &'a Material,
+    projection: &'a Projection,
+    least: f64,
+}
+
+/// How far a stroke may pass from where rays find the outline.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerance {
+    /// In the image.
+    pub image: f64,
+    /// Slivers of material up to this length are none.
+    pub sliver: f64,
+}
+
+impl Shadow<'_> {
+    /// Whether the line of sight of a point of the drawing meets material.
+    fn covers(&self, p: &Point2<f64>) -> bool {
+        let image = match self.projection.y_down {
+            true => Point2::new(p.x, -p.y),
+            false => *p,
+        };
+        let (origin, direction) = self.projection.line_of_sight(&image);
+        let ray = Ray { origin, direction };
+        let near = match self.projection.sight {
+            Sight::Eye(_) => self.projection.near / direction.dot(&self.projection.axis()),
+            Sight::Direction(_) => f64::NEG_INFINITY,
+        };
+        let met = self.material.intervals(&ray, self.least);
+        met.iter().any(|[_, hi]| *hi > near)
+    }
+}
+
+impl ShadowOutline {
+    /// Follows the boundary of the shadow of a drawing's part.
+    pub fn new(
+        material: &Material,
+        projection: &Projection,
+        drawing: &Drawing,
+        tolerance: Tolerance,
+    ) -> Self {
+        let shadow = Shadow {
+            material,
+            projection,
+            least: tolerance.sliver,
+        };
+        let strokes = Strokes::new(&drawing.strokes);
+        let mut outline = Self::default();
+        let mut follow = |course: &dyn Fn(f64) -> Point2<f64>, steps: usize| {
+            for place in changes(&shadow, course, steps) {
+                let mut passing = strokes.passing(&place, tolerance.image);
+                match passing.any(|(_, stroke)| is_outline(stroke)) {
+                    true => outline.drawn += 1,
+                    false => outline.missing.push(place.into()),
+                }
+            }
+        };
+        let [lo, hi] = drawing.extent;
+        let (centre, size) = (nalgebra::center(&lo, &hi), (hi - lo).norm());
+        for line in 0..LINES {
+            let part = |i: usize| ((line as f64 + 0.5) * SPREAD[i]).fract();
+            let (sin, cos) = (PI * part(0)).sin_cos();
+            let off = 2.0 * part(1) - 1.0;
+            let half = (1.0 - off * off).sqrt();
+            let radius = 0.5 * size;
+            let course = |t: f64| {
+                let along = half * (2.0 * t - 1.0);
+                centre + Vector2::new(off * cos - along * sin, off * sin + along * cos) * radius
+            };
+            follow(&course, STEPS);
+        }
+        let visible = drawing.strokes.iter().filter(|s| is_outline(s));
+        let ends = visible.flat_map(|s| [0.0, 1.0].map(|part| point(&s.shape, part)));
+        let ends: Vec<Point2<f64>> = ends.collect();
+        for end in ends.iter().step_by(ends.len().div_ceil(ENDS).max(1)) {
+            let course = |t: f64| {
+                let (sin, cos) = (TAU * t + 1.0).sin_cos();
+                end + Vector2::new(cos, sin) * (RADIUS * size)
+            };
+            follow(&course, AROUND);
+        }
+        outline
+    }
+}
+
+/// Where a course over [0, 1] enters or leaves the shadow.
+fn changes(
+    shadow: &Shadow<'_>,
+    course: &dyn Fn(f64) -> Point2<f64>,
+    steps: usize,
+) -> Vec<Point2<f64>> {
+    let t = |k: usize| k as f64 / steps as f64;
+    let covered: Vec<bool> = (0..=steps).map(|k| shadow.covers(&course(t(k)))).collect();
+    let mut found = Vec::new();
+    for k in 0..steps {
+        if covered[k] == covered[k + 1] {
+            continue;
+        }
+        let (mut a, mut b) = (t(k), t(k + 1));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (a + b);
+            match shadow.covers(&course(middle)) == covered[k] {
+                true => a = middle,
+                false => b = middle,
+            }
+        }
+        found.push(course(a));
+    }
+    found
+}
+
+impl fmt::Display for ShadowOutline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { drawn, missing } = self;
+        write!(f, "{drawn} places of the shadow's boundary are drawn")?;
+        if !missing.is_empty() {
+            write!(f, ", {} are not", missing.len())?;
+        }
+        for [x, y] in missing.iter().take(NAMED) {
+            write!(f, "; no visible line at ({x:.6}, {y:.6}) of the image")?;
+        }
+        Ok(())
+    }
+}

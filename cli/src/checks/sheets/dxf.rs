@@ -1,0 +1,134 @@
+//! The strokes of a sheet that was written as DXF.
+
+use super::Placing;
+use nalgebra::{Point2, Vector2};
+use premio_visibility::drawing::sheet::Sheet;
+use premio_visibility::drawing::{Layer, Shape, Stroke};
+use std::f64::consts::TAU;
+
+/// A group: its code and its value.
+type Group<'t> = (u32, &'t str);
+
+/// The strokes of the views on a sheet, in the coordinates of the drawing.
+pub(super) fn read(text: &str, sheet: &Sheet, paper: &Placing) -> Result<Vec<Stroke>, String> {
+    // The part has its true size: a millimetre on paper is this many units.
+    let unit = match sheet.scale {
+        Some(_) => sheet.factor,
+        None => 1.0,
+    };
+    let mut lines = text.lines();
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    while let (Some(code), Some(value)) = (lines.next(), lines.next()) {
+        let code = code.trim().parse().map_err(|e| format!("{code}: {e}"))?;
+        groups.push((code, value));
+    }
+    let start = groups.iter().position(|g| *g == (2, "ENTITIES"));
+    let groups = &groups[start.ok_or("no entities")?..];
+    let starts = groups.iter().enumerate().filter(|(_, g)| g.0 == 0);
+    let starts: Vec<usize> = starts.map(|(i, _)| i).collect();
+    let mut strokes = Vec::new();
+    for pair in starts.windows(2) {
+        let entity = Entity {
+            groups: &groups[pair[0]..pair[1]],
+            unit,
+            paper,
+        };
+        if entity.groups[0].1 == "ENDSEC" {
+            break;
+        }
+        let Some((layer, visible)) = layer(entity.text(8).ok_or("an entity without a layer")?)
+        else {
+            continue;
+        };
+        strokes.push(Stroke {
+            shape: entity.shape()?,
+            layer,
+            visible,
+        });
+    }
+    Ok(strokes)
+}
+
+/// What a layer of the document shows; none of the frame and the title block.
+fn layer(name: &str) -> Option<(Layer, bool)> {
+    let (kind, seen) = name.rsplit_once('_')?;
+    let mut all = Layer::ALL.into_iter();
+    let layer = all.find(|layer| layer.name().eq_ignore_ascii_case(kind))?;
+    Some((layer, seen == "VISIBLE"))
+}
+
+struct Entity<'t> {
+    groups: &'t [Group<'t>],
+    unit: f64,
+    paper: &'t Placing,
+}
+
+impl Entity<'_> {
+    fn text(&self, code: u32) -> Option<&str> {
+        self.groups.iter().find(|g| g.0 == code).map(|g| g.1)
+    }
+
+    fn numbers(&self, code: u32) -> impl Iterator<Item = Result<f64, String>> {
+        let mine = self.groups.iter().filter(move |g| g.0 == code);
+        mine.map(|g| g.1.parse().map_err(|e| format!("{}: {e}", g.1)))
+    }
+
+    fn number(&self, code: u32) -> Result<f64, String> {
+        self.numbers(code)
+            .next()
+            .ok_or(format!("no group {code}"))?
+    }
+
+    fn place(&self, x: f64, y: f64) -> Point2<f64> {
+        self.paper.back(x * self.unit, y * self.unit)
+    }
+
+    /// The point of the group `code`, whose y is ten on.
+    fn point(&self, code: u32) -> Result<Point2<f64>, String> {
+        Ok(self.place(self.number(code)?, self.number(code + 10)?))
+    }
+
+    fn shape(&self) -> Result<Shape, String> {
+        let length = |x: f64| x * self.unit / self.paper.factor;
+        match self.groups[0].1 {
+            "LINE" => Ok(Shape::Line([self.point(10)?, self.point(11)?])),
+            "LWPOLYLINE" => {
+                let points = self.numbers(10).zip(self.numbers(20));
+                let place =
+                    |(x, y): (Result<f64, String>, Result<f64, String>)| Ok(self.place(x?, y?));
+                let points: Result<Vec<_>, String> = points.map(place).collect();
+                Ok(Shape::Path(points?))
+            }
+            name @ ("CIRCLE" | "ARC") => {
+                let [from, to] = match name {
+                    "ARC" => [self.number(50)?, self.number(51)?].map(f64::to_radians),
+                    _ => [0.0, TAU],
+                };
+                Ok(Shape::Ellipse {
+                    centre: self.point(10)?,
+                    major: Vector2::new(length(self.number(40)?), 0.0),
+                    ratio: 1.0,
+                    from,
+                    sweep: sweep(from, to),
+                })
+            }
+            "ELLIPSE" => {
+                let [from, to] = [self.number(41)?, self.number(42)?];
+                Ok(Shape::Ellipse {
+                    centre: self.point(10)?,
+                    major: Vector2::new(length(self.number(11)?), length(self.number(21)?)),
+                    ratio: self.number(40)?,
+                    from,
+                    sweep: sweep(from, to),
+                })
+            }
+            other => Err(format!("the entity {other}")),
+        }
+    }
+}
+
+/// How far an arc runs; a whole turn where it ends where it starts.
+fn sweep(from: f64, to: f64) -> f64 {
+    let sweep = (to - from).rem_euclid(TAU);
+    if sweep > 0.0 { sweep } else { TAU }
+}

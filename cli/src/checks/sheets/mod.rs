@@ -1,0 +1,318 @@
+//! Whether a sheet shows what it should: written as SVG and as DXF, it is read back and held against
+//! the contours.
+//!
+//! Every stroke lies on a contour of its kind and visibility, every drawn contour on a stroke, a
+//! visible one on a visible stroke; no two strokes share a stretch; and both formats have the same
+//! lengths.
+
+mod dxf;
+mod svg;
+
+use super::images::Images;
+use super::strokes::{Strokes, point};
+use super::window::Window;
+use nalgebra::Point2;
+use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::unit::Unit;
+use premio_visibility::Contours;
+use premio_visibility::contour::ImageCurve;
+use premio_visibility::drawing::sheet::{self, Sheet, SheetError};
+use premio_visibility::drawing::{self, Drawing, Layer, Shape, Stroke};
+use premio_visibility::projection::Projection;
+use std::fmt;
+
+/// Where on a stroke it is held against contours and other strokes. Not in the middle: there others
+/// cross what is symmetric.
+const ON_STROKES: [f64; 10] = [
+    0.003, 0.031, 0.08, 0.17, 0.31, 0.57, 0.79, 0.92, 0.963, 0.996,
+];
+/// Where on a piece of a contour it is held against strokes.
+const ON_PIECES: [f64; 5] = [0.07, 0.23, 0.47, 0.71, 0.94];
+/// Where curves touch they are within the tolerance over a stretch of this many times the root of the
+/// tolerance and the size: they part by the square of the way.
+const TOUCHING: f64 = 4.0;
+/// How many strokes are looked at, at the most.
+const MOST: usize = 600;
+/// How far polylines may be off their curves here, as a part of the drawing's size.
+const FINE: f64 = 1.0 / (1u32 << 24) as f64;
+/// Digits of lengths on paper, in millimetres.
+const DIGITS: f64 = 1.0 / 8192.0;
+/// How many faults are named.
+const NAMED: usize = 5;
+
+/// What is wrong on a sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SheetFault {
+    /// A stroke lies on no contour of its kind.
+    Stray(Point2<f64>),
+    /// A contour that is drawn is on no stroke, or a visible one on hidden strokes only.
+    Undrawn(Point2<f64>),
+    /// Two strokes share a stretch.
+    Twice(Point2<f64>),
+    /// What is read back has another length than what was drawn.
+    Length {
+        /// The format.
+        format: &'static str,
+        /// What was drawn.
+        drawn: f64,
+        /// What was read back.
+        read: f64,
+    },
+    /// What is written is not read back.
+    Unreadable(String),
+}
+
+/// What was found on a sheet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SheetReport {
+    /// How many places of strokes and contours are right.
+    pub right: usize,
+    /// What is wrong.
+    pub faults: Vec<SheetFault>,
+}
+
+/// How near is near on a sheet, in the image.
+struct Scale {
+    /// How far what is written may be off.
+    tolerance: f64,
+    /// How far lines are apart that are two.
+    apart: f64,
+    /// The drawing's size.
+    size: f64,
+}
+
+/// Where a stroke was found on a sheet, in the drawing's coordinates.
+struct Placing {
+    at: Point2<f64>,
+    factor: f64,
+}
+
+impl SheetReport {
+    /// Draws contours on a sheet, with and without smooth edges, and reads it back.
+    pub fn new(seen: &Contours, bounds: &Box3) -> Self {
+        let mut report = Self::default();
+        for smooth in [false, true] {
+            report.drawing(seen, bounds, smooth);
+        }
+        report
+    }
+
+    fn drawing(&mut self, seen: &Contours, bounds: &Box3, smooth: bool) {
+        let options = drawing::Options {
+            smooth,
+            ..drawing::Options::default()
+        };
+        let rough = Drawing::new(seen, &options);
+        let size = (rough.extent[1] - rough.extent[0]).norm();
+        let drawing = Drawing::new(
+            seen,
+            &drawing::Options {
+                distance: Some(size * FINE),
+                ..options
+            },
+        );
+        let how = sheet::Options {
+            title: String::new(),
+            unit: Unit::Millimetre,
+            paper: sheet::Paper::A0,
+            scale: None,
+            angle: sheet::Angle::First,
+        };
+        let sheet = match Sheet::of(vec![(None, drawing)], how) {
+            Ok(sheet) => sheet,
+            // Nothing is drawn.
+            Err(SheetError::Size { .. }) => return,
+            Err(error) => return self.faults.push(SheetFault::Unreadable(error.to_string())),
+        };
+        let drawing = &sheet.views[0].drawing;
+        let paper = Placing {
+            at: sheet.views[0].at,
+            factor: sheet.factor,
+        };
+        let scale = Scale {
+            tolerance: drawing.tolerance + drawing.distance + DIGITS / sheet.factor,
+            apart: drawing.tolerance,
+            size,
+        };
+        let texts = [
+            svg::read(&drawing::svg::write_sheet(&sheet), sheet.size.y, &paper),
+            dxf::read(&drawing::dxf::write_sheet(&sheet), &sheet, &paper),
+        ];
+        for (read, format) in texts.into_iter().zip(["SVG", "DXF"]) {
+            match read {
+                Ok(strokes) => {
+                    self.lengths(drawing, &strokes, format, scale.tolerance);
+                    self.strokes(seen, bounds, &strokes, &scale);
+                }
+                Err(text) => self
+                    .faults
+                    .push(SheetFault::Unreadable(format!("{format}: {text}"))),
+            }
+        }
+    }
+
+    /// Whether as much was read back as was drawn.
+    fn lengths(
+        &mut self,
+        drawing: &Drawing,
+        read: &[Stroke],
+        format: &'static str,
+        tolerance: f64,
+    ) {
+        for visible in [true, false] {
+            for layer in Layer::ALL {
+                let length = |strokes: &[Stroke]| -> f64 {
+                    let mine = strokes
+                        .iter()
+                        .filter(|s| s.visible == visible && s.layer == layer);
+                    mine.map(|s| s.shape.length()).sum()
+                };
+                let (drawn, read_back) = (length(&drawing.strokes), length(read));
+                let points: usize = read.iter().map(|s| corners(&s.shape)).sum();
+                match (drawn - read_back).abs() <= tolerance * points as f64 {
+                    true => self.right += 1,
+                    false => self.faults.push(SheetFault::Length {
+                        format,
+                        drawn,
+                        read: read_back,
+                    }),
+                }
+            }
+        }
+    }
+
+    fn strokes(&mut self, seen: &Contours, bounds: &Box3, read: &[Stroke], scale: &Scale) {
+        let Scale {
+            tolerance,
+            apart,
+            size,
+        } = *scale;
+        let projection = Projection::new(&seen.camera, 1.0);
+        let window = Window::around(&projection, bounds);
+        let images = Images::of(seen, &window);
+        let strokes = Strokes::new(read);
+        let touching = TOUCHING * (tolerance * size).sqrt();
+        let place = |p: &Point2<f64>| window.of_drawing(&projection, p);
+        let nearness = |p: &Point2<f64>| {
+            let aside = p + nalgebra::Vector2::new(tolerance, 0.0);
+            let [a, b] = [place(p), place(&aside)];
+            (b[0] - a[0]).hypot(b[1] - a[1])
+        };
+        for (i, stroke) in read
+            .iter()
+            .enumerate()
+            .step_by(read.len().div_ceil(MOST).max(1))
+        {
+            let places = ON_STROKES.map(|part| point(&stroke.shape, part));
+            for p in &places {
+                let on_contour = images.any(place(p), nearness(p), |passing| {
+                    passing.visible == stroke.visible && passing.layer == stroke.layer
+                });
+                match on_contour {
+                    true => self.right += 1,
+                    false => self.faults.push(SheetFault::Stray(*p)),
+                }
+            }
+            // Lines that are farther apart than the drawing's tolerance are two.
+            let others = |p: &Point2<f64>| -> Vec<usize> {
+                let passing = strokes.passing(p, 0.5 * apart).map(|(j, _)| j);
+                passing.filter(|&j| j != i).collect()
+            };
+            let passing = places.each_ref().map(others);
+            for (k, row) in passing.windows(3).enumerate() {
+                // Three times in a row they do not only cross or touch.
+                let all = row[0]
+                    .iter()
+                    .any(|j| row[1..].iter().all(|r| r.contains(j)));
+                if all && (places[k + 2] - places[k]).norm() > touching {
+                    self.faults.push(SheetFault::Twice(places[k]));
+                }
+            }
+        }
+        self.pieces(seen, &projection, &strokes, tolerance, read);
+    }
+
+    /// Whether every piece that is drawn is on a stroke.
+    fn pieces(
+        &mut self,
+        seen: &Contours,
+        projection: &Projection,
+        strokes: &Strokes<'_>,
+        tolerance: f64,
+        read: &[Stroke],
+    ) {
+        let smooth = read.iter().any(|s| s.layer == Layer::Smooth);
+        let drawn = seen
+            .contours
+            .iter()
+            .filter(|c| (smooth || !c.smooth) && !matches!(c.curve2, ImageCurve::Point { .. }));
+        let pieces: Vec<_> = drawn
+            .flat_map(|c| c.pieces.iter().map(move |piece| (c, piece)))
+            .collect();
+        for (contour, piece) in pieces.iter().step_by(pieces.len().div_ceil(MOST).max(1)) {
+            let [lo, hi] = piece.t;
+            for part in ON_PIECES {
+                let p = projection.project(&contour.curve3.point(lo + (hi - lo) * part));
+                let p = match projection.y_down {
+                    true => Point2::new(p.x, -p.y),
+                    false => p,
+                };
+                let suits = |s: &Stroke| s.visible || !piece.visible;
+                match strokes.passing(&p, tolerance).any(|(_, s)| suits(s)) {
+                    true => self.right += 1,
+                    false => self.faults.push(SheetFault::Undrawn(p)),
+                }
+            }
+        }
+    }
+}
+
+/// How many rounded points a shape is written by.
+fn corners(shape: &Shape) -> usize {
+    match shape {
+        Shape::Path(points) => points.len(),
+        Shape::Line(_) => 2,
+        // Centre, half axes and ends, and twice as the length is about a sum of these.
+        Shape::Ellipse { .. } => 8,
+    }
+}
+
+impl Placing {
+    /// The point of the drawing that lies at a point of the paper, y up.
+    fn back(&self, x: f64, y: f64) -> Point2<f64> {
+        Point2::new((x - self.at.x) / self.factor, (y - self.at.y) / self.factor)
+    }
+}
+
+impl fmt::Display for SheetFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut at = |text: &str, p: &Point2<f64>| write!(f, "{text} at ({:.6}, {:.6})", p.x, p.y);
+        match self {
+            Self::Stray(p) => at("a stroke on no contour of its kind", p),
+            Self::Undrawn(p) => at("a contour that is not drawn", p),
+            Self::Twice(p) => at("two strokes on one another", p),
+            Self::Length {
+                format,
+                drawn,
+                read,
+            } => write!(
+                f,
+                "{format} has a length of {read:.6} in place of {drawn:.6}"
+            ),
+            Self::Unreadable(text) => write!(f, "unreadable: {text}"),
+        }
+    }
+}
+
+impl fmt::Display for SheetReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} places are right", self.right)?;
+        if !self.faults.is_empty() {
+            write!(f, ", {} are wrong", self.faults.len())?;
+        }
+        for fault in self.faults.iter().take(NAMED) {
+            write!(f, "; {fault}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,140 @@
+//! The strokes of a drawing, found by place.
+
+use nalgebra::{Point2, Vector2};
+use premio_visibility::drawing::{Layer, Shape, Stroke};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use std::f64::consts::TAU;
+
+/// Strokes with their boxes.
+pub(super) struct Strokes<'a> {
+    list: &'a [Stroke],
+    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
+}
+
+impl<'a> Strokes<'a> {
+    /// Those of a drawing.
+    pub fn new(list: &'a [Stroke]) -> Self {
+        let leaf = |(i, stroke): (usize, &Stroke)| {
+            let [lo, hi] = bounds(&stroke.shape);
+            GeomWithData::new(Rectangle::from_corners(lo.into(), hi.into()), i)
+        };
+        let leaves = list.iter().enumerate().map(leaf).collect();
+        Self {
+            list,
+            tree: RTree::bulk_load(leaves),
+        }
+    }
+
+    /// The strokes that pass a point of the image no farther away than `near`.
+    pub fn passing(&self, p: &Point2<f64>, near: f64) -> impl Iterator<Item = (usize, &'a Stroke)> {
+        let around = AABB::from_corners([p.x - near, p.y - near], [p.x + near, p.y + near]);
+        let found = self.tree.locate_in_envelope_intersecting(around);
+        let strokes = found.map(|leaf| (leaf.data, &self.list[leaf.data]));
+        let p = *p;
+        strokes.filter(move |(_, s)| distance(&s.shape, &p) <= near)
+    }
+}
+
+/// Whether a stroke is part of the picture of the surface: what is seen, and no smooth edge.
+pub(super) fn is_outline(stroke: &Stroke) -> bool {
+    stroke.visible && stroke.layer != Layer::Smooth
+}
+
+/// The point of a shape at a part of its course, from 0 to 1.
+pub(super) fn point(shape: &Shape, part: f64) -> Point2<f64> {
+    match shape {
+        Shape::Line([a, b]) => a + (b - a) * part,
+        Shape::Path(points) => {
+            let steps = points.windows(2).map(|p| (p[1] - p[0]).norm());
+            let mut left = part * steps.clone().sum::<f64>();
+            for (pair, step) in points.windows(2).zip(steps) {
+                if left <= step && step > 0.0 {
+                    return pair[0] + (pair[1] - pair[0]) * (left / step);
+                }
+                left -= step;
+            }
+            points.last().copied().unwrap_or_default()
+        }
+        Shape::Ellipse { from, sweep, .. } => on_ellipse(shape, from + sweep * part),
+    }
+}
+
+fn minor(major: &Vector2<f64>, ratio: f64) -> Vector2<f64> {
+    Vector2::new(-major.y, major.x) * ratio
+}
+
+fn on_ellipse(shape: &Shape, s: f64) -> Point2<f64> {
+    match shape {
+        Shape::Ellipse {
+            centre,
+            major,
+            ratio,
+            ..
+        } => centre + major * s.cos() + minor(major, *ratio) * s.sin(),
+        Shape::Line(_) | Shape::Path(_) => Point2::origin(),
+    }
+}
+
+/// The corners of a box that holds a shape.
+fn bounds(shape: &Shape) -> [Point2<f64>; 2] {
+    match shape {
+        Shape::Line([a, b]) => [a.inf(b), a.sup(b)],
+        Shape::Path(points) => {
+            let first = points.first().copied().unwrap_or_default();
+            points
+                .iter()
+                .fold([first, first], |[lo, hi], p| [lo.inf(p), hi.sup(p)])
+        }
+        Shape::Ellipse {
+            centre,
+            major,
+            ratio,
+            ..
+        } => {
+            let n = minor(major, *ratio);
+            let reach = Vector2::new(major.x.hypot(n.x), major.y.hypot(n.y));
+            [centre - reach, centre + reach]
+        }
+    }
+}
+
+fn from_segment(p: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
+    let d = b - a;
+    let square = d.norm_squared();
+    let t = match square > 0.0 {
+        true => (p - a).dot(&d) / square,
+        false => 0.0,
+    };
+    (a + d * t.clamp(0.0, 1.0) - p).norm()
+}
+
+/// How far a point is from a shape; from an ellipse to first order.
+pub(super) fn distance(shape: &Shape, p: &Point2<f64>) -> f64 {
+    match shape {
+        Shape::Line([a, b]) => from_segment(p, a, b),
+        Shape::Path(points) => {
+            let steps = points.windows(2).map(|s| from_segment(p, &s[0], &s[1]));
+            steps.fold(f64::INFINITY, f64::min)
+        }
+        Shape::Ellipse {
+            centre,
+            major,
+            ratio,
+            from,
+            sweep,
+        } => {
+            let (d, minor) = (p - centre, minor(major, *ratio));
+            let x = d.dot(major) / major.norm_squared();
+            let y = d.dot(&minor) / minor.norm_squared();
+            let ends = [*from, from + sweep].map(|s| (on_ellipse(shape, s) - p).norm());
+            let end = ends[0].min(ends[1]);
+            if (y.atan2(x) - from).rem_euclid(TAU) > *sweep {
+                return end;
+            }
+            let slope = 2.0 * (x / major.norm()).hypot(y / minor.norm());
+            let level = x * x + y * y - 1.0;
+            end.min(level.abs() / slope)
+        }
+    }
+}

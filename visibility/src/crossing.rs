@@ -7,7 +7,7 @@
 
 use crate::edgewise::Edgewise;
 use crate::graphs::general_pair;
-use crate::image::{Basis, Image, flat_of, line_on_conic, quadratic};
+use crate::image::{Basis, Image, flat_of, line_on_conic};
 use crate::polynomial::{Quartic, crossings};
 use crate::projection::Projection;
 use crate::sight::Scene;
@@ -117,71 +117,104 @@ fn line_parameters(a: &Strand<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)
     }
 }
 
-/// Whether a point in a conic's image is within `near` of it, as a distance in space, or as near as
-/// rounding tells: next to a flat conic, that of a circle seen almost edge-on, its form is small.
-fn on_conic(conic: &Matrix3<f64>, h: &Vector3<f64>, near: f64) -> bool {
-    let polar = conic * h;
-    let rounding = ROUNDING * h.abs().dot(&(conic.abs() * h.abs()));
-    let reach = near * 2.0 * polar.x.hypot(polar.y) + rounding;
-    h.dot(&polar).is_within(reach)
+/// A conic in the image, by the map from its own basis: next to a circle seen almost edge-on the form
+/// in image coordinates has no digits left, and in the basis it is that of the unit circle.
+#[derive(Clone, Copy)]
+struct ConicImage<'x> {
+    basis: Basis,
+    map: &'x Matrix3<f64>,
+    inverse: &'x Matrix3<f64>,
 }
 
+impl<'x> ConicImage<'x> {
+    fn new(image: &'x Image) -> Option<Self> {
+        match image {
+            Image::Conic {
+                basis,
+                map,
+                inverse,
+                ..
+            } => Some(Self {
+                basis: *basis,
+                map,
+                inverse,
+            }),
+            _ => None,
+        }
+    }
+
+    /// Whether an image point is within `near` of it, as a distance in space, or as near as rounding
+    /// tells.
+    fn passes(&self, h: &Vector3<f64>, near: f64) -> bool {
+        let form = self.basis.conic();
+        let point = self.inverse * h;
+        let half_slope = form * point;
+        let polar = self.inverse.tr_mul(&half_slope);
+        let rounding = ROUNDING * half_slope.abs().dot(&(self.inverse.abs() * h.abs()));
+        let reach = 2.0 * (near * polar.x.hypot(polar.y) + rounding);
+        point.dot(&half_slope).is_within(reach)
+    }
+
+    /// The form of the points of another map that lie on it.
+    fn form_over(&self, map: &Matrix3<f64>) -> Matrix3<f64> {
+        let over = self.inverse * map;
+        over.tr_mul(&(self.basis.conic() * over))
+    }
+
+    /// The parameters at which it crosses a line; where it leaves the line's neighbourhood by no more
+    /// than `near` it only touches it.
+    fn crossings_with(&self, line: &Vector3<f64>, range: [f64; 2], near: f64) -> Vec<f64> {
+        let k = self.map.tr_mul(line);
+        let mut roots = Vec::new();
+        line_on_conic(self.basis, &k, range, &mut |t| roots.push(t));
+        let &[first, second] = &roots[..] else {
+            return roots;
+        };
+        let rise = |t: f64| k.dot(&self.basis.at(t)).abs();
+        let middle = 0.5 * (first + second);
+        let between = match self.basis {
+            // Both arcs that the line cuts off.
+            Basis::Circular => rise(middle).min(rise(middle + 0.5 * TAU)),
+            _ => rise(middle),
+        };
+        match between.is_within(near * line.x.hypot(line.y)) {
+            true => Vec::new(),
+            false => roots,
+        }
+    }
+}
+
+/// `a` is on a line.
 fn line_and_conic(
     a: &Strand<'_>,
     b: &Strand<'_>,
     near: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    let Image::Conic { conic, .. } = &b.image else {
+    let (Some(conic), Some(line)) = (ConicImage::new(&b.image), a.image.line()) else {
         return Overlap::No;
     };
-    let mut both = |t: f64| {
-        let h = at(a, t);
-        b.image.parameters(&h, b.range, &mut |s| found(t, s));
-    };
-    match &a.image {
-        Image::Line {
-            origin, direction, ..
-        } => {
-            let k2 = direction.dot(&(conic * direction));
-            let k1 = 2.0 * origin.dot(&(conic * direction));
-            let k0 = origin.dot(&(conic * origin));
-            // A tangent: its two roots are one, and no crossing. A line along an asymptote touches
-            // at infinity only.
-            let touch = -0.5 * k1 / k2;
-            let [lo, hi] = a.range;
-            let close = touch.lies_in([2.0 * lo - hi, 2.0 * hi - lo]);
-            let tangent = close && on_conic(conic, &(origin + direction * touch), near);
-            if !tangent {
-                quadratic([k0, k1, k2], &mut both);
-            }
-        }
-        Image::Flat { basis, map, .. } => {
-            let form = map.transpose() * conic * map;
-            let touches = |t: f64, _: f64| on_conic(conic, &(map * basis.at(t)), near);
-            conic_parameters(*basis, &form, a.range, &touches, &mut both);
-        }
-        _ => {}
+    for s in conic.crossings_with(line, b.range, near) {
+        let h = at(b, s);
+        a.image.parameters(&h, a.range, &mut |t| found(t, s));
     }
     Overlap::No
 }
 
 fn conics(a: &Strand<'_>, b: &Strand<'_>, near: f64, found: &mut impl FnMut(f64, f64)) -> Overlap {
-    let (Image::Conic { basis, map, .. }, Image::Conic { conic, .. }) = (&a.image, &b.image) else {
+    let (Some(first), Some(second)) = (ConicImage::new(&a.image), ConicImage::new(&b.image)) else {
         return Overlap::No;
     };
     let [lo, hi] = a.range;
+    let touches = |t: f64| second.passes(&(first.map * first.basis.at(t)), near);
     // Five points determine a conic.
-    let same = [0.03, 0.21, 0.47, 0.68, 0.91]
-        .iter()
-        .all(|part| on_conic(conic, &(map * basis.at(lo + (hi - lo) * part)), near));
-    if same {
+    let mut places = [0.03, 0.21, 0.47, 0.68, 0.91].iter();
+    if places.all(|part| touches(lo + (hi - lo) * part)) {
         return Overlap::Yes;
     }
-    let form = map.transpose() * conic * map;
-    let touches = |t: f64, _: f64| on_conic(conic, &(map * basis.at(t)), near);
-    conic_parameters(*basis, &form, a.range, &touches, &mut |t| {
-        let h = map * basis.at(t);
+    let form = second.form_over(first.map);
+    conic_parameters(first.basis, &form, a.range, &|t, _| touches(t), &mut |t| {
+        let h = first.map * first.basis.at(t);
         b.image.parameters(&h, b.range, &mut |s| found(t, s));
     });
     Overlap::No
@@ -256,12 +289,14 @@ fn general(
     let middle = projection.homogeneous(&middle);
     let image = |t: Interval| projection.homogeneous_over(a.curve.jet_over(t));
     let solve = |breaks: &[f64]| match &b.image {
-        Image::Conic { conic, .. } => {
-            let scale = 0.5 / (least_slope(b, conic, projection) * middle.z);
+        Image::Conic { basis, inverse, .. } => {
+            let scale = 0.5 / (least_slope(b, projection) * middle.z);
+            let form = basis.conic();
             let f = |t: Interval| {
                 let h = image(t);
-                let row = |i: usize| dot(&conic.row(i).transpose(), h);
-                (h[0] * row(0) + h[1] * row(1) + h[2] * row(2)).scale(scale)
+                let p = [0, 1, 2].map(|i| dot(&inverse.row(i).transpose(), h));
+                let row = |i: usize| dot(&form.row(i).transpose(), p);
+                (p[0] * row(0) + p[1] * row(1) + p[2] * row(2)).scale(scale)
             };
             isolate(&f, breaks, band)
         }
@@ -300,12 +335,16 @@ fn general(
 /// The least slope of a conic's equation on a strand of it, at some of its points brought to depth
 /// one: by it a value is a distance from the conic, or more. Away from the conic the slope may
 /// vanish.
-fn least_slope(b: &Strand<'_>, conic: &Matrix3<f64>, projection: &Projection) -> f64 {
+fn least_slope(b: &Strand<'_>, projection: &Projection) -> f64 {
+    let Some(conic) = ConicImage::new(&b.image) else {
+        return 1.0;
+    };
     let [lo, hi] = b.range;
     let slopes = (0..=SLOPES).map(|k| {
         let t = lo + (hi - lo) * f64::from(k) / f64::from(SLOPES);
         let point = projection.homogeneous(&b.curve.point(t));
-        let polar = conic * point;
+        let form = conic.basis.conic();
+        let polar = conic.inverse.tr_mul(&(form * (conic.inverse * point)));
         polar.x.hypot(polar.y) / point.z
     });
     slopes.fold(f64::INFINITY, f64::min)
@@ -380,8 +419,8 @@ fn falls_on(a: &Strand<'_>, b: &Strand<'_>, projection: &Projection, near: f64) 
     let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
     (0..PLACES).all(|k| {
         let h = projection.homogeneous(&a.curve.point(at(k)));
-        match (&b.image, b.image.line()) {
-            (Image::Conic { conic, .. }, _) => on_conic(conic, &h, near),
+        match (ConicImage::new(&b.image), b.image.line()) {
+            (Some(conic), _) => conic.passes(&h, near),
             (_, Some(line)) => line.dot(&h).is_within(near * line.x.hypot(line.y)),
             _ => false,
         }

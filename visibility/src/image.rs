@@ -52,7 +52,8 @@ impl Basis {
         }
     }
 
-    fn conic(self) -> Matrix3<f64> {
+    /// B: the form that vanishes on the basis' points.
+    pub fn conic(self) -> Matrix3<f64> {
         match self {
             Self::Circular => Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0)),
             Self::Graph(c) => {
@@ -345,7 +346,7 @@ pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mu
 }
 
 /// The real roots of `k[0] + k[1] t + k[2] t²`.
-pub fn quadratic(k: [f64; 3], found: &mut impl FnMut(f64)) {
+fn quadratic(k: [f64; 3], found: &mut impl FnMut(f64)) {
     let half = 0.5 * k[1];
     let radicand = half * half - k[0] * k[2];
     if radicand.is_below_zero() {

@@ -242,16 +242,23 @@ impl ImageArc<'_> {
         }
     }
 
-    /// Around the nearest sample, by golden sections.
+    /// Over the nearest side of the polyline and those next to it.
     fn nearest_projected(&self, samples: &[Sample], p: &Point2<f64>) -> Nearest {
-        let last = samples.len() - 1;
-        let away = |i: &usize| (samples[*i].point - p).norm();
-        let near = (0..=last).min_by(|i, j| away(i).total_cmp(&away(j)));
+        let sides = samples.len() - 1;
+        let away = |i: &usize| side_distance(p, &samples[*i], &samples[i + 1]);
+        let near = (0..sides).min_by(|i, j| away(i).total_cmp(&away(j)));
         let near = near.unwrap_or(0);
-        let mut lo = samples[near.saturating_sub(1)].t;
-        let mut hi = samples[(near + 1).min(last)].t;
+        let around = near.saturating_sub(1)..(near + 2).min(sides);
+        let found = around.map(|i| self.nearest_between(samples[i].t, samples[i + 1].t, p));
+        let nearest = found.min_by(|a, b| a.distance.total_cmp(&b.distance));
+        nearest.unwrap_or_else(|| self.at(samples[0].t, p))
+    }
+
+    /// The nearest point between two parameters, by golden sections.
+    fn nearest_between(&self, mut lo: f64, mut hi: f64, p: &Point2<f64>) -> Nearest {
         let golden = 0.5 * (5.0f64.sqrt() - 1.0);
         let inner = |lo: f64, hi: f64| [hi - golden * (hi - lo), lo + golden * (hi - lo)];
+        let ends = [lo, hi].map(|t| self.at(t, p));
         let mut tried = inner(lo, hi).map(|t| self.at(t, p));
         for _ in 0..GOLDEN_STEPS {
             match tried[0].distance < tried[1].distance {
@@ -265,10 +272,11 @@ impl ImageArc<'_> {
                 }
             }
         }
-        let known = [samples[near].t, samples[0].t, samples[last].t].map(|t| self.at(t, p));
-        let all = tried.into_iter().chain(known);
-        let nearest = all.min_by(|a, b| a.distance.total_cmp(&b.distance));
-        nearest.unwrap_or(known[0])
+        let all = [ends[0], tried[0], tried[1], ends[1]];
+        let nearest = all
+            .into_iter()
+            .min_by(|a, b| a.distance.total_cmp(&b.distance));
+        nearest.unwrap_or(ends[0])
     }
 
     /// How far a point is from the arc's polyline, or from the arc where it is a segment or elliptic.
@@ -276,16 +284,7 @@ impl ImageArc<'_> {
         let Self::Projected { samples, .. } = self else {
             return self.nearest(p).distance;
         };
-        let steps = samples.windows(2).map(|s| {
-            let d = s[1].point - s[0].point;
-            let square = d.norm_squared();
-            let t = if square > 0.0 {
-                (p - s[0].point).dot(&d) / square
-            } else {
-                0.0
-            };
-            (s[0].point + d * t.clamp(0.0, 1.0) - p).norm()
-        });
+        let steps = samples.windows(2).map(|s| side_distance(p, &s[0], &s[1]));
         steps.fold(f64::INFINITY, f64::min)
     }
 
@@ -328,6 +327,17 @@ impl ImageArc<'_> {
             }
         }
     }
+}
+
+/// How far a point is from the side of a polyline between two samples.
+fn side_distance(p: &Point2<f64>, a: &Sample, b: &Sample) -> f64 {
+    let d = b.point - a.point;
+    let square = d.norm_squared();
+    let t = match square > 0.0 {
+        true => (p - a.point).dot(&d) / square,
+        false => 0.0,
+    };
+    (a.point + d * t.clamp(0.0, 1.0) - p).norm()
 }
 
 /// Each narrows the bracket by 0.618: after so many it is as narrow as doubles tell a minimum.

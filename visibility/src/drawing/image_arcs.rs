@@ -2,6 +2,7 @@
 
 use super::Layer;
 use super::image_arc::{Ellipse, ImageArc, Sample};
+use super::supports::ordered;
 use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
 use crate::image::folds_of_conic;
 use crate::projection::Projection;
@@ -154,14 +155,7 @@ impl<'c> ArcMaker<'c> {
             let range = [from, from + TAU];
             return Some(ImageArc::Elliptic { ellipse, range });
         }
-        let middle = (angle(0.5 * (lo + hi)) - from).rem_euclid(TAU);
-        let sweep = (angle(hi) - from).rem_euclid(TAU);
-        // Run backwards, if the middle is not between the ends.
-        let (from, sweep) = match middle <= sweep {
-            true => (from, sweep),
-            false => (from + sweep, TAU - sweep),
-        };
-        let range = [from, from + sweep];
+        let range = ordered(from, angle(0.5 * (lo + hi)), angle(hi));
         Some(ImageArc::Elliptic { ellipse, range })
     }
 

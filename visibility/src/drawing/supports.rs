@@ -170,8 +170,12 @@ impl Support {
                     range: [lo, hi], ..
                 },
             ) => {
-                let from = ellipse.angle(&arc.point(*lo)).rem_euclid(TAU);
-                let to = from + (hi - lo);
+                let angle = |t: f64| ellipse.angle(&arc.point(t)).rem_euclid(TAU);
+                let [from, to] = match hi - lo >= TAU {
+                    true => [0.0, TAU],
+                    // A short arc of another ellipse may bend the other way.
+                    false => ordered(angle(*lo), angle(0.5 * (lo + hi)), angle(*hi)),
+                };
                 match to <= TAU {
                     true => vec![[from, to]],
                     false => vec![[from, TAU], [0.0, to - TAU]],
@@ -205,5 +209,14 @@ impl Support {
                 all.iter().map(arc).collect()
             }
         }
+    }
+}
+
+/// The interval of an angle, from its start in [0, 2 pi), between two ends and through a middle.
+pub fn ordered(start: f64, middle: f64, end: f64) -> [f64; 2] {
+    let [to_middle, to_end] = [middle, end].map(|angle| (angle - start).rem_euclid(TAU));
+    match to_middle <= to_end {
+        true => [start, start + to_end],
+        false => [end, end + TAU - to_end],
     }
 }

@@ -31,6 +31,9 @@ const ON_PIECES: [f64; 5] = [0.07, 0.23, 0.47, 0.71, 0.94];
 /// Where curves touch they are within the tolerance over a stretch of this many times the root of the
 /// tolerance and the size: they part by the square of the way.
 const TOUCHING: f64 = 4.0;
+/// Lines that fall on one another do so by much less than the drawing's tolerance, of which this is a
+/// part: lines that are nearly so are two where their ends are farther apart than that.
+const TOGETHER: f64 = 1.0 / 64.0;
 /// How many strokes are looked at, at the most.
 const MOST: usize = 600;
 /// How far polylines may be off their curves here, as a part of the drawing's size.
@@ -75,8 +78,8 @@ pub struct SheetReport {
 struct Scale {
     /// How far what is written may be off.
     tolerance: f64,
-    /// How far lines are apart that are two.
-    apart: f64,
+    /// How far lines are apart that are certainly two; none where too few digits are written to tell.
+    apart: Option<f64>,
     /// The drawing's size.
     size: f64,
 }
@@ -129,9 +132,9 @@ impl SheetReport {
             at: sheet.views[0].at,
             factor: sheet.factor,
         };
-        let scale = Scale {
+        let mut scale = Scale {
             tolerance: drawing.tolerance + drawing.distance + DIGITS / sheet.factor,
-            apart: drawing.tolerance,
+            apart: None,
             size,
         };
         let texts = [
@@ -143,6 +146,7 @@ impl SheetReport {
                 Ok(strokes) => {
                     self.lengths(drawing, &strokes, format, scale.tolerance);
                     self.strokes(seen, bounds, &strokes, &scale);
+                    scale.apart = Some(drawing.tolerance * TOGETHER);
                 }
                 Err(text) => self
                     .faults
@@ -213,9 +217,9 @@ impl SheetReport {
                     false => self.faults.push(SheetFault::Stray(*p)),
                 }
             }
-            // Lines that are farther apart than the drawing's tolerance are two.
+            let Some(apart) = apart else { continue };
             let others = |p: &Point2<f64>| -> Vec<usize> {
-                let passing = strokes.passing(p, 0.5 * apart).map(|(j, _)| j);
+                let passing = strokes.passing(p, apart).map(|(j, _)| j);
                 passing.filter(|&j| j != i).collect()
             };
             let passing = places.each_ref().map(others);
@@ -272,7 +276,7 @@ fn corners(shape: &Shape) -> usize {
     match shape {
         Shape::Path(points) => points.len(),
         Shape::Line(_) => 2,
-        // Centre, half axes and ends, and twice as the length is about a sum of these.
+        // Centre, half axes and ends, twice over: the length is about a sum of these.
         Shape::Ellipse { .. } => 8,
     }
 }

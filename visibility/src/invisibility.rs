@@ -3,9 +3,10 @@
 
 use crate::contour::Piece;
 use crate::correction::{Corrections, End};
+use crate::image::Image;
 use crate::sight::{Count, Own, Scene};
 use crate::strand::{Change, Junctions, Passing, Split, Strand};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::sign::{ROUNDING, Sign};
@@ -61,7 +62,27 @@ fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
             Own::Through
         }
     };
+    if matches!(strand.image, Image::Point) {
+        return scene.count_end_on(p, &inward(scene, strand, p, &v), &own);
+    }
     scene.count(p, &strand.curve.tangent(t), &own)
+}
+
+/// The directions across the line of sight that halve the material around an edge, which lies between
+/// each two of its faces.
+fn inward(
+    scene: &Scene<'_>,
+    strand: &Strand<'_>,
+    p: &Point3<f64>,
+    v: &Vector3<f64>,
+) -> Vec<Vector3<f64>> {
+    let halved = strand.faces.chunks(2).map(|pair| {
+        let normals = pair.iter().map(|&(face, _)| scene.brep.outward(face, p));
+        let inward = -normals.sum::<Vector3<f64>>();
+        inward - v * inward.dot(v)
+    });
+    let directions = halved.map(|d| d / d.norm());
+    directions.filter(|d| d.norm().is_beyond(0.5)).collect()
 }
 
 /// A part of a strand between two junctions.

@@ -403,8 +403,32 @@ impl<'a> Scene<'a> {
         own: &impl Fn(FaceId) -> Own,
     ) -> Count {
         let ray = self.ray(p);
+        self.count_beside(&ray, &sides(&ray.towards, along), own)
+    }
+
+    /// The same for a point of an edge that is seen end-on, so that it has no two sides: as hidden as
+    /// it is on the side where it is hidden most. `inward` are directions into the material next to it,
+    /// where it lies behind the face in which it ends towards the eye, however sharp it is.
+    pub fn count_end_on(
+        &self,
+        p: &Point3<f64>,
+        inward: &[Vector3<f64>],
+        own: &impl Fn(FaceId) -> Own,
+    ) -> Count {
+        let ray = self.ray(p);
+        let mut around = sides(&ray.towards, &ray.towards);
+        around.extend(inward);
+        self.count_beside(&ray, &around, own)
+    }
+
+    fn count_beside(
+        &self,
+        ray: &Ray,
+        sides: &[Vector3<f64>],
+        own: &impl Fn(FaceId) -> Own,
+    ) -> Count {
         let (mut fronts, mut unclear): (Vec<Hit>, Vec<Hit>) = (Vec::new(), Vec::new());
-        self.hits(&ray, Asked::Hiding, own, &mut |hit| {
+        self.hits(ray, Asked::Hiding, own, &mut |hit| {
             if !hit.plain {
                 unclear.push(hit);
             } else if hit.front {
@@ -420,9 +444,9 @@ impl<'a> Scene<'a> {
             };
         }
         let mut most: Vec<Layer> = Vec::new();
-        for side in sides(&ray.towards, along) {
-            let mut covered = self.layers_beside(&ray, &unclear, own, &side);
-            covered.extend(self.kept_beside(&ray, &fronts, own, &side));
+        for side in sides {
+            let mut covered = self.layers_beside(ray, &unclear, own, side);
+            covered.extend(self.kept_beside(ray, &fronts, own, side));
             if covered.len() > most.len() {
                 most = covered;
             }

@@ -47,6 +47,12 @@ def count(shape, kind):
     return number
 
 
+def quiet():
+    """Lets the reader tell of failures only."""
+    for printer in Message.DefaultMessenger_s().Printers():
+        printer.SetTraceLevel(Message_Gravity.Message_Fail)
+
+
 def shape_in(path):
     reader = STEPControl_Reader()
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
@@ -86,8 +92,7 @@ def faults(premio, description, folder):
 
 
 def main():
-    for printer in Message.DefaultMessenger_s().Printers():
-        printer.SetTraceLevel(Message_Gravity.Message_Fail)
+    quiet()
     premio = sys.argv[1]
     read = left = wrong = 0
     with tempfile.TemporaryDirectory() as folder:

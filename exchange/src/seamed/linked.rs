@@ -91,10 +91,11 @@ impl<'a> Linking<'a, '_> {
         for (pair, &[coedge, _]) in self.pairs.edges.iter().enumerate() {
             let source = self.brep.topology.coedge(coedge).edge;
             let (curve, [lo, hi]) = (self.brep.curve(source), self.brep.range(source));
-            let mut joints = std::mem::take(&mut self.joints[pair]);
-            joints.sort_by(f64::total_cmp);
-            // Seams of two faces may meet it in one place.
-            joints.dedup_by(|b, a| *b - *a <= SAME * (hi - lo));
+            let joints = std::mem::take(&mut self.joints[pair]);
+            let joints = match self.pairs.ends[pair] {
+                Some(_) => distinct(joints, hi - lo),
+                None => distinct_around(joints, [lo, hi]),
+            };
             let mut at: Vec<f64> = joints.clone();
             let mut vertices: Vec<usize> = joints
                 .iter()
@@ -144,13 +145,21 @@ impl<'a> Linking<'a, '_> {
     /// The halves of a coedge that end and that start where a seam meets it, and the vertex there.
     fn around(&self, coedge: CoedgeId, t: f64) -> ([Half; 2], usize) {
         let pair = self.pairs.edge_of[&coedge];
-        let away = |x: &f64| (x - t).abs();
+        let [lo, hi] = self.brep.range(self.brep.topology.coedge(coedge).edge);
+        let is_open = self.pairs.ends[pair].is_some();
+        let away = |x: &f64| match is_open {
+            true => (x - t).abs(),
+            // The other way round may be shorter.
+            false => {
+                let once = (x - t).rem_euclid(hi - lo);
+                once.min(hi - lo - once)
+            }
+        };
         let joints = self.joints[pair].iter().enumerate();
         let nearest = joints.min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
         let joint = nearest.map_or(0, |(k, _)| k);
         let parts = self.parts[pair].clone();
         let count = parts.len();
-        let is_open = self.pairs.ends[pair].is_some();
         let after = if is_open { joint + 1 } else { joint };
         let [before, after] = [(after + count - 1) % count, after].map(|k| parts.start + k);
         let vertex = self.seamed.edges[after].ends[0];
@@ -268,6 +277,28 @@ impl<'a> Linking<'a, '_> {
             next.extend(turns);
         }
     }
+}
+
+/// Joints in order, those in one place once: seams of two faces may meet an edge in the same place.
+fn distinct(mut joints: Vec<f64>, length: f64) -> Vec<f64> {
+    joints.sort_by(f64::total_cmp);
+    joints.dedup_by(|b, a| *b - *a <= SAME * length);
+    joints
+}
+
+/// The same for a closed edge, on which the last joint is next to the first: where the range starts
+/// is where it ends.
+fn distinct_around(joints: Vec<f64>, [lo, hi]: [f64; 2]) -> Vec<f64> {
+    let length = hi - lo;
+    let around = joints.into_iter().map(|t| lo + (t - lo).rem_euclid(length));
+    let mut joints = distinct(around.collect(), length);
+    if let (Some(first), Some(last)) = (joints.first(), joints.last())
+        && joints.len() > 1
+        && first + length - last <= SAME * length
+    {
+        joints.pop();
+    }
+    joints
 }
 
 fn seam_edge<'a>(seam: &Seam, ends: [usize; 2]) -> Edge<'a> {

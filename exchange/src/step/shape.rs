@@ -10,6 +10,7 @@ use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Surface};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Writes the shape of a part.
 pub(super) struct Shape<'s, 'e> {
@@ -205,6 +206,7 @@ impl<'s, 'e> Shape<'s, 'e> {
     }
 
     fn curve(&mut self, index: usize, edge: &Edge<'_>) -> Result<Id, StepError> {
+        let edge = &started_far_from_zero(edge);
         let id = match &*edge.curve {
             Curve::Line(c) => {
                 let origin = self.point(&c.origin);
@@ -249,16 +251,10 @@ impl<'s, 'e> Shape<'s, 'e> {
     /// The splines that follow an edge, in space and on some of the faces beside it.
     fn course(&self, edge: &Edge<'_>, sides: &[usize], pace: Pace) -> Result<Course, StepError> {
         let windows: Vec<Window> = sides.iter().map(|&f| self.seamed.faces[f].window).collect();
-        let [lo, hi] = edge.range;
-        // Where a period starts is nobody's concern but of those who count from it.
-        let start = match (pace, edge.curve.period()) {
-            (Pace::Parameter, Some(period)) => lo.rem_euclid(period),
-            _ => lo,
-        };
         let follow = Follow {
             pace,
             curve: &edge.curve,
-            range: [start, start + (hi - lo)],
+            range: edge.range,
             windows: &windows,
             accuracy: self.accuracy,
         };
@@ -313,6 +309,27 @@ impl<'s, 'e> Shape<'s, 'e> {
             Reals(&spline.knots)
         ))
     }
+}
+
+/// The same edge; on a circle or an ellipse, with the parameter at its start in the half of the
+/// period about its middle. Readers find the parameters of an edge's ends from its vertices, and
+/// rounding makes a whole period of zero.
+fn started_far_from_zero<'a>(edge: &Edge<'a>) -> Edge<'a> {
+    let mut edge = edge.clone();
+    let frame = match edge.curve.to_mut() {
+        Curve::Circle(c) => &mut c.frame,
+        Curve::Ellipse(c) => &mut c.frame,
+        _ => return edge,
+    };
+    let [lo, hi] = edge.range;
+    let mut start = lo.rem_euclid(TAU);
+    if (start - PI).abs() > FRAC_PI_2 {
+        frame.x = -frame.x;
+        frame.y = -frame.y;
+        start = (start + PI).rem_euclid(TAU);
+    }
+    edge.range = [start, start + (hi - lo)];
+    edge
 }
 
 fn half_angle(cone: &Cone) -> f64 {

@@ -367,6 +367,9 @@ pub struct FuzzOptions {
     /// Count the pieces of five views again, and look for missing contours
     #[arg(long)]
     pub views: bool,
+    /// Write STEP files and meshes, read them back and hold them against the boundary
+    #[arg(long)]
+    pub step: bool,
     /// After how many seconds a tree is given up
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "120")]
     pub limit: f64,

@@ -18,6 +18,12 @@ use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::tessellation::{Accuracy, TessellationError, tessellate};
 
+/// Triangles are within this part of the part's size of the boundary, where nothing is said.
+pub const DEVIATION: f64 = 1.0 / 2000.0;
+
+/// How many degrees normals turn along a triangle's side, where nothing is said.
+pub const ANGLE: f64 = 15.0;
+
 /// A triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {

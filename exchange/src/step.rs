@@ -55,6 +55,9 @@ pub enum StepError {
     Spline(#[from] SplineError),
 }
 
+/// Splines are within this part of the part's size of the curves they follow, where nothing is said.
+pub const ACCURACY: f64 = 1.0 / 1_000_000.0;
+
 /// Splines are this many times nearer to their curves than is asked for: what their distance makes of
 /// a volume goes with the area beside it, which of a slender part is much.
 const NEARER: f64 = 64.0;

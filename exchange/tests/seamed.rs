@@ -1,6 +1,7 @@
 //! What seams make of a boundary, on parts of every kind.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+use nalgebra::Vector3;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_exchange::seamed::{SeamError, Seamed};
@@ -103,6 +104,13 @@ fn is_sound(name: &str, seamed: &Seamed<'_>) {
         assert!(both, "{name}: edge {edge} is run {senses:?}");
     }
     for (k, edge) in seamed.edges.iter().enumerate() {
+        let [from, to] = edge.range.map(|t| edge.curve.point(t));
+        let middle = edge.curve.point(0.5 * (edge.range[0] + edge.range[1]));
+        let length = (middle - from).norm() + (to - middle).norm();
+        assert!(length > 1e-9, "{name}: edge {k} is {length:e} long");
+        if edge.ends[0] != edge.ends[1] {
+            assert!((to - from).norm() > 1e-9, "{name}: edge {k} closes");
+        }
         for (end, t) in edge.ends.iter().zip(edge.range) {
             let off = (seamed.points[*end] - edge.curve.point(t)).norm();
             assert!(off < 1e-9, "{name}: edge {k} ends {off:e} off");
@@ -118,6 +126,29 @@ fn seams_are_as_few_as_can_be() {
         is_sound(name, &seamed);
         let found = [seamed.faces.len(), seamed.edges.len(), vertices(&seamed)];
         assert_eq!(found, *expected, "{name}");
+    }
+}
+
+/// Seams of two faces meet the edge between them in one place, which may be where its range starts
+/// and ends: rounding puts them on both sides of that, and no edge of no length may come of it.
+#[test]
+fn seams_that_meet_where_a_closed_edge_starts_leave_no_short_edge() {
+    let solids = [
+        "(CYL(R=10, H=30) UN CON(R=10, R2=8, H=2) AT (MOVZ=30))",
+        "(CYL(R=12, H=10) UN CYL(R=8, H=20) AT (MOVZ=10) UN CYL(R=5, H=9) AT (MOVZ=30))",
+        "(CYL(R=9, H=20) DIF CYL(R=6, H=30) AT (MOVZ=-5) DIF CON(R=8, R2=6, H=2))",
+        "(CYL(R=6, H=40) UN SPH(R=6) AT (MOVZ=40))",
+        "(CYL(R=9, H=20) DIF TOR(RMAJ=9, RMIN=2) AT (MOVZ=10))",
+    ];
+    for solid in solids {
+        for degrees in 1..40 {
+            for turn in ["ROTX", "ROTY"] {
+                let name = format!("A = {solid} AT ({turn}={degrees})");
+                let known = part(&name);
+                let seamed = Seamed::of(&known.brep, known.resolution).unwrap();
+                is_sound(&name, &seamed);
+            }
+        }
     }
 }
 
@@ -168,6 +199,57 @@ fn a_seam_has_no_splines() {
         !file.contains("B_SPLINE") && !file.contains("PCURVE"),
         "{file}"
     );
+}
+
+/// The parameter of a circle at a vertex is what a reader finds it to be: where an arc starts at zero,
+/// that may be a whole turn.
+#[test]
+fn arcs_start_far_from_where_their_parameter_does() {
+    let known = part(
+        "A = (BLO(X=44, Y=53, Z=10) AT (MOVY=6) UN BLO(X=32, Y=65, Z=10) AT (MOVX=6)
+            UN CYL(R=6, H=10) AT (MOVX=6, MOVY=6) UN CYL(R=6, H=10) AT (MOVX=38, MOVY=6)
+            UN CYL(R=6, H=10) AT (MOVX=6, MOVY=59) UN CYL(R=6, H=10) AT (MOVX=38, MOVY=59)
+        ) AT (ROTZ=268.2, ROTX=278.9, ROTY=180)",
+    );
+    let options = step::Options {
+        name: "plate".to_owned(),
+        protocol: step::Protocol::Ap214,
+        unit: Unit::Millimetre,
+        accuracy: 1e-6,
+        resolution: known.resolution,
+    };
+    let file = step::write(&known.brep, &options).unwrap();
+    let instance = |id: &str| {
+        let line = file.lines().find(|l| l.starts_with(&format!("{id}=")));
+        line.unwrap().to_owned()
+    };
+    let ids = |line: &str| -> Vec<String> {
+        let parts = line.split(['(', ',', ')', ';']);
+        parts
+            .filter(|p| p.starts_with('#') && !p.contains('='))
+            .map(str::to_owned)
+            .collect()
+    };
+    let numbers = |line: &str| -> Vector3<f64> {
+        let numbers = line
+            .split(['(', ',', ')'])
+            .filter_map(|x| x.parse::<f64>().ok());
+        Vector3::from_iterator(numbers)
+    };
+    let mut arcs = 0;
+    for line in file.lines().filter(|l| l.contains("=EDGE_CURVE(")) {
+        let of = ids(line);
+        let curve = instance(&of[2]);
+        if !curve.contains("=CIRCLE(") {
+            continue;
+        }
+        let start = numbers(&instance(&ids(&instance(&of[0]))[0]));
+        let place = ids(&instance(&ids(&curve)[0]));
+        let [centre, x] = [0, 2].map(|k| numbers(&instance(&place[k])));
+        assert!((start - centre).normalize().dot(&x) < 0.5, "{line}");
+        arcs += 1;
+    }
+    assert_eq!(arcs, 8);
 }
 
 #[test]

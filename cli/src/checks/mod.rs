@@ -2,11 +2,13 @@
 //! ask directly.
 
 mod images;
+mod mesh;
 mod outlines;
 mod recount;
 mod shadow;
 mod sheets;
 mod strokes;
+mod step;
 pub mod views;
 mod window;
 
@@ -51,6 +53,10 @@ pub enum Subject {
     Outline(String),
     /// The sheet of a view, written and read back, against its contours.
     Sheet(String),
+    /// The STEP file of the boundary, read back.
+    Step,
+    /// The files of its mesh, read back.
+    Mesh,
 }
 
 /// What a check finds.
@@ -135,9 +141,10 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Every check there is: the boundary's rules, the volume by `rays` rays, and the views.
+    /// Every check there is: the boundary's rules, the volume by `rays` rays, the files, and the views.
     pub fn all(&self, rays: usize) -> Report {
         let mut report = self.solid(rays);
+        report.checks.extend([self.step(), self.mesh()]);
         let around = views::around(&self.evaluation.bounds);
         report.checks.extend(
             around
@@ -320,6 +327,8 @@ impl fmt::Display for Subject {
             Self::Contours(name) => write!(f, "contours in {name}"),
             Self::Outline(name) => write!(f, "outline in {name}"),
             Self::Sheet(name) => write!(f, "sheet of {name}"),
+            Self::Step => f.write_str("step"),
+            Self::Mesh => f.write_str("mesh"),
         }
     }
 }

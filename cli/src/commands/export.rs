@@ -5,7 +5,7 @@ use crate::diagnostics::{Failure, Voice, counted};
 use crate::input::Part;
 use crate::{input, output};
 use premio_csg::model::Model;
-use premio_exchange::mesh::{Facets, MeshError, glb, obj, stl, threemf};
+use premio_exchange::mesh::{self, Facets, MeshError, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
 use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
@@ -55,9 +55,6 @@ fn refuse_what_is_not_asked(options: &ExportOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Splines are within this part of the part's size of the curves they follow.
-const ACCURACY: f64 = 1.0 / 1_000_000.0;
-
 fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
     let evaluation = &part.evaluation;
     let size = evaluation.tight_bounds().diagonal();
@@ -68,24 +65,18 @@ fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
             Some(StepProtocol::Ap214) => Protocol::Ap214,
         },
         unit: unit(options),
-        accuracy: options.accuracy.unwrap_or(ACCURACY * size),
+        accuracy: options.accuracy.unwrap_or(step::ACCURACY * size),
         resolution: evaluation.resolution_of_doubles(),
     };
     step::write(&evaluation.brep, &how).map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
 }
 
-/// Triangles are within this part of the part's size of the boundary.
-const DEVIATION: f64 = 1.0 / 2000.0;
-
-/// How many degrees normals turn along a triangle's side.
-const ANGLE: f64 = 15.0;
-
 fn as_triangles(part: &Part, options: &ExportOptions) -> Result<Vec<u8>, MeshError> {
     let evaluation = &part.evaluation;
     let size = evaluation.tight_bounds().diagonal();
     let accuracy = Accuracy {
-        deviation: options.deviation.unwrap_or(DEVIATION * size),
-        angle: options.angle.unwrap_or(ANGLE).to_radians(),
+        deviation: options.deviation.unwrap_or(mesh::DEVIATION * size),
+        angle: options.angle.unwrap_or(mesh::ANGLE).to_radians(),
     };
     let band = evaluation.resolution_of_doubles();
     let facets = Facets::of(&evaluation.brep, &accuracy, band)?;

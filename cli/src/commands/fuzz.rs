@@ -112,6 +112,7 @@ fn plan(options: &FuzzOptions) -> Result<Plan, Failure> {
             strict: options.strict,
             views: options.views,
             sheets: options.sheets,
+            step: options.step,
             unfiltered: options.unfiltered,
             rays: options.rays,
         },

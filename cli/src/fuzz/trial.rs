@@ -35,6 +35,9 @@ pub struct Terms {
     /// Whether sheets of views are read back.
     #[serde(default)]
     pub sheets: bool,
+    /// Whether STEP files and meshes are written and read back.
+    #[serde(default)]
+    pub step: bool,
     /// Whether the tree is evaluated once more with no decision made in doubles.
     #[serde(default)]
     pub unfiltered: bool,
@@ -64,6 +67,10 @@ pub enum Wrong {
     Outline,
     /// A sheet, read back, is not what the contours are.
     Sheet,
+    /// The STEP file breaks a rule.
+    Step,
+    /// A mesh breaks a rule.
+    Mesh,
     /// The evaluation, or a check, panicked.
     Panic,
     /// The process ended without an answer: its stack or its memory ran over, or it was aborted.
@@ -87,6 +94,8 @@ impl Wrong {
             Self::Contours => "contours",
             Self::Outline => "outline",
             Self::Sheet => "sheet",
+            Self::Step => "step",
+            Self::Mesh => "mesh",
             Self::Panic => "panic",
             Self::Crash => "crash",
             Self::Time => "time",
@@ -220,6 +229,9 @@ pub fn examine(model: &Model, terms: &Terms) -> Outcome {
             }
         }
     }
+    if terms.step && report.holds() {
+        report.checks.extend([checker.step(), checker.mesh()]);
+    }
     let mut faults = faults(&report);
     faults.extend(sums(model, &evaluation, terms));
     if terms.unfiltered {
@@ -262,6 +274,8 @@ fn faults(report: &Report) -> Vec<Fault> {
             Subject::Contours(_) => Wrong::Contours,
             Subject::Outline(_) => Wrong::Outline,
             Subject::Sheet(_) => Wrong::Sheet,
+            Subject::Step => Wrong::Step,
+            Subject::Mesh => Wrong::Mesh,
         };
         let text = text(check);
         Fault { kind, text }
@@ -387,6 +401,7 @@ mod tests {
         resolution: None,
         strict: false,
         views: false,
+        step: false,
         unfiltered: false,
         rays: 2000,
     };

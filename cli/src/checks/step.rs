@@ -1,0 +1,213 @@
+//! The STEP file of a part, read back by a reader of our own and held against rules that need no
+//! other kernel: edges are longer than the resolution and lie on their surfaces within what is
+//! stated, loops close in space and in the parameters of the surface, every edge is used twice with
+//! opposite senses, and the volume by the file's own curves and surfaces is the boundary's.
+
+mod curve;
+mod part21;
+mod rules;
+mod shape;
+mod surface;
+
+use super::{Check, Checker, Finding, Subject};
+use premio_exchange::step::{self, Options, Protocol};
+use premio_kernel::unit::Unit;
+use rules::{Known, Measured};
+use shape::Shape;
+
+/// So many broken rules are told.
+const TOLD: usize = 3;
+
+impl Checker<'_> {
+    /// Writes the STEP file, reads it back and holds it against the rules.
+    pub fn step(&self) -> Check {
+        let subject = Subject::Step;
+        let told = |finding, detail| Check {
+            subject,
+            finding,
+            detail,
+        };
+        let evaluation = self.evaluation;
+        if evaluation.brep.topology.solids.is_empty() {
+            return told(Finding::Holds, "nothing to write".to_owned());
+        }
+        let options = Options {
+            name: "part".to_owned(),
+            protocol: Protocol::default(),
+            unit: Unit::default(),
+            accuracy: step::ACCURACY * self.told.diagonal(),
+            resolution: evaluation.resolution_of_doubles(),
+        };
+        let text = match step::write(&evaluation.brep, &options) {
+            Ok(text) => text,
+            Err(error) => return told(Finding::Holds, format!("refused: {error}")),
+        };
+        let shape = part21::read(&text).and_then(|instances| Shape::of(&instances));
+        let shape = match shape {
+            Ok(shape) => shape,
+            Err(error) => return told(Finding::Fails, error.to_string()),
+        };
+        let mass = evaluation.mass();
+        let measured = rules::measure(
+            &shape,
+            &Known {
+                resolution: options.resolution,
+                accuracy: options.accuracy,
+                size: self.told.diagonal(),
+                middle: self.told.centre(),
+                volume: mass.volume,
+                area: mass.area,
+            },
+        );
+        let of_solids = (shape.solids.len(), evaluation.brep.topology.solids.len());
+        told_of(&measured, of_solids, mass.volume)
+    }
+}
+
+fn told_of(measured: &Measured, (solids, known): (usize, usize), volume: f64) -> Check {
+    let mut wrong: Vec<String> = measured.broken.iter().map(ToString::to_string).collect();
+    if solids != known {
+        wrong.insert(0, format!("{solids} solids, not {known}"));
+    }
+    let more = wrong.len().saturating_sub(TOLD);
+    wrong.truncate(TOLD);
+    if more > 0 {
+        wrong.push(format!("{more} more"));
+    }
+    let Measured {
+        edges, faces, off, ..
+    } = measured;
+    let figures = format!("{faces} faces, {edges} edges, curves within {off:.1e} of surfaces");
+    let (finding, detail) = match (wrong.is_empty(), measured.volume) {
+        (true, Some(_)) => (Finding::Holds, format!("{figures}, the volume is {volume}")),
+        (true, None) => (
+            Finding::Holds,
+            format!("{figures}; an edge through a pole leaves the volume untold"),
+        ),
+        (false, _) => (Finding::Fails, wrong.join("; ")),
+    };
+    Check {
+        subject: Subject::Step,
+        finding,
+        detail,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+    use premio_csg::boundary::{EvaluationOptions, evaluate};
+    use premio_csg::reader::{Format, Options as Reading, read};
+    use rules::Rule;
+
+    const ACCURACY: f64 = 1e-4;
+
+    /// The text of a part's STEP file, and what is known of the part.
+    fn written(text: &str) -> (String, Known) {
+        let part = read("part", text.as_bytes(), Format::Padl, &Reading::default()).unwrap();
+        let evaluation = evaluate(&part.tree, &EvaluationOptions::default()).unwrap();
+        let options = Options {
+            name: "part".to_owned(),
+            protocol: Protocol::default(),
+            unit: Unit::default(),
+            accuracy: ACCURACY,
+            resolution: evaluation.resolution,
+        };
+        let mass = evaluation.mass();
+        let known = Known {
+            resolution: evaluation.resolution,
+            accuracy: ACCURACY,
+            size: evaluation.bounds.diagonal(),
+            middle: Point3::new(1.0, 2.0, 3.0),
+            volume: mass.volume,
+            area: mass.area,
+        };
+        (step::write(&evaluation.brep, &options).unwrap(), known)
+    }
+
+    fn measured(text: &str, known: &Known) -> Measured {
+        let shape = Shape::of(&part21::read(text).unwrap()).unwrap();
+        rules::measure(&shape, known)
+    }
+
+    const PARTS: [&str; 10] = [
+        "A = BLO(X=3, Y=4, Z=5)",
+        "A = SPH(R=2) AT (ROTX=17, MOVX=9)",
+        "A = TOR(RMAJ=3, RMIN=1) AT (ROTX=17, MOVZ=-4)",
+        "A = CON(R=3, H=4) AT (ROTY=40)",
+        "A = (SPH(R=3) INT BLO(X=5, Y=5, Z=5)) AT (ROTY=40)",
+        "A = (CON(R=3, H=4) INT BLO(X=5, Y=5, Z=5)) AT (ROTX=40)",
+        "A = (TOR(RMAJ=3, RMIN=1) INT BLO(X=5, Y=5, Z=5)) AT (ROTX=40)",
+        "A = (SPH(R=4) DIF SPH(R=3) DIF CYL(R=1, H=9)) AT (ROTX=40)",
+        "A = BLO(X=9, Y=9, Z=9) DIF SPH(R=2) AT (MOVX=4, MOVY=4, MOVZ=4)",
+        "A = (CYL(R=2, H=9) UN CYL(R=1, H=9) AT (ROTX=80, MOVZ=4)) AT (ROTX=40)",
+    ];
+
+    /// The volume by the file's own curves is that of the boundary, whatever the surfaces.
+    #[test]
+    fn files_keep_all_rules() {
+        for text in PARTS {
+            let (file, known) = written(text);
+            let measured = measured(&file, &known);
+            assert_eq!(measured.broken, [], "{text}");
+            let off = (measured.volume.unwrap() - known.volume).abs();
+            // Splines are nearer than they have to be.
+            assert!(off < 1e-3 * ACCURACY * known.area, "{text}: {off:e}");
+        }
+    }
+
+    #[test]
+    fn a_radius_that_is_another_is_found() {
+        let (file, known) = written("A = CYL(R=2, H=5)");
+        let line = file.lines().find(|l| l.contains("=CYLINDRICAL_SURFACE"));
+        let line = line.unwrap();
+        let wide = file.replace(line, &line.replace(",2.)", ",2.01)"));
+        let broken = measured(&wide, &known).broken;
+        let off = |b: &rules::Broken| matches!(b.rule, Rule::EdgeOnSurface(off) if (off - 0.01).abs() < 1e-9);
+        assert!(broken.iter().any(off), "{broken:?}");
+        assert!(broken.iter().any(|b| matches!(b.rule, Rule::Volume(_))));
+    }
+
+    #[test]
+    fn an_edge_that_is_turned_is_found() {
+        let (file, known) = written("A = BLO(X=3, Y=4, Z=5)");
+        let line = file.lines().find(|l| l.contains("=ORIENTED_EDGE")).unwrap();
+        let turned = match line.contains(".T.") {
+            true => line.replace(".T.", ".F."),
+            false => line.replace(".F.", ".T."),
+        };
+        let broken = measured(&file.replace(line, &turned), &known).broken;
+        assert!(broken.iter().any(|b| b.rule == Rule::Chain), "{broken:?}");
+        let uses = |b: &rules::Broken| matches!(b.rule, Rule::TwoUses(2, 2 | -2));
+        assert!(broken.iter().any(uses), "{broken:?}");
+    }
+
+    #[test]
+    fn a_shell_inside_out_is_found() {
+        let (file, known) = written("A = SPH(R=2)");
+        let other = match file.contains(",.T.);\n") {
+            true => file.replace("=ADVANCED_FACE('',(", "=ADVANCED_FACE('turned',("),
+            false => file.clone(),
+        };
+        let line = other
+            .lines()
+            .find(|l| l.contains("=ADVANCED_FACE"))
+            .unwrap();
+        let turned = other.replace(line, &line.replace(".T.", ".F."));
+        let broken = measured(&turned, &known).broken;
+        let inside_out = |b: &rules::Broken| matches!(b.rule, Rule::Orientation(v) if v < 0.0);
+        assert!(broken.iter().any(inside_out), "{broken:?}");
+    }
+
+    #[test]
+    fn what_is_no_file_is_told_with_its_line() {
+        let (file, _) = written("A = SPH(R=2)");
+        let error = part21::read(&file.replacen("=(", "=", 1)).unwrap_err();
+        assert!(
+            matches!(error, part21::ReadError::Grammar { .. }),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,169 @@
+//! Curves as a STEP file has them, with the parameters that a reader finds.
+
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::TAU;
+
+/// A right-handed frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    pub origin: Point3<f64>,
+    pub x: Vector3<f64>,
+    pub y: Vector3<f64>,
+    pub z: Vector3<f64>,
+}
+
+impl Placement {
+    /// The coordinates of a point.
+    pub fn local(&self, p: &Point3<f64>) -> Vector3<f64> {
+        self.turned(&(p - self.origin))
+    }
+
+    /// The coordinates of a direction.
+    pub fn turned(&self, d: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(d.dot(&self.x), d.dot(&self.y), d.dot(&self.z))
+    }
+}
+
+/// A B-spline of any degree.
+#[derive(Clone, Debug)]
+pub struct Spline<const D: usize> {
+    pub degree: usize,
+    /// Every knot as often as it counts.
+    pub knots: Vec<f64>,
+    pub points: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Spline<D> {
+    /// Whether there are as many knots as degree and control points ask for, in order.
+    pub fn is_sound(&self) -> bool {
+        self.degree > 0
+            && self.points.len() > self.degree
+            && self.knots.len() == self.points.len() + self.degree + 1
+            && self.knots.is_sorted()
+            && self.range()[0] < self.range()[1]
+    }
+
+    pub fn range(&self) -> [f64; 2] {
+        [self.knots[self.degree], self.knots[self.points.len()]]
+    }
+
+    /// The point and the derivative, by de Boor's algorithm.
+    pub fn at(&self, t: f64) -> [[f64; D]; 2] {
+        let n = self.degree;
+        let last = self.points.len() - 1;
+        let span = self.knots[n + 1..=last].partition_point(|k| *k <= t) + n;
+        let mut d: Vec<[f64; D]> = self.points[span - n..=span].to_vec();
+        let mut slope = [0.0; D];
+        for r in 1..=n {
+            if r == n {
+                let width = self.knots[span + 1] - self.knots[span];
+                slope = std::array::from_fn(|i| n as f64 * (d[n][i] - d[n - 1][i]) / width);
+            }
+            for j in (r..=n).rev() {
+                let (a, b) = (self.knots[j + span - n], self.knots[j + 1 + span - r]);
+                let part = (t - a) / (b - a);
+                d[j] = std::array::from_fn(|i| (1.0 - part) * d[j - 1][i] + part * d[j][i]);
+            }
+        }
+        [d[n], slope]
+    }
+}
+
+/// A curve in space.
+#[derive(Clone, Debug)]
+pub enum Curve {
+    Line {
+        origin: Point3<f64>,
+        direction: Vector3<f64>,
+    },
+    /// A circle or an ellipse with its semi-axes.
+    Ellipse {
+        place: Placement,
+        a: f64,
+        b: f64,
+    },
+    Hyperbola {
+        place: Placement,
+        a: f64,
+        b: f64,
+    },
+    Parabola {
+        place: Placement,
+        focal: f64,
+    },
+    Spline(Spline<3>),
+}
+
+impl Curve {
+    /// Whether the parameter has the period of a turn.
+    pub fn is_periodic(&self) -> bool {
+        matches!(self, Self::Ellipse { .. })
+    }
+
+    /// The parameter that a reader gives to a point of the curve; of a spline it is an end's.
+    pub fn parameter(&self, p: &Point3<f64>, is_start: bool) -> f64 {
+        match self {
+            Self::Line { origin, direction } => {
+                (p - origin).dot(direction) / direction.norm_squared()
+            }
+            Self::Ellipse { place, a, b } => {
+                let q = place.local(p);
+                let t = (q.y / b).atan2(q.x / a);
+                if t < 0.0 { t + TAU } else { t }
+            }
+            Self::Hyperbola { place, b, .. } => (place.local(p).y / b).asinh(),
+            Self::Parabola { place, focal } => place.local(p).y / (2.0 * focal),
+            Self::Spline(spline) => spline.range()[usize::from(!is_start)],
+        }
+    }
+
+    /// The point and the derivative.
+    pub fn at(&self, t: f64) -> (Point3<f64>, Vector3<f64>) {
+        let on = |place: &Placement, [x, y]: [f64; 2], [dx, dy]: [f64; 2]| {
+            (
+                place.origin + place.x * x + place.y * y,
+                place.x * dx + place.y * dy,
+            )
+        };
+        match self {
+            Self::Line { origin, direction } => (origin + direction * t, *direction),
+            Self::Ellipse { place, a, b } => {
+                let (sin, cos) = t.sin_cos();
+                on(place, [a * cos, b * sin], [-a * sin, b * cos])
+            }
+            Self::Hyperbola { place, a, b } => {
+                let (sinh, cosh) = (t.sinh(), t.cosh());
+                on(place, [a * cosh, b * sinh], [a * sinh, b * cosh])
+            }
+            Self::Parabola { place, focal } => {
+                let x = focal * t * t;
+                on(place, [x, 2.0 * focal * t], [2.0 * focal * t, 2.0 * focal])
+            }
+            Self::Spline(spline) => {
+                let [p, d] = spline.at(t);
+                (Point3::from(p), Vector3::from(d))
+            }
+        }
+    }
+
+    /// Parameters between which the curve is smooth and bends little, from `lo` to `hi`.
+    pub fn stops(&self, [lo, hi]: [f64; 2]) -> Vec<f64> {
+        let mut stops = match self {
+            Self::Spline(spline) => {
+                let mut knots = spline.knots.clone();
+                knots.retain(|k| *k > lo && *k < hi);
+                knots.dedup();
+                knots
+            }
+            _ => (1..PIECES)
+                .map(|k| lo + (hi - lo) * f64::from(k) / f64::from(PIECES))
+                .collect(),
+        };
+        stops.insert(0, lo);
+        stops.push(hi);
+        stops
+    }
+}
+
+/// Into how many pieces a curve of a formula is divided.
+const PIECES: u32 = 8;

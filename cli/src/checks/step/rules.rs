@@ -1,0 +1,480 @@
+//! The rules that hold for the solids of a STEP file.
+
+use super::curve::Curve;
+use super::shape::{Edge, Face, Shape, Use};
+use super::surface::{Pole, Surface};
+use nalgebra::Point3;
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+/// What is known of the part.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// The part's resolution.
+    pub resolution: f64,
+    /// How far curves may be off surfaces.
+    pub accuracy: f64,
+    /// The diagonal of its box.
+    pub size: f64,
+    /// The middle of its box.
+    pub middle: Point3<f64>,
+    pub volume: f64,
+    pub area: f64,
+}
+
+/// A rule that is broken, with a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken {
+    pub rule: Rule,
+    pub place: Point3<f64>,
+}
+
+/// The rules.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rule {
+    /// Vertices lie on their curves; an edge's points are off its curve by this.
+    VertexOnCurve(f64),
+    /// An edge is longer than the resolution; one is so long.
+    EdgeLength(f64),
+    /// Where an edge with two ends starts, rounding cannot make a whole period of its parameter.
+    StartParameter(f64),
+    /// Edges lie on their surfaces; one is off by this.
+    EdgeOnSurface(f64),
+    /// An edge's curve in the parameters of a surface is the curve; it is off by this.
+    ParametricCurve(f64),
+    /// Edges of a loop follow one another.
+    Chain,
+    /// A loop closes in the parameters of the surface; it is open by so many units of length or turns.
+    ClosedLoop([f64; 2]),
+    /// In a shell every edge is used twice, with opposite senses; one has so many uses, and a sum of
+    /// senses.
+    TwoUses(usize, i32),
+    /// Outer shells enclose material, voids do not; a shell encloses so much.
+    Orientation(f64),
+    /// The volume by the file's curves and surfaces is the boundary's; it is this.
+    Volume(f64),
+}
+
+impl fmt::Display for Broken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.rule {
+            Rule::VertexOnCurve(off) => write!(f, "a vertex is {off:.1e} off its curve")?,
+            Rule::EdgeLength(length) => write!(f, "an edge is {length:.1e} long")?,
+            Rule::StartParameter(t) => write!(f, "an edge starts at the parameter {t:e}")?,
+            Rule::EdgeOnSurface(off) => write!(f, "an edge is {off:.1e} off its surface")?,
+            Rule::ParametricCurve(off) => {
+                write!(f, "a curve in parameters is {off:.1e} off the one in space")?;
+            }
+            Rule::Chain => f.write_str("the edges of a loop do not follow one another")?,
+            Rule::ClosedLoop([u, v]) => {
+                write!(f, "a loop is open by ({u:.3}, {v:.3}) in its parameters")?;
+            }
+            Rule::TwoUses(uses, sum) => {
+                write!(f, "an edge has {uses} uses in a shell, of senses {sum:+}")?;
+            }
+            Rule::Orientation(volume) => write!(f, "a shell encloses {volume}")?,
+            Rule::Volume(volume) => write!(f, "the file's volume is {volume}")?,
+        }
+        let p = self.place;
+        write!(f, " at ({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
+    }
+}
+
+/// What was measured.
+#[derive(Clone, Debug, Default)]
+pub struct Measured {
+    pub broken: Vec<Broken>,
+    /// The volume; none where an edge runs through a pole, so that angles do not tell.
+    pub volume: Option<f64>,
+    /// How far curves are off surfaces, and off those in parameters, at most.
+    pub off: f64,
+    pub edges: usize,
+    pub faces: usize,
+}
+
+/// Holds a shape against all rules.
+pub fn measure(shape: &Shape, known: &Known) -> Measured {
+    let mut measured = Measured {
+        edges: shape.edges.len(),
+        ..Measured::default()
+    };
+    let mut edges: Vec<(&u32, &Edge)> = shape.edges.iter().collect();
+    edges.sort_by_key(|(id, _)| **id);
+    for (_, edge) in edges {
+        measured.broken.extend(broken_edge(edge, known));
+    }
+    let mut volume = Some(0.0);
+    for solid in &shape.solids {
+        for (k, shell) in solid.iter().enumerate() {
+            measured.faces += shell.len();
+            measured.broken.extend(misused(shape, shell));
+            let mut enclosed = Some(0.0);
+            for face in shell {
+                let flow = measured.add_face(shape, face, known);
+                enclosed = enclosed.zip(flow).map(|(a, b)| a + b);
+            }
+            if let Some(enclosed) = enclosed
+                && (enclosed > 0.0) != (k == 0)
+            {
+                let rule = Rule::Orientation(enclosed);
+                let place = known.middle;
+                measured.broken.push(Broken { rule, place });
+            }
+            volume = volume.zip(enclosed).map(|(a, b)| a + b);
+        }
+    }
+    measured.volume = volume;
+    // Curves may be off over the whole surface, and quadrature is good to so many digits.
+    let allowed = known.area * known.accuracy + known.size.powi(3) * QUADRATURE;
+    if let Some(volume) = volume
+        && (volume - known.volume).abs() > allowed
+    {
+        let rule = Rule::Volume(volume);
+        let place = known.middle;
+        measured.broken.push(Broken { rule, place });
+    }
+    measured
+}
+
+/// The relative error that quadrature is allowed.
+const QUADRATURE: f64 = 1.0 / (1u64 << 33) as f64;
+
+/// The same of a piece of an edge.
+const FINE: f64 = 1.0 / (1u64 << 42) as f64;
+
+/// A start nearer to a period than this may be taken for its end.
+const PERIOD: f64 = 1.0 / (1u64 << 26) as f64;
+
+fn broken_edge(edge: &Edge, known: &Known) -> Vec<Broken> {
+    let mut broken = Vec::new();
+    for k in 0..2 {
+        let (p, _) = edge.curve.at(edge.range[k]);
+        let off = (p - edge.points[k]).norm();
+        if off.is_nan() || off > known.accuracy {
+            let rule = Rule::VertexOnCurve(off);
+            let place = edge.points[k];
+            broken.push(Broken { rule, place });
+        }
+    }
+    let [from, to] = edge.points;
+    let steps = edge.curve.stops(edge.range);
+    let points = steps.iter().map(|t| edge.curve.at(*t).0);
+    let points: Vec<Point3<f64>> = points.collect();
+    let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let is_open = edge.ends[0] != edge.ends[1];
+    let chord = (to - from).norm();
+    let shortest = if is_open { chord.min(length) } else { length };
+    if shortest.is_nan() || shortest <= known.resolution {
+        let (rule, place) = (Rule::EdgeLength(shortest), from);
+        broken.push(Broken { rule, place });
+    }
+    let start = edge.range[0];
+    if is_open && edge.curve.is_periodic() && start.min(TAU - start) < PERIOD {
+        let (rule, place) = (Rule::StartParameter(start), from);
+        broken.push(Broken { rule, place });
+    }
+    broken
+}
+
+/// Edges of a shell that are not used twice, with opposite senses.
+fn misused(shape: &Shape, shell: &[Face]) -> Vec<Broken> {
+    let mut uses: HashMap<u32, (usize, i32)> = HashMap::new();
+    for used in shell.iter().flat_map(|face| &face.loops).flatten() {
+        let (count, sum) = uses.entry(used.edge).or_default();
+        *count += 1;
+        *sum += if used.along { 1 } else { -1 };
+    }
+    let wrong = uses.into_iter().filter(|(_, u)| *u != (2, 0));
+    wrong
+        .map(|(edge, (count, sum))| Broken {
+            rule: Rule::TwoUses(count, sum),
+            place: shape.edges[&edge].points[0],
+        })
+        .collect()
+}
+
+/// A place in the parameters of a surface that moves along a loop.
+struct Walk<'s> {
+    surface: &'s Surface,
+    about: Point3<f64>,
+    /// u and v, followed without leaps; none at a pole before the first edge.
+    at: Option<[f64; 2]>,
+    first: Option<[f64; 2]>,
+    /// Minus the integral of P du.
+    flow: f64,
+    /// The pole that the last edge ended in, with u there.
+    pole: Option<(Pole, f64)>,
+    first_pole: Option<Pole>,
+    /// Whether loops are run counterclockwise as the surface's normal sees them.
+    along: bool,
+    /// What is nearer to a pole is on it.
+    tolerance: f64,
+    /// How far a piece's integral may be off.
+    fine: f64,
+    is_clear: bool,
+}
+
+impl Measured {
+    /// Holds a face's loops against the rules; what flows out of it, where that is told.
+    fn add_face(&mut self, shape: &Shape, face: &Face, known: &Known) -> Option<f64> {
+        let surface = &shape.surfaces[&face.surface];
+        let mut flow = 0.0;
+        let mut is_clear = true;
+        for ring in &face.loops {
+            let Some(start) = ring.first().map(|u| tail(shape, u)) else {
+                continue;
+            };
+            let place = start.1;
+            for (used, next) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+                let edge = &shape.edges[&used.edge];
+                self.hold(edge, face.surface, surface, known);
+                if head(shape, used).0 != tail(shape, next).0 {
+                    let rule = Rule::Chain;
+                    self.broken.push(Broken { rule, place });
+                }
+            }
+            let mut walk = Walk {
+                surface,
+                about: known.middle,
+                at: None,
+                first: None,
+                flow: 0.0,
+                pole: None,
+                first_pole: None,
+                along: face.along,
+                tolerance: known.size * POLE,
+                fine: known.size.powi(3) * FINE,
+                is_clear: true,
+            };
+            for used in ring {
+                walk.add(&shape.edges[&used.edge], used.along);
+            }
+            let open = walk.close();
+            is_clear &= walk.is_clear;
+            flow += walk.flow;
+            let is_open = [
+                open[0].abs() > GAP * if surface.has_angle() { 1.0 } else { known.size },
+                open[1].abs() > GAP * known.size.max(1.0),
+            ];
+            if walk.is_clear && (is_open[0] || is_open[1]) {
+                let rule = Rule::ClosedLoop(open);
+                self.broken.push(Broken { rule, place });
+            }
+        }
+        is_clear.then_some(flow)
+    }
+
+    /// Holds an edge against a surface on which it lies.
+    fn hold(&mut self, edge: &Edge, id: u32, surface: &Surface, known: &Known) {
+        let mut off: f64 = 0.0;
+        let mut off_parametric: f64 = 0.0;
+        let mut places = [edge.points[0]; 2];
+        let on = edge.on.iter().find(|(of, _)| *of == id);
+        for pair in edge.curve.stops(edge.range).windows(2) {
+            for k in 0..=PLACES {
+                let t = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(PLACES);
+                let (p, _) = edge.curve.at(t);
+                let away = surface.distance(&p).abs();
+                if away.is_nan() || away > off {
+                    (off, places[0]) = (away, p);
+                }
+                if let Some((_, spline)) = on {
+                    let away = (surface.point(spline.at(t)[0]) - p).norm();
+                    if away.is_nan() || away > off_parametric {
+                        (off_parametric, places[1]) = (away, p);
+                    }
+                }
+            }
+        }
+        let [place, parametric_place] = places;
+        if off.is_nan() || off > known.accuracy {
+            let rule = Rule::EdgeOnSurface(off);
+            self.broken.push(Broken { rule, place });
+        }
+        if off_parametric.is_nan() || off_parametric > known.accuracy {
+            let rule = Rule::ParametricCurve(off_parametric);
+            let place = parametric_place;
+            self.broken.push(Broken { rule, place });
+        }
+        self.off = self.off.max(off).max(off_parametric);
+    }
+}
+
+/// At how many places a piece of a curve is held against surfaces.
+const PLACES: u32 = 11;
+
+/// What is nearer to a pole than this part of the size is on it.
+const POLE: f64 = 1.0 / (1u64 << 30) as f64;
+
+/// Loops may be open by this part: vertices and curves are doubles, and splines are followed.
+const GAP: f64 = 1.0 / 1024.0;
+
+fn tail(shape: &Shape, used: &Use) -> (u32, Point3<f64>) {
+    let edge = &shape.edges[&used.edge];
+    let k = usize::from(!used.along);
+    (edge.ends[k], edge.points[k])
+}
+
+fn head(shape: &Shape, used: &Use) -> (u32, Point3<f64>) {
+    let edge = &shape.edges[&used.edge];
+    let k = usize::from(used.along);
+    (edge.ends[k], edge.points[k])
+}
+
+/// Gauss's rule of five points: places and weights but for the middle.
+const GAUSS: [[f64; 2]; 2] = [
+    [0.538_469_310_105_683_1, 0.478_628_670_499_366_47],
+    [0.906_179_845_938_664, 0.236_926_885_056_189_08],
+];
+/// The weight of its middle.
+const CENTRE: f64 = 128.0 / 225.0;
+
+/// How often a piece is halved.
+const HALVED: u32 = 12;
+
+impl Walk<'_> {
+    /// Goes along an edge.
+    fn add(&mut self, edge: &Edge, along: bool) {
+        let mut stops = edge.curve.stops(edge.range);
+        if !along {
+            stops.reverse();
+        }
+        let (start, end) = match along {
+            true => (edge.points[0], edge.points[1]),
+            false => (edge.points[1], edge.points[0]),
+        };
+        let poles = [start, end].map(|p| self.surface.pole(&p, self.tolerance));
+        for (k, pair) in stops.windows(2).enumerate() {
+            // Between the ends, so that no angle is asked for at a pole.
+            let (is_first, is_last) = (k == 0, k + 2 == stops.len());
+            let inner = (pair[1] - pair[0]) * INNER;
+            let from = if is_first && poles[0].is_some() {
+                pair[0] + inner
+            } else {
+                pair[0]
+            };
+            let to = if is_last && poles[1].is_some() {
+                pair[1] - inner
+            } else {
+                pair[1]
+            };
+            if is_first {
+                self.enter(&edge.curve, from, poles[0]);
+            }
+            self.piece(&edge.curve, [from, to], HALVED);
+        }
+        self.pole = poles[1].zip(self.at.map(|at| at[0]));
+    }
+
+    /// Comes to the start of an edge.
+    fn enter(&mut self, curve: &Curve, t: f64, pole: Option<Pole>) {
+        let (p, _) = curve.at(t);
+        let there = self.surface.parameters(&p);
+        let Some(at) = self.at else {
+            self.at = Some(there);
+            self.first = self.at;
+            self.first_pole = pole;
+            return;
+        };
+        let mut next = self.beside(there, at);
+        if let (Some((pole, u)), Some(_)) = (self.pole, pole) {
+            next[0] = self.around_pole(pole, u, there[0]);
+            next[1] = there[1];
+        }
+        self.at = Some(next);
+    }
+
+    /// The angle at which a loop leaves a pole: before the one at which it came to it, as seen with
+    /// the pole above; a whole turn if it is the same.
+    fn around_pole(&mut self, pole: Pole, from: f64, to: f64) -> f64 {
+        let is_down = (pole == Pole::North) == self.along;
+        let turn = |x: f64| {
+            let turned = x.rem_euclid(TAU);
+            if turned < GAP { turned + TAU } else { turned }
+        };
+        let to = match is_down {
+            true => from - turn(from - to),
+            false => from + turn(to - from),
+        };
+        self.flow -= self.surface.flow_at_pole(pole, [from, to], &self.about);
+        to
+    }
+
+    /// The same parameters next to others.
+    fn beside(&self, mut there: [f64; 2], at: [f64; 2]) -> [f64; 2] {
+        use super::surface::Form;
+        let periodic = [
+            self.surface.has_angle(),
+            matches!(self.surface.form, Form::Torus { .. }),
+        ];
+        for i in 0..2 {
+            if periodic[i] {
+                there[i] += TAU * ((at[i] - there[i]) / TAU).round();
+            }
+        }
+        there
+    }
+
+    /// Goes along a piece of a curve: in halves, until each of them turns little and quadrature of
+    /// both halves agrees with that of the whole.
+    fn piece(&mut self, curve: &Curve, range: [f64; 2], halvings: u32) {
+        let Some(at) = self.at else { return };
+        let [from, to] = range;
+        let middle = 0.5 * (from + to);
+        let (whole, ends) = self.integral(curve, range, at);
+        let (first, between) = self.integral(curve, [from, middle], at);
+        let (second, end) = self.integral(curve, [middle, to], between);
+        let scale = self.fine;
+        let turn = (ends[0] - at[0]).abs().max((between[0] - at[0]).abs());
+        let is_fine = (first + second - whole).abs() <= scale
+            && (ends[0] - end[0]).abs() < 1.0
+            && (!self.surface.has_angle() || turn < 1.0);
+        if is_fine || halvings == 0 {
+            if self.surface.has_angle() && turn > 0.5 * PI {
+                self.is_clear = false;
+            }
+            self.flow -= first + second;
+            self.at = Some(end);
+            return;
+        }
+        self.piece(curve, [from, middle], halvings - 1);
+        self.piece(curve, [middle, to], halvings - 1);
+    }
+
+    /// The integral of P du along a piece that starts at parameters, and the parameters at its end.
+    fn integral(&self, curve: &Curve, [a, b]: [f64; 2], mut at: [f64; 2]) -> (f64, [f64; 2]) {
+        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+        let [[inner, inner_weight], [outer, outer_weight]] = GAUSS;
+        let places = [
+            (-outer, outer_weight),
+            (-inner, inner_weight),
+            (0.0, CENTRE),
+            (inner, inner_weight),
+            (outer, outer_weight),
+        ];
+        let mut sum = 0.0;
+        for (x, weight) in places {
+            let (p, d) = curve.at(middle + half * x);
+            at = self.beside(self.surface.parameters(&p), at);
+            let flow = self.surface.flow(at, &self.about);
+            sum += weight * flow * self.surface.u_speed(&p, &d);
+        }
+        let (p, _) = curve.at(b);
+        (half * sum, self.beside(self.surface.parameters(&p), at))
+    }
+
+    /// Comes back to the start: how far off that is in both parameters.
+    fn close(&mut self) -> [f64; 2] {
+        let (Some(first), Some(mut at)) = (self.first, self.at) else {
+            return [0.0; 2];
+        };
+        if let (Some((pole, u)), Some(_)) = (self.pole, self.first_pole) {
+            at = [self.around_pole(pole, u, first[0]), first[1]];
+        }
+        [at[0] - first[0], at[1] - first[1]]
+    }
+}
+
+/// How far from a pole an edge is asked first, as a part of its first piece.
+const INNER: f64 = 1.0 / (1 << 20) as f64;

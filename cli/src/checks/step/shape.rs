@@ -1,0 +1,361 @@
+//! The solids of a STEP file: shells, faces, loops and edges with their curves and surfaces.
+
+use super::curve::{Curve, Placement, Spline};
+use super::part21::{Instance, Instances, ReadError, Value};
+use super::surface::{Form, Surface};
+use nalgebra::{Point3, Vector3};
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+/// An edge.
+#[derive(Clone, Debug)]
+pub struct Edge {
+    /// The numbers of the vertices at its start and its end.
+    pub ends: [u32; 2],
+    pub points: [Point3<f64>; 2],
+    pub curve: Curve,
+    /// The curves in the parameters of surfaces, by the number of the surface.
+    pub on: Vec<(u32, Spline<2>)>,
+    /// The parameters of its ends, as a reader finds them.
+    pub range: [f64; 2],
+}
+
+/// An edge as a loop runs along it.
+#[derive(Clone, Copy, Debug)]
+pub struct Use {
+    pub edge: u32,
+    pub along: bool,
+}
+
+/// A face.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// The number of its surface.
+    pub surface: u32,
+    /// Whether the outward normal is the surface's.
+    pub along: bool,
+    pub loops: Vec<Vec<Use>>,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, Default)]
+pub struct Shape {
+    pub edges: HashMap<u32, Edge>,
+    pub surfaces: HashMap<u32, Surface>,
+    /// The faces of each shell of each solid, the outer shell first.
+    pub solids: Vec<Vec<Vec<Face>>>,
+}
+
+impl Shape {
+    /// The solids of a file.
+    pub fn of(instances: &Instances) -> Result<Self, ReadError> {
+        let mut reader = Reader {
+            instances,
+            shape: Self::default(),
+        };
+        let mut solids: Vec<u32> = Vec::new();
+        for (id, instance) in instances {
+            let is_solid = |name| instance.parts.iter().any(|(n, _)| n == name);
+            if is_solid("MANIFOLD_SOLID_BREP") || is_solid("BREP_WITH_VOIDS") {
+                solids.push(*id);
+            }
+        }
+        solids.sort_unstable();
+        for id in solids {
+            let shells = reader.solid(id)?;
+            reader.shape.solids.push(shells);
+        }
+        Ok(reader.shape)
+    }
+}
+
+struct Reader<'i> {
+    instances: &'i Instances,
+    shape: Shape,
+}
+
+/// An instance with its number: where errors are.
+#[derive(Clone, Copy)]
+struct Entity<'i> {
+    id: u32,
+    name: &'i str,
+    values: &'i [Value],
+}
+
+impl<'i> Entity<'i> {
+    fn wrong(&self, expected: &'static str) -> ReadError {
+        let id = self.id;
+        ReadError::Instance { id, expected }
+    }
+
+    fn value(&self, k: usize) -> Result<&'i Value, ReadError> {
+        self.values
+            .get(k)
+            .ok_or_else(|| self.wrong("more parameters"))
+    }
+
+    fn instance(&self, k: usize) -> Result<u32, ReadError> {
+        match self.value(k)? {
+            Value::Instance(id) => Ok(*id),
+            _ => Err(self.wrong("an instance")),
+        }
+    }
+
+    fn number(&self, k: usize) -> Result<f64, ReadError> {
+        match self.value(k)? {
+            Value::Number(x) => Ok(*x),
+            _ => Err(self.wrong("a number")),
+        }
+    }
+
+    fn truth(&self, k: usize) -> Result<bool, ReadError> {
+        match self.value(k)? {
+            Value::Enumeration(name) if name == "T" => Ok(true),
+            Value::Enumeration(name) if name == "F" => Ok(false),
+            _ => Err(self.wrong("a truth value")),
+        }
+    }
+
+    fn list(&self, k: usize) -> Result<&'i [Value], ReadError> {
+        match self.value(k)? {
+            Value::List(values) => Ok(values),
+            _ => Err(self.wrong("a list")),
+        }
+    }
+
+    fn instances(&self, k: usize) -> Result<Vec<u32>, ReadError> {
+        let of = |value: &Value| match value {
+            Value::Instance(id) => Ok(*id),
+            _ => Err(self.wrong("a list of instances")),
+        };
+        self.list(k)?.iter().map(of).collect()
+    }
+
+    fn numbers(&self, k: usize) -> Result<Vec<f64>, ReadError> {
+        let of = |value: &Value| match value {
+            Value::Number(x) => Ok(*x),
+            _ => Err(self.wrong("a list of numbers")),
+        };
+        self.list(k)?.iter().map(of).collect()
+    }
+}
+
+impl<'i> Reader<'i> {
+    fn entity(&self, id: u32) -> Result<Entity<'i>, ReadError> {
+        let expected = "an instance of one entity";
+        match self.instances.get(&id) {
+            Some(Instance { parts }) if parts.len() == 1 => Ok(Entity {
+                id,
+                name: &parts[0].0,
+                values: &parts[0].1,
+            }),
+            _ => Err(ReadError::Instance { id, expected }),
+        }
+    }
+
+    fn named(&self, id: u32, name: &'static str) -> Result<Entity<'i>, ReadError> {
+        let entity = self.entity(id)?;
+        match entity.name == name {
+            true => Ok(entity),
+            false => Err(entity.wrong(name)),
+        }
+    }
+
+    fn solid(&mut self, id: u32) -> Result<Vec<Vec<Face>>, ReadError> {
+        let solid = self.entity(id)?;
+        let mut shells = vec![self.shell(solid.instance(1)?)?];
+        if solid.name == "BREP_WITH_VOIDS" {
+            for void in solid.instances(2)? {
+                let oriented = self.named(void, "ORIENTED_CLOSED_SHELL")?;
+                if !oriented.truth(3)? {
+                    return Err(oriented.wrong("a shell that is not turned"));
+                }
+                shells.push(self.shell(oriented.instance(2)?)?);
+            }
+        }
+        Ok(shells)
+    }
+
+    fn shell(&mut self, id: u32) -> Result<Vec<Face>, ReadError> {
+        let faces = self.named(id, "CLOSED_SHELL")?.instances(1)?;
+        faces.into_iter().map(|face| self.face(face)).collect()
+    }
+
+    fn face(&mut self, id: u32) -> Result<Face, ReadError> {
+        let face = self.named(id, "ADVANCED_FACE")?;
+        let surface = face.instance(2)?;
+        if !self.shape.surfaces.contains_key(&surface) {
+            let made = self.surface(surface)?;
+            self.shape.surfaces.insert(surface, made);
+        }
+        let mut loops = Vec::new();
+        for bound in face.instances(1)? {
+            let bound = self.entity(bound)?;
+            if !bound.truth(2)? {
+                return Err(bound.wrong("a bound that is not turned"));
+            }
+            let ring = self.named(bound.instance(1)?, "EDGE_LOOP")?;
+            let mut uses = Vec::new();
+            for oriented in ring.instances(1)? {
+                let oriented = self.named(oriented, "ORIENTED_EDGE")?;
+                let edge = oriented.instance(3)?;
+                self.add_edge(edge)?;
+                let along = oriented.truth(4)?;
+                uses.push(Use { edge, along });
+            }
+            loops.push(uses);
+        }
+        Ok(Face {
+            surface,
+            along: face.truth(3)?,
+            loops,
+        })
+    }
+
+    fn add_edge(&mut self, id: u32) -> Result<(), ReadError> {
+        if self.shape.edges.contains_key(&id) {
+            return Ok(());
+        }
+        let edge = self.named(id, "EDGE_CURVE")?;
+        if !edge.truth(4)? {
+            return Err(edge.wrong("an edge along its curve"));
+        }
+        let ends = [edge.instance(1)?, edge.instance(2)?];
+        let mut points = [Point3::origin(); 2];
+        for (point, vertex) in points.iter_mut().zip(ends) {
+            *point = self.point(self.named(vertex, "VERTEX_POINT")?.instance(1)?)?;
+        }
+        let mut curve = self.entity(edge.instance(3)?)?;
+        let mut on = Vec::new();
+        if curve.name == "SURFACE_CURVE" {
+            for pcurve in curve.instances(2)? {
+                let pcurve = self.named(pcurve, "PCURVE")?;
+                let represented = self.named(pcurve.instance(2)?, "DEFINITIONAL_REPRESENTATION")?;
+                let [spline] = represented.instances(1)?[..] else {
+                    return Err(represented.wrong("one curve"));
+                };
+                on.push((pcurve.instance(1)?, self.spline(spline)?));
+            }
+            curve = self.entity(curve.instance(1)?)?;
+        }
+        let curve = self.curve(&curve)?;
+        let [lo, mut hi] = [0, 1].map(|k| curve.parameter(&points[k], k == 0));
+        if curve.is_periodic() && (hi <= lo || ends[0] == ends[1]) {
+            hi += if hi - lo > 0.5 * TAU { 0.0 } else { TAU };
+        }
+        let edge = Edge {
+            ends,
+            points,
+            curve,
+            on,
+            range: [lo, hi],
+        };
+        self.shape.edges.insert(id, edge);
+        Ok(())
+    }
+
+    fn curve(&self, curve: &Entity<'i>) -> Result<Curve, ReadError> {
+        match curve.name {
+            "LINE" => {
+                let vector = self.named(curve.instance(2)?, "VECTOR")?;
+                Ok(Curve::Line {
+                    origin: self.point(curve.instance(1)?)?,
+                    direction: self.direction(vector.instance(1)?)? * vector.number(2)?,
+                })
+            }
+            "CIRCLE" => Ok(Curve::Ellipse {
+                place: self.placement(curve.instance(1)?)?,
+                a: curve.number(2)?,
+                b: curve.number(2)?,
+            }),
+            "ELLIPSE" => Ok(Curve::Ellipse {
+                place: self.placement(curve.instance(1)?)?,
+                a: curve.number(2)?,
+                b: curve.number(3)?,
+            }),
+            "HYPERBOLA" => Ok(Curve::Hyperbola {
+                place: self.placement(curve.instance(1)?)?,
+                a: curve.number(2)?,
+                b: curve.number(3)?,
+            }),
+            "PARABOLA" => Ok(Curve::Parabola {
+                place: self.placement(curve.instance(1)?)?,
+                focal: curve.number(2)?,
+            }),
+            "B_SPLINE_CURVE_WITH_KNOTS" => Ok(Curve::Spline(self.spline(curve.id)?)),
+            _ => Err(curve.wrong("a curve")),
+        }
+    }
+
+    fn spline<const D: usize>(&self, id: u32) -> Result<Spline<D>, ReadError> {
+        let spline = self.named(id, "B_SPLINE_CURVE_WITH_KNOTS")?;
+        let mut points = Vec::new();
+        for point in spline.instances(2)? {
+            let point = self.named(point, "CARTESIAN_POINT")?;
+            let point: Result<[f64; D], _> = point.numbers(1)?.try_into();
+            points.push(point.map_err(|_| spline.wrong("points of as many coordinates"))?);
+        }
+        let counted = spline.numbers(6)?.into_iter().zip(spline.numbers(7)?);
+        let knots = counted.flat_map(|(count, knot)| std::iter::repeat_n(knot, count as usize));
+        let made = Spline {
+            degree: spline.number(1)? as usize,
+            knots: knots.collect(),
+            points,
+        };
+        match made.is_sound() {
+            true => Ok(made),
+            false => Err(spline.wrong("as many knots as points ask for, in order")),
+        }
+    }
+
+    fn surface(&self, id: u32) -> Result<Surface, ReadError> {
+        let surface = self.entity(id)?;
+        let form = match surface.name {
+            "PLANE" => Form::Plane,
+            "CYLINDRICAL_SURFACE" => Form::Cylinder {
+                radius: surface.number(2)?,
+            },
+            "CONICAL_SURFACE" => Form::Cone {
+                radius: surface.number(2)?,
+                slope: surface.number(3)?.tan(),
+            },
+            "SPHERICAL_SURFACE" => Form::Sphere {
+                radius: surface.number(2)?,
+            },
+            "TOROIDAL_SURFACE" => Form::Torus {
+                major: surface.number(2)?,
+                minor: surface.number(3)?,
+            },
+            _ => return Err(surface.wrong("a surface")),
+        };
+        let place = self.placement(surface.instance(1)?)?;
+        Ok(Surface { place, form })
+    }
+
+    fn placement(&self, id: u32) -> Result<Placement, ReadError> {
+        let placement = self.named(id, "AXIS2_PLACEMENT_3D")?;
+        let z = self.direction(placement.instance(2)?)?;
+        let toward = self.direction(placement.instance(3)?)?;
+        let x = (toward - z * toward.dot(&z)).normalize();
+        Ok(Placement {
+            origin: self.point(placement.instance(1)?)?,
+            x,
+            y: z.cross(&x),
+            z,
+        })
+    }
+
+    fn point(&self, id: u32) -> Result<Point3<f64>, ReadError> {
+        self.triple(id, "CARTESIAN_POINT").map(Point3::from)
+    }
+
+    fn direction(&self, id: u32) -> Result<Vector3<f64>, ReadError> {
+        Ok(Vector3::from(self.triple(id, "DIRECTION")?).normalize())
+    }
+
+    fn triple(&self, id: u32, name: &'static str) -> Result<[f64; 3], ReadError> {
+        let entity = self.named(id, name)?;
+        let numbers: Result<[f64; 3], _> = entity.numbers(1)?.try_into();
+        numbers.map_err(|_| entity.wrong("three numbers"))
+    }
+}

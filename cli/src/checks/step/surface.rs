@@ -1,0 +1,161 @@
+//! Surfaces as a STEP file has them, and what flows through them.
+//!
+//! For a surface S(u, v) with F = S · (S_u × S_v) / 3 the volume that a face encloses with the
+//! origin is the integral of F over the face, and by Green's theorem that of -P du along its loops,
+//! where P is the integral of F by v. Cones count v from the apex, spheres from the south pole, so that
+//! P is zero there.
+
+use super::curve::Placement;
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+/// A surface.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    pub place: Placement,
+    pub form: Form,
+}
+
+/// What kind of surface, with its sizes.
+#[derive(Clone, Copy, Debug)]
+pub enum Form {
+    Plane,
+    Cylinder {
+        radius: f64,
+    },
+    /// With the radius in the plane of the placement.
+    Cone {
+        radius: f64,
+        slope: f64,
+    },
+    Sphere {
+        radius: f64,
+    },
+    Torus {
+        major: f64,
+        minor: f64,
+    },
+}
+
+/// A point on which angles about the axis are not defined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pole {
+    /// An apex, or a sphere's south pole.
+    South,
+    /// A sphere's north pole, or the apex of a cone that opens downwards.
+    North,
+}
+
+impl Surface {
+    /// The distance of a point.
+    pub fn distance(&self, p: &Point3<f64>) -> f64 {
+        let q = self.place.local(p);
+        let rho = q.x.hypot(q.y);
+        match self.form {
+            Form::Plane => q.z,
+            Form::Cylinder { radius } => rho - radius,
+            Form::Cone { radius, slope } => {
+                (rho - (radius + q.z * slope).abs()) / (1.0 + slope * slope).sqrt()
+            }
+            Form::Sphere { radius } => q.norm() - radius,
+            Form::Torus { major, minor } => (rho - major).hypot(q.z) - minor,
+        }
+    }
+
+    /// Whether u is an angle about the axis.
+    pub fn has_angle(&self) -> bool {
+        !matches!(self.form, Form::Plane)
+    }
+
+    /// The point with the parameters that ISO 10303-42 gives to a surface.
+    pub fn point(&self, [u, v]: [f64; 2]) -> Point3<f64> {
+        let Placement { origin, x, y, z } = self.place;
+        let about = x * u.cos() + y * u.sin();
+        match self.form {
+            Form::Plane => origin + x * u + y * v,
+            Form::Cylinder { radius } => origin + about * radius + z * v,
+            Form::Cone { radius, slope } => origin + about * (radius + v * slope) + z * v,
+            Form::Sphere { radius } => origin + (about * v.cos() + z * v.sin()) * radius,
+            Form::Torus { major, minor } => {
+                origin + about * (major + minor * v.cos()) + z * (minor * v.sin())
+            }
+        }
+    }
+
+    /// The pole at a point next to it, if there is one.
+    pub fn pole(&self, p: &Point3<f64>, tolerance: f64) -> Option<Pole> {
+        let q = self.place.local(p);
+        let is_on_axis = q.x.hypot(q.y) <= tolerance;
+        match self.form {
+            Form::Cone { slope, .. } if is_on_axis => match slope > 0.0 {
+                true => Some(Pole::South),
+                false => Some(Pole::North),
+            },
+            Form::Sphere { .. } if is_on_axis => match q.z < 0.0 {
+                true => Some(Pole::South),
+                false => Some(Pole::North),
+            },
+            _ => None,
+        }
+    }
+
+    /// u and v of a point, angles between -pi and pi.
+    pub fn parameters(&self, p: &Point3<f64>) -> [f64; 2] {
+        let q = self.place.local(p);
+        let rho = q.x.hypot(q.y);
+        let angle = q.y.atan2(q.x);
+        match self.form {
+            Form::Plane => [q.x, q.y],
+            Form::Cylinder { .. } | Form::Cone { .. } => [angle, q.z],
+            Form::Sphere { .. } => [angle, q.z.atan2(rho)],
+            Form::Torus { major, .. } => [angle, q.z.atan2(rho - major)],
+        }
+    }
+
+    /// How u grows with the parameter of a curve that moves by `d` at a point.
+    pub fn u_speed(&self, p: &Point3<f64>, d: &Vector3<f64>) -> f64 {
+        let (q, d) = (self.place.local(p), self.place.turned(d));
+        match self.form {
+            Form::Plane => d.x,
+            _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
+        }
+    }
+
+    /// P at a place, about a point of reference.
+    pub fn flow(&self, [u, v]: [f64; 2], about: &Point3<f64>) -> f64 {
+        let o = self.place.turned(&(self.place.origin - about));
+        let (sin_u, cos_u) = u.sin_cos();
+        let out = o.x * cos_u + o.y * sin_u;
+        let (sin, cos) = v.sin_cos();
+        let three = match self.form {
+            Form::Plane => v * o.z,
+            Form::Cylinder { radius } => v * radius * (radius + out),
+            Form::Cone { radius, slope } => {
+                let rho = radius + v * slope;
+                0.5 * rho * rho / slope * (out - slope * o.z + radius)
+            }
+            Form::Sphere { radius } => {
+                let level = radius * (sin + 1.0) - 0.5 * o.z * cos * cos;
+                radius * radius * (level + out * (0.5 * (v + sin * cos) + FRAC_PI_4))
+            }
+            Form::Torus { major: a, minor: r } => {
+                let (out, up) = (out + a, o.z);
+                r * ((a * out + r * r) * sin - a * up * cos
+                    + a * r * v
+                    + r * out * 0.5 * (v + sin * cos)
+                    + 0.5 * r * up * sin * sin)
+            }
+        };
+        three / 3.0
+    }
+
+    /// The integral of P du at a pole, from an angle to another.
+    pub fn flow_at_pole(&self, pole: Pole, [from, to]: [f64; 2], about: &Point3<f64>) -> f64 {
+        let (Form::Sphere { radius }, Pole::North) = (self.form, pole) else {
+            return 0.0;
+        };
+        let o = self.place.turned(&(self.place.origin - about));
+        let out = o.x * (to.sin() - from.sin()) - o.y * (to.cos() - from.cos());
+        radius * radius * (2.0 * radius * (to - from) + FRAC_PI_2 * out) / 3.0
+    }
+}

@@ -58,6 +58,9 @@ const LIMIT: usize = 1 << 14;
 /// At how many places, less one, a piece is held against the curve and the surfaces.
 const PLACES: u32 = 8;
 
+/// It is held so near its ends, too, where an angle may turn by much next to an axis.
+const GRADED: [f64; 3] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 20.0];
+
 /// A point where the curve is known.
 #[derive(Clone, Debug)]
 struct Node {
@@ -320,8 +323,9 @@ impl Follow<'_> {
             ends: [&a.space, &b.space],
             length,
         };
-        (1..PLACES).all(|k| {
-            let part = f64::from(k) / f64::from(PLACES);
+        let even = (1..PLACES).map(|k| f64::from(k) / f64::from(PLACES));
+        let graded = GRADED.iter().flat_map(|&part| [part, 1.0 - part]);
+        even.chain(graded).all(|part| {
             let p = Point3::from(space.at(part));
             let near = |q: &Point3<f64>| (p - q).norm() <= self.accuracy;
             let on_surfaces = self.windows.iter().enumerate().all(|(i, window)| {

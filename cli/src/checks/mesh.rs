@@ -178,12 +178,12 @@ fn flaw(read: &Read, known: &Known) -> Option<String> {
     let origin = read.points.first()?;
     let mut volume = 0.0;
     for triangle in &read.triangles {
-        let [a, b, c] = triangle.map(|k| read.points[k] - origin);
+        let [a, b, c] = triangle.map(|k| read.points[k]);
         let across = (b - a).cross(&(c - a));
         if across == Vector3::zeros() {
             return Some(format!("a triangle without an area {}", place(triangle[0])));
         }
-        volume += a.dot(&across) / 6.0;
+        volume += (a - origin).dot(&across) / 6.0;
     }
     let off = (volume - known.volume).abs();
     let is_off = off.is_nan() || off > known.allowed;

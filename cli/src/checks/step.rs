@@ -132,7 +132,7 @@ mod tests {
         rules::measure(&shape, known)
     }
 
-    const PARTS: [&str; 10] = [
+    const PARTS: [&str; 14] = [
         "A = BLO(X=3, Y=4, Z=5)",
         "A = SPH(R=2) AT (ROTX=17, MOVX=9)",
         "A = TOR(RMAJ=3, RMIN=1) AT (ROTX=17, MOVZ=-4)",
@@ -143,6 +143,23 @@ mod tests {
         "A = (SPH(R=4) DIF SPH(R=3) DIF CYL(R=1, H=9)) AT (ROTX=40)",
         "A = BLO(X=9, Y=9, Z=9) DIF SPH(R=2) AT (MOVX=4, MOVY=4, MOVZ=4)",
         "A = (CYL(R=2, H=9) UN CYL(R=1, H=9) AT (ROTX=80, MOVZ=4)) AT (ROTX=40)",
+        // A face of the ball goes around a pole next to an edge along a meridian.
+        "A = ((CYL(R=0.5, H=3) AT (ROTX=-180, MOVY=1.5, MOVZ=-0.5)
+            DIF CON(R=1.5, H=1.5, R2=2)
+            DIF CYL(R=2, H=1.5) AT (ROTY=17, MOVX=2, MOVY=-1, MOVZ=1))
+          UN BLO(X=2.5, Y=1.5, Z=4)
+          UN (SPH(R=1.5) DIF BLO(X=3.5, Y=3, Z=3) AT (MOVX=1, MOVY=-2, MOVZ=-1)))",
+        // A circle runs from a vertex to another one in the same place.
+        "A = ((WED(X=1.5, Y=2.5, Z=2) AT (ROTX=30, MOVZ=-0.5)
+              UN CYL(R=2, H=1) AT (MOVX=1, MOVY=-2, MOVZ=-1)
+              UN CON(R=1, H=1, R2=2) AT (MOVX=-1, MOVY=-0.5, MOVZ=-0.5)
+              UN CYL(R=0.5, H=0.5) AT (MOVX=0.5, MOVY=-1.5, MOVZ=-2))
+            DIF CYL(R=0.5, H=1) AT (ROTZ=180, MOVX=-2, MOVY=-1.5)
+            DIF CYL(R=2, H=1)) AT (ROTX=-90, MOVX=2, MOVY=1.5, MOVZ=2)",
+        // A parabola on a cone.
+        "A = CON(R=2, H=2) DIF WED(X=5, Y=5, Z=5) AT (MOVX=-4, MOVY=-2)",
+        // Planes that nearly pass through an apex.
+        "A = CON(R=1, H=1.5) AT (MOVX=0.0000019, MOVY=0.0000019) INT BLO(X=4, Y=4, Z=4)",
     ];
 
     /// The volume by the file's own curves is that of the boundary, whatever the surfaces.

@@ -93,7 +93,13 @@ impl<'a> Linking<'a, '_> {
             let (curve, [lo, hi]) = (self.brep.curve(source), self.brep.range(source));
             let joints = std::mem::take(&mut self.joints[pair]);
             let joints = match self.pairs.ends[pair] {
-                Some(_) => distinct(joints, hi - lo),
+                Some([first, last]) => {
+                    // Between two vertices in one place no reader can tell a turn from nothing.
+                    let is_turn = first != last && self.seamed.are_in_one_place(first, last);
+                    let middle = is_turn.then_some(0.5 * (lo + hi));
+                    let all = joints.into_iter().chain(middle);
+                    distinct(all.collect(), hi - lo)
+                }
                 None => distinct_around(joints, [lo, hi]),
             };
             let mut at: Vec<f64> = joints.clone();
@@ -311,6 +317,10 @@ fn seam_edge<'a>(seam: &Seam, ends: [usize; 2]) -> Edge<'a> {
 }
 
 impl Seamed<'_> {
+    fn are_in_one_place(&self, a: usize, b: usize) -> bool {
+        self.points[a] == self.points[b]
+    }
+
     fn vertex(&mut self, p: nalgebra::Point3<f64>) -> usize {
         self.points.push(p);
         self.points.len() - 1

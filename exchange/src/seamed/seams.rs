@@ -247,7 +247,9 @@ impl Faced<'_> {
         covered[1..].iter().all(|next| {
             let [a, b] = [end, next[0]];
             end = end.max(next[1]);
-            b <= a || !self.holds(&track.curve.point(0.5 * (a + b)))
+            // What is not told may be in the face.
+            let middle = track.curve.point(0.5 * (a + b));
+            b <= a || self.place(&middle) == Place::Outside
         })
     }
 
@@ -404,9 +406,13 @@ impl Faced<'_> {
 
     /// Whether the face holds a point of its surface that no edge passes.
     fn holds(&self, p: &Point3<f64>) -> bool {
+        self.place(p) == Place::Inside
+    }
+
+    fn place(&self, p: &Point3<f64>) -> Place {
         let surface = self.brep.surface(self.face);
         let (side, arcs) = (self.brep.sense(self.face), self.arcs.clone());
-        FaceLocator::new(surface, side, arcs, self.band).place(p) == Place::Inside
+        FaceLocator::new(surface, side, arcs, self.band).place(p)
     }
 }
 

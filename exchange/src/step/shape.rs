@@ -207,6 +207,8 @@ impl<'s, 'e> Shape<'s, 'e> {
 
     fn curve(&mut self, index: usize, edge: &Edge<'_>) -> Result<Id, StepError> {
         let edge = &started_far_from_zero(edge);
+        let bent = |&f: &usize| bends(edge, &self.seamed.faces[f].window);
+        let is_bent = self.sides[index].iter().any(bent);
         let id = match &*edge.curve {
             Curve::Line(c) => {
                 let origin = self.point(&c.origin);
@@ -218,11 +220,15 @@ impl<'s, 'e> Shape<'s, 'e> {
             }
             Curve::Circle(c) => self.conic("CIRCLE", &c.frame, &[c.radius]),
             Curve::Ellipse(c) => self.conic("ELLIPSE", &c.frame, &[c.a, c.b]),
-            Curve::Hyperbola(c) => self.conic("HYPERBOLA", &c.frame, &[c.a, c.b]),
-            Curve::Conic(c) if c.is_parabola() => {
+            Curve::Hyperbola(c) if !(is_bent && is_sharp(edge, c.a.min(c.b))) => {
+                self.conic("HYPERBOLA", &c.frame, &[c.a, c.b])
+            }
+            // Readers differ on the parameter of a parabola, which matters where another curve shares
+            // it.
+            Curve::Conic(c) if c.is_parabola() && !is_bent => {
                 self.conic("PARABOLA", &c.frame, &[0.5 / c.curvature])
             }
-            Curve::Conic(_) | Curve::Quartic(_) | Curve::Toric(_) => {
+            Curve::Hyperbola(_) | Curve::Conic(_) | Curve::Quartic(_) | Curve::Toric(_) => {
                 let sides = self.sides[index].clone();
                 let Course { space, on } = self.course(edge, &sides, Pace::Length)?;
                 let space = self.spline(&space);
@@ -358,6 +364,16 @@ fn bends(edge: &Edge<'_>, window: &Window) -> bool {
     };
     changes(0) && changes(1)
 }
+
+/// Whether an edge turns in much less than its length, about a semi-axis: its parameter says little
+/// of where on it a point is.
+fn is_sharp(edge: &Edge<'_>, semi_axis: f64) -> bool {
+    let [from, to] = edge.range.map(|t| edge.curve.point(t));
+    semi_axis < SHARP * (to - from).norm()
+}
+
+/// A hyperbola with a semi-axis smaller than this part of an edge is sharp.
+const SHARP: f64 = 1.0 / 1024.0;
 
 /// A parameter that changes by no more than this part is constant.
 const LEVEL: f64 = 1.0 / (1u64 << 36) as f64;

@@ -114,7 +114,10 @@ pub fn measure(shape: &Shape, known: &Known) -> Measured {
                 let flow = measured.add_face(shape, face, known);
                 enclosed = enclosed.zip(flow).map(|(a, b)| a + b);
             }
+            // What encloses next to nothing is not told.
+            let least = known.size.powi(3) * QUADRATURE;
             if let Some(enclosed) = enclosed
+                && enclosed.abs() > least
                 && (enclosed > 0.0) != (k == 0)
             {
                 let rule = Rule::Orientation(enclosed);
@@ -158,13 +161,19 @@ fn broken_edge(edge: &Edge, known: &Known) -> Vec<Broken> {
         }
     }
     let [from, to] = edge.points;
-    let steps = edge.curve.stops(edge.range);
-    let points = steps.iter().map(|t| edge.curve.at(*t).0);
-    let points: Vec<Point3<f64>> = points.collect();
+    let stops = edge.curve.stops(edge.range);
+    let steps = stops.windows(2).flat_map(|pair| {
+        let step = (pair[1] - pair[0]) / f64::from(PLACES);
+        (0..=PLACES).map(move |k| pair[0] + step * f64::from(k))
+    });
+    let points: Vec<Point3<f64>> = steps.map(|t| edge.curve.at(t).0).collect();
     let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let is_open = edge.ends[0] != edge.ends[1];
-    let chord = (to - from).norm();
-    let shortest = if is_open { chord.min(length) } else { length };
+    // Of a whole turn between two vertices no reader can tell whether it is a turn or nothing.
+    let shortest = match is_open && edge.curve.is_periodic() {
+        true => length.min((to - from).norm()),
+        false => length,
+    };
     if shortest.is_nan() || shortest <= known.resolution {
         let (rule, place) = (Rule::EdgeLength(shortest), from);
         broken.push(Broken { rule, place });
@@ -203,9 +212,12 @@ struct Walk<'s> {
     first: Option<[f64; 2]>,
     /// Minus the integral of P du.
     flow: f64,
-    /// The pole that the last edge ended in, with u there.
-    pole: Option<(Pole, f64)>,
-    first_pole: Option<Pole>,
+    /// The pole that the last edge ended in, with u there, and the number of the edge.
+    pole: Option<(Pole, f64, u32)>,
+    first_pole: Option<(Pole, u32)>,
+    /// A pole at which two edges meet, and u there. Where they have the same direction, or turn away
+    /// from it at once, a turn more or less may lie between them.
+    cusp: Option<(Pole, f64)>,
     /// Whether loops are run counterclockwise as the surface's normal sees them.
     along: bool,
     /// What is nearer to a pole is on it.
@@ -242,13 +254,14 @@ impl Measured {
                 flow: 0.0,
                 pole: None,
                 first_pole: None,
+                cusp: None,
                 along: face.along,
                 tolerance: known.size * POLE,
                 fine: known.size.powi(3) * FINE,
                 is_clear: true,
             };
             for used in ring {
-                walk.add(&shape.edges[&used.edge], used.along);
+                walk.add(&shape.edges[&used.edge], *used);
             }
             let open = walk.close();
             is_clear &= walk.is_clear;
@@ -335,7 +348,7 @@ const HALVED: u32 = 12;
 
 impl Walk<'_> {
     /// Goes along an edge.
-    fn add(&mut self, edge: &Edge, along: bool) {
+    fn add(&mut self, edge: &Edge, Use { edge: id, along }: Use) {
         let mut stops = edge.curve.stops(edge.range);
         if !along {
             stops.reverse();
@@ -360,15 +373,16 @@ impl Walk<'_> {
                 pair[1]
             };
             if is_first {
-                self.enter(&edge.curve, from, poles[0]);
+                self.enter(&edge.curve, from, poles[0].map(|pole| (pole, id)));
             }
             self.piece(&edge.curve, [from, to], HALVED);
         }
-        self.pole = poles[1].zip(self.at.map(|at| at[0]));
+        let ended = poles[1].zip(self.at);
+        self.pole = ended.map(|(pole, at)| (pole, at[0], id));
     }
 
     /// Comes to the start of an edge.
-    fn enter(&mut self, curve: &Curve, t: f64, pole: Option<Pole>) {
+    fn enter(&mut self, curve: &Curve, t: f64, pole: Option<(Pole, u32)>) {
         let (p, _) = curve.at(t);
         let there = self.surface.parameters(&p);
         let Some(at) = self.at else {
@@ -378,25 +392,36 @@ impl Walk<'_> {
             return;
         };
         let mut next = self.beside(there, at);
-        if let (Some((pole, u)), Some(_)) = (self.pole, pole) {
-            next[0] = self.around_pole(pole, u, there[0]);
+        if let (Some((pole, u, last)), Some((_, id))) = (self.pole, pole) {
+            next[0] = self.around_pole(pole, [u, there[0]], last == id);
             next[1] = there[1];
         }
         self.at = Some(next);
     }
 
     /// The angle at which a loop leaves a pole: before the one at which it came to it, as seen with
-    /// the pole above; a whole turn if it is the same.
-    fn around_pole(&mut self, pole: Pole, from: f64, to: f64) -> f64 {
-        let is_down = (pole == Pole::North) == self.along;
-        let turn = |x: f64| {
-            let turned = x.rem_euclid(TAU);
-            if turned < GAP { turned + TAU } else { turned }
-        };
-        let to = match is_down {
-            true => from - turn(from - to),
-            false => from + turn(to - from),
-        };
+    /// the pole above; a whole turn where a seam comes back.
+    fn around_pole(&mut self, pole: Pole, [from, to]: [f64; 2], is_seam: bool) -> f64 {
+        let down = self.down(pole);
+        let mut turned = (down * (to - from)).rem_euclid(TAU);
+        if is_seam {
+            turned = TAU;
+        } else {
+            self.cusp = Some((pole, from));
+        }
+        self.pass_pole(pole, from, down * turned)
+    }
+
+    /// Into which direction of u a loop turns at a pole.
+    fn down(&self, pole: Pole) -> f64 {
+        match (pole == Pole::North) == self.along {
+            true => -1.0,
+            false => 1.0,
+        }
+    }
+
+    fn pass_pole(&mut self, pole: Pole, from: f64, turned: f64) -> f64 {
+        let to = from + turned;
         self.flow -= self.surface.flow_at_pole(pole, [from, to], &self.about);
         to
     }
@@ -469,10 +494,18 @@ impl Walk<'_> {
         let (Some(first), Some(mut at)) = (self.first, self.at) else {
             return [0.0; 2];
         };
-        if let (Some((pole, u)), Some(_)) = (self.pole, self.first_pole) {
-            at = [self.around_pole(pole, u, first[0]), first[1]];
+        if let (Some((pole, u, last)), Some((_, id))) = (self.pole, self.first_pole) {
+            at = [self.around_pole(pole, [u, first[0]], last == id), first[1]];
         }
-        [at[0] - first[0], at[1] - first[1]]
+        let mut open = [at[0] - first[0], at[1] - first[1]];
+        if let Some((pole, from)) = self.cusp {
+            let turned = -open[0].signum() * TAU;
+            if (open[0] + turned).abs() < GAP {
+                self.pass_pole(pole, from, turned);
+                open[0] += turned;
+            }
+        }
+        open
     }
 }
 

@@ -23,6 +23,7 @@ mod pieces;
 mod proof;
 mod sheets;
 mod tapers;
+mod thin;
 mod wings;
 mod witness;
 
@@ -417,8 +418,12 @@ fn evaluated<N: Number>(
         judge: &judge,
     };
     concern.list();
+    thin::list(tree, &judge);
     let raw = wings::boundary(&concern, pieces)?;
     let brep = assemble(raw, &judge)?;
+    if brep.topology.faces.is_empty() {
+        thin::list_vanished(&solids.bounds, &judge);
+    }
     let band = N::of(resolution);
     let measures = Measures::of(&brep);
     if let Some(broken) = check(&brep, &measures, band).into_iter().next() {

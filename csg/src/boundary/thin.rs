@@ -1,0 +1,77 @@
+//! Primitives that are no thicker than what coincides: their opposite faces become one, and they vanish.
+
+use crate::primitive::Primitive;
+use crate::tree::{Placed, Tree};
+use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::number::rational::{Rational, to_f64};
+use premio_kernel::number::sign::{CloseCall, Judge, ROUNDING, Sign};
+
+/// Lists the primitives whose thickness is close to the resolution.
+pub(super) fn list(tree: &Tree, judge: &Judge) {
+    for (_, placed) in tree.leaves() {
+        let thickness = thickness(&placed.primitive);
+        if judge.is_close(thickness) {
+            judge.list(CloseCall {
+                question: "opposite faces of a primitive",
+                place: middle(placed),
+                distance: thickness,
+                local: true,
+            });
+        }
+    }
+}
+
+/// Lists a part of which nothing is left, where what coincides was apart by more than rounding: perhaps
+/// it is only thinner than the resolution.
+pub(super) fn list_vanished(solids: &Box3, judge: &Judge) {
+    let apart = judge.furthest_coincidence();
+    if apart.is_beyond(ROUNDINGS * ROUNDING * solids.diagonal()) {
+        judge.list(CloseCall {
+            question: "faces of the part, of which nothing is left",
+            place: solids.centre().into(),
+            distance: apart,
+            local: false,
+        });
+    }
+}
+
+/// So many roundings are no distance that anybody wrote.
+const ROUNDINGS: f64 = 8.0;
+
+/// The least distance between opposite faces of a primitive, or across it.
+fn thickness(primitive: &Primitive) -> f64 {
+    let least = |lengths: &[f64]| lengths.iter().copied().fold(f64::INFINITY, f64::min);
+    match primitive {
+        Primitive::Block { size } => least(&size.each_ref().map(to_f64)),
+        Primitive::Wedge { size } => {
+            let [x, y, z] = size.each_ref().map(to_f64);
+            // From the edge at the right angle to the slope.
+            least(&[y, x * (z / x.hypot(z))])
+        }
+        Primitive::Cylinder { radius, height } => least(&[2.0 * to_f64(radius), to_f64(height)]),
+        Primitive::Frustum { base, top, height } => {
+            let widest = to_f64(base).max(to_f64(top));
+            least(&[2.0 * widest, to_f64(height)])
+        }
+        Primitive::Sphere { radius } => 2.0 * to_f64(radius),
+        Primitive::Torus { minor, .. } => 2.0 * to_f64(minor),
+    }
+}
+
+/// A point in the middle of a primitive, or on its axis.
+fn middle(placed: &Placed) -> [f64; 3] {
+    let half = |length: &Rational| length / Rational::from(2);
+    let nothing = || Rational::ZERO;
+    let point = match &placed.primitive {
+        Primitive::Block { size } => size.each_ref().map(half),
+        Primitive::Wedge { size } => {
+            let [x, y, z] = size.each_ref().map(half);
+            [half(&x), y, half(&z)]
+        }
+        Primitive::Cylinder { height, .. } | Primitive::Frustum { height, .. } => {
+            [nothing(), nothing(), half(height)]
+        }
+        Primitive::Sphere { .. } | Primitive::Torus { .. } => [nothing(), nothing(), nothing()],
+    };
+    placed.motion.apply_point(&point).each_ref().map(to_f64)
+}

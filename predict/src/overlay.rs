@@ -42,12 +42,74 @@ pub struct Stroke {
     pub arc: u32,
 }
 
-/// What is drawn of a prediction.
+/// What is drawn of a prediction, as far as it is in the image.
 pub fn strokes(prediction: &Prediction) -> Vec<Stroke> {
+    let size = prediction.image.setup.conditions.sensor.resolution;
+    // The centre of the first pixel is at (0, 0).
+    let window = Window {
+        low: [-0.5; 2],
+        high: size.map(|n| n as f64 - 0.5),
+    };
     let features = prediction.arcs.iter().filter(|arc| !arc.smooth);
     features
         .flat_map(|arc| arc_strokes(arc, prediction))
+        .flat_map(|stroke| {
+            let pieces = window.clipped(&stroke.points);
+            pieces
+                .into_iter()
+                .map(move |points| Stroke { points, ..stroke })
+        })
         .collect()
+}
+
+/// A rectangle of the image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Window {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Window {
+    /// The pieces of a polyline in the window.
+    fn clipped(&self, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+        let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
+        for pair in points.windows(2) {
+            let Some([a, b]) = self.segment([pair[0], pair[1]]) else {
+                continue;
+            };
+            match pieces.last_mut() {
+                // It goes on where the last one ended, at the same point of the line.
+                Some(piece) if piece.last() == Some(&a) => piece.push(b),
+                _ => pieces.push(vec![a, b]),
+            }
+        }
+        pieces
+    }
+
+    /// The part of a segment in the window (Liang and Barsky 1984).
+    fn segment(&self, [a, b]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        for i in 0..2 {
+            let step = b[i] - a[i];
+            let sides = [(-step, a[i] - self.low[i]), (step, self.high[i] - a[i])];
+            for (speed, room) in sides {
+                let at = room / speed;
+                if speed < 0.0 {
+                    from = from.max(at);
+                } else if speed > 0.0 {
+                    to = to.min(at);
+                } else if room < 0.0 {
+                    return None;
+                }
+            }
+        }
+        let point = |s: f64| match s {
+            0.0 => a,
+            1.0 => b,
+            s => [0, 1].map(|i| (a[i] + s * (b[i] - a[i])).clamp(self.low[i], self.high[i])),
+        };
+        (from < to).then(|| [point(from), point(to)])
+    }
 }
 
 fn arc_strokes(arc: &ArcLevel, prediction: &Prediction) -> Vec<Stroke> {
@@ -112,6 +174,12 @@ pub fn label_place(arc: &ArcLevel) -> [f64; 2] {
     line.first().or(points.first()).copied().unwrap_or_default()
 }
 
+/// The place of a label in the image.
+fn shown_label(arc: &ArcLevel, size: [f64; 2]) -> [f64; 2] {
+    let [x, y] = label_place(arc);
+    [x.clamp(0.0, size[0]), y.clamp(0.0, size[1])]
+}
+
 /// The arcs of a prediction that are not whole, each with why.
 pub fn missing(prediction: &Prediction) -> Vec<(u32, String)> {
     let features = prediction
@@ -151,7 +219,8 @@ pub fn svg(prediction: &Prediction) -> String {
         path(&stroke, prediction, &mut out);
     }
     for (id, _) in &reasons {
-        let [x, y] = label_place(&prediction.arcs[*id as usize]);
+        let arc = &prediction.arcs[*id as usize];
+        let [x, y] = shown_label(arc, [width, height].map(|n| n as f64));
         let _ = writeln!(
             out,
             "<text x=\"{:.1}\" y=\"{:.1}\">{id}</text>",
@@ -216,4 +285,30 @@ fn key(width: usize, height: usize, out: &mut String) {
         out,
         "<text class=\"key\" x=\"{right}\" y=\"{text}\">{STRONG}</text>"
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_end_at_the_border_of_the_image() {
+        let window = Window {
+            low: [0.0; 2],
+            high: [10.0, 5.0],
+        };
+        // In, out above, and back in.
+        let line = [[2.0, 2.0], [4.0, 10.0], [8.0, 2.0]];
+        let pieces = window.clipped(&line);
+        assert_eq!(pieces.len(), 2, "{pieces:?}");
+        assert_eq!(pieces[0], [[2.0, 2.0], [2.75, 5.0]]);
+        assert_eq!(pieces[1], [[6.5, 5.0], [8.0, 2.0]]);
+        assert_eq!(
+            window.clipped(&[[-5.0, 1.0], [20.0, 1.0]]),
+            [[[0.0, 1.0], [10.0, 1.0]]]
+        );
+        assert!(window.clipped(&[[-5.0, -1.0], [20.0, -1.0]]).is_empty());
+        let inside = [[1.0, 1.0], [2.0, 2.0], [3.0, 1.0]];
+        assert_eq!(window.clipped(&inside), [inside.to_vec()]);
+    }
 }

@@ -15,6 +15,10 @@ const DIRECTIONS: usize = 96;
 /// The least brightness of a highlight, in grey levels: what a threshold may tell from nothing.
 const FAINT: f64 = 4.0;
 
+/// So far from its brightest point, in pixels, an outline is not looked for: beyond the image regions
+/// have no end.
+const FURTHEST: f64 = 1_048_576.0;
+
 /// The point of a region at which a light is mirrored best.
 #[derive(Clone, Copy, Debug)]
 struct Peak {
@@ -194,7 +198,7 @@ impl Glow<'_, '_> {
         let bright = |far: f64| self.level(at(far)) >= least;
         let (mut near, mut far) = (0.0, 1.0);
         while bright(far) {
-            if !self.inside(at(far)) {
+            if !self.inside(at(far)) || far > FURTHEST {
                 return None;
             }
             near = far;

@@ -5,6 +5,7 @@ mod predict;
 mod sheet;
 
 use crate::fuzz::profile::Profile;
+use crate::session::Limits;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -27,8 +28,11 @@ pub struct Arguments {
     pub command: Command,
     /// Write JSON: measures, checks and summaries, and on standard error what there is to say
     /// (premio.message/1, one a line)
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = 900)]
     pub json: bool,
+    /// The most that is read.
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 const EXIT_STATUS: &str = "Example: premio info part.padl
@@ -43,20 +47,17 @@ pub enum Command {
     #[command(after_help = "Example: premio info part.padl --json")]
     Info(InfoOptions),
     /// What a camera sees: contours with their visibility
-    #[command(
-        after_help = "Examples: premio contours part.padl --eye 30,-40,25 --target 0,0,0 --format svg -o part.svg
+    #[command(after_help = "Examples: premio contours part.padl -o part.svg
+          premio contours part.padl --eye 30,-40,25 -o part.svg
           premio contours part.padl --camera view.json --format json --samples 5
-          premio contours part.padl --views front,top,right,iso --hidden --format dxf -o part.dxf"
-    )]
+          premio contours part.padl --views front,top,right,iso --hidden -o part.dxf")]
     Contours(ContoursOptions),
     /// Every self-check there is, on one description
     #[command(after_help = "Example: premio check part.padl")]
     Check(CheckOptions),
     /// The boundary, written in a format of choice
-    #[command(
-        after_help = "Examples: premio export part.padl --format step -o part.step
-          premio export part.padl --format json -o part.json"
-    )]
+    #[command(after_help = "Examples: premio export part.padl -o part.step
+          premio export part.padl --format json")]
     Export(ExportOptions),
     /// A description in another language
     #[command(after_help = "Examples: premio convert part.padl part.json
@@ -201,9 +202,9 @@ pub struct ContoursOptions {
     pub camera: CameraOptions,
     #[command(flatten)]
     pub sheet: SheetOptions,
-    /// What to write
+    /// What to write [default: by the ending of OUT]
     #[arg(long, value_enum)]
-    pub format: ContoursFormat,
+    pub format: Option<ContoursFormat>,
     /// Put N points of the 3-D curve into each piece (json)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples: Option<u32>,
@@ -217,29 +218,84 @@ pub struct ContoursOptions {
     pub output: OutputOptions,
 }
 
-/// The camera: a file, or an eye that looks at a target.
+/// The camera: a file, an eye that looks at a target, or a view by its name.
 #[derive(Debug, Args)]
 pub struct CameraOptions {
+    /// A view by its name [default: iso]
+    #[arg(long, value_enum, value_name = "VIEW",
+          conflicts_with_all = ["camera", "eye", "target", "up", "focal", "ortho"])]
+    pub view: Option<ViewName>,
     /// A file with the camera as JSON
-    #[arg(long, value_name = "CAM.json", conflicts_with_all = ["eye", "target", "up", "focal", "ortho"],
-          required_unless_present_any = ["eye", "views"])]
+    #[arg(long, value_name = "CAM.json", conflicts_with_all = ["eye", "target", "up", "focal", "ortho"])]
     pub camera: Option<PathBuf>,
     /// Where the eye is
-    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true, requires = "target")]
+    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<[f64; 3]>,
-    /// A point that it looks at
-    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true, requires = "eye")]
+    /// A point that the eye looks at [default: the middle of the part]
+    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<[f64; 3]>,
-    /// What is up in the image
-    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true, requires = "eye",
-          default_value = "0,0,1")]
-    pub up: [f64; 3],
-    /// The focal length, the unit of the image
-    #[arg(long, value_name = "f", value_parser = positive, conflicts_with = "ortho", default_value = "1")]
-    pub focal: f64,
+    /// What is up in the image [default: 0,0,1]
+    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
+    pub up: Option<[f64; 3]>,
+    /// The focal length, the unit of the image [default: 1]
+    #[arg(long, value_name = "f", value_parser = positive, conflicts_with = "ortho")]
+    pub focal: Option<f64>,
     /// Parallel instead of central projection
     #[arg(long)]
     pub ortho: bool,
+}
+
+/// A camera as the command line gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CameraChoice<'a> {
+    /// That of a file.
+    File(&'a Path),
+    /// A view of the part about its middle.
+    Named(ViewName),
+    /// An eye that looks at a point, or else at the middle of the part.
+    Eye {
+        /// Where it is.
+        eye: [f64; 3],
+        /// What it looks at.
+        target: Option<[f64; 3]>,
+        /// What is up.
+        up: [f64; 3],
+        /// The focal length; none for parallel projection.
+        focal: Option<f64>,
+    },
+}
+
+/// The ways to give a camera.
+pub const CAMERAS: &str = "a camera is `--camera CAM.json`, `--eye x,y,z` (with `--target x,y,z`, \
+    `--up x,y,z`, and `--focal f` or `--ortho`), `--view NAME` (front, back, left, right, top, bottom \
+    or iso), or, on a sheet, `--views NAMES`; without any it is `--view iso`";
+
+impl CameraOptions {
+    /// The camera that is meant.
+    ///
+    /// # Errors
+    /// Options of an eye are given, and no eye.
+    pub fn choice(&self) -> Result<CameraChoice<'_>, String> {
+        if let Some(path) = &self.camera {
+            return Ok(CameraChoice::File(path));
+        }
+        let lonely = [
+            ("target", self.target.is_some()),
+            ("up", self.up.is_some()),
+            ("focal", self.focal.is_some()),
+            ("ortho", self.ortho),
+        ];
+        match (self.eye, lonely.iter().find(|(_, given)| *given)) {
+            (Some(eye), _) => Ok(CameraChoice::Eye {
+                eye,
+                target: self.target,
+                up: self.up.unwrap_or([0.0, 0.0, 1.0]),
+                focal: (!self.ortho).then(|| self.focal.unwrap_or(1.0)),
+            }),
+            (None, Some((option, _))) => Err(format!("`--{option}` goes with `--eye`: {CAMERAS}")),
+            (None, None) => Ok(CameraChoice::Named(self.view.unwrap_or(ViewName::Iso))),
+        }
+    }
 }
 
 /// Options of `check`.
@@ -257,9 +313,9 @@ pub struct CheckOptions {
 pub struct ExportOptions {
     #[command(flatten)]
     pub description: DescriptionOptions,
-    /// What to write
+    /// What to write [default: by the ending of OUT]
     #[arg(long, value_enum)]
-    pub format: ExportFormat,
+    pub format: Option<ExportFormat>,
     /// How far splines may be from the curves they follow, in the part's unit (step) [default: 1e-6
     /// of its size]
     #[arg(long, value_name = "D", value_parser = positive)]
@@ -515,6 +571,43 @@ impl ExportFormat {
     }
 }
 
+impl OutputOptions {
+    /// The format that is asked for, or else that of the output's ending.
+    ///
+    /// # Errors
+    /// There is none, and the ending says none.
+    pub fn format<T: ValueEnum>(&self, asked: Option<T>) -> Result<T, String> {
+        if let Some(format) = asked {
+            return Ok(format);
+        }
+        let ending = self.output.as_deref().and_then(Path::extension);
+        let ending = ending.map(|e| e.to_string_lossy().to_ascii_lowercase());
+        let name = match ending.as_deref() {
+            Some("stp") => Some("step"),
+            other => other,
+        };
+        if let Some(format) = name.and_then(|name| T::from_str(name, false).ok()) {
+            return Ok(format);
+        }
+        let all = T::value_variants().iter().filter_map(T::to_possible_value);
+        let all: Vec<String> = all.map(|value| value.get_name().to_owned()).collect();
+        let found = match (&self.output, ending) {
+            (None, _) => "there is no `--format`, and no `-o` whose ending says it".to_owned(),
+            (Some(path), None) => {
+                format!(
+                    "{}: there is no `--format`, and no ending that says it",
+                    path.display()
+                )
+            }
+            (Some(path), Some(ending)) => format!(
+                "{}: there is no `--format`, and the ending `.{ending}` says none",
+                path.display()
+            ),
+        };
+        Err(format!("{found}: expected one of {}", all.join(", ")))
+    }
+}
+
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -572,8 +665,11 @@ mod tests {
         assert!(parse("--eye -1,2,3 --target 0,0,-1"));
         assert!(parse("--eye 1,2,3 --target 0,0,0 --up 0,1,0 --focal 2"));
         assert!(parse("--eye 1,2,3 --target 0,0,0 --ortho"));
-        assert!(!parse(""));
-        assert!(!parse("--eye 1,2,3"));
+        assert!(parse(""));
+        assert!(parse("--view top"));
+        assert!(parse("--eye 1,2,3"));
+        assert!(!parse("--view top --eye 1,2,3"));
+        assert!(!parse("--view top --camera c.json"));
         assert!(!parse("--eye 1,2 --target 0,0,0"));
         assert!(!parse("--eye 1,2,nan --target 0,0,0"));
         assert!(!parse("--eye 1,2,3 --target 0,0,0 --focal 2 --ortho"));

@@ -1,7 +1,7 @@
 //! Grey images in files, and drawings on them.
 
 use crate::diagnostics::Failure;
-use crate::output;
+use crate::session::Session;
 use font8x8::legacy::BASIC_LEGACY;
 use image::{DynamicImage, ImageFormat, ImageReader, Rgb, RgbImage};
 use premio_matching::finding::Match;
@@ -13,12 +13,39 @@ use premio_predict::prediction::Prediction;
 use premio_predict::processing::Grey;
 use std::io::Cursor;
 use std::path::Path;
+use zune_core::bytestream::ZCursor;
+use zune_core::options::DecoderOptions;
+use zune_jpeg::JpegDecoder;
 
 /// The grey image of a file: PNG, PGM or JPEG; a picture in colours by its luma.
-pub fn read(path: &Path) -> Result<Grey, Failure> {
+///
+/// # Errors
+/// The file is no picture, or not all of one, or it has more pixels than the limit, or none.
+pub fn read(path: &Path, session: Session) -> Result<Grey, Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: {e}", path.display()));
-    let reader = ImageReader::open(path).map_err(|e| failed(&e))?;
-    let reader = reader.with_guessed_format().map_err(|e| failed(&e))?;
+    let bytes = session.limits.read(path)?;
+    let opened = || ImageReader::new(Cursor::new(&bytes)).with_guessed_format();
+    let reader = opened().map_err(|e| failed(&e))?;
+    let format = reader.format();
+    let (width, height) = reader.into_dimensions().map_err(|e| failed(&e))?;
+    let (pixels, most) = (u64::from(width) * u64::from(height), session.limits.pixels);
+    if pixels == 0 {
+        let found = format!("found {width} x {height} pixels, expected at least one");
+        return Err(failed(&found));
+    }
+    if pixels > most {
+        let found = format!("found {width} x {height}, {pixels} pixels, expected at most {most}");
+        return Err(failed(&format!("{found}: --max-pixels sets another limit")));
+    }
+    if format.is_some_and(|format| !is_whole(&bytes, format)) {
+        return Err(failed(
+            &"found a part of a picture: the file ends before it",
+        ));
+    }
+    let mut reader = opened().map_err(|e| failed(&e))?;
+    let mut memory = image::Limits::default();
+    memory.max_alloc = Some(LARGEST_PIXEL * pixels + SLACK);
+    reader.limits(memory);
     let image = reader.decode().map_err(|e| failed(&e))?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let levels = match image {
@@ -36,8 +63,81 @@ pub fn read(path: &Path) -> Result<Grey, Failure> {
     })
 }
 
-/// Writes a grey image of so many levels: PNG, or PGM, by the file's ending.
-pub fn write(image: &Grey, levels: u32, path: &Path) -> Result<(), Failure> {
+/// A pixel has at most so many bytes as it is decoded, and a picture so many besides.
+const LARGEST_PIXEL: u64 = 16;
+const SLACK: u64 = 1 << 24;
+
+/// Whether a picture's file has its end, which decoders do not ask for.
+fn is_whole(bytes: &[u8], format: ImageFormat) -> bool {
+    match format {
+        ImageFormat::Jpeg => jpeg_has_all(bytes),
+        ImageFormat::Png => png_has_end(bytes),
+        // What is shorter is refused by the decoder.
+        _ => true,
+    }
+}
+
+/// Whether the chunks of a PNG go on to its end.
+fn png_has_end(bytes: &[u8]) -> bool {
+    const SIGNATURE: usize = 8;
+    const AROUND: usize = 12;
+    let mut at = SIGNATURE;
+    while let Some([a, b, c, d, kind @ ..]) = bytes.get(at..at + SIGNATURE) {
+        let length = u32::from_be_bytes([*a, *b, *c, *d]) as usize;
+        at += length + AROUND;
+        if kind == b"IEND" {
+            return at <= bytes.len();
+        }
+    }
+    false
+}
+
+/// Whether the segments and scans of a JPEG go on to its end (ITU T.81, annex B), and a strict decoder
+/// finds all of its data.
+fn jpeg_has_all(bytes: &[u8]) -> bool {
+    let strict = DecoderOptions::default()
+        .set_strict_mode(true)
+        .set_max_width(usize::from(u16::MAX))
+        .set_max_height(usize::from(u16::MAX));
+    let decoded = JpegDecoder::new_with_options(ZCursor::new(bytes), strict).decode();
+    // Bytes between segments are of no harm.
+    let is_read = decoded.map_or_else(|e| e.to_string().contains("Extra bytes"), |_| true);
+    jpeg_has_end(bytes) && is_read
+}
+
+fn jpeg_has_end(bytes: &[u8]) -> bool {
+    const END: u8 = 0xd9;
+    const SCAN: u8 = 0xda;
+    let mut at = 0;
+    loop {
+        match bytes.get(at..at + 2) {
+            Some([0xff, END]) => return true,
+            // Filling, and what stands alone: the start, restarts, and data that are no marker.
+            Some([0xff, 0xff]) => at += 1,
+            Some([0xff, 0x00 | 0x01 | 0xd0..=0xd8]) => at += 2,
+            Some([0xff, kind]) => {
+                let Some([high, low]) = bytes.get(at + 2..at + 4) else {
+                    return false;
+                };
+                at += 2 + usize::from(u16::from_be_bytes([*high, *low]));
+                if *kind == SCAN {
+                    let is_marker = |pair: &[u8]| pair[0] == 0xff && pair[1] != 0;
+                    let rest = bytes.get(at..).unwrap_or_default();
+                    let Some(data) = rest.windows(2).position(is_marker) else {
+                        return false;
+                    };
+                    at += data;
+                }
+            }
+            // After a restart the scan goes on.
+            Some(_) => at += 1,
+            None => return false,
+        }
+    }
+}
+
+/// The bytes of a grey image of so many levels: PNG, or PGM, by the file's ending.
+pub fn bytes(image: &Grey, levels: u32, path: &Path) -> Result<Vec<u8>, Failure> {
     let (width, height) = (image.width as u32, image.height as u32);
     let picture = if levels <= 256 {
         let bytes = image.levels.iter().map(|v| *v as u8).collect();
@@ -52,33 +152,53 @@ pub fn write(image: &Grey, levels: u32, path: &Path) -> Result<(), Failure> {
     encode(&picture, path)
 }
 
-fn encode(picture: &DynamicImage, path: &Path) -> Result<(), Failure> {
-    let name = path.display();
+/// The format that the ending of a picture to be says.
+///
+/// # Errors
+/// The ending is another.
+pub fn format(path: &Path) -> Result<ImageFormat, Failure> {
     let ending = path
         .extension()
         .and_then(|e| e.to_str())
         .unwrap_or_default();
-    let format = match ending.to_ascii_lowercase().as_str() {
-        "png" => ImageFormat::Png,
-        "pgm" | "pnm" => ImageFormat::Pnm,
+    match ending.to_ascii_lowercase().as_str() {
+        "png" => Ok(ImageFormat::Png),
+        "pgm" | "pnm" => Ok(ImageFormat::Pnm),
         _ => {
+            let name = path.display();
             let expected = "expected a file that ends in .png or .pgm";
-            return Err(Failure::input(format!("{name}: {expected}")));
+            Err(Failure::input(format!("{name}: {expected}")))
         }
-    };
-    let mut bytes = Cursor::new(Vec::new());
-    let written = picture.write_to(&mut bytes, format);
-    written.map_err(|e| Failure::input(format!("{name}: {e}")))?;
-    output::write(bytes.into_inner(), Some(path))
+    }
 }
 
-/// Writes the overlay of a prediction, over an image where there is one: SVG, or PNG.
-pub fn overlay(prediction: &Prediction, below: Option<&Grey>, path: &Path) -> Result<(), Failure> {
-    if path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("svg"))
-    {
-        return output::write(overlay::svg(prediction), Some(path));
+/// The format that the ending of an overlay says; none for SVG.
+///
+/// # Errors
+/// The ending is another.
+pub fn overlay_format(path: &Path) -> Result<Option<ImageFormat>, Failure> {
+    let ending = path.extension();
+    match ending.is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
+        true => Ok(None),
+        false => format(path).map(Some),
+    }
+}
+
+fn encode(picture: &DynamicImage, path: &Path) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Cursor::new(Vec::new());
+    let written = picture.write_to(&mut bytes, format(path)?);
+    written.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
+    Ok(bytes.into_inner())
+}
+
+/// The bytes of the overlay of a prediction, over an image where there is one: SVG, or PNG.
+pub fn overlay(
+    prediction: &Prediction,
+    below: Option<&Grey>,
+    path: &Path,
+) -> Result<Vec<u8>, Failure> {
+    if overlay_format(path)?.is_none() {
+        return Ok(overlay::svg(prediction).into_bytes());
     }
     encode(&DynamicImage::ImageRgb8(picture(prediction, below)), path)
 }
@@ -87,9 +207,14 @@ pub fn overlay(prediction: &Prediction, below: Option<&Grey>, path: &Path) -> Re
 const FOUND: [u8; 3] = [44, 160, 44];
 const SEGMENTS: [u8; 3] = [31, 119, 180];
 
-/// Writes a picture with a part where it is matched: its contours green where they are found, red and
+/// The bytes of a picture with a part where it is matched: its contours green where they are found, red and
 /// dashed where they are missed, and the segments that they are in blue.
-pub fn matched(grey: &Grey, picture: &Picture, found: &Match, path: &Path) -> Result<(), Failure> {
+pub fn matched(
+    grey: &Grey,
+    picture: &Picture,
+    found: &Match,
+    path: &Path,
+) -> Result<Vec<u8>, Failure> {
     let (width, height) = (grey.width as u32, grey.height as u32);
     let mut image = RgbImage::from_pixel(width, height, Rgb([255; 3]));
     for (pixel, level) in image.pixels_mut().zip(&grey.levels) {

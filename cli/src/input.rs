@@ -1,10 +1,12 @@
 //! Reading files and evaluating what they describe.
 
-use crate::arguments::{CameraOptions, DescriptionOptions};
+use crate::arguments::DescriptionOptions;
 use crate::diagnostics::{Failure, Voice};
+use crate::session::Session;
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{self, Description, Format, Options};
 use premio_kernel::number::sign::Zeros;
+use premio_matching::camera::CameraFile;
 use premio_predict::model::record::Description as Written;
 use premio_visibility::Camera;
 use std::path::Path;
@@ -28,13 +30,15 @@ pub struct Part {
 }
 
 /// Reads and evaluates a description; tells the reader's notes and the close calls.
-pub fn part(options: &DescriptionOptions, voice: Voice) -> Result<Part, Failure> {
+pub fn part(options: &DescriptionOptions, session: Session) -> Result<Part, Failure> {
+    let voice = session.voice;
     let name = options.file.display().to_string();
     let format = format(&options.file)?;
-    let text = bytes(&options.file)?;
+    let text = session.limits.read(&options.file)?;
     let written = Written {
         language: format.ending().to_owned(),
-        text: String::from_utf8_lossy(&text).into_owned(),
+        // What is no text is not read either.
+        text: String::from_utf8(text).or_else(|e| not_a_text(&name, format, e.as_bytes()))?,
         part: options.reading.part.clone(),
         smooth: options.reading.smooth,
         resolution: options.resolution,
@@ -44,7 +48,7 @@ pub fn part(options: &DescriptionOptions, voice: Voice) -> Result<Part, Failure>
         true => Digits::Many,
         false => Digits::Filtered,
     };
-    let part = evaluated(name, (format, &text), written, digits, voice)?;
+    let part = evaluated(name, format, written, digits, voice)?;
     let calls = &part.evaluation.decisions.close_calls;
     if options.strict && !calls.is_empty() {
         return Err(Failure::close(
@@ -58,12 +62,12 @@ pub fn part(options: &DescriptionOptions, voice: Voice) -> Result<Part, Failure>
 }
 
 /// The part of a description, read in the usual way.
-pub fn described(path: &Path, voice: Voice) -> Result<Part, Failure> {
+pub fn described(path: &Path, session: Session) -> Result<Part, Failure> {
     let options = DescriptionOptions {
         file: path.to_owned(),
         ..DescriptionOptions::default()
     };
-    part(&options, voice)
+    part(&options, session)
 }
 
 /// The part of a description that a model holds.
@@ -74,19 +78,22 @@ pub fn part_of_model(name: &str, written: Written, voice: Voice) -> Result<Part,
         let said = "found a description in an unknown language";
         Failure::input(format!("{name}: {said}: {language}"))
     })?;
-    let text = written.text.clone().into_bytes();
-    evaluated(
-        name.to_owned(),
-        (format, &text),
-        written,
-        Digits::Filtered,
-        voice,
-    )
+    // Places in it are not places in the model.
+    let name = format!("{name} (its description)");
+    evaluated(name, format, written, Digits::Filtered, voice)
+}
+
+/// What the reader says of bytes that are no text.
+fn not_a_text(name: &str, format: Format, bytes: &[u8]) -> Result<String, Failure> {
+    match reader::parse(name, bytes, format, &Options::default()) {
+        Err(error) => Err(Failure::read(&error, bytes)),
+        Ok(_) => Ok(String::from_utf8_lossy(bytes).into_owned()),
+    }
 }
 
 fn evaluated(
     name: String,
-    (format, text): (Format, &[u8]),
+    format: Format,
     written: Written,
     digits: Digits,
     voice: Voice,
@@ -96,6 +103,7 @@ fn evaluated(
         smooth: written.smooth,
         part: written.part.clone(),
     };
+    let text = written.text.as_bytes();
     let description = description(&name, (format, text), &how, voice)?;
     let read = started.elapsed().as_secs_f64();
     let started = Instant::now();
@@ -157,27 +165,16 @@ pub fn format(path: &Path) -> Result<Format, Failure> {
     })
 }
 
-/// The content of a file.
-pub fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
-    std::fs::read(path).map_err(|e| Failure::input(format!("{}: {e}", path.display())))
+/// The camera of a file.
+pub fn camera_of_file(path: &Path, session: Session) -> Result<Camera, Failure> {
+    let text = session.limits.read_text(path)?;
+    let name = path.display().to_string();
+    Camera::from_json(&text).map_err(|e| Failure::at(&name, &text, e.span(&text), &e))
 }
 
-/// The camera of the command line.
-pub fn camera(options: &CameraOptions) -> Result<Camera, Failure> {
-    if let Some(path) = &options.camera {
-        let name = path.display();
-        let text =
-            String::from_utf8(bytes(path)?).map_err(|e| Failure::input(format!("{name}: {e}")))?;
-        return Camera::from_json(&text).map_err(|e| Failure::input(format!("{name}: {e}")));
-    }
-    let (Some(eye), Some(target)) = (options.eye, options.target) else {
-        return Err(Failure::input("expected --camera, or --eye and --target"));
-    };
-    let (eye, target, up) = (eye.into(), target.into(), options.up.into());
-    let camera = if options.ortho {
-        Camera::orthographic(eye, target, up)
-    } else {
-        Camera::perspective(eye, target, up, options.focal)
-    };
-    camera.map_err(|e| Failure::input(e.to_string()))
+/// The camera of a file that took pictures.
+pub fn pinhole_of_file(path: &Path, session: Session) -> Result<CameraFile, Failure> {
+    let text = session.limits.read_text(path)?;
+    let name = path.display().to_string();
+    CameraFile::from_json(&text).map_err(|e| Failure::at(&name, &text, e.span(&text), &e))
 }

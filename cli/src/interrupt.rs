@@ -14,6 +14,19 @@ pub fn stop() -> Result<Arc<AtomicBool>, Failure> {
     Ok(stop)
 }
 
+/// A file that may grow no further is an error of writing it, as a full disk is: without this the system
+/// ends the program, and what is written so far stays.
+#[cfg(unix)]
+pub fn fail_where_files_are_full() {
+    let unread = Arc::new(AtomicBool::new(false));
+    // Where it cannot be set, the program ends, as any other does.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, unread);
+}
+
+/// Other systems tell writers themselves.
+#[cfg(not(unix))]
+pub fn fail_where_files_are_full() {}
+
 /// How many threads work where nothing else is said.
 pub fn threads(asked: Option<u16>) -> usize {
     let all = || std::thread::available_parallelism().map_or(1, usize::from);

@@ -5,45 +5,101 @@ mod arguments;
 pub mod checks;
 mod commands;
 mod diagnostics;
+mod files;
 pub mod fuzz;
 mod imaging;
 mod input;
 mod interrupt;
 mod model;
 mod output;
+mod session;
 mod setup;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
 use diagnostics::Voice;
+use files::Files;
+use premio_csg::reader::Format;
+use premio_memory::EndingAllocator;
+use session::Session;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+/// The program's memory. It is here, so that what is read can be told where there is none.
+#[global_allocator]
+static MEMORY: EndingAllocator = EndingAllocator::new();
+
 /// Runs the program with its arguments, its own name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    interrupt::fail_where_files_are_full();
+    let arguments = with_command(arguments.into_iter().collect());
     let arguments = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => arguments,
         Err(message) => return Voice::guessed(&arguments).usage(&message),
     };
     let voice = Voice::of(arguments.json);
+    let session = Session {
+        voice,
+        limits: arguments.limits,
+    };
+    if let Err(failure) = Files::of(&arguments.command).check() {
+        return voice.fail(failure);
+    }
     let outcome = match &arguments.command {
-        Command::Info(options) => commands::info::run(options, voice),
-        Command::Contours(options) => commands::contours::run(options, voice),
-        Command::Check(options) => commands::check::run(options, voice),
-        Command::Export(options) => commands::export::run(options, voice),
-        Command::Convert(options) => commands::convert::run(options, voice),
-        Command::Predict(options) => commands::predict::run(options, voice),
-        Command::Model(options) => commands::model::run(options, voice),
-        Command::Advise(options) => commands::advise::run(options, voice),
-        Command::Render(options) => commands::render::run(options, voice),
-        Command::Compare(options) => commands::compare::run(options, voice),
-        Command::Match(options) => commands::matching::find(options, voice),
-        Command::Track(options) => commands::matching::track(options, voice),
+        Command::Info(options) => commands::info::run(options, session),
+        Command::Contours(options) => commands::contours::run(options, session),
+        Command::Check(options) => commands::check::run(options, session),
+        Command::Export(options) => commands::export::run(options, session),
+        Command::Convert(options) => commands::convert::run(options, session),
+        Command::Predict(options) => commands::predict::run(options, session),
+        Command::Model(options) => commands::model::run(options, session),
+        Command::Advise(options) => commands::advise::run(options, session),
+        Command::Render(options) => commands::render::run(options, session),
+        Command::Compare(options) => commands::compare::run(options, session),
+        Command::Match(options) => commands::matching::find(options, session),
+        Command::Track(options) => commands::matching::track(options, session),
         Command::Fuzz(options) => commands::fuzz::run(options, voice),
         Command::Schema(options) => commands::schema::run(options),
         Command::Man(options) => commands::manual::man(options),
         Command::Completions(options) => commands::manual::completions(options),
     };
     outcome.map_or_else(|failure| voice.fail(failure), |()| ExitCode::SUCCESS)
+}
+
+/// The arguments, with `info` before a description that has no command before it.
+fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    let is_option = |word: &OsString| word.to_string_lossy().starts_with('-');
+    let first = (1..arguments.len()).find(|&i| !is_option(&arguments[i]));
+    if let Some(first) = first.filter(|&i| Format::from_path(&arguments[i]).is_some()) {
+        arguments.insert(first, "info".into());
+    }
+    arguments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_description_without_a_command_is_measured() {
+        let with = |words: &str| -> String {
+            let words = words.split(' ').map(OsString::from).collect();
+            let words = with_command(words);
+            let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+            words.join(" ")
+        };
+        assert_eq!(with("premio part.padl"), "premio info part.padl");
+        assert_eq!(
+            with("premio --json a.csg --strict"),
+            "premio --json info a.csg --strict"
+        );
+        for kept in [
+            "premio",
+            "premio check part.padl",
+            "premio --help",
+            "premio nosuch",
+        ] {
+            assert_eq!(with(kept), kept);
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Writing results: whole, or not at all.
 
 use crate::diagnostics::Failure;
+use premio_text::escape;
 use serde::Serialize;
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -9,17 +10,95 @@ use tempfile::NamedTempFile;
 
 /// Writes a text, or bytes, to a file or to standard output.
 pub fn write(text: impl AsRef<[u8]>, to: Option<&Path>) -> Result<(), Failure> {
-    let Some(path) = to else {
-        return stdout(text.as_ref());
-    };
-    file(text, path).map_err(|e| Failure::input(format!("{}: {e}", path.display())))
+    let mut outputs = Outputs::default();
+    outputs.add(text.as_ref().to_vec(), to)?;
+    outputs.finish()
+}
+
+/// The outputs of a command, which appear together or not at all.
+#[derive(Debug, Default)]
+pub struct Outputs {
+    /// What files are to hold.
+    files: Vec<(Vec<u8>, PathBuf)>,
+    /// Devices, pipes, and standard output, where there is no path: what is written there stays.
+    streams: Vec<(Vec<u8>, Option<PathBuf>)>,
+}
+
+impl Outputs {
+    /// Adds an output: a file, or else standard output.
+    pub fn add(&mut self, bytes: Vec<u8>, to: Option<&Path>) -> Result<(), Failure> {
+        let Some(path) = to else {
+            self.streams.push((bytes, None));
+            return Ok(());
+        };
+        let failed = |e: io::Error| Failure::input(format!("{}: {e}", path.display()));
+        let target = target(path).map_err(failed)?;
+        if is_no_file(&target) {
+            // A device or a pipe must not be replaced.
+            self.streams.push((bytes, Some(target)));
+        } else {
+            self.files.push((bytes, target));
+        }
+        Ok(())
+    }
+
+    /// Adds a value as JSON, in one line.
+    pub fn add_json(&mut self, value: &impl Serialize, to: Option<&Path>) -> Result<(), Failure> {
+        let mut text = json_text(value)?;
+        text.push('\n');
+        self.add(text.into_bytes(), to)
+    }
+
+    /// Puts every output in its place.
+    pub fn finish(self) -> Result<(), Failure> {
+        let failed = |path: &Path, e: io::Error| Failure::input(format!("{}: {e}", path.display()));
+        // All are written beside their places before the first is put there.
+        let mut whole = Vec::new();
+        for (bytes, path) in self.files {
+            let file = staged(&bytes, &path).map_err(|e| failed(&path, e))?;
+            whole.push((file, path));
+        }
+        let mut broken = false;
+        for (bytes, path) in self.streams {
+            let written = match path {
+                None => stdout(&bytes),
+                Some(path) => fs::write(&path, bytes).map_err(|e| failed(&path, e)),
+            };
+            match written {
+                // The files are still wanted.
+                Err(Failure::BrokenPipe) => broken = true,
+                written => written?,
+            }
+        }
+        for (file, path) in whole {
+            file.persist(&path).map_err(|e| failed(&path, e.error))?;
+        }
+        match broken {
+            true => Err(Failure::BrokenPipe),
+            false => Ok(()),
+        }
+    }
+}
+
+/// A value as JSON, without characters that a terminal obeys.
+pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string(value);
+    text.map(escape::json)
+        .map_err(|e| Failure::input(e.to_string()))
+}
+
+/// The same, spread over lines.
+pub fn json_pretty(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    text.map(escape::json)
+        .map_err(|e| Failure::input(e.to_string()))
 }
 
 /// Writes a value as JSON, in one line.
 pub fn json(value: &impl Serialize, to: Option<&Path>) -> Result<(), Failure> {
-    let mut text = serde_json::to_string(value).map_err(|e| Failure::input(e.to_string()))?;
-    text.push('\n');
-    write(&text, to)
+    let mut outputs = Outputs::default();
+    outputs.add_json(value, to)?;
+    outputs.finish()
 }
 
 fn stdout(text: &[u8]) -> Result<(), Failure> {
@@ -38,11 +117,16 @@ pub fn file(text: impl AsRef<[u8]>, path: &Path) -> io::Result<()> {
         // A device or a pipe must not be replaced.
         return fs::write(&target, text);
     }
-    let mut whole = temporary(&target)?;
-    whole.write_all(text.as_ref())?;
-    whole.as_file().sync_all()?;
-    whole.persist(&target)?;
+    staged(text.as_ref(), &target)?.persist(&target)?;
     Ok(())
+}
+
+/// A temporary file beside its place, with all its bytes.
+fn staged(bytes: &[u8], target: &Path) -> io::Result<NamedTempFile> {
+    let mut whole = temporary(target)?;
+    whole.write_all(bytes)?;
+    whole.as_file().sync_all()?;
+    Ok(whole)
 }
 
 /// Whether something is there that holds no bytes: a folder, a device or a pipe.
@@ -50,12 +134,23 @@ pub fn is_no_file(target: &Path) -> bool {
     fs::metadata(target).is_ok_and(|m| !m.is_file())
 }
 
-/// The file behind symbolic links.
+/// So many symbolic links may lead to a file that is not there yet.
+const LINKS: usize = 40;
+
+/// The file behind symbolic links, which may not be there yet.
 pub fn target(path: &Path) -> io::Result<PathBuf> {
-    match fs::canonicalize(path) {
-        Err(e) if e.kind() == ErrorKind::NotFound => Ok(path.to_owned()),
-        found => found,
+    let mut path = path.to_owned();
+    for _ in 0..LINKS {
+        match fs::canonicalize(&path) {
+            Err(e) if e.kind() == ErrorKind::NotFound => (),
+            found => return found,
+        }
+        let Ok(next) = fs::read_link(&path) else {
+            return Ok(path);
+        };
+        path = path.parent().unwrap_or(Path::new("")).join(next);
     }
+    Err(io::Error::other("too many symbolic links"))
 }
 
 /// A temporary file beside a file to be that, renamed, has the permissions of any other new file.

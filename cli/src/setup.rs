@@ -2,8 +2,13 @@
 
 use crate::diagnostics::Failure;
 use crate::input::{self, Part};
+use crate::session::Session;
+use nalgebra::Point3;
+use premio_kernel::brep::extent::bounds;
+use premio_kernel::geometry::bounds::Box3;
 use premio_predict::image::shading::Finishes;
 use premio_predict::model::Setups;
+use premio_predict::model::record::Head;
 use premio_predict::outline::stage::StageError;
 use premio_predict::prediction::{self, Draft, Memory};
 use premio_predict::processing::Detector;
@@ -11,62 +16,179 @@ use premio_predict::setup::{Conditions, Setup, SetupError, detector_from_toml};
 use premio_predict::subject::Subject;
 use std::path::Path;
 
-/// The setup of a file.
-pub fn setup(path: &Path) -> Result<Setup, Failure> {
-    read(path, Setup::from_toml).map(|(setup, _)| setup)
+/// A file about setups, and what it says.
+#[derive(Debug)]
+pub struct SetupFile<T> {
+    /// What messages call it.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// What it says.
+    pub value: T,
 }
 
-/// The setups of a file, and its text.
-pub fn setups(path: &Path) -> Result<(Setups, String), Failure> {
-    read(path, Setups::from_toml)
+/// The setup of a file.
+pub fn setup(path: &Path, session: Session) -> Result<SetupFile<Setup>, Failure> {
+    let file = read(path, session, Setup::from_toml)?;
+    file.check_pixels(&file.value.conditions, session)?;
+    if file.value.lights.is_empty() {
+        file.note_darkness(&file.value.conditions, session);
+    }
+    Ok(file)
+}
+
+/// The setups of a file.
+pub fn setups(path: &Path, session: Session) -> Result<SetupFile<Setups>, Failure> {
+    let file = read(path, session, Setups::from_toml)?;
+    file.check_pixels(&file.value.conditions, session)?;
+    if file.value.lights.is_empty() && file.value.illumination.is_none() {
+        file.note_darkness(&file.value.conditions, session);
+    }
+    Ok(file)
 }
 
 /// The detector of a file.
-pub fn detector(path: &Path) -> Result<Detector, Failure> {
-    read(path, detector_from_toml).map(|(detector, _)| detector)
+pub fn detector(path: &Path, session: Session) -> Result<Detector, Failure> {
+    read(path, session, detector_from_toml).map(|file| file.value)
 }
 
 fn read<T>(
     path: &Path,
+    session: Session,
     parse: impl Fn(&str) -> Result<T, SetupError>,
-) -> Result<(T, String), Failure> {
+) -> Result<SetupFile<T>, Failure> {
     let name = path.display().to_string();
-    let text = String::from_utf8(input::bytes(path)?);
-    let text = text.map_err(|e| Failure::input(format!("{name}: {e}")))?;
-    let parsed = parse(&text).map_err(|error| Failure::setup(&name, &error, &text))?;
-    Ok((parsed, text))
+    let text = session.limits.read_text(path)?;
+    let value = parse(&text).map_err(|error| Failure::setup(&name, &error, &text))?;
+    Ok(SetupFile { name, text, value })
 }
 
-/// A part that is seen in setups, with the materials of its faces; `path` is the setups' file.
-pub fn subject<'p>(
-    part: &'p Part,
-    path: &Path,
-    conditions: &Conditions,
-) -> Result<(Subject<'p>, Finishes), Failure> {
-    let subject = bare(part, path)?;
-    let finishes = Finishes::new(&subject, conditions).map_err(failure(part, path))?;
-    Ok((subject, finishes))
+impl<T> SetupFile<T> {
+    /// The failure of a part in it.
+    fn failure(&self, part: &Part, error: &StageError) -> Failure {
+        Failure::stage(&part.name, [&self.name, &self.text], error)
+    }
+
+    fn check_pixels(&self, conditions: &Conditions, session: Session) -> Result<(), Failure> {
+        let [width, height] = conditions.sensor.resolution;
+        let (pixels, most) = (width as u64 * height as u64, session.limits.pixels);
+        if pixels <= most {
+            return Ok(());
+        }
+        let reason = format!(
+            "is {width} x {height}, {pixels} pixels, expected at most {most}: --max-pixels sets \
+             another limit"
+        );
+        let error = SetupError::value("sensor.resolution", reason);
+        Err(Failure::setup(&self.name, &error, &self.text))
+    }
+
+    fn note_darkness(&self, conditions: &Conditions, session: Session) {
+        let said = format!(
+            "there is no `[[light]]`: only the surroundings shine, evenly (ambient {}), and nothing \
+             casts a shadow",
+            conditions.ambient
+        );
+        session.voice.note(&self.name, &said);
+    }
+
+    /// A part that is seen in setups, with the materials of its faces.
+    pub fn subject<'p>(
+        &self,
+        part: &'p Part,
+        conditions: &Conditions,
+    ) -> Result<(Subject<'p>, Finishes), Failure> {
+        let subject = self.bare(part)?;
+        let finishes = Finishes::new(&subject, conditions);
+        Ok((subject, finishes.map_err(|e| self.failure(part, &e))?))
+    }
+
+    /// Says in how many setups nothing of the part is seen.
+    ///
+    /// # Errors
+    /// It is seen in none.
+    pub fn check_seen(&self, head: &Head, session: Session) -> Result<(), Failure> {
+        let unseen: u64 = head.unseen.values().sum();
+        let Some((why, _)) = head.unseen.iter().max_by_key(|(_, count)| **count) else {
+            return Ok(());
+        };
+        let count = head.count;
+        if unseen < count {
+            let said =
+                format!("nothing of the part is seen in {unseen} of {count} setups, as {why}");
+            session.voice.note(&self.name, &said);
+            return Ok(());
+        }
+        let reason = format!("shows nothing of the part in any of {count} setups, as {why}");
+        let error = SetupError::value("viewing.radius", reason);
+        Err(Failure::setup(&self.name, &error, &self.text))
+    }
+
+    fn bare<'p>(&self, part: &'p Part) -> Result<Subject<'p>, Failure> {
+        let band = input::resolution_of_views(part)?;
+        let subject = Subject::new(&part.evaluation.brep, band);
+        subject.map_err(|error| self.failure(part, &error.into()))
+    }
 }
 
-/// Asks something of the draft of a part's image; `path` is the setup's file.
-pub fn with_draft<T>(
-    part: &Part,
-    path: &Path,
-    setup: &Setup,
-    ask: impl FnOnce(&Draft<'_>) -> T,
-) -> Result<T, Failure> {
-    let subject = bare(part, path)?;
-    prediction::with_draft(&subject, None, setup, &mut Memory::default(), ask)
-        .map_err(failure(part, path))
+impl SetupFile<Setups> {
+    /// Says which cameras and lights of the spheres are inside the part, where nothing is seen.
+    ///
+    /// # Errors
+    /// All of one sphere are, or a light that stands still is.
+    pub fn check_places(&self, subject: &Subject<'_>, session: Session) -> Result<(), Failure> {
+        let setups = &self.value;
+        let refused = |key: String, reason: &str| {
+            let error = SetupError::value(key, reason);
+            Err(Failure::setup(&self.name, &error, &self.text))
+        };
+        for (i, light) in setups.lights.iter().enumerate() {
+            let place = light.position.map(Point3::from);
+            if place.is_some_and(|p| subject.contains(&p)) {
+                let reason = "is inside the part: expected a point outside";
+                return refused(format!("light[{i}].position"), reason);
+            }
+        }
+        let bounds = bounds(subject.brep);
+        for (key, what, places) in [
+            ("viewing", "viewpoints", setups.eyes(subject)),
+            ("illumination", "lights", setups.moving_lights(subject)),
+        ] {
+            let inside = places.iter().filter(|p| subject.contains(p)).count();
+            let all = places.len();
+            if inside > 0 && inside == all {
+                let reason =
+                    format!("puts all {all} {what} inside the part: expected a larger sphere");
+                return refused(format!("{key}.radius"), &reason);
+            }
+            let boxed = places.iter().filter(|p| holds(&bounds, p)).count();
+            let said = match (inside, boxed) {
+                (0, 0) => continue,
+                (0, _) => format!("{boxed} of {all} {what} are inside the part's box"),
+                _ => format!(
+                    "{inside} of {all} {what} are inside the part: nothing is seen in these setups"
+                ),
+            };
+            session.voice.note(&self.name, &said);
+        }
+        Ok(())
+    }
 }
 
-fn bare<'p>(part: &'p Part, path: &Path) -> Result<Subject<'p>, Failure> {
-    let band = input::resolution_of_views(part)?;
-    let subject = Subject::new(&part.evaluation.brep, band);
-    subject.map_err(|error| failure(part, path)(error.into()))
+/// Whether a box holds a point.
+fn holds(bounds: &Box3, p: &Point3<f64>) -> bool {
+    (0..3).all(|i| (bounds.min[i]..=bounds.max[i]).contains(&p[i]))
 }
 
-/// What is told of a part that cannot be put into a setup.
-fn failure(part: &Part, path: &Path) -> impl Fn(StageError) -> Failure {
-    move |error| Failure::stage(&part.name, &path.display().to_string(), &error)
+impl SetupFile<Setup> {
+    /// Asks something of the draft of a part's image.
+    pub fn with_draft<T>(
+        &self,
+        part: &Part,
+        ask: impl FnOnce(&Draft<'_>) -> T,
+    ) -> Result<T, Failure> {
+        let subject = self.bare(part)?;
+        prediction::with_draft(&subject, None, &self.value, &mut Memory::default(), ask)
+            .map_err(|error| self.failure(part, &error))
+    }
 }

@@ -1,15 +1,20 @@
 //! The camera that took a picture: OpenCV's matrix.
 
 use nalgebra::{Isometry3, Matrix3, Point2, Point3, Vector3};
+use premio_text::{Document, TextError};
 use premio_visibility::camera::{Camera, Model};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Why a camera cannot have taken a picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PinholeError {
     /// The text is not the JSON of a camera.
     #[error("camera: {0}")]
-    Syntax(String),
+    Text(#[from] TextError),
+    /// A value is out of its range.
+    #[error("camera: `{0}` {1}")]
+    Value(&'static str, &'static str),
     /// The matrix is none of a camera.
     #[error("camera: `K` {0}")]
     Matrix(&'static str),
@@ -53,8 +58,32 @@ pub enum PinholeError {
 /// degree.
 const FOCALS: [f64; 2] = [0.05, 1000.0];
 
+impl PinholeError {
+    /// The bytes of the camera's JSON at which it is, where they are known.
+    pub fn span(&self, text: &str) -> Option<Range<usize>> {
+        let key = match self {
+            Self::Text(error) => return error.span.clone(),
+            Self::Value(key, _) => key,
+            Self::Matrix(_) | Self::Focal { .. } | Self::Centre { .. } => "K",
+            Self::Distorted => "dist",
+            Self::Size { .. } => "width",
+        };
+        let document = Document::from_json(text).ok()?;
+        let member = document.root.member(key);
+        Some(member.map_or(document.root.span.clone(), |m| m.key_span.clone()))
+    }
+
+    /// Whether the camera may be that of another picture.
+    pub fn is_of_picture(&self) -> bool {
+        matches!(
+            self,
+            Self::Size { .. } | Self::Focal { .. } | Self::Centre { .. }
+        )
+    }
+}
+
 /// A camera's JSON: of OpenCV's matrices `K` is needed. Where the camera stands is what is asked.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Raw {
     #[serde(rename = "K")]
@@ -64,9 +93,75 @@ struct Raw {
     width: Option<f64>,
     height: Option<f64>,
     #[serde(rename = "R", default)]
-    _r: Option<[[f64; 3]; 3]>,
+    r: Option<[[f64; 3]; 3]>,
     #[serde(rename = "t", default)]
     _t: Option<[f64; 3]>,
+}
+
+/// What a camera's file says, before there is a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraFile {
+    pinhole: Pinhole,
+    size: [Option<f64>; 2],
+}
+
+impl CameraFile {
+    /// The camera of a JSON text.
+    ///
+    /// # Errors
+    /// The text is no camera's, or a value is out of its range.
+    pub fn from_json(text: &str) -> Result<Self, PinholeError> {
+        let raw: Raw = Document::from_json(text)?.read()?;
+        if raw.dist.iter().any(|d| *d != 0.0) {
+            return Err(PinholeError::Distorted);
+        }
+        for (key, value) in [("width", raw.width), ("height", raw.height)] {
+            if value.is_some_and(|v| v < 1.0 || v.fract() != 0.0) {
+                let reason = "is not a whole number above zero";
+                return Err(PinholeError::Value(key, reason));
+            }
+        }
+        let matrix = |rows: [[f64; 3]; 3]| Matrix3::from_fn(|i, j| rows[i][j]);
+        if raw.r.is_some_and(|r| !is_rotation(&matrix(r))) {
+            return Err(PinholeError::Value("R", "is not a rotation"));
+        }
+        Ok(Self {
+            pinhole: Pinhole::of(&matrix(raw.k))?,
+            size: [raw.width, raw.height],
+        })
+    }
+
+    /// The camera for a picture of so many pixels.
+    ///
+    /// # Errors
+    /// The picture is of another size, or no camera takes such pictures.
+    pub fn for_picture(&self, picture: [usize; 2]) -> Result<Pinhole, PinholeError> {
+        let of = [0, 1].map(|i| self.size[i].unwrap_or(picture[i] as f64));
+        if (0..2).any(|i| of[i] != picture[i] as f64) {
+            let camera = of;
+            return Err(PinholeError::Size { camera, picture });
+        }
+        let pinhole = self.pinhole;
+        let size = picture[0].max(picture[1]);
+        let [shortest, longest] = FOCALS;
+        let fits = |f: &f64| (shortest..=longest).contains(&(f / size.max(1) as f64));
+        if let Some(&focal) = pinhole.focal.iter().find(|f| !fits(f)) {
+            return Err(PinholeError::Focal { focal, size });
+        }
+        let [x, y] = pinhole.centre;
+        let far = |v: f64, size: usize| v < -(size as f64) || v > 2.0 * size as f64;
+        if far(x, picture[0]) || far(y, picture[1]) {
+            return Err(PinholeError::Centre { x, y });
+        }
+        Ok(pinhole)
+    }
+}
+
+/// Whether rows are of length one and square to one another, to the four digits that files have, and
+/// nothing is mirrored.
+fn is_rotation(r: &Matrix3<f64>) -> bool {
+    let off = (r * r.transpose() - Matrix3::identity()).amax();
+    off <= f64::EPSILON.sqrt().sqrt() && r.determinant() > 0.0
 }
 
 /// A pinhole camera: a point (X, Y, Z) of its frame, x right, y down, z forward, has the image
@@ -84,30 +179,7 @@ pub struct Pinhole {
 impl Pinhole {
     /// The camera of a JSON text, for a picture of so many pixels.
     pub fn from_json(text: &str, picture: [usize; 2]) -> Result<Self, PinholeError> {
-        let raw: Raw =
-            serde_json::from_str(text).map_err(|e| PinholeError::Syntax(e.to_string()))?;
-        if raw.dist.iter().any(|d| *d != 0.0) {
-            return Err(PinholeError::Distorted);
-        }
-        let size = [raw.width, raw.height];
-        let of = [0, 1].map(|i| size[i].unwrap_or(picture[i] as f64));
-        if (0..2).any(|i| of[i] != picture[i] as f64) {
-            let camera = of;
-            return Err(PinholeError::Size { camera, picture });
-        }
-        let pinhole = Self::of(&Matrix3::from_fn(|i, j| raw.k[i][j]))?;
-        let size = picture[0].max(picture[1]);
-        let [shortest, longest] = FOCALS;
-        let fits = |f: &f64| (shortest..=longest).contains(&(f / size.max(1) as f64));
-        if let Some(&focal) = pinhole.focal.iter().find(|f| !fits(f)) {
-            return Err(PinholeError::Focal { focal, size });
-        }
-        let [x, y] = pinhole.centre;
-        let far = |v: f64, size: usize| v < -(size as f64) || v > 2.0 * size as f64;
-        if far(x, picture[0]) || far(y, picture[1]) {
-            return Err(PinholeError::Centre { x, y });
-        }
-        Ok(pinhole)
+        CameraFile::from_json(text)?.for_picture(picture)
     }
 
     /// The camera of a matrix K.
@@ -118,7 +190,7 @@ impl Pinhole {
         let lower = [k[(1, 0)], k[(2, 0)], k[(2, 1)]];
         if lower.iter().any(|v| *v != 0.0) || k[(2, 2)] != 1.0 {
             return Err(PinholeError::Matrix(
-                "is upper triangular, with a last row of 0, 0, 1",
+                "is not upper triangular with a last row of 0, 0, 1",
             ));
         }
         let focal = [k[(0, 0)], k[(1, 1)]];

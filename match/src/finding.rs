@@ -12,6 +12,7 @@ use crate::worth::{DETERMINED, FEWEST, PIECE, REPEATED, SMALLEST};
 use nalgebra::{Isometry3, Matrix6};
 use premio_predict::outline::Source;
 use std::cmp::Ordering;
+use std::collections::HashSet;
 
 /// An edge that is off a feature as a whole by more pixels than these runs beside it.
 const BESIDE: f64 = 2.0;
@@ -232,6 +233,16 @@ impl Match {
         pairs.filter_map(|p| Some((p.source, p.found.as_ref()?.segments.as_slice())))
     }
 
+    /// The share of its segments that another match takes, too.
+    fn overlap(&self, other: &Self) -> f64 {
+        let segments = |m: &Self| -> HashSet<u32> {
+            m.taken().flat_map(|(_, all)| all.iter().copied()).collect()
+        };
+        let (ours, theirs) = (segments(self), segments(other));
+        let shared = ours.intersection(&theirs).count();
+        shared as f64 / ours.len().min(theirs.len()).max(1) as f64
+    }
+
     /// How many features are found.
     pub fn found(&self) -> usize {
         self.pairs.iter().filter(|p| p.found.is_some()).count()
@@ -270,6 +281,23 @@ impl Finding {
         &others[..others.iter().take_while(|m| is(m)).count()]
     }
 }
+
+impl Finding {
+    /// The accepted matches that are made of other edges of the picture: instances of the part, the
+    /// likeliest first. More of them may be in the picture, as only the best poses are searched.
+    pub fn instances(&self) -> Vec<&Match> {
+        let mut known: Vec<&Match> = Vec::new();
+        for found in self.matches.iter().filter(|m| m.is_accepted()) {
+            if known.iter().all(|other| found.overlap(other) < OVERLAP) {
+                known.push(found);
+            }
+        }
+        known
+    }
+}
+
+/// Matches that share more of their segments are of one thing.
+const OVERLAP: f64 = 0.25;
 
 /// A match whose odds are less by this, as a logarithm, is no rival.
 const RIVAL: f64 = 3.0;

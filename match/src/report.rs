@@ -111,6 +111,18 @@ pub struct Rival {
     pub probability: f64,
 }
 
+/// A place in the picture at which the part is found.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct Instance {
+    /// The pose.
+    #[serde(flatten)]
+    pub pose: Pose,
+    /// As the report's.
+    pub probability: f64,
+    /// Whether the part is there.
+    pub found: bool,
+}
+
 /// What the search for a part did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct Work {
@@ -199,6 +211,9 @@ pub struct Report {
     /// Other poses at which the part is found, too, and whose odds are less by no more than e³, up to
     /// symmetries.
     pub rivals: Vec<Rival>,
+    /// The part as often as it is found, each with edges of its own, the likeliest first: that is the one
+    /// that the report is of. More may be in the picture, as only the best poses are searched.
+    pub instances: Vec<Instance>,
     /// The correspondences.
     pub features: Vec<Feature>,
     /// Of a sequence: whether it was looked for anew, rather than from its last pose.
@@ -252,6 +267,7 @@ impl Report {
             }),
             axis: part.axis.as_ref().map(Axis::from),
             rivals: rivals(finding),
+            instances: instances(finding),
             features: best.map_or(Vec::new(), |m| features(m, picture, scale)),
             anew: None,
             work: work(picture, finding),
@@ -299,6 +315,15 @@ fn rivals(finding: &Finding) -> Vec<Rival> {
         probability: m.probability(),
     });
     rivals.collect()
+}
+
+fn instances(finding: &Finding) -> Vec<Instance> {
+    let instances = finding.instances().into_iter().map(|m| Instance {
+        pose: Pose::from(&m.pose),
+        probability: m.probability(),
+        found: m.is_accepted(),
+    });
+    instances.collect()
 }
 
 fn features(found: &Match, picture: &Picture, scale: u32) -> Vec<Feature> {

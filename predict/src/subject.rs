@@ -3,6 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::extent;
+use premio_kernel::brep::inside::holds;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::tessellation::{Accuracy, Mesh, tessellate};
@@ -55,6 +56,12 @@ impl<'a> Subject<'a> {
         };
         subject.openness = openness(&subject);
         Ok(subject)
+    }
+
+    /// Whether a point is in the part's material, or on its boundary as far as that is known.
+    pub fn contains(&self, p: &Point3<f64>) -> bool {
+        let near = (p - self.centre).norm() <= self.radius + self.band;
+        near && holds(self.brep, p, self.band).unwrap_or(true)
     }
 }
 

@@ -7,19 +7,25 @@ use std::path::{Path, PathBuf};
 
 /// Each package with the packages of ours that it may depend on.
 const LAYERS: &[(&str, &str, &[&str])] = &[
+    ("text", "premio-text", &[]),
+    ("memory", "premio-memory", &[]),
     ("kernel", "premio-kernel", &[]),
     ("csg", "premio-csg", &["premio-kernel"]),
-    ("visibility", "premio-visibility", &["premio-kernel"]),
+    (
+        "visibility",
+        "premio-visibility",
+        &["premio-kernel", "premio-text"],
+    ),
     // Its tests make boundaries of descriptions.
     (
         "exchange",
         "premio-exchange",
-        &["premio-kernel", "premio-csg"],
+        &["premio-kernel", "premio-text", "premio-csg"],
     ),
     (
         "predict",
         "premio-predict",
-        &["premio-visibility", "premio-kernel"],
+        &["premio-visibility", "premio-kernel", "premio-text"],
     ),
     // Its tests make boundaries of descriptions.
     (
@@ -29,6 +35,7 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
             "premio-predict",
             "premio-visibility",
             "premio-kernel",
+            "premio-text",
             "premio-csg",
         ],
     ),
@@ -37,6 +44,8 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         "premio",
         &[
             "premio-kernel",
+            "premio-memory",
+            "premio-text",
             "premio-csg",
             "premio-visibility",
             "premio-exchange",

@@ -5,14 +5,16 @@
 
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_text::{Document, TextError};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Why a camera cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CameraError {
     /// The text is not the JSON of a camera.
     #[error("camera: {0}")]
-    Syntax(String),
+    Text(#[from] TextError),
     /// A key that the kind of camera needs is absent.
     #[error("camera: `{0}` is missing")]
     Missing(&'static str),
@@ -25,6 +27,23 @@ pub enum CameraError {
     /// The value of a key is out of its range.
     #[error("camera: `{0}` {1}")]
     Value(&'static str, &'static str),
+}
+
+impl CameraError {
+    /// The bytes of the camera's JSON at which it is, where they are known.
+    pub fn span(&self, text: &str) -> Option<Range<usize>> {
+        let key = match self {
+            Self::Text(error) => return error.span.clone(),
+            Self::Missing(_) => "",
+            Self::Projection(_) => "projection",
+            Self::Unexpected(key) | Self::Value(key, _) => key,
+        };
+        let document = Document::from_json(text).ok()?;
+        match document.root.member(key) {
+            Some(member) => Some(member.key_span.clone()),
+            None => Some(document.root.span),
+        }
+    }
 }
 
 /// A camera; lengths in the part's unit and frame.
@@ -262,9 +281,7 @@ impl Camera {
     /// The camera that a JSON text describes.
     pub fn from_json(text: &str) -> Result<Self, CameraError> {
         // Read in two steps, so that what is wrong with the camera keeps its type.
-        let raw: Raw =
-            serde_json::from_str(text).map_err(|e| CameraError::Syntax(e.to_string()))?;
-        Self::try_from(raw)
+        Self::try_from(Document::from_json(text)?.read::<Raw>()?)
     }
 
     fn validate(&self) -> Result<(), CameraError> {
@@ -295,21 +312,30 @@ impl Camera {
                 if self.near.is_some_and(|near| near.is_at_most(0.0)) {
                     return Err(CameraError::Value("near", "is not positive"));
                 }
-                finite("t", t.iter().all(|x| x.is_finite()))?;
+                let is_near = |x: &f64| x.is_finite() && !x.abs().reaches(FURTHEST);
+                finite("t", t.iter().all(is_near))?;
                 validate_matrices(k, r, size)
             }
         }
     }
 }
 
+/// Numbers that are no smaller have no square.
+const FURTHEST: f64 = 1e100;
+
 fn validate_sight(
     eye: &Point3<f64>,
     target: &Point3<f64>,
     up: &Vector3<f64>,
 ) -> Result<(), CameraError> {
-    let all = eye.iter().chain(target.iter()).chain(up.iter());
-    if !all.into_iter().all(|x| x.is_finite()) {
-        return Err(CameraError::Value("eye", "target or up is not finite"));
+    let named = [("eye", eye.coords), ("target", target.coords), ("up", *up)];
+    for (key, value) in named {
+        if !value.iter().all(|x| x.is_finite()) {
+            return Err(CameraError::Value(key, "has a number that is not finite"));
+        }
+        if value.amax().reaches(FURTHEST) {
+            return Err(CameraError::Value(key, "has a number beyond 1e100"));
+        }
     }
     if up.iter().all(|x| x.is_exactly(0.0)) {
         return Err(CameraError::Value("up", "is zero"));
@@ -335,8 +361,12 @@ fn validate_matrices(
             "is not upper triangular with a last row of 0, 0, 1",
         ));
     }
-    if (k[(0, 0)] * k[(1, 1)]).is_exactly(0.0) {
-        return Err(CameraError::Value("K", "has a focal length of zero"));
+    if !(k[(0, 0)].is_above_zero() && k[(1, 1)].is_above_zero()) {
+        let reason = "has a focal length that is not above zero";
+        return Err(CameraError::Value("K", reason));
+    }
+    if k.amax().reaches(FURTHEST) {
+        return Err(CameraError::Value("K", "has a number beyond 1e100"));
     }
     // Files carry few digits: a turn to four digits passes.
     let off = (r * r.transpose() - Matrix3::identity()).amax();
@@ -344,12 +374,13 @@ fn validate_matrices(
     if !(off.is_within(slack) && r.determinant().is_above_zero()) {
         return Err(CameraError::Value("R", "is not a rotation"));
     }
-    match size {
-        Some([w, h]) if !(w.is_above_zero() && h.is_above_zero()) => {
-            Err(CameraError::Value("width", "or height is not positive"))
+    let named = ["width", "height"].into_iter().zip(size.iter().flatten());
+    for (key, side) in named {
+        if !(side.is_above_zero() && side.fract().is_exactly(0.0)) {
+            return Err(CameraError::Value(key, "is not a whole number above zero"));
         }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -388,9 +419,6 @@ mod tests {
         for (text, error) in cases {
             assert_eq!(Camera::from_json(text).unwrap_err(), error);
         }
-        assert!(matches!(
-            Camera::from_json("["),
-            Err(CameraError::Syntax(_))
-        ));
+        assert!(matches!(Camera::from_json("["), Err(CameraError::Text(_))));
     }
 }

@@ -9,7 +9,7 @@ use premio_visibility::drawing::sheet::{Angle, Paper, Scale, View};
 pub struct SheetOptions {
     /// Views beside one another on a sheet, in place of a camera (svg, dxf)
     #[arg(long, value_enum, value_name = "VIEWS", value_delimiter = ',',
-          conflicts_with_all = ["camera", "eye", "target", "up", "focal", "ortho"])]
+          conflicts_with_all = ["view", "camera", "eye", "target", "up", "focal", "ortho"])]
     pub views: Vec<ViewName>,
     /// The paper, lying (svg, dxf) [default: a3]
     #[arg(long, value_enum, value_name = "PAPER")]

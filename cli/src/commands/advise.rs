@@ -3,7 +3,8 @@
 use crate::arguments::{AdviseOptions, GoalName};
 use crate::diagnostics::{Failure, Voice};
 use crate::interrupt::pool;
-use crate::setup::{setups, subject};
+use crate::session::Session;
+use crate::setup::setups;
 use crate::{input, output};
 use nalgebra::Vector3;
 use premio_predict::advise::{Goal, Judge, Placing, SCHEMA, Score};
@@ -51,14 +52,17 @@ struct Advice {
 const STEP: f64 = 0.1;
 
 /// Runs the command.
-pub fn run(options: &AdviseOptions, voice: Voice) -> Result<(), Failure> {
-    let (setups, _) = setups(&options.setups)?;
-    let part = input::part(&options.description, voice)?;
-    let (subject, finishes) = subject(&part, &options.setups, &setups.conditions)?;
+pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
+    let file = setups(&options.setups, session)?;
+    let setups = &file.value;
+    let part = input::part(&options.description, session)?;
+    let (subject, finishes) = file.subject(&part, &setups.conditions)?;
+    file.check_places(&subject, session)?;
     let judge = Judge {
         subject: &subject,
         finishes: &finishes,
-        setups: &setups,
+        setups,
         goal: match options.goal {
             GoalName::Features => Goal::Features,
             GoalName::Pose => Goal::Pose,

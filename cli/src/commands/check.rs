@@ -2,13 +2,15 @@
 
 use crate::arguments::CheckOptions;
 use crate::checks::{Check, Checker, Finding, Report};
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::Failure;
+use crate::session::Session;
 use crate::{input, output};
 use serde::Serialize;
 
 /// Runs the command.
-pub fn run(options: &CheckOptions, voice: Voice) -> Result<(), Failure> {
-    let part = input::part(&options.description, voice)?;
+pub fn run(options: &CheckOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
+    let part = input::part(&options.description, session)?;
     let checker = Checker::new(&part.description.tree, &part.evaluation);
     let working = voice.working("checking");
     let report = checker.all(options.rays as usize);

@@ -2,9 +2,11 @@
 
 use super::render::rendered;
 use crate::arguments::CompareOptions;
-use crate::diagnostics::{Failure, Voice};
-use crate::setup::{setup, with_draft};
-use crate::{imaging, input, output};
+use crate::diagnostics::Failure;
+use crate::output::Outputs;
+use crate::session::Session;
+use crate::setup::setup;
+use crate::{imaging, input};
 use premio_predict::agreement::{Agreement, Match, SCHEMA, matches};
 use premio_predict::outline::Source;
 use premio_predict::prediction::prediction;
@@ -27,9 +29,15 @@ struct Comparison {
 const OTHER: u64 = 0x5eed;
 
 /// Runs the command.
-pub fn run(options: &CompareOptions, voice: Voice) -> Result<(), Failure> {
-    let setup = setup(&options.setup)?;
-    let taken = options.image.as_deref().map(imaging::read).transpose()?;
+pub fn run(options: &CompareOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
+    if let Some(path) = &options.overlay {
+        imaging::overlay_format(path)?;
+    }
+    let setup_file = setup(&options.setup, session)?;
+    let setup = &setup_file.value;
+    let taken = options.image.as_deref();
+    let taken = taken.map(|path| imaging::read(path, session)).transpose()?;
     let [width, height] = setup.conditions.sensor.resolution;
     if let Some(image) = taken
         .as_ref()
@@ -41,9 +49,9 @@ pub fn run(options: &CompareOptions, voice: Voice) -> Result<(), Failure> {
             image.width, image.height
         )));
     }
-    let part = input::part(&options.description, voice)?;
-    let (comparison, predicted, image) = with_draft(&part, &options.setup, &setup, |draft| {
-        let predicted = prediction(draft, &setup);
+    let part = input::part(&options.description, session)?;
+    let (comparison, predicted, image) = setup_file.with_draft(&part, |draft| {
+        let predicted = prediction(draft, setup);
         let seed = setup.conditions.seed ^ OTHER;
         let image = taken.unwrap_or_else(|| rendered(draft, seed, voice));
         let (_, found) = draft.evidence_in(&image, &Domain::full(width, height));
@@ -57,14 +65,19 @@ pub fn run(options: &CompareOptions, voice: Voice) -> Result<(), Failure> {
         };
         (comparison, predicted, image)
     })?;
+    let mut outputs = Outputs::default();
     if let Some(path) = &options.overlay {
-        imaging::overlay(&predicted, Some(&image), path)?;
+        outputs.add(
+            imaging::overlay(&predicted, Some(&image), path)?,
+            Some(path),
+        )?;
     }
     let to = options.output.as_deref();
     match voice.is_json() {
-        true => output::json(&comparison, to),
-        false => output::write(words(&comparison), to),
+        true => outputs.add_json(&comparison, to)?,
+        false => outputs.add(words(&comparison).into_bytes(), to)?,
     }
+    outputs.finish()
 }
 
 fn words(comparison: &Comparison) -> String {

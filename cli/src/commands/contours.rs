@@ -1,27 +1,36 @@
 //! `premio contours`: what a camera sees.
 
-use crate::arguments::{ContoursFormat, ContoursOptions, ViewName};
-use crate::diagnostics::{Failure, Voice};
+use crate::arguments::{CameraChoice, ContoursFormat, ContoursOptions, ViewName};
+use crate::diagnostics::Failure;
 use crate::input::Part;
+use crate::session::Session;
 use crate::{input, output};
 use nalgebra::Point3;
 use premio_kernel::unit::Unit;
+use premio_visibility::camera::CameraError;
 use premio_visibility::drawing::sheet::{self, Angle, Paper, Sheet, View};
 use premio_visibility::drawing::{self, Drawing, dxf, svg};
 use premio_visibility::{Camera, Contours, contours};
 
 /// Runs the command.
-pub fn run(options: &ContoursOptions, voice: Voice) -> Result<(), Failure> {
+pub fn run(options: &ContoursOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
     let to = options.output.path();
+    let format = options
+        .output
+        .format(options.format)
+        .map_err(Failure::input)?;
+    let chosen = options.camera.choice().map_err(Failure::input)?;
     if options.sheet.is_asked() {
-        return output::write(on_sheet(options, voice)?, to);
+        return output::write(on_sheet(options, format, session)?, to);
     }
-    let camera = input::camera(&options.camera)?;
-    let part = input::part(&options.description, voice)?;
+    let given = Given::read(chosen, session)?;
+    let part = input::part(&options.description, session)?;
+    let camera = given.camera(&part)?;
     let working = voice.working("finding the contours");
     let mut seen = seen(&part, &camera)?;
     drop(working);
-    match options.format {
+    match format {
         ContoursFormat::Json => {
             if let Some(n) = options.samples {
                 seen.sample(n as usize);
@@ -49,8 +58,12 @@ fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
 }
 
 /// The views, or that of the camera, on a sheet.
-fn on_sheet(options: &ContoursOptions, voice: Voice) -> Result<String, Failure> {
-    let write = match options.format {
+fn on_sheet(
+    options: &ContoursOptions,
+    format: ContoursFormat,
+    session: Session,
+) -> Result<String, Failure> {
+    let write = match format {
         ContoursFormat::Json => {
             return Err(Failure::input(
                 "a sheet goes with --format svg and dxf only",
@@ -61,15 +74,19 @@ fn on_sheet(options: &ContoursOptions, voice: Voice) -> Result<String, Failure> 
     };
     let asked = &options.sheet;
     let alone = match asked.views.is_empty() {
-        true => Some(input::camera(&options.camera)?),
+        true => {
+            let chosen = options.camera.choice().map_err(Failure::input)?;
+            Some(Given::read(chosen, session)?)
+        }
         false => None,
     };
-    let part = input::part(&options.description, voice)?;
+    let part = input::part(&options.description, session)?;
     let cameras = match alone {
-        Some(camera) => vec![(None, camera)],
+        Some(Given::Choice(CameraChoice::Named(name))) => cameras(&part, &[name])?,
+        Some(given) => vec![(None, given.camera(&part)?)],
         None => cameras(&part, &asked.views)?,
     };
-    let bar = voice.progress(cameras.len() as u64);
+    let bar = session.voice.progress(cameras.len() as u64);
     let mut views = Vec::new();
     for (view, camera) in cameras {
         views.push((view, drawing(&seen(&part, &camera)?, options)));
@@ -88,16 +105,54 @@ fn on_sheet(options: &ContoursOptions, voice: Voice) -> Result<String, Failure> 
     Ok(write(&sheet))
 }
 
+/// A camera, before there is a part.
+enum Given<'a> {
+    /// That of a file.
+    Camera(Camera),
+    /// One that depends on the part.
+    Choice(CameraChoice<'a>),
+}
+
+impl<'a> Given<'a> {
+    fn read(choice: CameraChoice<'a>, session: Session) -> Result<Self, Failure> {
+        match choice {
+            CameraChoice::File(path) => input::camera_of_file(path, session).map(Self::Camera),
+            choice => Ok(Self::Choice(choice)),
+        }
+    }
+
+    fn camera(self, part: &Part) -> Result<Camera, Failure> {
+        let failed = |e: CameraError| Failure::input(e.to_string());
+        match self {
+            Self::Camera(camera) => Ok(camera),
+            Self::Choice(CameraChoice::File(path)) => {
+                Err(Failure::input(format!("{}: is not read", path.display())))
+            }
+            Self::Choice(CameraChoice::Named(name)) => {
+                let Extent { middle, size } = Extent::of(part);
+                View::from(name).camera(middle, size).map_err(failed)
+            }
+            Self::Choice(CameraChoice::Eye {
+                eye,
+                target,
+                up,
+                focal,
+            }) => {
+                let middle = Extent::of(part).middle;
+                let (eye, up) = (Point3::from(eye), up.into());
+                let target = target.map_or(middle, Point3::from);
+                match focal {
+                    Some(focal) => Camera::perspective(eye, target, up, focal).map_err(failed),
+                    None => Camera::orthographic(eye, target, up).map_err(failed),
+                }
+            }
+        }
+    }
+}
+
 /// The cameras of views of a part about its middle, each once.
 fn cameras(part: &Part, names: &[ViewName]) -> Result<Vec<(Option<View>, Camera)>, Failure> {
-    let evaluation = &part.evaluation;
-    let (middle, size) = match evaluation.brep.topology.faces.is_empty() {
-        true => (Point3::origin(), 1.0),
-        false => {
-            let bounds = evaluation.tight_bounds();
-            (bounds.centre(), bounds.diagonal())
-        }
-    };
+    let Extent { middle, size } = Extent::of(part);
     let mut cameras: Vec<(Option<View>, Camera)> = Vec::new();
     for &name in names {
         let view = View::from(name);
@@ -108,4 +163,25 @@ fn cameras(part: &Part, names: &[ViewName]) -> Result<Vec<(Option<View>, Camera)
         }
     }
     Ok(cameras)
+}
+
+/// Where a part is, and how large; a point at the origin is taken to be of size one.
+struct Extent {
+    middle: Point3<f64>,
+    size: f64,
+}
+
+impl Extent {
+    fn of(part: &Part) -> Self {
+        let evaluation = &part.evaluation;
+        if evaluation.brep.topology.faces.is_empty() {
+            let middle = Point3::origin();
+            return Self { middle, size: 1.0 };
+        }
+        let bounds = evaluation.tight_bounds();
+        Self {
+            middle: bounds.centre(),
+            size: bounds.diagonal(),
+        }
+    }
 }

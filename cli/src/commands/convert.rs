@@ -1,17 +1,19 @@
 //! `premio convert`: a description in another language.
 
 use crate::arguments::ConvertOptions;
-use crate::diagnostics::{Failure, Voice, counted};
+use crate::diagnostics::{Failure, counted};
+use crate::session::Session;
 use crate::{input, output};
 use premio_csg::reader::{self, Format, Options, Source};
 use premio_csg::tree::Tree;
 use premio_csg::writer;
 
 /// Runs the command.
-pub fn run(options: &ConvertOptions, voice: Voice) -> Result<(), Failure> {
+pub fn run(options: &ConvertOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
     let name = options.file.display().to_string();
     let target = input::format(&options.output)?;
-    let source = source(&name, options, voice)?;
+    let source = source(&name, options, session)?;
     let failed = |e: &dyn std::fmt::Display| Failure::limit(format!("{name}: {e}"));
     let tree = source.builder.finish(source.part).map_err(|e| failed(&e))?;
     let text = match writer::write(&source.builder, source.part, target) {
@@ -35,12 +37,12 @@ pub fn run(options: &ConvertOptions, voice: Voice) -> Result<(), Failure> {
     output::write(&text, Some(&options.output))
 }
 
-fn source(name: &str, options: &ConvertOptions, voice: Voice) -> Result<Source, Failure> {
+fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Source, Failure> {
     let format = input::format(&options.file)?;
-    let text = input::bytes(&options.file)?;
+    let text = session.limits.read(&options.file)?;
     let how = options.reading.options();
     let source = reader::parse(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
-    voice.notes(name, &text, &source.notes);
+    session.voice.notes(name, &text, &source.notes);
     Ok(source)
 }
 

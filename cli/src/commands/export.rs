@@ -3,35 +3,43 @@
 use crate::arguments::{ExportFormat, ExportOptions, StepProtocol};
 use crate::diagnostics::{Failure, Voice, counted};
 use crate::input::Part;
+use crate::session::Session;
 use crate::{input, output};
 use premio_csg::model::Model;
 use premio_exchange::mesh::{self, Facets, MeshError, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
+use premio_kernel::geometry::surface::Surface;
 use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
 
 /// Runs the command.
-pub fn run(options: &ExportOptions, voice: Voice) -> Result<(), Failure> {
-    refuse_what_is_not_asked(options)?;
-    let part = input::part(&options.description, voice)?;
+pub fn run(options: &ExportOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
+    let format = options
+        .output
+        .format(options.format)
+        .map_err(Failure::input)?;
+    refuse_what_is_not_asked(options, format)?;
+    let part = input::part(&options.description, session)?;
     let to = options.output.path();
     let working = voice.working("making the file");
-    let bytes = match options.format {
+    let bytes = match format {
         ExportFormat::Json => return output::json(&Model::of(&part.evaluation.brep), to),
         ExportFormat::Step => as_step(&part, options)?.into_bytes(),
         ExportFormat::Stl | ExportFormat::Obj | ExportFormat::Glb | ExportFormat::ThreeMf => {
+            check_fineness(&part, options)?;
             let failed = |e| Failure::limit(format!("{}: {e}", part.name));
-            as_triangles(&part, options).map_err(failed)?
+            as_triangles(&part, options, format).map_err(failed)?
         }
     };
     drop(working);
     output::write(&bytes, to)?;
-    tell_parted(&part, options.format, voice);
+    tell_parted(&part, format, voice);
     Ok(())
 }
 
 /// An option that says nothing in the format is a mistake.
-fn refuse_what_is_not_asked(options: &ExportOptions) -> Result<(), Failure> {
+fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Result<(), Failure> {
     use ExportFormat::{Glb, Obj, Step, Stl, ThreeMf};
     let meshes: &[ExportFormat] = &[Stl, Obj, Glb, ThreeMf];
     let given: [(&str, bool, &[ExportFormat]); 6] = [
@@ -43,12 +51,12 @@ fn refuse_what_is_not_asked(options: &ExportOptions) -> Result<(), Failure> {
         ("name", options.name.is_some(), &[Step, Obj, Glb, ThreeMf]),
     ];
     for (option, is_given, formats) in given {
-        if is_given && !formats.contains(&options.format) {
+        if is_given && !formats.contains(&format) {
             let formats: Vec<&str> = formats.iter().map(|f| f.name()).collect();
             let formats = formats.join(", ");
             return Err(Failure::input(format!(
                 "`--{option}` does not go with `--format {}`, only with {formats}",
-                options.format.name()
+                format.name()
             )));
         }
     }
@@ -71,7 +79,40 @@ fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
     step::write(&evaluation.brep, &how).map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
 }
 
-fn as_triangles(part: &Part, options: &ExportOptions) -> Result<Vec<u8>, MeshError> {
+/// The finest triangles that are made: of the part's size, and in degrees. A circle has some thousand
+/// chords then.
+const FINEST_DEVIATION: f64 = 1.0 / 16_777_216.0;
+const FINEST_ANGLE: f64 = 1.0 / 16.0;
+
+/// Refuses what would take more triangles than anybody waits for; flat faces take few at any fineness.
+fn check_fineness(part: &Part, options: &ExportOptions) -> Result<(), Failure> {
+    let evaluation = &part.evaluation;
+    let brep = &evaluation.brep;
+    let is_flat = |face| matches!(brep.surface(face), Surface::Plane(_));
+    if brep.topology.face_ids().all(is_flat) {
+        return Ok(());
+    }
+    let least = FINEST_DEVIATION * evaluation.tight_bounds().diagonal();
+    let finer = [
+        ("deviation", options.deviation, least),
+        ("angle", options.angle, FINEST_ANGLE),
+    ];
+    for (option, asked, least) in finer {
+        if let Some(asked) = asked.filter(|asked| *asked < least) {
+            return Err(Failure::limit(format!(
+                "{}: `--{option} {asked}` is beyond the limit, expected at least {least:.1e}",
+                part.name
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn as_triangles(
+    part: &Part,
+    options: &ExportOptions,
+    format: ExportFormat,
+) -> Result<Vec<u8>, MeshError> {
     let evaluation = &part.evaluation;
     let size = evaluation.tight_bounds().diagonal();
     let accuracy = Accuracy {
@@ -81,7 +122,7 @@ fn as_triangles(part: &Part, options: &ExportOptions) -> Result<Vec<u8>, MeshErr
     let band = evaluation.resolution_of_doubles();
     let facets = Facets::of(&evaluation.brep, &accuracy, band)?;
     let name = name(options);
-    match options.format {
+    match format {
         ExportFormat::Obj => Ok(obj::write(&facets, &name).into_bytes()),
         ExportFormat::Glb => glb::write(&facets, &name, unit(options)),
         ExportFormat::ThreeMf => threemf::write(&facets, &name, unit(options)),

@@ -1,9 +1,10 @@
 //! `premio info`: measures of the solid.
 
 use crate::arguments::InfoOptions;
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::Failure;
 use crate::input::{self, Part};
 use crate::output;
+use crate::session::Session;
 use premio_kernel::number::sign::{CloseCall, Decisions};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -64,8 +65,9 @@ struct Seconds {
 }
 
 /// Runs the command.
-pub fn run(options: &InfoOptions, voice: Voice) -> Result<(), Failure> {
-    let part = input::part(&options.description, voice)?;
+pub fn run(options: &InfoOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
+    let part = input::part(&options.description, session)?;
     let working = voice.working("measuring");
     let info = Info::of(&part);
     drop(working);

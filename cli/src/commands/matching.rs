@@ -1,12 +1,15 @@
 //! `premio match` and `premio track`: where the part is in pictures.
 
 use crate::arguments::{MatchOptions, SoughtOptions, StrategyName, TrackOptions};
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::Failure;
 use crate::input::{self, Part as Described};
 use crate::interrupt::stop;
+use crate::model::file::{self, ModelFile};
+use crate::output::Outputs;
+use crate::session::Session;
 use crate::{imaging, output};
 use nalgebra::Isometry3;
-use premio_matching::camera::Pinhole;
+use premio_matching::camera::{CameraFile, Pinhole, PinholeError};
 use premio_matching::explain::explained;
 use premio_matching::finding::{Finding, Match, Options};
 use premio_matching::learned::Learned;
@@ -29,6 +32,8 @@ struct Sought {
     band: f64,
     records: Vec<Record>,
     detector: Detector,
+    camera: CameraFile,
+    camera_name: String,
     options: Options,
 }
 
@@ -41,8 +46,8 @@ struct Sight {
 }
 
 /// Runs `match`.
-pub fn find(options: &MatchOptions, voice: Voice) -> Result<(), Failure> {
-    let sought_for = read(&options.sought, voice)?;
+pub fn find(options: &MatchOptions, session: Session) -> Result<(), Failure> {
+    let sought_for = read(&options.sought, session)?;
     let learned = sought_for.learned(&options.sought);
     let part = sought_for.part(&learned);
     let look = |picture: &Picture, camera: &Pinhole| {
@@ -53,12 +58,12 @@ pub fn find(options: &MatchOptions, voice: Voice) -> Result<(), Failure> {
         let explain = options.explain;
         explain.then(|| explained(sight.finding.best(), &sight.report))
     };
-    each(&options.sought, &sought_for, &part, look, told, voice)
+    each(&options.sought, &sought_for, &part, look, told, session)
 }
 
 /// Runs `track`.
-pub fn track(options: &TrackOptions, voice: Voice) -> Result<(), Failure> {
-    let sought = read(&options.sought, voice)?;
+pub fn track(options: &TrackOptions, session: Session) -> Result<(), Failure> {
+    let sought = read(&options.sought, session)?;
     let learned = sought.learned(&options.sought);
     let part = sought.part(&learned);
     let mut last: Option<Isometry3<f64>> = None;
@@ -69,10 +74,16 @@ pub fn track(options: &TrackOptions, voice: Voice) -> Result<(), Failure> {
         last = accepted.map(|m: &Match| m.pose);
         (finding, Some(anew))
     };
-    each(&options.sought, &sought, &part, look, |_| None, voice)
+    each(&options.sought, &sought, &part, look, |_| None, session)
 }
 
 impl Sought {
+    /// What is told of a picture that the camera did not take.
+    fn refused_camera(&self, picture: &Path, error: &PinholeError) -> Failure {
+        let picture = picture.display();
+        Failure::input(format!("{picture}: {}: {error}", self.camera_name))
+    }
+
     fn learned(&self, options: &SoughtOptions) -> Learned {
         match (options.uniform, self.records.is_empty()) {
             (true, _) => Learned::uniform(),
@@ -104,33 +115,31 @@ impl Sought {
 }
 
 /// Reads what is looked for.
-fn read(options: &SoughtOptions, voice: Voice) -> Result<Sought, Failure> {
+fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
     let path = &options.model;
     let name = path.display().to_string();
     if options.overlay.is_some() && options.images.len() != 1 {
         let said = "--overlay is of one picture, and there are";
         return Err(Failure::input(format!("{said} {}", options.images.len())));
     }
+    if let Some(path) = &options.overlay {
+        imaging::format(path)?;
+    }
+    let camera = input::pinhole_of_file(&options.camera, session)?;
     let is_model = path.extension().is_some_and(|e| e == "model");
+    let mut known = None;
     let (described, records) = match is_model {
         true => {
-            let records = records(path)?;
-            let head = records.iter().find_map(|r| match r {
-                Record::Model(head) => Some(head),
-                _ => None,
-            });
-            let head = head.ok_or_else(|| Failure::input(format!("{name}: no model's head")))?;
+            let ModelFile { head, records } = file::read(path, session)?;
             let written = head.description.clone();
-            (input::part_of_model(&name, written, voice)?, records)
+            known = Some(head.setups.conditions.detector);
+            let described = input::part_of_model(&name, written, session.voice)?;
+            (described, records)
         }
-        false => (input::described(path, voice)?, Vec::new()),
+        false => (input::described(path, session)?, Vec::new()),
     };
-    let known = records.iter().find_map(|r| match r {
-        Record::Model(head) => Some(head.setups.conditions.detector.clone()),
-        _ => None,
-    });
     let detector = match &options.detector {
-        Some(path) => crate::setup::detector(path)?,
+        Some(path) => crate::setup::detector(path, session)?,
         None => known.unwrap_or_else(detector),
     };
     let band = input::resolution_of_views(&described)?;
@@ -145,6 +154,8 @@ fn read(options: &SoughtOptions, voice: Voice) -> Result<Sought, Failure> {
         band,
         records,
         detector,
+        camera,
+        camera_name: options.camera.display().to_string(),
         options: Options {
             strategy: match options.strategy {
                 StrategyName::Bounded => Strategy::Bounded,
@@ -156,23 +167,6 @@ fn read(options: &SoughtOptions, voice: Voice) -> Result<Sought, Failure> {
     })
 }
 
-/// The records of a model.
-fn records(path: &Path) -> Result<Vec<Record>, Failure> {
-    let name = path.display();
-    let text = String::from_utf8(input::bytes(path)?);
-    let text = text.map_err(|e| Failure::input(format!("{name}: {e}")))?;
-    let lines = text.lines().enumerate();
-    lines
-        .map(|(i, line)| {
-            let told = |e: serde_json::Error| {
-                let expected = "expected a line of a model (premio.model/1)";
-                Failure::input(format!("{name}:{}: {expected}: {e}", i + 1))
-            };
-            serde_json::from_str(line).map_err(told)
-        })
-        .collect()
-}
-
 /// Looks at every picture, and hands on what is found.
 fn each(
     options: &SoughtOptions,
@@ -180,21 +174,41 @@ fn each(
     part: &Part<'_>,
     mut look: impl FnMut(&Picture, &Pinhole) -> (Finding, Option<bool>),
     told: impl Fn(&Sight) -> Option<String>,
-    voice: Voice,
+    session: Session,
 ) -> Result<(), Failure> {
+    let voice = session.voice;
     let stop = stop()?;
     let bar = voice.progress(options.images.len() as u64);
-    let camera_text = text(&options.camera)?;
     let (mut lines, mut poses) = (String::new(), format!("{BOP}\n"));
+    let mut outputs = Outputs::default();
+    let (mut seen, mut failed) = (0, None);
     for (number, path) in (1..).zip(&options.images) {
         if stop.load(Ordering::Relaxed) {
             bar.finish_and_clear();
             return Err(Failure::Interrupted);
         }
-        let sight = at(options, sought, part, path, &camera_text, &mut look)?;
+        let sight = match at(sought, part, path, &mut look, session) {
+            Ok(sight) => sight,
+            // The other pictures are looked at all the same.
+            Err(failure) => {
+                let said = failed.replace(failure);
+                bar.suspend(|| said.map(|failure| voice.fail(failure)));
+                bar.inc(1);
+                continue;
+            }
+        };
+        seen += 1;
         bar.inc(1);
         if let Some(words) = told(&sight) {
             bar.suspend(|| voice.note(&sight.report.image, &words));
+        }
+        let instances = sight.report.instances.len();
+        if instances > 1 {
+            let said = format!(
+                "{instances} instances of the part are found: this is the likeliest, and `instances` \
+                 lists all that are known"
+            );
+            bar.suspend(|| voice.note(&sight.report.image, &said));
         }
         let [scene, object] = options.ids;
         let image = numbered(path).unwrap_or(number);
@@ -202,35 +216,37 @@ fn each(
             let _ = writeln!(poses, "{line}");
         }
         let json = match options.images.len() {
-            1 => serde_json::to_string_pretty(&sight.report),
-            _ => serde_json::to_string(&sight.report),
+            1 => output::json_pretty(&sight.report)?,
+            _ => output::json_text(&sight.report)?,
         };
-        let json = json.map_err(|e| Failure::input(e.to_string()))?;
         let _ = writeln!(lines, "{json}");
         if let (Some(to), Some(best)) = (&options.overlay, sight.finding.best()) {
-            imaging::matched(&sight.grey, &sight.picture, best, to)?;
+            let bytes = imaging::matched(&sight.grey, &sight.picture, best, to)?;
+            outputs.add(bytes, Some(to))?;
         }
     }
     bar.finish_and_clear();
-    if let Some(path) = &options.csv {
-        output::write(poses, Some(path))?;
+    if seen > 0 {
+        if let Some(path) = &options.csv {
+            outputs.add(poses.into_bytes(), Some(path))?;
+        }
+        outputs.add(lines.into_bytes(), options.output.as_deref())?;
+        outputs.finish()?;
     }
-    output::write(lines, options.output.as_deref())
+    failed.map_or(Ok(()), Err)
 }
 
 /// Looks at one picture.
 fn at(
-    options: &SoughtOptions,
     sought: &Sought,
     part: &Part<'_>,
     path: &Path,
-    camera: &str,
     look: &mut impl FnMut(&Picture, &Pinhole) -> (Finding, Option<bool>),
+    session: Session,
 ) -> Result<Sight, Failure> {
-    let grey = imaging::read(path)?;
-    let camera = Pinhole::from_json(camera, [grey.width, grey.height]);
-    let name = options.camera.display();
-    let camera = camera.map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    let grey = imaging::read(path, session)?;
+    let camera = sought.camera.for_picture([grey.width, grey.height]);
+    let camera = camera.map_err(|e| sought.refused_camera(path, &e))?;
     let started = Instant::now();
     let (grey, camera, scale) = reduced(grey, camera);
     let picture = Picture::new(&grey, &sought.detector);
@@ -250,11 +266,6 @@ fn at(
         finding,
         report,
     })
-}
-
-fn text(path: &Path) -> Result<String, Failure> {
-    let name = path.display();
-    String::from_utf8(input::bytes(path)?).map_err(|e| Failure::input(format!("{name}: {e}")))
 }
 
 /// The number that a picture's name ends in.

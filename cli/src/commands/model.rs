@@ -1,14 +1,16 @@
 //! `premio model`: what many predictions come to.
 
 use crate::arguments::{MergeOptions, ModelCommand, ModelOptions, ModelRunOptions, RecordsFormat};
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::Failure;
 use crate::input::Part;
 use crate::interrupt::{pool, stop};
 use crate::model::format;
 use crate::model::run::{Workers, summed};
 use crate::model::shard::{Run, Shard, digest};
-use crate::setup::{setups, subject};
+use crate::session::Session;
+use crate::setup::{SetupFile, setups};
 use crate::{input, output};
+use indicatif::ProgressBar;
 use premio_predict::model::Setups;
 use premio_predict::model::record::Record;
 use std::fs;
@@ -18,32 +20,34 @@ use std::path::{Path, PathBuf};
 const SHARD: usize = 256;
 
 /// Runs the command.
-pub fn run(options: &ModelOptions, voice: Voice) -> Result<(), Failure> {
+pub fn run(options: &ModelOptions, session: Session) -> Result<(), Failure> {
     match (&options.command, &options.run.0) {
-        (Some(ModelCommand::Merge(merge)), _) => merged(merge, voice),
-        (None, Some(run)) => predicted(run, voice),
+        (Some(ModelCommand::Merge(merge)), _) => merged(merge, session),
+        (None, Some(run)) => predicted(run, session),
         (None, None) => Err(Failure::input(
             "expected a description and --setups, or `merge`",
         )),
     }
 }
 
-fn predicted(options: &ModelRunOptions, voice: Voice) -> Result<(), Failure> {
+fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
     let format = format::asked(&options.output)?;
     if options.shard.is_some() && format != RecordsFormat::Jsonl {
         let said = "a shard is lines of JSON: what is a table is the model, by `model merge`";
         return Err(Failure::input(said));
     }
-    let (setups, text) = setups(&options.setups)?;
-    let part = input::part(&options.description, voice)?;
+    let file = setups(&options.setups, session)?;
+    let part = input::part(&options.description, session)?;
     let run = Run {
-        digest: told_apart(&part, options, &text)?,
+        digest: told_apart(&part, options, &file.text),
         part: part.name.clone(),
         description: part.written.clone(),
-        text,
-        setups,
+        text: file.text.clone(),
+        setups: file.value.clone(),
     };
-    let (subject, finishes) = subject(&part, &options.setups, &run.setups.conditions)?;
+    let (subject, finishes) = file.subject(&part, &run.setups.conditions)?;
+    file.check_places(&subject, session)?;
     let pool = pool(options.threads)?;
     let stop = stop()?;
     let bar = voice.progress(run.setups.len() as u64);
@@ -67,41 +71,59 @@ fn predicted(options: &ModelRunOptions, voice: Voice) -> Result<(), Failure> {
         return Ok(());
     }
     let folder = Parts::new(to, options.resume)?;
+    let made = whole(&workers, &folder, &bar, session, |records| {
+        if let Some(Record::Model(head)) = records.first() {
+            file.check_seen(head, session)?;
+        }
+        output::write(format::bytes(records, format)?, to)
+    });
+    bar.finish_and_clear();
+    match &made {
+        // A run that is interrupted goes on from what there is.
+        Err(Failure::Interrupted) => (),
+        Err(_) if options.resume => (),
+        _ => folder.remove(),
+    }
+    made
+}
+
+/// Predicts all shards of a run and hands the model on.
+fn whole(
+    workers: &Workers<'_>,
+    folder: &Parts,
+    bar: &ProgressBar,
+    session: Session,
+    write: impl Fn(Vec<Record>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let run = workers.run;
     let of = run.setups.len().div_ceil(SHARD).max(1);
     for index in 1..=of {
-        let path = folder.path.join(format!("{index:08}.shard"));
-        if folder.is_whole(&path, &run, [index, of])? {
+        let path = folder.shard(index);
+        if folder.is_whole(&path, run, [index, of], session)? {
             bar.inc(SHARD as u64);
             continue;
         }
-        workers
-            .shard(&path, [index, of])
-            .inspect_err(|_| bar.finish_and_clear())?;
+        workers.shard(&path, [index, of])?;
     }
     bar.finish_and_clear();
-    let paths: Vec<PathBuf> = (1..=of)
-        .map(|i| folder.path.join(format!("{i:08}.shard")))
-        .collect();
-    let shards = opened(&paths)?;
-    let records = summed_up(&run, &shards, voice)?;
-    output::write(format::bytes(&records, format)?, to)?;
-    folder.remove();
-    Ok(())
+    let paths: Vec<PathBuf> = (1..=of).map(|i| folder.shard(i)).collect();
+    let shards = opened(&paths, session)?;
+    write(summed_up(run, &shards, session)?)
 }
 
 /// What this part in these setups is told from others by: all that observations depend on.
-fn told_apart(part: &Part, options: &ModelRunOptions, setups: &str) -> Result<String, Failure> {
-    let description = input::bytes(&options.description.file)?;
+fn told_apart(part: &Part, options: &ModelRunOptions, setups: &str) -> String {
+    let description = part.written.text.as_bytes();
     let taken = options.description.reading.part.clone().unwrap_or_default();
     let resolution = part.evaluation.resolution.to_bits().to_le_bytes();
     let version = env!("CARGO_PKG_VERSION").as_bytes();
-    Ok(digest([
-        &description,
+    digest([
+        description,
         taken.as_bytes(),
         &resolution,
         setups.as_bytes(),
         version,
-    ]))
+    ])
 }
 
 /// The folder of a run's shards, beside its output.
@@ -113,7 +135,7 @@ struct Parts {
 
 impl Parts {
     fn new(output: Option<&Path>, resume: bool) -> Result<Self, Failure> {
-        let Some(output) = output else {
+        let Some(output) = output.filter(|path| !output::is_no_file(path)) else {
             let folder = tempfile::tempdir().map_err(|e| Failure::input(e.to_string()))?;
             let path = folder.path().to_owned();
             return Ok(Self {
@@ -138,11 +160,17 @@ impl Parts {
     }
 
     /// Whether a shard of the run is there.
-    fn is_whole(&self, path: &Path, run: &Run, shard: [usize; 2]) -> Result<bool, Failure> {
+    fn is_whole(
+        &self,
+        path: &Path,
+        run: &Run,
+        shard: [usize; 2],
+        session: Session,
+    ) -> Result<bool, Failure> {
         if !path.exists() {
             return Ok(false);
         }
-        let found = Shard::open(path)?.head;
+        let found = Shard::open(path, session)?.head;
         match found.digest == run.digest && found.shard == shard {
             true => Ok(true),
             false => Err(Failure::input(format!(
@@ -154,45 +182,59 @@ impl Parts {
         }
     }
 
+    /// The file of a shard.
+    fn shard(&self, index: usize) -> PathBuf {
+        self.path.join(format!("{index:08}.shard"))
+    }
+
+    /// Removes the shards, and the folder if nothing else is in it.
     fn remove(&self) {
-        if self._temporary.is_none() {
-            // The model is written; what is left is of no harm.
-            let _ = fs::remove_dir_all(&self.path);
+        if self._temporary.is_some() {
+            return;
         }
+        // What cannot be removed is of no harm.
+        let mut index = 1;
+        while fs::remove_file(self.shard(index)).is_ok() {
+            index += 1;
+        }
+        let _ = fs::remove_dir(&self.path);
     }
 }
 
-fn opened(paths: &[PathBuf]) -> Result<Vec<Shard>, Failure> {
-    paths.iter().map(|path| Shard::open(path)).collect()
+fn opened(paths: &[PathBuf], session: Session) -> Result<Vec<Shard>, Failure> {
+    let open = |path: &PathBuf| Shard::open(path, session);
+    paths.iter().map(open).collect()
 }
 
-fn summed_up(run: &Run, shards: &[Shard], voice: Voice) -> Result<Vec<Record>, Failure> {
-    let bar = voice.progress(2 * run.setups.len() as u64);
+fn summed_up(run: &Run, shards: &[Shard], session: Session) -> Result<Vec<Record>, Failure> {
+    let bar = session.voice.progress(2 * run.setups.len() as u64);
     let all = summed(run, shards, &bar);
     bar.finish_and_clear();
     all
 }
 
-fn merged(options: &MergeOptions, voice: Voice) -> Result<(), Failure> {
+fn merged(options: &MergeOptions, session: Session) -> Result<(), Failure> {
     let format = format::asked(&options.output)?;
-    let mut shards = opened(&options.shards)?;
+    let mut shards = opened(&options.shards, session)?;
     shards.sort_by_key(|shard| shard.head.shard[0]);
     let first = shards[0].head.clone();
     for (i, shard) in shards.iter().enumerate() {
         let head = &shard.head;
         if head.digest != first.digest || head.shard[1] != first.shard[1] {
+            let [one, other] = [&shards[0], shard].map(|s| s.path().display());
             let said = format!(
-                "shards of different runs: of {} and of {}",
-                first.part, head.part
+                "{other}: found a shard of another run, of {}, expected one of {}, as {one} is",
+                head.part, first.part
             );
             return Err(Failure::input(said));
         }
         if head.shard[0] != i + 1 {
             let of = first.shard[1];
             return Err(Failure::input(format!(
-                "expected shard {}/{of}, found {}/{of}",
-                i + 1,
-                head.shard[0]
+                "{}: found shard {}/{of}, expected {}/{of}",
+                shard.path().display(),
+                head.shard[0],
+                i + 1
             )));
         }
     }
@@ -204,6 +246,12 @@ fn merged(options: &MergeOptions, voice: Voice) -> Result<(), Failure> {
     }
     let setups = Setups::from_toml(&first.setups)
         .map_err(|error| Failure::setup("the setups of the shards", &error, &first.setups))?;
+    if setups.len() != first.count {
+        let (name, found) = (shards[0].path().display(), first.count);
+        let expected = setups.len();
+        let said = format!("{name}:1:1: found `count` {found}, expected {expected} setups");
+        return Err(Failure::input(said));
+    }
     let run = Run {
         part: first.part,
         description: first.description,
@@ -211,7 +259,15 @@ fn merged(options: &MergeOptions, voice: Voice) -> Result<(), Failure> {
         text: first.setups,
         setups,
     };
-    let records = summed_up(&run, &shards, voice)?;
+    let records = summed_up(&run, &shards, session)?;
+    let file = SetupFile {
+        name: "the setups of the shards".to_owned(),
+        text: run.text.clone(),
+        value: (),
+    };
+    if let Some(Record::Model(head)) = records.first() {
+        file.check_seen(head, session)?;
+    }
     let to = options.output.output.as_deref();
-    output::write(format::bytes(&records, format)?, to)
+    output::write(format::bytes(records, format)?, to)
 }

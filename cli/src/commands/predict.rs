@@ -1,25 +1,30 @@
 //! `premio predict`: which features a sensor and a detector will find.
 
 use crate::arguments::PredictOptions;
-use crate::diagnostics::{Failure, Voice};
-use crate::setup::{setup, with_draft};
-use crate::{imaging, input, output};
+use crate::diagnostics::Failure;
+use crate::output::Outputs;
+use crate::session::Session;
+use crate::setup::setup;
+use crate::{imaging, input};
 use premio_predict::prediction::prediction;
 
 /// Runs the command.
-pub fn run(options: &PredictOptions, voice: Voice) -> Result<(), Failure> {
-    let setup = setup(&options.setup)?;
-    let part = input::part(&options.description, voice)?;
-    let working = voice.working("predicting");
-    let predicted = with_draft(&part, &options.setup, &setup, |draft| {
-        prediction(draft, &setup)
-    })?;
-    drop(working);
+pub fn run(options: &PredictOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
     if let Some(path) = &options.overlay {
-        imaging::overlay(&predicted, None, path)?;
-        if options.output.is_none() {
-            return Ok(());
-        }
+        imaging::overlay_format(path)?;
     }
-    output::json(&predicted, options.output.as_deref())
+    let setup = setup(&options.setup, session)?;
+    let part = input::part(&options.description, session)?;
+    let working = voice.working("predicting");
+    let predicted = setup.with_draft(&part, |draft| prediction(draft, &setup.value))?;
+    drop(working);
+    let mut outputs = Outputs::default();
+    if let Some(path) = &options.overlay {
+        outputs.add(imaging::overlay(&predicted, None, path)?, Some(path))?;
+    }
+    if options.output.is_some() || options.overlay.is_none() {
+        outputs.add_json(&predicted, options.output.as_deref())?;
+    }
+    outputs.finish()
 }

@@ -2,21 +2,29 @@
 
 use crate::arguments::RenderOptions;
 use crate::diagnostics::{Failure, Voice};
-use crate::setup::{setup, with_draft};
-use crate::{imaging, input};
+use crate::session::Session;
+use crate::setup::setup;
+use crate::{imaging, input, output};
 use premio_predict::prediction::Draft;
 use premio_predict::processing::Grey;
 use premio_predict::render;
 use rayon::prelude::*;
 
 /// Runs the command.
-pub fn run(options: &RenderOptions, voice: Voice) -> Result<(), Failure> {
-    let setup = setup(&options.setup)?;
-    let part = input::part(&options.description, voice)?;
-    let image = with_draft(&part, &options.setup, &setup, |draft| {
-        rendered(draft, setup.conditions.seed, voice)
+pub fn run(options: &RenderOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
+    imaging::format(&options.output)?;
+    let setup = setup(&options.setup, session)?;
+    let part = input::part(&options.description, session)?;
+    let image = setup.with_draft(&part, |draft| {
+        rendered(draft, setup.value.conditions.seed, voice)
     })?;
-    imaging::write(&image, setup.conditions.sensor.levels, &options.output)
+    let bytes = imaging::bytes(
+        &image,
+        setup.value.conditions.sensor.levels,
+        &options.output,
+    )?;
+    output::write(bytes, Some(&options.output))
 }
 
 /// The image of a draft's setup, by a line of sight through every pixel.

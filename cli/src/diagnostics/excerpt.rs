@@ -2,6 +2,7 @@
 
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use premio_csg::reader::ReadError;
+use premio_text::escape;
 use std::ops::Range;
 
 /// How much of a long line is shown on either side.
@@ -41,28 +42,25 @@ impl Excerpt {
             .position(|&b| b == b'\n')
             .map_or(text.len(), |i| at + i);
         let until = span.end.clamp(at, end);
+        // Of a long line a little is enough.
+        let some = 8 * SHOWN;
+        let start = start.max(at.saturating_sub(some));
+        let (until, end) = (until.min(at + some), end.min(until.min(at + some) + some));
         let [before, found, after] = [&text[start..at], &text[at..until], &text[until..end]]
-            .map(|bytes| printable(&String::from_utf8_lossy(bytes)));
+            .map(|bytes| escape::column_by_column(&String::from_utf8_lossy(bytes)));
         let before = last(&before);
-        let (found, after) = (first(&found), first(&after));
+        let is_cut = found.chars().count() > SHOWN;
+        let found = first(&found);
+        // What follows a found text does not follow its beginning.
+        let after = if is_cut { String::new() } else { first(&after) };
         Self {
-            name,
+            name: escape::terminal(&name),
             span: (before.len(), found.len()).into(),
             text: format!("{before}{found}{after}"),
             line: line - 1,
             column: column - 1,
         }
     }
-}
-
-/// A text that moves no cursor and sets no colours.
-fn printable(text: &str) -> String {
-    let shown = |c: char| match c {
-        '\r' | '\t' => ' ',
-        c if c.is_control() => char::REPLACEMENT_CHARACTER,
-        c => c,
-    };
-    text.chars().map(shown).collect()
 }
 
 fn first(text: &str) -> String {

@@ -4,10 +4,11 @@ use super::excerpt::Excerpt;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 use premio_csg::reader::ReadError;
 use premio_kernel::number::sign::CloseCall;
-use premio_predict::setup::SetupError;
+use premio_text::{LineColumn, escape};
 use serde::Serialize;
 use std::fmt;
 use std::io::{self, IsTerminal};
+use std::ops::Range;
 
 /// What is wrong, or what else there is to know.
 #[derive(Debug, Default)]
@@ -97,24 +98,14 @@ impl Message {
         }
     }
 
-    /// What is wrong with a setup, and where it is written.
-    pub fn of_setup(name: &str, error: &SetupError, text: &str) -> Self {
-        let Some(span) = error.span(text) else {
-            return Self::plain(format!("{name}: {error}"));
-        };
-        let before = text.get(..span.start).unwrap_or(text);
-        let line = before.matches('\n').count() + 1;
-        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    /// What is wrong with some bytes of a text.
+    pub fn at(name: &str, text: &[u8], span: &Range<usize>, words: &str) -> Self {
+        let LineColumn { line, column } = LineColumn::of(text, span.start);
         let place = [line, column];
         let told = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         Self {
-            text: format!("{name}:{line}:{column}: {error}"),
-            excerpt: Some(Excerpt::around(
-                name.to_owned(),
-                place,
-                &span,
-                text.as_bytes(),
-            )),
+            text: format!("{name}:{line}:{column}: {words}"),
+            excerpt: Some(Excerpt::around(name.to_owned(), place, span, text)),
             place: Some(Place {
                 column: Some(told(column)),
                 ..Place::line(name, told(line))
@@ -152,16 +143,17 @@ impl Message {
         let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false);
         match handler.render_report(&mut text, self) {
             Ok(()) => text,
-            Err(fmt::Error) => self.text.clone(),
+            Err(fmt::Error) => escape::terminal(&self.text),
         }
     }
 
     /// A note in plain words, with its file and line where it has any.
     pub fn note(&self) -> String {
-        match &self.place {
+        let note = match &self.place {
             Some(Place { file, line, .. }) => format!("{file}:{line}: note: {}", self.text),
             None => format!("note: {}", self.text),
-        }
+        };
+        escape::terminal(&note)
     }
 
     /// As JSON in one line (premio.message/1).
@@ -174,13 +166,14 @@ impl Message {
             place: self.place.as_ref(),
             close_calls: &self.calls,
         };
-        serde_json::to_string(&line).unwrap_or_else(|e| e.to_string())
+        escape::json(serde_json::to_string(&line).unwrap_or_else(|e| e.to_string()))
     }
 }
 
 impl fmt::Display for Message {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text)
+        // Whatever names stand in it.
+        f.write_str(&escape::terminal(&self.text))
     }
 }
 

@@ -10,8 +10,10 @@ use premio_csg::reader::{ErrorKind, Note, ReadError};
 use premio_kernel::number::sign::CloseCall;
 use premio_predict::outline::stage::StageError;
 use premio_predict::setup::SetupError;
+use premio_text::escape;
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::ops::Range;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -50,20 +52,35 @@ impl Failure {
         }
     }
 
+    /// What is wrong with some bytes of a text, or with the text as a whole.
+    pub fn at(
+        name: &str,
+        text: &str,
+        span: Option<Range<usize>>,
+        error: &dyn std::fmt::Display,
+    ) -> Self {
+        let words = error.to_string();
+        Self::Input(Box::new(match span {
+            Some(span) => Message::at(name, text.as_bytes(), &span, &words),
+            None => Message::plain(format!("{name}: {words}")),
+        }))
+    }
+
+    /// What is wrong with some bytes of a file that is perhaps no text.
+    pub fn in_bytes(name: &str, bytes: &[u8], span: Range<usize>, words: &str) -> Self {
+        Self::Input(Box::new(Message::at(name, bytes, &span, words)))
+    }
+
     /// A setup that cannot be used.
     pub fn setup(name: &str, error: &SetupError, text: &str) -> Self {
-        Self::Input(Box::new(Message::of_setup(name, error, text)))
+        Self::at(name, text, error.span(text), error)
     }
 
     /// A setup in which nothing can be predicted of a part.
-    pub fn stage(part: &str, setup: &str, error: &StageError) -> Self {
-        match error {
-            StageError::Subject(_) => Self::limit(format!("{part}: {error}")),
-            StageError::Setup(_)
-            | StageError::View(_)
-            | StageError::Light(..)
-            | StageError::NoFace { .. }
-            | StageError::OutOfSight(_) => Self::input(format!("{setup}: {error}")),
+    pub fn stage(part: &str, [setup, text]: [&str; 2], error: &StageError) -> Self {
+        match error.setup_error() {
+            Some(error) => Self::setup(setup, &error, text),
+            None => Self::limit(format!("{part}: {error}")),
         }
     }
 
@@ -126,11 +143,12 @@ impl Voice {
 
     /// What clap has to say: help, or what is wrong with the arguments.
     pub fn usage(self, message: &clap::Error) -> ExitCode {
+        let text = message.render().to_string();
+        let shown = escape::terminal(&text);
         match (message.use_stderr(), self) {
-            (true, Self::Json) => {
-                let text = message.render().to_string();
-                return self.fail(Failure::input(text.trim_end()));
-            }
+            (true, Self::Json) => return self.fail(Failure::input(text.trim_end())),
+            // Arguments may hold anything.
+            (true, Self::Words) if shown != text => say(&shown),
             // A broken pipe behind `--help` is nobody's concern.
             _ => drop(message.print()),
         }
@@ -229,6 +247,10 @@ fn close_calls(name: &str, resolution: f64, calls: &[CloseCall]) -> String {
     }
     if calls.len() > LISTED {
         text += &format!("\n  and {} more", calls.len() - LISTED);
+    }
+    if calls.iter().any(|call| call.distance.abs() <= resolution) {
+        text += "\n  what is no farther apart than the resolution was taken for one: \
+                 `--resolution D` sets another, `--exact` none";
     }
     text
 }

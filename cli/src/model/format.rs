@@ -2,7 +2,10 @@
 
 use crate::arguments::{ModelOutput, RecordsFormat};
 use crate::diagnostics::Failure;
+use crate::model::file::hexadecimal;
+use crate::output;
 use premio_predict::model::record::Record;
+use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// The format that is asked for, by its name or by the file's ending; refused where the program
@@ -27,23 +30,35 @@ fn without() -> Failure {
     )
 }
 
-/// The bytes of a model.
-pub fn bytes(records: &[Record], format: RecordsFormat) -> Result<Vec<u8>, Failure> {
+/// The bytes of a model, which hold its digest.
+pub fn bytes(records: Vec<Record>, format: RecordsFormat) -> Result<Vec<u8>, Failure> {
+    let records = sealed(records)?;
     match format {
-        RecordsFormat::Jsonl => lines(records),
+        RecordsFormat::Jsonl => lines(&records),
         #[cfg(feature = "parquet")]
         RecordsFormat::Parquet => {
-            super::parquet::bytes(records).map_err(|e| Failure::input(e.to_string()))
+            super::parquet::bytes(&records).map_err(|e| Failure::input(e.to_string()))
         }
         #[cfg(not(feature = "parquet"))]
         RecordsFormat::Parquet => Err(without()),
     }
 }
 
+/// The records with the digest of their lines in the head.
+fn sealed(mut records: Vec<Record>) -> Result<Vec<Record>, Failure> {
+    let digest = hexadecimal(&Sha256::digest(lines(&records)?));
+    for record in &mut records {
+        if let Record::Model(head) = record {
+            head.sha256.clone_from(&digest);
+        }
+    }
+    Ok(records)
+}
+
 fn lines(records: &[Record]) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::new();
     for record in records {
-        serde_json::to_writer(&mut text, record).map_err(|e| Failure::input(e.to_string()))?;
+        text.extend(output::json_text(record)?.into_bytes());
         text.push(b'\n');
     }
     Ok(text)

@@ -1,18 +1,22 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
 use crate::diagnostics::Failure;
+use crate::model::file::hexadecimal;
 use crate::output;
+use crate::session::{Limited, Session};
 use premio_predict::model::record::Description;
 use premio_predict::model::{Observation, Setups};
+use premio_text::escape::quote;
+use premio_text::{Content, Document, LineColumn, TextError};
 use serde::{Deserialize, Serialize};
-use std::fs::File;
+use sha2::{Digest, Sha256};
 use std::io::{BufRead, BufReader, BufWriter, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// The name of the format.
-const SCHEMA: &str = "premio.observations/1";
+const SCHEMA: &str = "premio.observations/2";
 
 /// The first line of a shard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,10 +85,22 @@ pub fn digest<'b>(all: impl IntoIterator<Item = &'b [u8]>) -> String {
     format!("{hash:016x}")
 }
 
+/// The last line of a shard.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct End {
+    /// How many lines are before it.
+    lines: u64,
+    /// SHA-256 of all bytes before it.
+    sha256: String,
+}
+
 /// A shard that is being written, beside its place.
 pub struct Writer {
     out: BufWriter<NamedTempFile>,
     path: PathBuf,
+    hash: Sha256,
+    lines: u64,
 }
 
 impl Writer {
@@ -96,19 +112,32 @@ impl Writer {
         }
         let file = output::temporary(&path).map_err(|e| failed(&path, &e))?;
         let out = BufWriter::new(file);
-        let mut writer = Self { out, path };
+        let mut writer = Self {
+            out,
+            path,
+            hash: Sha256::new(),
+            lines: 0,
+        };
         writer.line(head)?;
         Ok(writer)
     }
 
     /// Adds a line.
     pub fn line(&mut self, value: &impl Serialize) -> Result<(), Failure> {
-        let text = serde_json::to_string(value).map_err(|e| failed(&self.path, &e))?;
-        writeln!(self.out, "{text}").map_err(|e| failed(&self.path, &e))
+        let text = output::json_text(value)? + "\n";
+        self.hash.update(&text);
+        self.lines += 1;
+        let written = self.out.write_all(text.as_bytes());
+        written.map_err(|e| failed(&self.path, &e))
     }
 
     /// Puts the shard in its place.
-    pub fn finish(self) -> Result<(), Failure> {
+    pub fn finish(mut self) -> Result<(), Failure> {
+        let end = End {
+            lines: self.lines,
+            sha256: hexadecimal(&self.hash.clone().finalize()),
+        };
+        self.line(&end)?;
         let path = self.path;
         let file = self.out.into_inner().map_err(|e| failed(&path, &e))?;
         file.as_file().sync_all().map_err(|e| failed(&path, &e))?;
@@ -121,62 +150,160 @@ fn failed(path: &Path, error: &dyn std::fmt::Display) -> Failure {
     Failure::input(format!("{}: {error}", path.display()))
 }
 
-/// A shard in a file.
+/// A shard in a file, which is as it was written.
 #[derive(Debug)]
 pub struct Shard {
     /// Its first line.
     pub head: Head,
     path: PathBuf,
+    session: Session,
 }
 
 impl Shard {
     /// Opens a shard.
-    pub fn open(path: &Path) -> Result<Self, Failure> {
-        let mut text = String::new();
-        let mut lines = reader(path)?;
-        lines.read_line(&mut text).map_err(|e| failed(path, &e))?;
-        let head: Head = serde_json::from_str(&text)
-            .map_err(|e| failed(path, &format!("not the first line of a shard: {e}")))?;
-        let [index, of] = head.shard;
-        if head.schema != SCHEMA || index == 0 || index > of {
-            return Err(failed(
-                path,
-                &format!("not the first line of a shard of {SCHEMA}"),
-            ));
+    ///
+    /// # Errors
+    /// It is none, it is of another schema, or it is not as it was written.
+    pub fn open(path: &Path, session: Session) -> Result<Self, Failure> {
+        let mut lines = Lines::open(path, session)?;
+        let first = lines.next_line()?.unwrap_or_default();
+        let head = lines.parsed(&first, Head::from_json)?;
+        let mut hash = Sha256::new();
+        hash.update(&first);
+        let (mut before, mut last) = (1, String::new());
+        while let Some(line) = lines.next_line()? {
+            if !last.is_empty() {
+                hash.update(&last);
+                before += 1;
+            }
+            last = line;
         }
-        let path = path.to_owned();
-        Ok(Self { head, path })
+        let end = lines.parsed(&last, End::from_json);
+        let digest = hexadecimal(&hash.finalize());
+        let is_whole = end
+            .as_ref()
+            .is_ok_and(|end| end.lines == before && end.sha256 == digest);
+        let shard = Self {
+            head,
+            path: path.to_owned(),
+            session,
+        };
+        if !is_whole || !last.ends_with('\n') {
+            // Perhaps a line says what is wrong.
+            shard.each(|_| ())?;
+            end?;
+            let said =
+                "the lines before are not those that this digest is of: make the shard again";
+            return Err(lines.wrong(0..0, &last, said));
+        }
+        Ok(shard)
+    }
+
+    /// Its file.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Tells every observation of it, in order.
     pub fn each(&self, mut report: impl FnMut(&Observation)) -> Result<(), Failure> {
-        let mut expected = self.head.range();
-        let lines = reader(&self.path)?.lines();
-        for (number, line) in lines.enumerate().skip(1) {
-            let place = |e: &dyn std::fmt::Display| {
-                Failure::input(format!("{}:{}: {e}", self.path.display(), number + 1))
+        let mut lines = Lines::open(&self.path, self.session)?;
+        lines.next_line()?;
+        for setup in self.head.range() {
+            let Some(line) = lines.next_line()? else {
+                return Err(failed(&self.path, &format!("setup {setup} is missing")));
             };
-            let line = line.map_err(|e| place(&e))?;
-            let observation: Observation = serde_json::from_str(&line).map_err(|e| place(&e))?;
-            if expected.next() != Some(observation.setup) {
-                return Err(place(&format!(
-                    "found setup {}, out of turn",
-                    observation.setup
-                )));
+            // What is right needs no places.
+            let observation = match serde_json::from_str::<Observation>(&line) {
+                Ok(observation) => observation,
+                Err(_) => lines.parsed(&line, |line| Document::from_json(line)?.read())?,
+            };
+            if observation.setup != setup {
+                let found = observation.setup;
+                let said = format!("found setup {found}, expected setup {setup}");
+                return Err(lines.wrong(0..0, &line, &said));
             }
             report(&observation);
         }
-        match expected.next() {
-            None => Ok(()),
-            Some(setup) => Err(failed(&self.path, &format!("setup {setup} is missing"))),
+        Ok(())
+    }
+}
+
+impl Head {
+    fn from_json(line: &str) -> Result<Self, TextError> {
+        let document = Document::from_json(line)?;
+        let refused = |key: &str, words: String| {
+            let span = document.span(key).unwrap_or(0..0);
+            Err(TextError::at(span, words))
+        };
+        match document.root.get("schema").map(|value| &value.content) {
+            Some(Content::Text(schema)) if schema == SCHEMA => (),
+            Some(Content::Text(schema)) => {
+                let words = format!("found the schema {}, expected `{SCHEMA}`", quote(schema));
+                return refused("schema", words);
+            }
+            _ => {
+                let words = format!("found no schema, expected a shard's first line, `{SCHEMA}`");
+                return refused("schema", words);
+            }
+        }
+        let head: Self = document.read()?;
+        let [index, of] = head.shard;
+        match index > 0 && index <= of {
+            true => Ok(head),
+            false => refused(
+                "shard",
+                format!("found shard {index}/{of}, expected one of them"),
+            ),
         }
     }
 }
 
-fn reader(path: &Path) -> Result<BufReader<File>, Failure> {
-    File::open(path)
-        .map(BufReader::new)
-        .map_err(|e| failed(path, &e))
+impl End {
+    fn from_json(line: &str) -> Result<Self, TextError> {
+        Document::from_json(line)?.read()
+    }
+}
+
+/// The lines of a file.
+struct Lines {
+    reader: BufReader<Limited>,
+    path: PathBuf,
+    /// How many have been read.
+    count: usize,
+}
+
+impl Lines {
+    fn open(path: &Path, session: Session) -> Result<Self, Failure> {
+        let reader = BufReader::new(session.limits.open(path)?);
+        Ok(Self {
+            reader,
+            path: path.to_owned(),
+            count: 0,
+        })
+    }
+
+    fn next_line(&mut self) -> Result<Option<String>, Failure> {
+        let mut line = String::new();
+        let read = self.reader.read_line(&mut line);
+        let read = read.map_err(|e| failed(&self.path, &e))?;
+        self.count += usize::from(read > 0);
+        Ok((read > 0).then_some(line))
+    }
+
+    fn parsed<T>(
+        &self,
+        line: &str,
+        parse: impl Fn(&str) -> Result<T, TextError>,
+    ) -> Result<T, Failure> {
+        parse(line).map_err(|e| self.wrong(e.span.clone().unwrap_or(0..0), line, &e.to_string()))
+    }
+
+    /// What is wrong with the line that was read last.
+    fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> Failure {
+        let LineColumn { column, .. } = LineColumn::of(line.as_bytes(), span.start);
+        let (path, number) = (self.path.display(), self.count.max(1));
+        Failure::input(format!("{path}:{number}:{column}: {words}"))
+    }
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Accessor, Asset, Extras, Index, Material, Mesh, Node, Root, Scene, serialize};
 use nalgebra::Point3;
 use premio_kernel::unit::Unit;
+use premio_text::escape;
 use std::collections::{BTreeMap, HashMap};
 
 /// The colours of faces and of edges.
@@ -234,7 +235,7 @@ impl File {
             name: None,
             uri: None,
         });
-        let json = serialize::to_vec(&self.root).ok()?;
+        let json = escape::json(serialize::to_string(&self.root).ok()?).into_bytes();
         // Every length is one of 32 bits; the chunks' heads and paddings take less than this.
         const HEADS: usize = 64;
         let length = u32::try_from(HEADS + json.len() + self.bytes.len()).ok()?;

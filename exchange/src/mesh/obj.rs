@@ -4,13 +4,14 @@
 
 use super::{Facet, Facets};
 use nalgebra::Vector3;
+use premio_text::escape;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
 /// The text of a file.
 pub fn write(facets: &Facets, name: &str) -> String {
     // A name ends with its line.
-    let name = name.replace(char::is_control, " ");
+    let name = escape::line(name);
     let mut text = String::new();
     for p in &facets.points {
         line(&mut text, format_args!("v {} {} {}", p.x, p.y, p.z));

@@ -2,6 +2,7 @@
 
 use super::{Facet, Facets, MeshError};
 use premio_kernel::unit::Unit;
+use premio_text::escape;
 use std::collections::HashMap;
 use std::io::Cursor;
 use threemf2::model::builder::{MeshObjectBuilder, ModelBuilder, ObjectType, Unit as Length};
@@ -23,12 +24,14 @@ fn written(facets: &Facets, name: &str, unit: Unit) -> Option<Vec<u8>> {
         Unit::Micrometre => Length::Micron,
         Unit::Inch => Length::Inch,
     };
+    // The writer puts texts into the file as they are.
+    let name = escape::xml(name);
     let mut model = ModelBuilder::new(unit, true);
-    model.add_metadata("Title", Some(name));
+    model.add_metadata("Title", Some(&name));
     model.add_build(None).ok()?;
     for of_solid in facets.solids() {
         let id = model.add_mesh_object(|object| {
-            object.object_type(ObjectType::Model).name(name);
+            object.object_type(ObjectType::Model).name(&name);
             add(object, facets, of_solid);
             Ok(())
         });

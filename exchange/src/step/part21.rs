@@ -1,6 +1,7 @@
 //! The clear text of ISO 10303-21: numbered instances of entities.
 
 use super::{Options, Protocol};
+use premio_text::escape;
 use std::fmt::Write as _;
 
 /// The number of an instance.
@@ -42,7 +43,7 @@ impl Exchange {
             "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('{name}'),'2;1');\n\
              FILE_NAME('{name}','',(''),(''),'premio {version}','premio','');\n\
              FILE_SCHEMA(('{schema}'));\nENDSEC;\nDATA;\n{data}ENDSEC;\nEND-ISO-10303-21;\n",
-            name = quoted(&options.name),
+            name = escape::step(&options.name),
             version = env!("CARGO_PKG_VERSION"),
             data = self.data,
         )
@@ -108,26 +109,6 @@ impl std::fmt::Display for Truth {
     }
 }
 
-/// The inside of a string: quotes and backslashes twice, what is not ASCII by its UTF-16 code.
-pub(super) fn quoted(text: &str) -> String {
-    let mut shown = String::new();
-    for c in text.chars() {
-        match c {
-            '\'' => shown.push_str("''"),
-            '\\' => shown.push_str("\\\\"),
-            ' '..='~' => shown.push(c),
-            _ => {
-                shown.push_str("\\X2\\");
-                for unit in c.encode_utf16(&mut [0; 2]) {
-                    let _ = write!(shown, "{unit:04X}");
-                }
-                shown.push_str("\\X0\\");
-            }
-        }
-    }
-    shown
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,14 +122,5 @@ mod tests {
         ];
         assert_eq!(shown, expected);
         assert_eq!(Reals(&[1.0, 0.5]).to_string(), "(1.,0.5)");
-    }
-
-    #[test]
-    fn strings_are_ascii() {
-        assert_eq!(quoted("it's a\\b"), "it''s a\\\\b");
-        assert_eq!(
-            quoted("Büchse 😀"),
-            "B\\X2\\00FC\\X0\\chse \\X2\\D83DDE00\\X0\\"
-        );
     }
 }

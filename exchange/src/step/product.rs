@@ -1,8 +1,9 @@
 //! The product that the solids are the shape of, and the units.
 
-use super::part21::{Exchange, Id, List, Real, quoted};
+use super::part21::{Exchange, Id, List, Real};
 use super::{Options, Protocol};
 use premio_kernel::unit::Unit;
+use premio_text::escape;
 
 /// The uncertainty that a file states is this part of the accuracy: readers make up to within it what
 /// a file leaves to them, such as where circles run in the parameters of faces.
@@ -53,7 +54,7 @@ fn length_unit(exchange: &mut Exchange, unit: Unit) -> Id {
 
 /// The product, with its solids as its shape.
 pub(super) fn product(exchange: &mut Exchange, options: &Options, context: Id, solids: &[Id]) {
-    let name = quoted(&options.name);
+    let name = escape::step(&options.name);
     let (application, protocol, year) = match options.protocol {
         Protocol::Ap242 => (
             "managed model based 3d engineering",

@@ -26,7 +26,11 @@ impl Finishes {
         for (i, finish) in conditions.surfaces.iter().enumerate() {
             for &face in &finish.faces {
                 let place = by_face.get_mut(face as usize);
-                *place.ok_or(StageError::NoFace { face, count })? = i + 1;
+                let missing = || {
+                    let reason = format!("names face {face}, and the part has {count}");
+                    SetupError::value(format!("surface[{i}].faces"), reason)
+                };
+                *place.ok_or_else(missing)? = i + 1;
             }
         }
         Ok(Self { by_face })

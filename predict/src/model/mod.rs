@@ -4,6 +4,7 @@
 //! Each setup is one [`Observation`], written as a line; a
 //! [`Summary`](summary::Summary) reads the lines, as often as it needs, and keeps sums only.
 
+pub mod consistency;
 pub mod information;
 pub mod observation;
 pub mod record;

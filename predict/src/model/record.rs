@@ -29,6 +29,7 @@ pub enum Record {
 
 /// A part's description, and how it is read: a model is of use without the file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Description {
     /// The language: the ending of its files.
     pub language: String,
@@ -50,6 +51,7 @@ pub struct Description {
 
 /// What the model is of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Head {
     /// [`SCHEMA`].
     pub schema: String,
@@ -82,10 +84,16 @@ pub struct Head {
     pub posed: u64,
     /// How likely the ends of two features that do not meet are as near as those that do.
     pub chance: f64,
+    /// SHA-256 of all bytes of the file, with zeros in place of these digits.
+    pub sha256: String,
 }
+
+/// What stands for the digits of a digest that is not known yet.
+pub const NO_DIGEST: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
 /// A share with its credible interval of 95 % (Beta(½, ½) posterior).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Rate {
     /// The mean.
     pub mean: f64,
@@ -112,6 +120,7 @@ impl Rate {
 
 /// Means and covariances of attributes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Attributes {
     /// Of how many.
     pub count: u64,
@@ -137,6 +146,7 @@ impl Attributes {
 
 /// What is known of a feature.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Feature {
     /// Its place in the order of detectability, from 0.
     pub rank: usize,
@@ -162,6 +172,7 @@ pub struct Feature {
 
 /// A feature in an aspect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct AspectFeature {
     /// Its rank.
     pub feature: usize,
@@ -175,6 +186,7 @@ pub struct AspectFeature {
 
 /// What is known of an aspect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Aspect {
     /// Its place in the order of setups, from 0.
     pub rank: usize,
@@ -188,6 +200,7 @@ pub struct Aspect {
 
 /// What is known of a relation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Tuple {
     /// Its place in the order of how often it is kept.
     pub rank: usize,
@@ -205,6 +218,7 @@ pub struct Tuple {
 
 /// A feature in the tree of which are found together.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Together {
     /// Its rank.
     pub feature: usize,
@@ -220,6 +234,7 @@ pub struct Together {
 
 /// Which features are found together: a tree of dependences (Chow and Liu 1968).
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Codetection {
     /// The nodes, parents first.
     pub tree: Vec<Together>,
@@ -253,6 +268,7 @@ pub fn records(
         pose: root(&summary.pose),
         posed: summary.pose.count(),
         chance: chance(summary, 2),
+        sha256: NO_DIGEST.to_owned(),
     };
     let mut all = vec![Record::Model(Box::new(head))];
     for (i, source) in order.iter().enumerate() {

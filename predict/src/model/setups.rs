@@ -2,7 +2,7 @@
 
 use crate::setup::light::Light;
 use crate::setup::viewpoint::Viewpoint;
-use crate::setup::{Conditions, Setup, SetupError, Written, above_zero};
+use crate::setup::{Conditions, MOST_LIGHTS, Setup, SetupError, Written, above_zero};
 use crate::sphere::{Cone, Lattice, Sampling, SphereError, points};
 use crate::statistics::hash;
 use crate::subject::Subject;
@@ -126,6 +126,13 @@ impl Setups {
                 "makes more than 2^32 setups",
             ));
         }
+        if setups.lights.len() >= MOST_LIGHTS {
+            let reason = format!(
+                "is there {} times, and must be less than {MOST_LIGHTS} times",
+                setups.lights.len()
+            );
+            return Err(SetupError::value("light", reason));
+        }
         setups.conditions.validate()?;
         let always = setups.conditions.ambient > 0.0 || !setups.lights.is_empty();
         setups.conditions.validate_lights(&setups.lights)?;
@@ -150,6 +157,20 @@ impl Setups {
         let lights = self.moving.len().max(1);
         let view = self.views.get(index / lights).copied();
         [view, self.moving.get(index % lights).copied()]
+    }
+
+    /// Where the cameras are, about a part.
+    pub fn eyes(&self, subject: &Subject<'_>) -> Vec<Point3<f64>> {
+        let radius = self.viewing.radius_about(subject);
+        let about = |direction: &Vector3<f64>| subject.centre + direction * radius;
+        self.views.iter().map(about).collect()
+    }
+
+    /// Where the light is that moves, about a part.
+    pub fn moving_lights(&self, subject: &Subject<'_>) -> Vec<Point3<f64>> {
+        let radius = self.illumination.as_ref().map(|s| s.radius_about(subject));
+        let at = |direction: &Vector3<f64>| Some(subject.centre + direction * radius?);
+        self.moving.iter().filter_map(at).collect()
     }
 
     /// One of the setups, about a part.

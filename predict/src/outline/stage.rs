@@ -30,17 +30,28 @@ pub enum StageError {
     /// The part cannot be seen from anywhere.
     #[error(transparent)]
     Subject(#[from] SubjectError),
-    /// A face that the setup names is not there.
-    #[error("`surface` names face {face}, and the part has {count}")]
-    NoFace {
-        /// The number that is named.
-        face: u32,
-        /// How many faces there are.
-        count: usize,
-    },
     /// No part of the image shows the part.
     #[error("the camera sees nothing of the part: {0}")]
     OutOfSight(String),
+}
+
+impl StageError {
+    /// What is wrong with the setup, with the key that it is about.
+    pub fn setup_error(&self) -> Option<SetupError> {
+        match self {
+            Self::Setup(error) => Some(error.clone()),
+            Self::View(error) => Some(SetupError::value("camera", format!("has no view: {error}"))),
+            Self::Light(i, error) => {
+                let reason = format!("has no view of the part, as an eye: {error}");
+                Some(SetupError::value(format!("light[{i}]"), reason))
+            }
+            Self::OutOfSight(why) => {
+                let reason = format!("sees nothing of the part: {why}");
+                Some(SetupError::value("camera", reason))
+            }
+            Self::Subject(_) => None,
+        }
+    }
 }
 
 /// A camera with its projection.
@@ -77,9 +88,22 @@ impl Eyes {
         let matrices = setup
             .camera
             .matrices(&setup.conditions.sensor, &subject.centre)?;
+        let centre = -(matrices.r.transpose() * matrices.t);
+        let eye = setup.camera.eye.map_or(centre.into(), Point3::from);
+        if subject.contains(&eye) {
+            let key = if setup.camera.eye.is_some() {
+                "eye"
+            } else {
+                "t"
+            };
+            return Err(inside(format!("camera.{key}")));
+        }
         let mut lights = Vec::with_capacity(setup.lights.len());
         for (i, light) in setup.lights.iter().enumerate() {
             let source = light::Source::new(light, &subject.centre);
+            if matches!(source.place(), Place::Near(p) if subject.contains(&p)) {
+                return Err(inside(format!("light[{i}].position")));
+            }
             let cameras = light_cameras(&source, subject).map_err(|error| {
                 SetupError::value(format!("light[{i}].position"), error.to_string())
             })?;
@@ -92,6 +116,11 @@ impl Eyes {
             lights,
         })
     }
+}
+
+fn inside(key: String) -> StageError {
+    let reason = "is inside the part: expected a point outside";
+    SetupError::value(key, reason).into()
 }
 
 fn light_cameras(

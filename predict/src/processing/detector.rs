@@ -91,6 +91,17 @@ pub enum DetectorError {
     },
 }
 
+impl DetectorError {
+    /// The key that it is about, within the detector.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::Value { name: "sigma", .. } => "mask.gaussian.sigma",
+            Self::Value { name, .. } => name,
+            Self::LowAboveThreshold { .. } => "low",
+        }
+    }
+}
+
 impl Mask {
     /// The least and the greatest width of a Gaussian: less is no mask of pixels, more is no edge.
     const SIGMAS: [f64; 2] = [0.375, 20.0];

@@ -12,6 +12,7 @@ use crate::feature::Criteria;
 use crate::processing::{Detector, DetectorError};
 use crate::reflectance::{Constants, GREEN, Material, Named};
 use light::Light;
+use premio_text::{Content, Document, TextError};
 use schemars::JsonSchema;
 use sensor::Sensor;
 use serde::de::value::MapAccessDeserializer;
@@ -26,13 +27,8 @@ pub use written::Written;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SetupError {
     /// The text is not that of a setup.
-    #[error("{message}")]
-    Syntax {
-        /// What is wrong.
-        message: String,
-        /// The bytes of the text at which it is, where known.
-        span: Option<Range<usize>>,
-    },
+    #[error(transparent)]
+    Text(#[from] TextError),
     /// A value is out of its range.
     #[error("`{key}` {reason}")]
     Value {
@@ -69,16 +65,23 @@ pub enum SetupError {
 impl SetupError {
     /// The bytes of a text at which it is, where they are known.
     pub fn span(&self, text: &str) -> Option<Range<usize>> {
+        if let Self::Text(error) = self {
+            return error.span.clone();
+        }
+        let document = Document::from_toml(text).ok()?;
         match self {
-            Self::Syntax { span, .. } => span.clone(),
-            Self::Value { key, .. } => written::place(key, text),
-            Self::Material(name) => {
-                let quoted = format!("\"{name}\"");
-                text.find(&quoted).map(|at| at..at + quoted.len())
-            }
-            Self::Detector(_) => written::place("detector", text),
-            Self::Wavelength { wavelength, .. } => written::wavelength(*wavelength, text),
-            Self::Dark => None,
+            Self::Text(_) | Self::Dark => None,
+            Self::Value { key, .. } => document.span(key),
+            Self::Material(name) => document.find(|member| {
+                member.key == "material" && member.value.content == Content::Text(name.clone())
+            }),
+            Self::Detector(error) => document
+                .span(&format!("detector.{}", error.key()))
+                .or_else(|| document.span(error.key())),
+            Self::Wavelength { wavelength, .. } => document.find(|member| {
+                let value: Result<f64, _> = member.value.read();
+                member.key == "wavelength" && value == Ok(*wavelength)
+            }),
         }
     }
 
@@ -251,11 +254,7 @@ pub struct Setup {
 
 /// The detector that a TOML text describes: the keys of a setup's `[detector]`.
 pub fn detector_from_toml(text: &str) -> Result<Detector, SetupError> {
-    let read = toml::from_str(text).map_err(|error: toml::de::Error| SetupError::Syntax {
-        message: error.message().to_owned(),
-        span: error.span(),
-    });
-    let detector: Detector = read?;
+    let detector: Detector = Document::from_toml(text)?.read()?;
     detector.validate()?;
     Ok(detector)
 }

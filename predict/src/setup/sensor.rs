@@ -49,12 +49,30 @@ impl Default for Sensor {
     }
 }
 
+/// The lengths that a camera may have, in millimetres.
+const LENGTHS: [f64; 2] = [1.0 / 1_048_576.0, 1_048_576.0];
+
+fn is_length(key: &str, x: f64) -> Result<(), SetupError> {
+    let [least, most] = LENGTHS;
+    match (least..=most).contains(&x) {
+        true => Ok(()),
+        false => {
+            let reason = format!("is {x} mm, and must be {least:.0e} to {most:.0e} mm");
+            Err(SetupError::value(key, reason))
+        }
+    }
+}
+
 impl Sensor {
     /// Whether its values are in their ranges.
     pub fn validate(&self) -> Result<(), SetupError> {
         above_zero("sensor.focal", self.focal)?;
         above_zero("sensor.diameter", self.diameter)?;
-        above_zero("sensor.film", self.film[0].min(self.film[1]))?;
+        for side in self.film {
+            above_zero("sensor.film", side)?;
+            is_length("sensor.film", side)?;
+        }
+        is_length("sensor.focal", self.focal)?;
         above_zero("sensor.white", self.white)?;
         at_least_zero("sensor.electrons", self.electrons)?;
         at_least_zero("sensor.read_noise", self.read_noise)?;

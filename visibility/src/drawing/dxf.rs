@@ -8,6 +8,7 @@ use super::sheet::{Mark, Sheet, Weight};
 use super::{Drawing, Layer, Shape, Stroke};
 use nalgebra::{Point2, Vector2};
 use premio_kernel::unit::Unit;
+use premio_text::escape;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -344,29 +345,11 @@ fn furniture(g: &mut Groups, mark: &Mark, paper: f64, owner: u32) {
             start(g, "TEXT", "AcDbText", TITLE.0, owner);
             g.point(10, at.x * paper, at.y * paper);
             g.number(40, height * paper);
-            g.put(1, plain(text));
+            g.put(1, escape::dxf(text));
             g.put(7, "Standard");
             g.put(100, "AcDbText");
         }
     }
-}
-
-/// A text in one line, of letters that every code page has.
-fn plain(text: &str) -> String {
-    let mut out = String::new();
-    for letter in text.chars() {
-        match letter {
-            letter if letter.is_control() => out.push(' '),
-            letter if letter.is_ascii() => out.push(letter),
-            letter => {
-                // Letters beyond the first 65,536 are two.
-                for half in letter.encode_utf16(&mut [0; 2]) {
-                    let _ = write!(out, "\\U+{half:04X}");
-                }
-            }
-        }
-    }
-    out
 }
 
 fn entity(g: &mut Groups, stroke: &Stroke, placing: Placing, owner: u32) {

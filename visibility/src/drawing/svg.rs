@@ -3,6 +3,7 @@
 use super::sheet::{Mark, Placed, Sheet, Weight};
 use super::{Drawing, Layer, Shape, Stroke};
 use nalgebra::{Point2, Vector2};
+use premio_text::escape;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -165,7 +166,7 @@ pub fn write(drawing: &Drawing) -> String {
 pub fn write_sheet(sheet: &Sheet) -> String {
     let mut out = String::new();
     head(sheet.size.into(), "mm", SHEET_STYLE, &mut out);
-    let _ = writeln!(out, "<title>{}</title>", escaped(&sheet.options.title));
+    let _ = writeln!(out, "<title>{}</title>", escape::xml(&sheet.options.title));
     let down = |p: &Point2<f64>| Vector2::new(p.x, sheet.size.y - p.y);
     for Placed { name, drawing, at } in &sheet.views {
         let page = Page {
@@ -218,7 +219,7 @@ impl Page {
             }
             Mark::Text(start, height, text) => {
                 let ((x, y), size) = (at(start), short(height / CAPITAL));
-                let text = escaped(text);
+                let text = escape::xml(text);
                 writeln!(
                     out,
                     "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\">{text}</text>"
@@ -226,19 +227,4 @@ impl Page {
             }
         };
     }
-}
-
-/// A text without what has a meaning in XML, or no place in it.
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for letter in text.chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            letter if letter.is_control() => out.push(' '),
-            letter => out.push(letter),
-        }
-    }
-    out
 }

@@ -1,0 +1,243 @@
+//! The files of a command: what it reads and what it writes, known before anything is computed.
+
+use crate::arguments::{Command, DescriptionOptions, ModelCommand, SoughtOptions};
+use crate::diagnostics::Failure;
+use crate::fuzz::archive::MANIFEST;
+use crate::output;
+use std::fs::{self, Metadata};
+use std::path::{Path, PathBuf};
+
+/// What a command reads and writes.
+#[derive(Debug, Default)]
+pub struct Files {
+    inputs: Vec<Named>,
+    outputs: Vec<Named>,
+}
+
+/// A file, and what the command line calls it.
+#[derive(Debug)]
+struct Named {
+    option: &'static str,
+    path: PathBuf,
+}
+
+/// What two paths have in common if they are one file.
+#[derive(Debug, PartialEq, Eq)]
+enum Identity {
+    /// A file that is there.
+    Present(FileId),
+    /// A file to be, by the real path of its folder.
+    Absent(PathBuf),
+}
+
+/// Device and inode, where the system has them; else the real path.
+#[cfg(unix)]
+type FileId = (u64, u64);
+#[cfg(not(unix))]
+type FileId = PathBuf;
+
+impl Files {
+    /// The files of a command.
+    pub fn of(command: &Command) -> Self {
+        let mut files = Self::default();
+        match command {
+            Command::Info(options) => files.reads_part(&options.description),
+            Command::Contours(options) => {
+                files.reads_part(&options.description);
+                files.reads("--camera", options.camera.camera.as_deref());
+                files.writes("-o", options.output.path());
+            }
+            Command::Check(options) => files.reads_part(&options.description),
+            Command::Export(options) => {
+                files.reads_part(&options.description);
+                files.writes("-o", options.output.path());
+            }
+            Command::Convert(options) => {
+                files.reads("IN", Some(&options.file));
+                files.writes("OUT", Some(&options.output));
+            }
+            Command::Predict(options) => {
+                files.reads_part(&options.description);
+                files.reads("--setup", Some(&options.setup));
+                files.writes("--overlay", options.overlay.as_deref());
+                files.writes("-o", options.output.as_deref());
+            }
+            Command::Render(options) => {
+                files.reads_part(&options.description);
+                files.reads("--setup", Some(&options.setup));
+                files.writes("-o", Some(&options.output));
+            }
+            Command::Compare(options) => {
+                files.reads_part(&options.description);
+                files.reads("--setup", Some(&options.setup));
+                files.reads("--image", options.image.as_deref());
+                files.writes("--overlay", options.overlay.as_deref());
+                files.writes("-o", options.output.as_deref());
+            }
+            Command::Advise(options) => {
+                files.reads_part(&options.description);
+                files.reads("--setups", Some(&options.setups));
+                files.writes("-o", options.output.path());
+            }
+            Command::Model(options) => {
+                if let Some(ModelCommand::Merge(merge)) = &options.command {
+                    for shard in &merge.shards {
+                        files.reads("SHARD", Some(shard));
+                    }
+                    files.writes("-o", merge.output.output.as_deref());
+                } else if let Some(run) = &options.run.0 {
+                    files.reads_part(&run.description);
+                    files.reads("--setups", Some(&run.setups));
+                    files.writes("-o", run.output.output.as_deref());
+                }
+            }
+            Command::Match(options) => files.sought(&options.sought),
+            Command::Track(options) => files.sought(&options.sought),
+            Command::Fuzz(options) => {
+                files.writes("--state", options.state.as_deref());
+                let manifest = options.write.as_ref().map(|folder| folder.join(MANIFEST));
+                files.writes("--write", manifest.as_deref());
+                files.writes("-o", options.output.as_deref());
+            }
+            Command::Schema(options) => files.writes("-o", options.output.path()),
+            Command::Man(options) => files.writes("-o", options.output.path()),
+            Command::Completions(options) => files.writes("-o", options.output.path()),
+        }
+        files
+    }
+
+    fn reads_part(&mut self, description: &DescriptionOptions) {
+        self.reads("FILE", Some(&description.file));
+    }
+
+    fn sought(&mut self, options: &SoughtOptions) {
+        self.reads("MODEL", Some(&options.model));
+        self.reads("--camera", Some(&options.camera));
+        self.reads("--detector", options.detector.as_deref());
+        for image in &options.images {
+            self.reads("IMAGE", Some(image));
+        }
+        self.writes("--overlay", options.overlay.as_deref());
+        self.writes("--csv", options.csv.as_deref());
+        self.writes("-o", options.output.as_deref());
+    }
+
+    fn reads(&mut self, option: &'static str, path: Option<&Path>) {
+        self.inputs.extend(Named::new(option, path));
+    }
+
+    fn writes(&mut self, option: &'static str, path: Option<&Path>) {
+        self.outputs.extend(Named::new(option, path));
+    }
+
+    /// Whether every output is a file of its own, in a folder that is there.
+    ///
+    /// # Errors
+    /// Two outputs are one file, an output is an input, or an output cannot be a file.
+    pub fn check(&self) -> Result<(), Failure> {
+        let mut known: Vec<(&Named, Identity)> = Vec::new();
+        for output in &self.outputs {
+            let Some(identity) = output.identity_of_output()? else {
+                continue;
+            };
+            if let Some((other, _)) = known.iter().find(|(_, known)| *known == identity) {
+                return Err(output.refused(&format!(
+                    "`{}` and `{}` are one file, expected a file for each",
+                    other.option, output.option
+                )));
+            }
+            known.push((output, identity));
+        }
+        let stdout = stdout_identity();
+        for input in &self.inputs {
+            let Some(identity) = identity(&input.path) else {
+                continue;
+            };
+            if let Some((output, _)) = known.iter().find(|(_, known)| *known == identity) {
+                return Err(output.refused(&format!(
+                    "`{}` is the input `{}`, {}: expected another file",
+                    output.option,
+                    input.option,
+                    input.path.display()
+                )));
+            }
+            if stdout.as_ref() == Some(&identity) {
+                return Err(input.refused("standard output is this input: expected another file"));
+            }
+        }
+        match known
+            .iter()
+            .find(|(_, known)| stdout.as_ref() == Some(known))
+        {
+            Some((output, _)) => Err(output.refused(&format!(
+                "standard output and `{}` are one file, expected a file for each",
+                output.option
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Named {
+    fn new(option: &'static str, path: Option<&Path>) -> Option<Self> {
+        let path = path?.to_owned();
+        Some(Self { option, path })
+    }
+
+    fn refused(&self, why: &str) -> Failure {
+        Failure::input(format!("{}: {why}", self.path.display()))
+    }
+
+    /// What the file that is written is known by; none for devices and pipes, which lose nothing.
+    fn identity_of_output(&self) -> Result<Option<Identity>, Failure> {
+        let target = output::target(&self.path).map_err(|e| self.refused(&e.to_string()))?;
+        match fs::metadata(&target) {
+            Ok(found) if found.is_dir() => Err(self.refused("found a folder, expected a file")),
+            Ok(found) if !found.is_file() => Ok(None),
+            Ok(found) => Ok(present(&target, &found).map(Identity::Present)),
+            Err(_) => absent(&target)
+                .map(|path| Some(Identity::Absent(path)))
+                .map_err(|e| self.refused(&format!("its folder: {e}"))),
+        }
+    }
+}
+
+fn identity(path: &Path) -> Option<Identity> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_file() => present(path, &found).map(Identity::Present),
+        _ => None,
+    }
+}
+
+#[cfg(unix)]
+fn present(_: &Path, found: &Metadata) -> Option<FileId> {
+    use std::os::unix::fs::MetadataExt;
+    Some((found.dev(), found.ino()))
+}
+
+#[cfg(not(unix))]
+fn present(path: &Path, _: &Metadata) -> Option<FileId> {
+    fs::canonicalize(path).ok()
+}
+
+/// The path of a file to be, its folder without links.
+fn absent(path: &Path) -> std::io::Result<PathBuf> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    let folder = fs::canonicalize(folder.unwrap_or(Path::new(".")))?;
+    Ok(folder.join(path.file_name().unwrap_or_default()))
+}
+
+/// The file that standard output goes to, if it is one.
+#[cfg(unix)]
+fn stdout_identity() -> Option<Identity> {
+    use std::os::fd::AsFd;
+    let descriptor = std::io::stdout().as_fd().try_clone_to_owned().ok()?;
+    let found = fs::File::from(descriptor).metadata().ok()?;
+    let is_file = found.is_file();
+    is_file.then(|| present(Path::new(""), &found).map(Identity::Present))?
+}
+
+#[cfg(not(unix))]
+fn stdout_identity() -> Option<Identity> {
+    None
+}

@@ -1,0 +1,259 @@
+//! Whether what the records of a model say adds up.
+
+use super::observation::ATTRIBUTES;
+use super::record::{
+    Aspect, Attributes, Codetection, Feature, Head, NO_DIGEST, Rate, Record, SCHEMA, Tuple,
+};
+
+/// A value that does not fit to the rest.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{key}` {reason}")]
+pub struct Inconsistency {
+    /// The keys that lead to it within its record.
+    pub key: String,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+type Checked = Result<(), Inconsistency>;
+
+fn check(holds: bool, key: impl Into<String>, reason: impl Into<String>) -> Checked {
+    match holds {
+        true => Ok(()),
+        false => Err(Inconsistency {
+            key: key.into(),
+            reason: reason.into(),
+        }),
+    }
+}
+
+/// How many records of each kind have been seen.
+#[derive(Clone, Debug)]
+pub struct Consistency {
+    head: Head,
+    features: usize,
+    aspects: usize,
+    tuples: usize,
+    codetections: usize,
+}
+
+impl Consistency {
+    /// Begins with the head of a model.
+    ///
+    /// # Errors
+    /// What it says does not add up.
+    pub fn new(head: &Head) -> Result<Self, Inconsistency> {
+        let schema = format!("is \"{}\", expected \"{SCHEMA}\"", head.schema);
+        check(head.schema == SCHEMA, "schema", schema)?;
+        let setups = head.setups.len() as u64;
+        let reason = format!("is {}, and there are {setups} setups", head.count);
+        check(head.count == setups, "count", reason)?;
+        let unseen = head
+            .unseen
+            .values()
+            .try_fold(0u64, |sum, n| sum.checked_add(*n));
+        let fits = |n: Option<u64>| n.is_some_and(|n| n <= head.count);
+        check(fits(unseen), "unseen", "is of more setups than there are")?;
+        check(
+            fits(Some(head.posed)),
+            "posed",
+            "is of more setups than there are",
+        )?;
+        let others = fits(Some(head.other_aspects));
+        check(others, "other_aspects", "is of more setups than there are")?;
+        share("chance", head.chance)?;
+        let positive = |pose: [f64; 2]| pose.iter().all(|x| *x >= 0.0);
+        check(head.pose.is_none_or(positive), "pose", "is below zero")?;
+        let digits = head.sha256.len() == NO_DIGEST.len();
+        let digits = digits && head.sha256.bytes().all(|b| b.is_ascii_hexdigit());
+        check(digits, "sha256", "is not 64 hexadecimal digits")?;
+        Ok(Self {
+            head: head.clone(),
+            features: 0,
+            aspects: 0,
+            tuples: 0,
+            codetections: 0,
+        })
+    }
+
+    /// Goes on with the next record.
+    ///
+    /// # Errors
+    /// It does not fit to the head and the records before.
+    pub fn next(&mut self, record: &Record) -> Checked {
+        match record {
+            Record::Model(_) => check(false, "record", "is `model` twice, expected it once"),
+            Record::Feature(feature) => {
+                ranked(feature.rank, &mut self.features, self.head.features)?;
+                self.feature(feature)
+            }
+            Record::Aspect(aspect) => {
+                ranked(aspect.rank, &mut self.aspects, self.head.aspects)?;
+                self.aspect(aspect)
+            }
+            Record::Tuple(tuple) => {
+                ranked(tuple.rank, &mut self.tuples, self.head.tuples)?;
+                self.tuple(tuple)
+            }
+            Record::Codetection(codetection) => {
+                self.codetections += 1;
+                let once = self.codetections == 1;
+                check(once, "record", "is `codetection` twice, expected it once")?;
+                self.codetection(codetection)
+            }
+        }
+    }
+
+    /// Whether all records that the head counts were there; the key is one of the head.
+    ///
+    /// # Errors
+    /// Some are missing.
+    pub fn finish(&self) -> Checked {
+        let counts = [
+            ("features", self.features, self.head.features),
+            ("aspects", self.aspects, self.head.aspects),
+            ("tuples", self.tuples, self.head.tuples),
+        ];
+        for (key, found, expected) in counts {
+            let reason = format!("is {expected}, and {found} of them follow");
+            check(found == expected, key, reason)?;
+        }
+        Ok(())
+    }
+
+    fn feature(&self, feature: &Feature) -> Checked {
+        let visible = self.states("states", &feature.states)?;
+        rate("detectability", &feature.detectability, self.head.count)?;
+        rate(
+            "detectability_visible",
+            &feature.detectability_visible,
+            visible,
+        )?;
+        rate("reliability", &feature.reliability, feature.reliability.of)?;
+        let grows = |g: [f64; 2]| g.iter().all(|x| *x >= 0.0);
+        check(
+            feature.accuracy.is_none_or(grows),
+            "accuracy",
+            "is below zero",
+        )?;
+        let counted = feature
+            .fragments
+            .iter()
+            .try_fold(0u64, |sum, n| sum.checked_add(*n));
+        let within = counted.is_some_and(|n| n <= self.head.count);
+        check(within, "fragments", "are of more setups than there are")?;
+        share("share", feature.share)?;
+        attributes("attributes", feature.attributes.as_ref())
+    }
+
+    fn aspect(&self, aspect: &Aspect) -> Checked {
+        let reason = "is more than there are";
+        check(aspect.setups <= self.head.count, "setups", reason)?;
+        check(aspect.view.len() == 3, "view", "has not three numbers")?;
+        for (i, feature) in aspect.features.iter().enumerate() {
+            let key = |name: &str| format!("features[{i}].{name}");
+            self.rank(&key("feature"), feature.feature)?;
+            self.states(&key("states"), &feature.states)?;
+            rate(&key("detectability"), &feature.detectability, aspect.setups)?;
+            attributes(&key("attributes"), feature.attributes.as_ref())?;
+        }
+        Ok(())
+    }
+
+    fn tuple(&self, tuple: &Tuple) -> Checked {
+        for (i, member) in tuple.members.iter().enumerate() {
+            self.rank(&format!("members[{i}]"), *member)?;
+        }
+        check(tuple.members.len() > 1, "members", "are less than two")?;
+        let [visible, seen, kept] = tuple.counts;
+        let ordered = kept <= seen && seen <= visible;
+        check(
+            ordered,
+            "counts",
+            "grow: more are kept than seen, or seen than visible",
+        )?;
+        rate("kept", &tuple.kept, seen)?;
+        share("chance", tuple.chance)
+    }
+
+    fn codetection(&self, codetection: &Codetection) -> Checked {
+        for (i, node) in codetection.tree.iter().enumerate() {
+            let key = |name: &str| format!("tree[{i}].{name}");
+            self.rank(&key("feature"), node.feature)?;
+            if let Some(parent) = node.parent {
+                self.rank(&key("parent"), parent)?;
+                let before = codetection.tree[..i].iter().any(|n| n.feature == parent);
+                check(before, key("parent"), "is not before it")?;
+            }
+            check(
+                node.marginal.len() == 3,
+                key("marginal"),
+                "has not three numbers",
+            )?;
+            let square = node.table.iter().all(|row| row.len() == 3);
+            // A feature that depends on none has no table.
+            let rows = node.table.len();
+            let is_whole = square && (rows == 3 || rows == 0 && node.parent.is_none());
+            check(is_whole, key("table"), "is not three by three")?;
+            for value in node.marginal.iter().chain(node.table.iter().flatten()) {
+                share(&key("table"), *value)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn rank(&self, key: &str, feature: usize) -> Checked {
+        let count = self.head.features;
+        let reason = format!("is {feature}, and there are {count} features");
+        check(feature < count, key, reason)
+    }
+
+    /// The sum of counts of setups.
+    fn states(&self, key: &str, states: &[u64; 3]) -> Result<u64, Inconsistency> {
+        let sum = states.iter().try_fold(0u64, |sum, n| sum.checked_add(*n));
+        let within = sum.filter(|sum| *sum <= self.head.count);
+        check(within.is_some(), key, "are of more setups than there are")?;
+        Ok(within.unwrap_or_default())
+    }
+}
+
+fn ranked(rank: usize, known: &mut usize, expected: usize) -> Checked {
+    let reason = format!("is {rank}, expected {known}");
+    check(rank == *known, "rank", reason)?;
+    let reason = format!("is {rank}, and the head counts {expected}");
+    check(rank < expected, "rank", reason)?;
+    *known += 1;
+    Ok(())
+}
+
+fn share(key: &str, value: f64) -> Checked {
+    let reason = format!("is {value}, and must be 0 to 1");
+    check((0.0..=1.0).contains(&value), key, reason)
+}
+
+fn rate(key: &str, rate: &Rate, of: u64) -> Checked {
+    let reason = format!("is {}, expected {of}", rate.of);
+    check(rate.of == of, format!("{key}.of"), reason)?;
+    share(&format!("{key}.mean"), rate.mean)?;
+    let [low, high] = rate.interval;
+    let ordered = 0.0 <= low && low <= high && high <= 1.0;
+    check(
+        ordered,
+        format!("{key}.interval"),
+        "is no interval of 0 to 1",
+    )
+}
+
+fn attributes(key: &str, attributes: Option<&Attributes>) -> Checked {
+    let Some(attributes) = attributes else {
+        return Ok(());
+    };
+    let reason = format!("has not {ATTRIBUTES} numbers");
+    let is_whole = attributes.mean.len() == ATTRIBUTES;
+    check(is_whole, format!("{key}.mean"), reason)?;
+    let rows = &attributes.covariance;
+    let square = rows.len() == ATTRIBUTES && rows.iter().all(|row| row.len() == ATTRIBUTES);
+    let reason = format!("is not {ATTRIBUTES} by {ATTRIBUTES}");
+    check(square, format!("{key}.covariance"), reason)?;
+    check(attributes.count > 0, format!("{key}.count"), "is 0")
+}

@@ -176,7 +176,7 @@ fn a_model_is_the_same_for_any_shards_and_threads() {
     ));
     refused(
         "model merge 1-3.shard 2-3.shard other.shard -o no.model",
-        "different runs",
+        "another run",
     );
     let text = fs::read_to_string(folder.path().join("2-3.shard")).unwrap();
     let cut = text.lines().take(3).collect::<Vec<_>>().join("\n");
@@ -251,7 +251,7 @@ fn what_is_wrong_with_a_setup_is_told_with_its_place() {
         ),
         (
             format!("{camera}[[light]]\nposition = [1, 1, 1]\n"),
-            "light 0",
+            "light[0].position",
         ),
         (format!("{camera}[[light]]\n"), "light[0].position"),
         (format!("ambient = 0\n{camera}"), "no light"),

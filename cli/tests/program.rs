@@ -118,7 +118,8 @@ fn wrong_input_ends_with_2() {
         "info part.step",
         "info part.padl --part NONE",
         "info part.padl --resolution -1",
-        "contours part.padl --format json",
+        "contours part.padl",
+        "contours part.padl --format json --target 0,0,0",
         "contours part.padl --format json --eye 0,0,0 --target 0,0,0",
         "contours part.padl --format json --eye 9,9,9 --target 0,0,0 --up 0,0,0",
         "export part.padl --format json -o no/such/folder/out.json",
@@ -255,7 +256,10 @@ fn programs_are_told_in_json() {
     let output = premio(folder.path(), "--json export none.padl --format step");
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(messages(&output).len(), 1);
-    let output = premio(folder.path(), "contours part.padl --json --format svg");
+    let output = premio(
+        folder.path(),
+        "contours part.padl --json --format svg --ortho",
+    );
     assert_eq!(output.status.code(), Some(2));
     assert!(
         messages(&output)[0]["text"]

@@ -2,8 +2,8 @@
 
 use crate::arguments::{ModelOutput, RecordsFormat};
 use crate::diagnostics::Failure;
-use crate::model::file::hexadecimal;
 use crate::output;
+use premio_predict::model::file::hexadecimal;
 use premio_predict::model::record::Record;
 use sha2::{Digest, Sha256};
 use std::path::Path;

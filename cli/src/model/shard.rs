@@ -1,9 +1,9 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
 use crate::diagnostics::Failure;
-use crate::model::file::hexadecimal;
 use crate::output;
 use crate::session::{Limited, Session};
+use premio_predict::model::file::hexadecimal;
 use premio_predict::model::record::Description;
 use premio_predict::model::{Observation, Setups};
 use premio_text::escape::quote;

@@ -4,7 +4,7 @@ use crate::primitive::Primitive;
 use crate::tree::{Placed, Tree};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::rational::{Rational, to_f64};
-use premio_kernel::number::sign::{CloseCall, Judge, ROUNDING, Sign};
+use premio_kernel::number::sign::{CloseCall, Judge, Sign};
 
 /// Lists the primitives whose thickness is close to the resolution.
 pub(super) fn list(tree: &Tree, judge: &Judge) {
@@ -25,7 +25,7 @@ pub(super) fn list(tree: &Tree, judge: &Judge) {
 /// it is only thinner than the resolution.
 pub(super) fn list_vanished(solids: &Box3, judge: &Judge) {
     let apart = judge.furthest_coincidence();
-    if apart.is_beyond(ROUNDINGS * ROUNDING * solids.diagonal()) {
+    if apart.is_beyond(ROUNDINGS * f64::EPSILON * solids.diagonal()) {
         judge.list(CloseCall {
             question: "faces of the part, of which nothing is left",
             place: solids.centre().into(),

@@ -5,6 +5,7 @@
 //! [`Summary`](summary::Summary) reads the lines, as often as it needs, and keeps sums only.
 
 pub mod consistency;
+pub mod file;
 pub mod information;
 pub mod observation;
 pub mod record;

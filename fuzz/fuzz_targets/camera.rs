@@ -1,0 +1,57 @@
+//! Any bytes as cameras, of `contours` and of pictures: none may panic or hang, what is wrong is told at
+//! a place in the text, and what is read has a view of a part.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use nalgebra::Point3;
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_matching::camera::CameraFile;
+use premio_visibility::projection::Projection;
+use premio_visibility::{Camera, contours};
+use std::ops::Range;
+use std::sync::LazyLock;
+
+/// A block with a bore.
+static PART: LazyLock<Evaluation> = LazyLock::new(|| {
+    let text = "PART = BLO(X=6, Y=4, Z=2) DIF (CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1))";
+    let read = read("part", text.as_bytes(), Format::Padl, &Options::default());
+    evaluate(&read.expect("it is read").tree, &EvaluationOptions::default()).expect("it is simple")
+});
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    match Camera::from_json(text) {
+        Err(error) => told(&error.to_string(), error.span(text), text),
+        Ok(camera) => {
+            let again = serde_json::to_string(&camera).expect("a camera is written");
+            assert_eq!(Camera::from_json(&again), Ok(camera.clone()), "{again}");
+            let size = PART.bounds.diagonal();
+            let projection = Projection::new(&camera, size);
+            let depth = projection.depth(&Point3::new(3.0, 2.0, 1.0));
+            assert!(!depth.is_nan(), "{text}");
+            // What has no view says so.
+            let _ = contours(&PART.brep, &camera, PART.resolution);
+        }
+    }
+    match CameraFile::from_json(text) {
+        Err(error) => told(&error.to_string(), error.span(text), text),
+        Ok(file) => {
+            for size in [[640, 480], [1, 1], [100_000, 3]] {
+                if let Ok(pinhole) = file.for_picture(size) {
+                    let ray = pinhole.ray(&nalgebra::Point2::new(3.0, 4.0));
+                    assert!((ray.norm() - 1.0).abs() < 1e-9, "{text}");
+                }
+            }
+        }
+    }
+});
+
+/// The place of an error is in the text.
+fn told(words: &str, span: Option<Range<usize>>, text: &str) {
+    assert!(!words.is_empty());
+    let span = span.unwrap_or_else(|| panic!("{words} has no place\n{text}"));
+    assert!(text.get(span.clone()).is_some(), "{span:?} {words}\n{text}");
+}

@@ -1,0 +1,48 @@
+//! Any bytes as a model: none may panic or hang, and what is wrong is told at a place in the text. With
+//! its own digest, so that more than that is looked at, what is read teaches a matcher.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options, read};
+use premio_matching::learned::Learned;
+use premio_predict::model::file::{ModelFile, parse, sealed};
+use std::sync::LazyLock;
+
+/// The part that the seeds are models of.
+static PART: LazyLock<Evaluation> = LazyLock::new(|| {
+    let text = "PART = BLO(X=6, Y=4, Z=2) DIF (CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1))";
+    let read = read("part", text.as_bytes(), Format::Padl, &Options::default());
+    evaluate(&read.expect("it is read").tree, &EvaluationOptions::default()).expect("it is simple")
+});
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    tried(text);
+    if let Some(text) = sealed(text)
+        && let Some(model) = tried(&text)
+    {
+        let learned = Learned::of(&model.records, &PART.brep);
+        for record in &model.records {
+            if let premio_predict::model::record::Record::Feature(feature) = record {
+                let states = learned.states(&feature.source);
+                let sums = states.map(|s| s.iter().sum::<f64>());
+                assert!(sums.iter().all(|s| (s - 1.0).abs() < 1e-9), "{states:?}\n{text}");
+            }
+        }
+    }
+});
+
+fn tried(text: &str) -> Option<ModelFile> {
+    match parse(text) {
+        Ok(model) => Some(model),
+        Err(error) => {
+            assert!(!error.words.is_empty());
+            let span = error.span.clone();
+            assert!(text.get(span).is_some(), "{error:?}\n{text}");
+            None
+        }
+    }
+}

@@ -512,10 +512,7 @@ fn what_vanishes_is_said() {
     for name in ["thin.padl", "common.padl"] {
         let output = premio(folder.path(), &format!("info {name}"));
         assert!(output.status.success(), "{output:?}");
-        assert_says(
-            &said(&output),
-            &["resolution", "--exact", "e-11 apart"],
-        );
+        assert_says(&said(&output), &["resolution", "--exact", "e-11 apart"]);
         let output = premio(folder.path(), &format!("info {name} --strict"));
         assert_eq!(output.status.code(), Some(3), "{output:?}");
         assert_says(&said(&output), &["resolution", "e-11 apart"]);

@@ -7,8 +7,8 @@ mod outlines;
 mod recount;
 mod shadow;
 mod sheets;
-mod strokes;
 mod step;
+mod strokes;
 pub mod views;
 mod window;
 

@@ -161,3 +161,50 @@ impl fmt::Display for ShadowOutline {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use premio_csg::boundary::{EvaluationOptions, evaluate};
+    use premio_csg::reader::{Format, Options, read};
+    use premio_visibility::contours;
+    use premio_visibility::drawing::sheet::View;
+    use premio_visibility::drawing::{self, Layer};
+
+    /// A dome on its cylinder from the front, with the strokes that are kept.
+    fn outline(keeps: impl Fn(Layer, usize) -> bool) -> ShadowOutline {
+        let text = "P = CYL(R=10,H=10) UN SPH(R=10) AT (MOVZ=10)";
+        let (format, options) = (Format::Padl, Options::default());
+        let tree = read("dome", text.as_bytes(), format, &options)
+            .unwrap()
+            .tree;
+        let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+        let bounds = known.tight_bounds();
+        let camera = View::Front
+            .camera(bounds.centre(), bounds.diagonal())
+            .unwrap();
+        let seen = contours(&known.brep, &camera, known.resolution).unwrap();
+        let mut drawing = Drawing::new(&seen, &drawing::Options::default());
+        let mut index = 0..;
+        drawing
+            .strokes
+            .retain(|s| keeps(s.layer, index.next().unwrap_or(0)));
+        let projection = Projection::new(&camera, bounds.diagonal());
+        let tolerance = Tolerance {
+            image: 2.0 * drawing.distance,
+            sliver: 0.0,
+        };
+        ShadowOutline::new(&Material::of(&tree), &projection, &drawing, tolerance)
+    }
+
+    #[test]
+    fn every_stroke_of_an_outline_is_missed() {
+        let whole = outline(|_, _| true);
+        assert!(whole.missing.is_empty() && whole.drawn > 60, "{whole}");
+        // The dome's arc, two sides, and the line of the base.
+        for left_out in 0..4 {
+            let found = outline(|_, index| index != left_out);
+            assert!(!found.missing.is_empty(), "{left_out}: {found}");
+        }
+    }
+}

@@ -320,3 +320,74 @@ impl fmt::Display for SheetReport {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use premio_csg::boundary::{EvaluationOptions, evaluate};
+    use premio_csg::reader::{Format, Options, read};
+    use premio_visibility::contours;
+    use premio_visibility::drawing::sheet::View;
+
+    /// What is found of the strokes of a block with a blind hole from the front, after a change.
+    fn report(change: impl Fn(&mut Vec<Stroke>)) -> SheetReport {
+        let text = "P = BLO(X=60,Y=40,Z=20) DIF CYL(R=8,H=20) AT (MOVX=30,MOVY=20,MOVZ=8)";
+        let (format, options) = (Format::Padl, Options::default());
+        let tree = read("block", text.as_bytes(), format, &options)
+            .unwrap()
+            .tree;
+        let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+        let bounds = known.tight_bounds();
+        let camera = View::Front
+            .camera(bounds.centre(), bounds.diagonal())
+            .unwrap();
+        let seen = contours(&known.brep, &camera, known.resolution).unwrap();
+        let mut drawing = Drawing::new(&seen, &drawing::Options::default());
+        change(&mut drawing.strokes);
+        let mut report = SheetReport::default();
+        let scale = Scale {
+            tolerance: drawing.tolerance + drawing.distance,
+            apart: Some(drawing.tolerance * TOGETHER),
+            size: 60.0,
+        };
+        report.strokes(&seen, &bounds, &drawing.strokes, &scale);
+        report
+    }
+
+    fn has(report: &SheetReport, is_it: impl Fn(&SheetFault) -> bool) -> bool {
+        report.faults.iter().any(is_it)
+    }
+
+    #[test]
+    fn a_right_sheet_is_right() {
+        let right = report(|_| {});
+        assert!(right.faults.is_empty() && right.right > 50, "{right}");
+    }
+
+    #[test]
+    fn what_is_wrong_on_a_sheet_is_found() {
+        let lost = report(|strokes| drop(strokes.pop()));
+        assert!(
+            has(&lost, |f| matches!(f, SheetFault::Undrawn(_))),
+            "{lost}"
+        );
+        // A hidden line under a visible one.
+        let twice = report(|strokes| {
+            let mut stroke = strokes[strokes.len() - 1].clone();
+            stroke.visible = false;
+            strokes.push(stroke);
+        });
+        assert!(
+            has(&twice, |f| matches!(f, SheetFault::Twice(_))),
+            "{twice}"
+        );
+        let stray = report(|strokes| {
+            let shape = Shape::Line([Point2::new(-20.0, -9.0), Point2::new(20.0, 7.0)]);
+            strokes[0].shape = shape;
+        });
+        assert!(
+            has(&stray, |f| matches!(f, SheetFault::Stray(_))),
+            "{stray}"
+        );
+    }
+}

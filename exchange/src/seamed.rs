@@ -74,10 +74,15 @@ pub enum SeamError {
         place: [f64; 3],
     },
     /// Every seam that was tried runs along an edge, or through a vertex.
-    #[error("no seam could be laid through face {}", face.0)]
+    #[error(
+        "no seam could be laid through face {} at ({:.9}, {:.9}, {:.9})",
+        face.0, place[0], place[1], place[2]
+    )]
     Blocked {
         /// The face.
         face: FaceId,
+        /// A point of its boundary.
+        place: [f64; 3],
     },
     /// The pieces of a face do not tell which loop lies within which.
     #[error("the loops of face {} do not tell which encloses which", face.0)]

@@ -132,7 +132,7 @@ mod tests {
         rules::measure(&shape, known)
     }
 
-    const PARTS: [&str; 14] = [
+    const PARTS: [&str; 16] = [
         "A = BLO(X=3, Y=4, Z=5)",
         "A = SPH(R=2) AT (ROTX=17, MOVX=9)",
         "A = TOR(RMAJ=3, RMIN=1) AT (ROTX=17, MOVZ=-4)",
@@ -156,6 +156,16 @@ mod tests {
               UN CYL(R=0.5, H=0.5) AT (MOVX=0.5, MOVY=-1.5, MOVZ=-2))
             DIF CYL(R=0.5, H=1) AT (ROTZ=180, MOVX=-2, MOVY=-1.5)
             DIF CYL(R=2, H=1)) AT (ROTX=-90, MOVX=2, MOVY=1.5, MOVZ=2)",
+        // A cone's face goes around its apex, which is a vertex of a notch.
+        "A = (WED(X=0.5, Y=3.5, Z=0.5)
+            UN CON(R=1.5, H=1) AT (ROTY=-17, MOVX=1.5, MOVZ=-0.5)
+            UN BLO(X=2.5, Y=2, Z=1.5) AT (ROTX=180, MOVX=-1.5, MOVY=2, MOVZ=-1)
+            UN WED(X=3.5, Y=4, Z=3.5)
+            UN TOR(RMAJ=2.5, RMIN=1) AT (ROTX=-45, MOVY=-2)
+            UN CYL(R=0.5, H=0.5)) AT (ROTZ=180, MOVX=1, MOVY=-0.5, MOVZ=-1)",
+        // A ball touches a ring's tube from inside, so that its seam ends twice in one place.
+        "A = (TOR(RMAJ=1, RMIN=0.5) AT (MOVX=-0.75, MOVZ=-0.4330127018922193, ROTY=30)
+            DIF SPH(R=0.5) AT (MOVZ=-0.5)) AT (ROTZ=45)",
         // A parabola on a cone.
         "A = CON(R=2, H=2) DIF WED(X=5, Y=5, Z=5) AT (MOVX=-4, MOVY=-2)",
         // Planes that nearly pass through an apex.

@@ -63,6 +63,16 @@ impl Samples {
         self.edges.iter().flat_map(|e| &e.points)
     }
 
+    /// By how much the parameter `i`, an angle, turns along each edge; not a number along one through a
+    /// pole.
+    pub fn turns(&self, window: &Window, i: usize) -> Vec<f64> {
+        let turn = |edge: &Sampled| {
+            let angles: Vec<f64> = edge.points.iter().map(|p| window.of(p)[i]).collect();
+            angles.windows(2).map(|w| wrap(w[1] - w[0])).sum()
+        };
+        self.edges.iter().map(turn).collect()
+    }
+
     /// The values of the parameter `i`, which is an angle, at which edges end, turn back or touch.
     pub fn critical(&self, window: &Window, i: usize) -> Vec<f64> {
         let touches = self.touches.iter().map(|p| window.of(p)[i]);

@@ -82,6 +82,8 @@ struct Faced<'a> {
     face: FaceId,
     band: f64,
     coedges: Vec<CoedgeId>,
+    /// How many coedges each loop has.
+    rings: Vec<usize>,
     arcs: Vec<DirectedArc<'a>>,
     samples: Samples,
 }
@@ -102,9 +104,14 @@ impl Cut {
             band,
             arcs: coedges.iter().map(|c| DirectedArc::of(brep, *c)).collect(),
             samples: Samples::of(brep, edges),
+            rings: rings.iter().map(Vec::len).collect(),
             coedges,
         };
-        faced.cut().ok_or(SeamError::Blocked { face })
+        faced.cut().ok_or_else(|| {
+            let place = faced.samples.points().next().copied();
+            let place = place.unwrap_or(brep.surface(face).frame().origin).into();
+            SeamError::Blocked { face, place }
+        })
     }
 }
 
@@ -136,7 +143,11 @@ impl Faced<'_> {
             let window = Window { surface, ..whole };
             Some(Cut { window, seams })
         };
-        let mut cut = self.unless_parted(&whole, 0, least(candidates.into_iter().map(around)))?;
+        let found = candidates.into_iter().map(around);
+        let mut cut = match self.winds(&whole, 0) {
+            true => least(found.filter(cuts_something))?,
+            false => self.unless_parted(&whole, 0, least(found))?,
+        };
         if let Surface::Torus(_) = surface {
             let along = |v: f64| Some((v, self.seams(&cut.window.surface, 1, v)?));
             let candidates = self.samples.candidates(&cut.window, 1);
@@ -148,12 +159,30 @@ impl Faced<'_> {
                 };
                 Some(Cut { window, seams })
             });
-            let other = self.unless_parted(&cut.window, 1, least(found))?;
+            let other = match self.winds(&cut.window, 1) {
+                true => least(found.filter(cuts_something))?,
+                false => self.unless_parted(&cut.window, 1, least(found))?,
+            };
             cut.window = other.window;
             cut.seams.extend(other.seams);
             cut.part_at_crossing();
         }
         Some(cut)
+    }
+
+    /// Whether a loop goes around an angle of the surface, so that it closes only along a seam. A loop
+    /// through a pole, where there is no angle, does not tell.
+    fn winds(&self, window: &Window, i: usize) -> bool {
+        let mut senses = self
+            .coedges
+            .iter()
+            .map(|c| self.brep.topology.coedge(*c).sense);
+        let mut turns = self.samples.turns(window, i).into_iter();
+        self.rings.iter().any(|&count| {
+            let ring = turns.by_ref().take(count).zip(senses.by_ref());
+            let sum: f64 = ring.map(|(turn, sense)| turn * sense.sign::<f64>()).sum();
+            sum.abs() > 0.5 * TAU
+        })
     }
 
     /// A cut across an angle, or none where the face touches itself instead, so that it does not
@@ -418,6 +447,10 @@ impl Faced<'_> {
 
 /// From how many places a closed seam is tried.
 const STARTS: usize = 4;
+
+fn cuts_something(cut: &Option<Cut>) -> bool {
+    cut.as_ref().is_some_and(|cut| !cut.seams.is_empty())
+}
 
 /// The cut that cuts least, the first of such; one that cuts nothing at once.
 fn least(cuts: impl Iterator<Item = Option<Cut>>) -> Option<Cut> {

@@ -169,9 +169,11 @@ fn broken_edge(edge: &Edge, known: &Known) -> Vec<Broken> {
     let points: Vec<Point3<f64>> = steps.map(|t| edge.curve.at(t).0).collect();
     let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let is_open = edge.ends[0] != edge.ends[1];
-    // Of a whole turn between two vertices no reader can tell whether it is a turn or nothing.
-    let shortest = match is_open && edge.curve.is_periodic() {
-        true => length.min((to - from).norm()),
+    // Of a turn between two vertices next to each other no reader can tell whether it is a turn or
+    // nothing; between two in the very same place it is a turn.
+    let chord = (to - from).norm();
+    let shortest = match is_open && edge.curve.is_periodic() && chord > 0.0 {
+        true => length.min(chord),
         false => length,
     };
     if shortest.is_nan() || shortest <= known.resolution {

@@ -95,7 +95,9 @@ impl Files {
             Command::Track(options) => files.sought(&options.sought),
             Command::Fuzz(options) => {
                 files.writes("--state", options.state.as_deref());
-                let manifest = options.write.as_ref().map(|folder| folder.join(MANIFEST));
+                // A folder that is yet to be made holds no file that could be lost.
+                let folder = options.write.as_ref().filter(|folder| folder.is_dir());
+                let manifest = folder.map(|folder| folder.join(MANIFEST));
                 files.writes("--write", manifest.as_deref());
                 files.writes("-o", options.output.as_deref());
             }

@@ -451,7 +451,7 @@ fn what_cannot_be_is_told() {
     let camera = "[camera]\neye = [9, 7, 8]\n";
     let inside = told(&format!("{camera}[[light]]\nposition = [2, 2, 1.5]\n"));
     assert!(
-        inside.contains("light 0") && inside.contains("inside"),
+        inside.contains("light[0]") && inside.contains("inside"),
         "{inside}"
     );
     let eye = told("[camera]\neye = [2, 2, 1.5]\n[[light]]\nposition = [9, 9, 9]\n");

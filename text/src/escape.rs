@@ -131,9 +131,9 @@ pub fn dxf(text: &str) -> String {
     shown
 }
 
-/// A name in a format of lines that has no escapes: what is unsafe as `_`.
+/// A name in a format of lines that has no escapes: what is unsafe as a space.
 pub fn line(text: &str) -> String {
-    text.replace(is_unsafe, "_")
+    text.replace(is_unsafe, " ")
 }
 
 #[cfg(test)]

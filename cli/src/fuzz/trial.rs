@@ -401,6 +401,7 @@ mod tests {
         resolution: None,
         strict: false,
         views: false,
+        sheets: false,
         step: false,
         unfiltered: false,
         rays: 2000,

@@ -421,9 +421,6 @@ fn evaluated<N: Number>(
     thin::list(tree, &judge);
     let raw = wings::boundary(&concern, pieces)?;
     let brep = assemble(raw, &judge)?;
-    if brep.topology.faces.is_empty() {
-        thin::list_vanished(&solids.bounds, &judge);
-    }
     let band = N::of(resolution);
     let measures = Measures::of(&brep);
     if let Some(broken) = check(&brep, &measures, band).into_iter().next() {

@@ -2,9 +2,8 @@
 
 use crate::primitive::Primitive;
 use crate::tree::{Placed, Tree};
-use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::rational::{Rational, to_f64};
-use premio_kernel::number::sign::{CloseCall, Judge, Sign};
+use premio_kernel::number::sign::{CloseCall, Judge};
 
 /// Lists the primitives whose thickness is close to the resolution.
 pub(super) fn list(tree: &Tree, judge: &Judge) {
@@ -20,23 +19,6 @@ pub(super) fn list(tree: &Tree, judge: &Judge) {
         }
     }
 }
-
-/// Lists a part of which nothing is left, where what coincides was apart by more than rounding: perhaps
-/// it is only thinner than the resolution.
-pub(super) fn list_vanished(solids: &Box3, judge: &Judge) {
-    let apart = judge.furthest_coincidence();
-    if apart.is_beyond(ROUNDINGS * f64::EPSILON * solids.diagonal()) {
-        judge.list(CloseCall {
-            question: "faces of the part, of which nothing is left",
-            place: solids.centre().into(),
-            distance: apart,
-            local: false,
-        });
-    }
-}
-
-/// So many roundings are no distance that anybody wrote.
-const ROUNDINGS: f64 = 8.0;
 
 /// The least distance between opposite faces of a primitive, or across it.
 fn thickness(primitive: &Primitive) -> f64 {

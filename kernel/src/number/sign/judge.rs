@@ -5,7 +5,7 @@ use crate::number::enclosure::Enclosure;
 use crate::number::precision::Number;
 use crate::number::rational::{Rational, from_f64};
 use dashu::base::BitTest;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
 /// The precisions that are tried, in bits.
 const PRECISIONS: [usize; 4] = [128, 256, 512, 1024];
@@ -72,16 +72,9 @@ pub struct Judge {
     zeros: Zeros,
     decisions: RefCell<Decisions>,
     doubts: RefCell<Vec<CloseCall>>,
-    /// How far apart was, at the most, what coincides.
-    furthest: Cell<f64>,
 }
 
 impl Judge {
-    /// How far apart was, at the most, what was taken to coincide: by no more than the resolution.
-    pub fn furthest_coincidence(&self) -> f64 {
-        self.furthest.get()
-    }
-
     /// A judge whose resolution is `band`, a distance in the part's unit.
     pub fn new(band: f64) -> Self {
         Self {
@@ -89,7 +82,6 @@ impl Judge {
             zeros: Zeros::ByResolution,
             decisions: RefCell::default(),
             doubts: RefCell::default(),
-            furthest: Cell::default(),
         }
     }
 
@@ -162,9 +154,6 @@ impl Judge {
         self.count(side, effort);
         let distance = range.mid();
         let size = distance.abs();
-        if side == Side::On {
-            self.furthest.set(self.furthest.get().max(size));
-        }
         let is_close = size * CLOSE > self.band && size < self.reach();
         let call = is_close.then_some(CloseCall {
             question,
@@ -215,8 +204,6 @@ impl Judge {
 
     /// Takes over what another judge has counted, and gives the close calls, not yet listed.
     pub fn take(&self, other: Self) -> Vec<CloseCall> {
-        self.furthest
-            .set(self.furthest.get().max(other.furthest.get()));
         self.doubts.borrow_mut().extend(other.doubts.into_inner());
         let other = other.decisions.into_inner();
         let mut decisions = self.decisions.borrow_mut();

@@ -162,7 +162,7 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
             let mut all = places.iter();
             all.all(|p| other.nearest(p).distance <= tolerance)
         };
-        if others.iter().any(|other| runs_along(&other)) {
+        if others.iter().any(runs_along) {
             continue;
         }
         match ranges.last_mut() {

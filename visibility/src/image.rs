@@ -170,11 +170,7 @@ fn conic_image(
     projection: &Projection,
     band: f64,
 ) -> Image {
-    let map = Matrix3::from_columns(&[
-        projection.homogeneous_vector(&(frame.x * a)),
-        projection.homogeneous_vector(&(frame.y * b)),
-        projection.homogeneous(&frame.origin),
-    ]);
+    let map = map_of(frame, a, b, projection);
     let (towards, away) = projection.towards_eye(&frame.origin);
     let tilt = towards.dot(&frame.z).abs();
     // Thinner than the resolution, or of a plane so near to the eye.
@@ -196,6 +192,24 @@ fn conic_image(
         }
         _ => flat(map, basis),
     }
+}
+
+/// M of a circle or an ellipse; none of other curves.
+pub fn map_of_ellipse(curve: &Curve, projection: &Projection) -> Option<Matrix3<f64>> {
+    match curve {
+        Curve::Circle(c) => Some(map_of(&c.frame, c.radius, c.radius, projection)),
+        Curve::Ellipse(c) => Some(map_of(&c.frame, c.a, c.b, projection)),
+        _ => None,
+    }
+}
+
+/// M of a conic in a frame with half axes.
+fn map_of(frame: &Frame, a: f64, b: f64, projection: &Projection) -> Matrix3<f64> {
+    Matrix3::from_columns(&[
+        projection.homogeneous_vector(&(frame.x * a)),
+        projection.homogeneous_vector(&(frame.y * b)),
+        projection.homogeneous(&frame.origin),
+    ])
 }
 
 /// The parameters in a range at which the image of a conic that is seen edge-on folds back.

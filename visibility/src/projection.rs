@@ -237,6 +237,12 @@ impl Projection {
         self.origin
     }
 
+    /// The map to homogeneous image coordinates in the units of the camera, of one to those at depth
+    /// one.
+    pub fn in_units(&self, map: &Matrix3<f64>) -> Matrix3<f64> {
+        self.affine * map
+    }
+
     /// The six coefficients (a, b, c, d, e, f) of a x² + b x y + c y² + d x + e y + f = 0 in image
     /// coordinates, of largest magnitude one, for the conic hᵀ C h = 0.
     pub fn conic(&self, c: &Matrix3<f64>) -> [f64; 6] {

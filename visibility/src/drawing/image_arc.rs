@@ -2,7 +2,7 @@
 //! projected curves.
 
 use super::Shape;
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Matrix3, Point2, Vector2};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
@@ -18,6 +18,40 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
+    /// The image of the unit circle (cos t, sin t, 1) under a map to homogeneous coordinates; none
+    /// where that is another conic.
+    ///
+    /// Notation: m1, m2, m3 are the columns of the map. C* = m1 m1ᵀ + m2 m2ᵀ - m3 m3ᵀ is the conic of
+    /// the tangents; its last column is the centre, and about the centre its first four elements over
+    /// the last one are the sum of the squares of the half axes. Unlike the coefficients of the points
+    /// it keeps its digits where the ellipse is thin.
+    pub fn from_map(map: &Matrix3<f64>) -> Option<Self> {
+        let tangents = |m: &Matrix3<f64>| {
+            let product = |i: usize| m.column(i) * m.column(i).transpose();
+            product(0) + product(1) - product(2)
+        };
+        let dual = tangents(map);
+        let last = dual[(2, 2)];
+        if last >= 0.0 {
+            return None;
+        }
+        let centre = Point2::new(dual[(0, 2)] / last, dual[(1, 2)] / last);
+        let shift = Matrix3::new_translation(&-centre.coords);
+        let about = tangents(&(shift * map));
+        let squares = |i: usize, j: usize| -about[(i, j)] / about[(2, 2)];
+        let [a, b, c] = [squares(0, 0), squares(0, 1), squares(1, 1)];
+        // a + c and a c - b² are the sum and the product of the squared half axes.
+        let long = 0.5 * (a + c) + (0.5 * (a - c)).hypot(b);
+        let short = (a * c - b * b) / long;
+        let turn = 0.5 * (2.0 * b).atan2(a - c);
+        let is_ellipse = long > 0.0 && short > 0.0 && long.is_finite();
+        is_ellipse.then(|| Self {
+            centre,
+            major: Vector2::new(turn.cos(), turn.sin()) * long.sqrt(),
+            ratio: (short / long).sqrt(),
+        })
+    }
+
     /// The ellipse of the six coefficients a x² + b x y + c y² + d x + e y + f = 0; none for other
     /// conics.
     pub fn from_coefficients(&[a, b, c, d, e, f]: &[f64; 6]) -> Option<Self> {
@@ -346,6 +380,7 @@ const GOLDEN_STEPS: u32 = 44;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
 
     fn ellipse() -> Ellipse {
         Ellipse {
@@ -364,6 +399,38 @@ mod tests {
         assert!((found.major.norm() - 3.0).abs() < 1e-12 && found.major.y.abs() < 1e-12);
         assert!((found.ratio - 2.0 / 3.0).abs() < 1e-12);
         assert!(Ellipse::from_coefficients(&[1.0, 0.0, -1.0, 0.0, 0.0, -1.0]).is_none());
+    }
+
+    /// A circle about (50, 40) that is seen so flat that its half axes are 2 and 2/1024.
+    #[test]
+    fn a_thin_ellipse_keeps_its_digits() {
+        let (sin, cos) = 0.7f64.sin_cos();
+        let ratio = 1.0 / 1024.0;
+        let map = Matrix3::new(
+            2.0 * cos,
+            -2.0 * ratio * sin,
+            50.0,
+            2.0 * sin,
+            2.0 * ratio * cos,
+            40.0,
+            0.0,
+            0.0,
+            1.0,
+        );
+        let found = Ellipse::from_map(&map).unwrap();
+        assert!((found.centre - Point2::new(50.0, 40.0)).norm() < 1e-12);
+        assert!((found.major - Vector2::new(cos, sin) * 2.0).norm() < 1e-9);
+        assert!((found.ratio / ratio - 1.0).abs() < 1e-8);
+        // In perspective: the points are those of the map.
+        let tilted = Matrix3::new(1.0, 0.2, 3.0, 0.1, 0.7, -2.0, 0.05, -0.1, 1.0);
+        let found = Ellipse::from_map(&tilted).unwrap();
+        for k in 0..12 {
+            let t = f64::from(k);
+            let h = tilted * Vector3::new(t.cos(), t.sin(), 1.0);
+            assert!(found.distance(&Point2::new(h.x / h.z, h.y / h.z)) < 1e-12);
+        }
+        let beyond = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 2.0, 0.0, 1.0);
+        assert!(Ellipse::from_map(&beyond).is_none());
     }
 
     #[test]

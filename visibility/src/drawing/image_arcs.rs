@@ -4,9 +4,9 @@ use super::Layer;
 use super::image_arc::{Ellipse, ImageArc, Sample};
 use super::supports::ordered;
 use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
-use crate::image::folds_of_conic;
+use crate::image::{folds_of_conic, map_of_ellipse};
 use crate::projection::Projection;
-use nalgebra::Point2;
+use nalgebra::{Matrix3, Point2, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::sign::ROUNDING;
 use std::f64::consts::TAU;
@@ -144,8 +144,14 @@ impl<'c> ArcMaker<'c> {
         [lo, hi]: [f64; 2],
     ) -> Option<ImageArc<'c>> {
         let flip = if self.projection.y_down { -1.0 } else { 1.0 };
-        let six = [k[0], k[1] * flip, k[2], k[3], k[4] * flip, k[5]];
-        let ellipse = Ellipse::from_coefficients(&six)?;
+        let up = Matrix3::from_diagonal(&Vector3::new(1.0, flip, 1.0));
+        let ellipse = match map_of_ellipse(&contour.curve3, self.projection) {
+            Some(map) => Ellipse::from_map(&(up * self.projection.in_units(&map)))?,
+            None => {
+                let six = [k[0], k[1] * flip, k[2], k[3], k[4] * flip, k[5]];
+                Ellipse::from_coefficients(&six)?
+            }
+        };
         (ellipse.ratio > THIN).then_some(())?;
         let is_whole = |p: f64| hi - lo >= p * (1.0 - ROUNDING);
         let is_conic = matches!(contour.curve3, Curve::Circle(_) | Curve::Ellipse(_));

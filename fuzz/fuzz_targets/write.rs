@@ -156,7 +156,10 @@ fn drawings(part: &Part, sight: &Sight, name: &str) {
     groups(&dxf::write(&view()));
     let titled = sheet::Options {
         title: name.to_owned(),
-        ..sheet::Options::default()
+        unit: Unit::Millimetre,
+        paper: sheet::Paper::A3,
+        scale: None,
+        angle: sheet::Angle::First,
     };
     let views = vec![(Some(View::Front), view())];
     if let Ok(sheet) = Sheet::of(views, titled) {

@@ -29,7 +29,6 @@ KNOWN = {
     "ring-under-a-block-turned-within-the-resolution": PARTED,
     "torus-lying-on-block": PARTED,
     "bored-block-far-from-origin": "1e9 from the origin, the reader turns the solid inside out",
-    "cone-apex-1e-7-beside-a-cone": "slivers of the size of the reader's tolerance",
     "cones-1e-9-apart": "slivers smaller than the reader's tolerance",
     "cone-resting-on-top-of-torus": "a seam through a face that touches itself in a point",
     "pipe-bend-along-a-floor": "refused: a wall without thickness along an arc",

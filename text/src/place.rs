@@ -38,7 +38,7 @@ pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         let name = name.to_lowercase();
         // What a name begins with counts as near to it.
         let starts = name.len() > 2 && word.starts_with(&name);
-        strsim::osa_distance(&word, &name) - usize::from(starts)
+        strsim::osa_distance(&word, &name).saturating_sub(usize::from(starts))
     };
     let known = known.into_iter().filter(|name| name.len() <= LONGEST);
     known

@@ -159,10 +159,7 @@ impl Faced<'_> {
                 };
                 Some(Cut { window, seams })
             });
-            let other = match self.winds(&cut.window, 1) {
-                true => least(found.filter(cuts_something))?,
-                false => self.unless_parted(&cut.window, 1, least(found))?,
-            };
+            let other = self.unless_parted(&cut.window, 1, least(found))?;
             cut.window = other.window;
             cut.seams.extend(other.seams);
             cut.part_at_crossing();
@@ -173,6 +170,10 @@ impl Faced<'_> {
     /// Whether a loop goes around an angle of the surface, so that it closes only along a seam. A loop
     /// through a pole, where there is no angle, does not tell.
     fn winds(&self, window: &Window, i: usize) -> bool {
+        // A torus' face that touches itself is closed by that, and goes around all the same.
+        if let Surface::Torus(_) = window.surface {
+            return false;
+        }
         let mut senses = self
             .coedges
             .iter()
@@ -276,9 +277,10 @@ impl Faced<'_> {
         covered[1..].iter().all(|next| {
             let [a, b] = [end, next[0]];
             end = end.max(next[1]);
-            // What is not told may be in the face.
-            let middle = track.curve.point(0.5 * (a + b));
-            b <= a || self.place(&middle) == Place::Outside
+            let place = self.place(&track.curve.point(0.5 * (a + b)));
+            // Around a pole what is not told may be in the face; a torus' face touches itself there.
+            let is_torus = matches!(self.brep.surface(self.face), Surface::Torus(_));
+            b <= a || place == Place::Outside || (is_torus && place == Place::On)
         })
     }
 

@@ -187,6 +187,24 @@ impl Projection {
         self.image(&self.homogeneous(p))
     }
 
+    /// The image of a point with y up, whichever way the camera's y points.
+    pub fn project_y_up(&self, p: &Point3<f64>) -> Point2<f64> {
+        self.flipped(self.project(p))
+    }
+
+    /// The line of sight through an image point with y up.
+    pub fn line_of_sight_y_up(&self, image: &Point2<f64>) -> (Point3<f64>, Vector3<f64>) {
+        self.line_of_sight(&self.flipped(*image))
+    }
+
+    /// An image point between the camera's y and y up.
+    fn flipped(&self, p: Point2<f64>) -> Point2<f64> {
+        match self.y_down {
+            true => Point2::new(p.x, -p.y),
+            false => p,
+        }
+    }
+
     /// The image point with the homogeneous coordinates `h`.
     pub fn image(&self, h: &Vector3<f64>) -> Point2<f64> {
         let g = self.affine * (h / h.z);

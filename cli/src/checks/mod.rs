@@ -1,6 +1,8 @@
 //! The self-checks that cross crates: the boundary and the contours against the tree, which rays
 //! ask directly.
 
+#[cfg(test)]
+mod fixture;
 mod images;
 mod mesh;
 mod outlines;
@@ -24,7 +26,7 @@ use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
 use premio_visibility::drawing::{self, Drawing};
 use premio_visibility::projection::Projection;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{Camera, Contours, contours};
 use std::fmt;
 
 /// How many standard errors a measured volume may be off.
@@ -88,6 +90,28 @@ pub struct Report {
     pub checks: Vec<Check>,
 }
 
+/// Which checks of a view are made.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewChecks {
+    /// The pieces of its contours are counted again, and missing contours looked for.
+    pub contours: bool,
+    /// Its outline is followed, and its sheet read back.
+    pub drawing: bool,
+}
+
+impl ViewChecks {
+    /// All of them.
+    pub const ALL: Self = Self {
+        contours: true,
+        drawing: true,
+    };
+    /// Those of the contours.
+    pub const CONTOURS: Self = Self {
+        contours: true,
+        drawing: false,
+    };
+}
+
 /// A part to be checked.
 #[derive(Debug)]
 pub struct Checker<'a> {
@@ -145,18 +169,10 @@ impl<'a> Checker<'a> {
     pub fn all(&self, rays: usize) -> Report {
         let mut report = self.solid(rays);
         report.checks.extend([self.step(), self.mesh()]);
-        let around = views::around(&self.evaluation.bounds);
-        report.checks.extend(
-            around
-                .into_iter()
-                .flat_map(|v| self.view(&v.name, &v.camera)),
-        );
-        let around = views::around(&self.evaluation.bounds);
-        report.checks.extend(
-            around
-                .into_iter()
-                .flat_map(|v| self.sheet(&v.name, &v.camera)),
-        );
+        for view in views::around(&self.evaluation.bounds) {
+            let checks = self.view_with(&view.name, &view.camera, ViewChecks::ALL);
+            report.checks.extend(checks);
+        }
         report
     }
 
@@ -231,30 +247,45 @@ impl<'a> Checker<'a> {
 
     /// Counts the faces before every piece that a camera sees, and looks for missing contours.
     pub fn view(&self, name: &str, camera: &Camera) -> Vec<Check> {
-        let subject = Subject::View(name.to_owned());
-        let Some(resolution) = self.evaluation.resolution_of_views() else {
-            return vec![Check {
+        self.view_with(name, camera, ViewChecks::CONTOURS)
+    }
+
+    /// The checks of a view that are asked for.
+    pub fn view_with(&self, name: &str, camera: &Camera, checks: ViewChecks) -> Vec<Check> {
+        let failed = |finding, detail| {
+            let subject = Subject::View(name.to_owned());
+            vec![Check {
                 subject,
-                finding: Finding::Holds,
-                detail: "refused: surfaces lie closer together than doubles tell".to_owned(),
-            }];
+                finding,
+                detail,
+            }]
+        };
+        let Some(resolution) = self.evaluation.resolution_of_views() else {
+            let refused = "refused: surfaces lie closer together than doubles tell";
+            return failed(Finding::Holds, refused.to_owned());
         };
         let seen = match contours(&self.evaluation.brep, camera, resolution) {
             Ok(seen) => seen,
-            Err(error) => {
-                return vec![Check {
-                    subject,
-                    finding: Finding::Fails,
-                    detail: error.to_string(),
-                }];
-            }
+            Err(error) => return failed(Finding::Fails, error.to_string()),
         };
+        let mut made = Vec::new();
+        if checks.contours {
+            made.extend(self.contours(name, &seen));
+        }
+        if checks.drawing {
+            made.extend(self.drawing(name, &seen));
+        }
+        made
+    }
+
+    /// Counts the faces before every piece, and looks for missing contours.
+    fn contours(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
-        let counted = Recount::telling(&self.material, &seen, &clearance);
-        let outlines = Outlines::of(&self.material, &seen, &clearance);
-        vec![
+        let counted = Recount::telling(&self.material, seen, &clearance);
+        let outlines = Outlines::of(&self.material, seen, &clearance);
+        [
             Check {
-                subject,
+                subject: Subject::View(name.to_owned()),
                 finding: counted.finding(),
                 detail: counted.to_string(),
             },
@@ -266,18 +297,11 @@ impl<'a> Checker<'a> {
         ]
     }
 
-    /// Draws what a camera sees, follows the boundary of the shadow, and reads the sheet back. None of a
-    /// view that is refused.
-    pub fn sheet(&self, name: &str, camera: &Camera) -> Vec<Check> {
-        let Some(resolution) = self.evaluation.resolution_of_views() else {
-            return Vec::new();
-        };
-        let Ok(seen) = contours(&self.evaluation.brep, camera, resolution) else {
-            return Vec::new();
-        };
+    /// Draws contours, follows the boundary of the shadow, and reads the sheet back.
+    fn drawing(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
-        let projection = Projection::new(camera, clearance.size);
-        let drawing = Drawing::new(&seen, &drawing::Options::default());
+        let projection = Projection::new(&seen.camera, clearance.size);
+        let drawing = Drawing::new(seen, &drawing::Options::default());
         let size = (drawing.extent[1] - drawing.extent[0]).norm();
         // In the image lengths are as many times greater as the part is.
         let near = clearance.shift * size / clearance.size;
@@ -286,8 +310,8 @@ impl<'a> Checker<'a> {
             sliver: clearance.sliver,
         };
         let outline = ShadowOutline::new(&self.material, &projection, &drawing, tolerance);
-        let sheet = SheetReport::new(&seen, &self.evaluation.bounds);
-        vec![
+        let sheet = SheetReport::new(seen, &self.evaluation.bounds, size);
+        [
             Check {
                 subject: Subject::Outline(name.to_owned()),
                 finding: Finding::of(outline.missing.is_empty()),

@@ -55,11 +55,7 @@ pub struct Tolerance {
 impl Shadow<'_> {
     /// Whether the line of sight of a point of the drawing meets material.
     fn covers(&self, p: &Point2<f64>) -> bool {
-        let image = match self.projection.y_down {
-            true => Point2::new(p.x, -p.y),
-            false => *p,
-        };
-        let (origin, direction) = self.projection.line_of_sight(&image);
+        let (origin, direction) = self.projection.line_of_sight_y_up(p);
         let ray = Ray { origin, direction };
         let near = match self.projection.sight {
             Sight::Eye(_) => self.projection.near / direction.dot(&self.projection.axis()),
@@ -165,26 +161,18 @@ impl fmt::Display for ShadowOutline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use premio_csg::boundary::{EvaluationOptions, evaluate};
-    use premio_csg::reader::{Format, Options, read};
-    use premio_visibility::contours;
-    use premio_visibility::drawing::sheet::View;
-    use premio_visibility::drawing::{self, Layer};
+    use crate::checks::fixture::{FrontView, front_view};
+    use premio_visibility::drawing::Layer;
 
     /// A dome on its cylinder from the front, with the strokes that are kept.
     fn outline(keeps: impl Fn(Layer, usize) -> bool) -> ShadowOutline {
-        let text = "P = CYL(R=10,H=10) UN SPH(R=10) AT (MOVZ=10)";
-        let (format, options) = (Format::Padl, Options::default());
-        let tree = read("dome", text.as_bytes(), format, &options)
-            .unwrap()
-            .tree;
-        let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
-        let bounds = known.tight_bounds();
-        let camera = View::Front
-            .camera(bounds.centre(), bounds.diagonal())
-            .unwrap();
-        let seen = contours(&known.brep, &camera, known.resolution).unwrap();
-        let mut drawing = Drawing::new(&seen, &drawing::Options::default());
+        let FrontView {
+            tree,
+            camera,
+            mut drawing,
+            bounds,
+            ..
+        } = front_view("P = CYL(R=10,H=10) UN SPH(R=10) AT (MOVZ=10)");
         let mut index = 0..;
         drawing
             .strokes

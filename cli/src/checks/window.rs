@@ -71,11 +71,7 @@ impl Window {
 
     /// The place of a point of a drawing, whose y is up.
     pub fn of_drawing(&self, projection: &Projection, p: &Point2<f64>) -> [f64; 2] {
-        let image = match projection.y_down {
-            true => Point2::new(p.x, -p.y),
-            false => *p,
-        };
-        let (origin, into) = projection.line_of_sight(&image);
+        let (origin, into) = projection.line_of_sight_y_up(p);
         self.image(&(origin + into)).at
     }
 

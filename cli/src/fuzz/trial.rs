@@ -4,7 +4,7 @@
 
 use super::model::{Kind, Model, Operation};
 use super::write::{Format, read, write};
-use crate::checks::{Check, Checker, Finding, Report, Subject, views};
+use crate::checks::{Check, Checker, Finding, Report, Subject, ViewChecks, views};
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
 use premio_csg::tree::Tree;
@@ -216,17 +216,15 @@ pub fn examine(model: &Model, terms: &Terms) -> Outcome {
     }
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(terms.rays as usize);
-    if report.holds() {
+    let asked = ViewChecks {
+        contours: terms.views,
+        drawing: terms.sheets,
+    };
+    if report.holds() && (asked.contours || asked.drawing) {
         let all = views::around(&evaluation.bounds);
         for view in all.iter().filter(|v| VIEWS.contains(&v.name.as_str())) {
-            if terms.views {
-                report.checks.extend(checker.view(&view.name, &view.camera));
-            }
-            if terms.sheets {
-                report
-                    .checks
-                    .extend(checker.sheet(&view.name, &view.camera));
-            }
+            let checks = checker.view_with(&view.name, &view.camera, asked);
+            report.checks.extend(checks);
         }
     }
     if terms.step && report.holds() {

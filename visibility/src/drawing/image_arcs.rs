@@ -44,11 +44,7 @@ pub struct ArcMaker<'c> {
 impl<'c> ArcMaker<'c> {
     /// The image of a point of a contour, with y up.
     pub fn point(&self, contour: &Contour, t: f64) -> Point2<f64> {
-        let p = self.projection.project(&contour.curve3.point(t));
-        match self.projection.y_down {
-            true => Point2::new(p.x, -p.y),
-            false => p,
-        }
+        self.projection.project_y_up(&contour.curve3.point(t))
     }
 
     /// The image arcs of a contour. What is seen end-on has none.
@@ -176,13 +172,7 @@ impl<'c> ArcMaker<'c> {
             self.refine(&sample, ends, 0, &mut samples);
         }
         let (projection, curve) = (self.projection, &contour.curve3);
-        let image = move |t: f64| {
-            let p = projection.project(&curve.point(t));
-            match projection.y_down {
-                true => Point2::new(p.x, -p.y),
-                false => p,
-            }
-        };
+        let image = move |t: f64| projection.project_y_up(&curve.point(t));
         ImageArc::Projected {
             curve: Rc::new(image),
             samples,

@@ -91,29 +91,22 @@ struct Placing {
 }
 
 impl SheetReport {
-    /// Draws contours on a sheet, with and without smooth edges, and reads it back.
-    pub fn new(seen: &Contours, bounds: &Box3) -> Self {
+    /// Draws contours on a sheet, with and without smooth edges, and reads it back. `size` is that of
+    /// the drawing.
+    pub fn new(seen: &Contours, bounds: &Box3, size: f64) -> Self {
         let mut report = Self::default();
         for smooth in [false, true] {
-            report.drawing(seen, bounds, smooth);
+            let options = drawing::Options {
+                smooth,
+                distance: Some(size * FINE),
+                ..drawing::Options::default()
+            };
+            report.drawing(seen, bounds, Drawing::new(seen, &options), size);
         }
         report
     }
 
-    fn drawing(&mut self, seen: &Contours, bounds: &Box3, smooth: bool) {
-        let options = drawing::Options {
-            smooth,
-            ..drawing::Options::default()
-        };
-        let rough = Drawing::new(seen, &options);
-        let size = (rough.extent[1] - rough.extent[0]).norm();
-        let drawing = Drawing::new(
-            seen,
-            &drawing::Options {
-                distance: Some(size * FINE),
-                ..options
-            },
-        );
+    fn drawing(&mut self, seen: &Contours, bounds: &Box3, drawing: Drawing, size: f64) {
         let how = sheet::Options {
             title: String::new(),
             unit: Unit::Millimetre,
@@ -256,11 +249,7 @@ impl SheetReport {
         for (contour, piece) in pieces.iter().step_by(pieces.len().div_ceil(MOST).max(1)) {
             let [lo, hi] = piece.t;
             for part in ON_PIECES {
-                let p = projection.project(&contour.curve3.point(lo + (hi - lo) * part));
-                let p = match projection.y_down {
-                    true => Point2::new(p.x, -p.y),
-                    false => p,
-                };
+                let p = projection.project_y_up(&contour.curve3.point(lo + (hi - lo) * part));
                 let suits = |s: &Stroke| s.visible || !piece.visible;
                 match strokes.passing(&p, tolerance).any(|(_, s)| suits(s)) {
                     true => self.right += 1,
@@ -324,25 +313,17 @@ impl fmt::Display for SheetReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use premio_csg::boundary::{EvaluationOptions, evaluate};
-    use premio_csg::reader::{Format, Options, read};
-    use premio_visibility::contours;
-    use premio_visibility::drawing::sheet::View;
+    use crate::checks::fixture::{FrontView, front_view};
 
     /// What is found of the strokes of a block with a blind hole from the front, after a change.
     fn report(change: impl Fn(&mut Vec<Stroke>)) -> SheetReport {
-        let text = "P = BLO(X=60,Y=40,Z=20) DIF CYL(R=8,H=20) AT (MOVX=30,MOVY=20,MOVZ=8)";
-        let (format, options) = (Format::Padl, Options::default());
-        let tree = read("block", text.as_bytes(), format, &options)
-            .unwrap()
-            .tree;
-        let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
-        let bounds = known.tight_bounds();
-        let camera = View::Front
-            .camera(bounds.centre(), bounds.diagonal())
-            .unwrap();
-        let seen = contours(&known.brep, &camera, known.resolution).unwrap();
-        let mut drawing = Drawing::new(&seen, &drawing::Options::default());
+        let block = "P = BLO(X=60,Y=40,Z=20) DIF CYL(R=8,H=20) AT (MOVX=30,MOVY=20,MOVZ=8)";
+        let FrontView {
+            seen,
+            mut drawing,
+            bounds,
+            ..
+        } = front_view(block);
         change(&mut drawing.strokes);
         let mut report = SheetReport::default();
         let scale = Scale {

@@ -4,7 +4,7 @@
 //! the same description at several values of its parameters.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio::checks::{Checker, views};
+use premio::checks::{Checker, ViewChecks, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, Options, read};
 use premio_csg::tree::Tree;
@@ -138,7 +138,9 @@ fn compare(case: &Case, answer: &Answer, description: &Description) -> Vec<Strin
 fn unlike_rays(tree: &Tree, evaluation: &Evaluation) -> Vec<String> {
     let checker = Checker::new(tree, evaluation);
     let seen = views::around(&evaluation.bounds);
-    let checks = seen.iter().flat_map(|v| checker.view(&v.name, &v.camera));
+    let checks = seen
+        .iter()
+        .flat_map(|v| checker.view_with(&v.name, &v.camera, ViewChecks::ALL));
     let failed = checks.filter(|c| !c.holds());
     failed.map(|c| c.to_string()).collect()
 }

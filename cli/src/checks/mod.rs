@@ -314,7 +314,7 @@ impl<'a> Checker<'a> {
         [
             Check {
                 subject: Subject::Outline(name.to_owned()),
-                finding: Finding::of(outline.missing.is_empty()),
+                finding: outline.finding(),
                 detail: outline.to_string(),
             },
             Check {

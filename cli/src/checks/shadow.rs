@@ -4,6 +4,7 @@
 //! across the image, and a small circle around every end of a visible stroke; where one of them
 //! enters or leaves the shadow a visible stroke must pass, and no smooth edge.
 
+use super::Finding;
 use super::strokes::{Strokes, is_outline, point};
 use nalgebra::{Point2, Vector2};
 use premio_csg::rays::{Material, Ray};
@@ -32,15 +33,25 @@ const NAMED: usize = 5;
 pub struct ShadowOutline {
     /// How many places of the shadow's boundary lie on a visible stroke.
     pub drawn: usize,
+    /// How many places lie where the material is too thin to say where the shadow ends.
+    pub unclear: usize,
     /// The places that do not, in the image.
     pub missing: Vec<[f64; 2]>,
 }
 
-/// The lines of sight of a view, and what is near.
+/// The shadow of a part, by lines of sight.
 struct Shadow<'a> {
     material: &'a Material,
     projection: &'a Projection,
-    least: f64,
+    sliver: f64,
+}
+
+/// Where a course across the image crosses the boundary of the shadow: between the place up to which
+/// material is thicker than a sliver, and the place from which on there is none.
+struct Crossing {
+    thick: Point2<f64>,
+    /// None where thin material goes on beyond the next step.
+    none: Option<Point2<f64>>,
 }
 
 /// How far a stroke may pass from where rays find the outline.
@@ -53,20 +64,29 @@ pub struct Tolerance {
 }
 
 impl Shadow<'_> {
-    /// Whether the line of sight of a point of the drawing meets material.
-    fn covers(&self, p: &Point2<f64>) -> bool {
+    /// Whether the line of sight of a point of the drawing meets material thicker than `least`.
+    fn covers(&self, p: &Point2<f64>, least: f64) -> bool {
         let (origin, direction) = self.projection.line_of_sight_y_up(p);
         let ray = Ray { origin, direction };
         let near = match self.projection.sight {
             Sight::Eye(_) => self.projection.near / direction.dot(&self.projection.axis()),
             Sight::Direction(_) => f64::NEG_INFINITY,
         };
-        let met = self.material.intervals(&ray, self.least);
+        let met = self.material.intervals(&ray, least);
         met.iter().any(|[_, hi]| *hi > near)
     }
 }
 
 impl ShadowOutline {
+    /// Nothing is found where most places are unclear.
+    pub fn finding(&self) -> Finding {
+        match (self.missing.is_empty(), self.unclear > self.drawn) {
+            (false, _) => Finding::Fails,
+            (true, true) => Finding::Untold,
+            (true, false) => Finding::Holds,
+        }
+    }
+
     /// Follows the boundary of the shadow of a drawing's part.
     pub fn new(
         material: &Material,
@@ -77,13 +97,19 @@ impl ShadowOutline {
         let shadow = Shadow {
             material,
             projection,
-            least: tolerance.sliver,
+            sliver: tolerance.sliver,
         };
         let strokes = Strokes::new(&drawing.strokes);
         let mut outline = Self::default();
         let mut follow = |course: &dyn Fn(f64) -> Point2<f64>, steps: usize| {
-            for place in changes(&shadow, course, steps) {
-                let mut passing = strokes.passing(&place, tolerance.image);
+            for Crossing { thick, none } in shadow.crossings(course, steps) {
+                let Some(none) = none else {
+                    outline.unclear += 1;
+                    continue;
+                };
+                let place = nalgebra::center(&thick, &none);
+                let near = tolerance.image + (none - place).norm();
+                let mut passing = strokes.passing(&place, near);
                 match passing.any(|(_, stroke)| is_outline(stroke)) {
                     true => outline.drawn += 1,
                     false => outline.missing.push(place.into()),
@@ -118,36 +144,52 @@ impl ShadowOutline {
     }
 }
 
-/// Where a course over [0, 1] enters or leaves the shadow.
-fn changes(
-    shadow: &Shadow<'_>,
-    course: &dyn Fn(f64) -> Point2<f64>,
-    steps: usize,
-) -> Vec<Point2<f64>> {
-    let t = |k: usize| k as f64 / steps as f64;
-    let covered: Vec<bool> = (0..=steps).map(|k| shadow.covers(&course(t(k)))).collect();
-    let mut found = Vec::new();
-    for k in 0..steps {
-        if covered[k] == covered[k + 1] {
-            continue;
+impl Shadow<'_> {
+    /// Where a course over [0, 1] enters or leaves the shadow.
+    fn crossings(&self, course: &dyn Fn(f64) -> Point2<f64>, steps: usize) -> Vec<Crossing> {
+        let t = |k: usize| k as f64 / steps as f64;
+        let is_thick = |t: f64| self.covers(&course(t), self.sliver);
+        let covered: Vec<bool> = (0..=steps).map(|k| is_thick(t(k))).collect();
+        let mut found = Vec::new();
+        for k in 0..steps {
+            let [inside, outside] = match (covered[k], covered[k + 1]) {
+                (true, false) => [t(k), t(k + 1)],
+                (false, true) => [t(k + 1), t(k)],
+                _ => continue,
+            };
+            let thick = last(inside, outside, is_thick);
+            let is_any = |t: f64| self.covers(&course(t), 0.0);
+            let none = (!is_any(outside)).then(|| course(last(thick, outside, is_any)));
+            let thick = course(thick);
+            found.push(Crossing { thick, none });
         }
-        let (mut a, mut b) = (t(k), t(k + 1));
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (a + b);
-            match shadow.covers(&course(middle)) == covered[k] {
-                true => a = middle,
-                false => b = middle,
-            }
-        }
-        found.push(course(a));
+        found
     }
-    found
+}
+
+/// The last parameter on the way from one at which something holds to one at which it does not.
+fn last(mut from: f64, mut to: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (from + to);
+        match holds(middle) {
+            true => from = middle,
+            false => to = middle,
+        }
+    }
+    from
 }
 
 impl fmt::Display for ShadowOutline {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { drawn, missing } = self;
+        let Self {
+            drawn,
+            unclear,
+            missing,
+        } = self;
         write!(f, "{drawn} places of the shadow's boundary are drawn")?;
+        if *unclear > 0 {
+            write!(f, ", {unclear} are unclear")?;
+        }
         if !missing.is_empty() {
             write!(f, ", {} are not", missing.len())?;
         }

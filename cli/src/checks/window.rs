@@ -26,6 +26,8 @@ pub(super) struct Window {
     central: bool,
     /// The least depth that is seen.
     pub near: f64,
+    /// A length of the order of the part's depth.
+    depth: f64,
     /// The middle.
     pub centre: [f64; 2],
     /// The radius.
@@ -39,6 +41,7 @@ impl Window {
             frame: Frame::about(projection.origin(), projection.axis().normalize()),
             central: matches!(projection.sight, Sight::Eye(_)),
             near: projection.near,
+            depth: bounds.diagonal(),
             centre: [0.0; 2],
             radius: WIDEST,
         };
@@ -72,7 +75,8 @@ impl Window {
     /// The place of a point of a drawing, whose y is up.
     pub fn of_drawing(&self, projection: &Projection, p: &Point2<f64>) -> [f64; 2] {
         let (origin, into) = projection.line_of_sight_y_up(p);
-        self.image(&(origin + into)).at
+        // Far enough from the eye that its own coordinates cost no digits.
+        self.image(&(origin + into * self.depth)).at
     }
 
     /// The line of sight of an image point, with the depth as its parameter.

@@ -590,7 +590,7 @@ fn no_name_steers_a_terminal_or_breaks_a_file() {
         let text = String::from_utf8_lossy(&bytes);
         match format {
             "step" => assert!(!text.contains(steers) && text.contains("c''\\X2\\001B")),
-            "obj" => assert!(!text.contains(steers) && text.contains("o a<b>&\"c'_[31m")),
+            "obj" => assert!(!text.contains(steers) && text.contains("o a<b>&\"c' [31m")),
             "json" => assert!(!text.contains(steers)),
             "glb" => {
                 let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;

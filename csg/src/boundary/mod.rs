@@ -38,7 +38,7 @@ use premio_kernel::geometry::intersect::{Extent, IntersectionError};
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::precision::Number;
 use premio_kernel::number::sign::{
-    Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, ROUNDING, Sign, Zeros,
+    CloseCall, Decisions, FINEST_RESOLUTION, Judge, RELATIVE_RESOLUTION, ROUNDING, Sign, Zeros,
 };
 use premio_kernel::number::wide::Wide;
 use std::sync::OnceLock;
@@ -324,12 +324,28 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
         (_, Digits::Filtered) => {}
     }
     match evaluated::<f64>(tree, options) {
-        Ok(known) => Ok(known.into()),
+        Ok(mut known) => {
+            known
+                .decisions
+                .close_calls
+                .extend(vanished(tree, &known, options.noise));
+            Ok(known.into())
+        }
         Err(error) if error.is_of_doubles() && tree.leaves().count() <= FEW => {
             widely(tree, options).map(Evaluation::from)
         }
         Err(error) => Err(error),
     }
+}
+
+/// The close call by which nothing is left of a part that has a solid in 237 bits.
+fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<CloseCall> {
+    let is_asked = known.brep.topology.faces.is_empty()
+        && known.decisions.coincident > 0
+        && tree.leaves().count() <= FEW;
+    let fine = is_asked.then(|| finely(tree, &EvaluationOptions::default()).ok())??;
+    let least = noise.unwrap_or(0.0) * known.bounds.diagonal();
+    thin::remainder(&fine.measures.mass(&fine.brep), &known.bounds, least)
 }
 
 /// In 237 bits: by the resolution, and where what coincides by it contradicts itself, by the finest,

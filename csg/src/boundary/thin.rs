@@ -1,9 +1,12 @@
-//! Primitives that are no thicker than what coincides: their opposite faces become one, and they vanish.
+//! Primitives and parts that are no thicker than what coincides: their opposite faces become one, and they
+//! vanish.
 
 use crate::primitive::Primitive;
 use crate::tree::{Placed, Tree};
+use premio_kernel::brep::mass::Mass;
+use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::rational::{Rational, to_f64};
-use premio_kernel::number::sign::{CloseCall, Judge};
+use premio_kernel::number::sign::{CloseCall, Judge, Sign};
 
 /// Lists the primitives whose thickness is close to the resolution.
 pub(super) fn list(tree: &Tree, judge: &Judge) {
@@ -19,6 +22,23 @@ pub(super) fn list(tree: &Tree, judge: &Judge) {
         }
     }
 }
+
+/// The close call that left nothing of a part: by finer numbers it is a solid, thicker than `least`
+/// and than coordinates are rounded.
+pub(super) fn remainder(fine: &Mass, bounds: &Box3, least: f64) -> Option<CloseCall> {
+    let rounding = ROUNDINGS * f64::EPSILON * bounds.diagonal();
+    // A plate has two sides.
+    let thickness = 2.0 * fine.volume / fine.area;
+    thickness.is_beyond(rounding.max(least)).then(|| CloseCall {
+        question: "opposite faces of the part, of which nothing is left",
+        place: fine.centroid.into(),
+        distance: thickness,
+        local: false,
+    })
+}
+
+/// So many roundings are no distance that anybody wrote.
+const ROUNDINGS: f64 = 8.0;
 
 /// The least distance between opposite faces of a primitive, or across it.
 fn thickness(primitive: &Primitive) -> f64 {

@@ -4,25 +4,11 @@
 
 mod common;
 
-use common::{folder, premio};
+use common::{SETUP, assert_says, folder, premio, said};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
 use tempfile::TempDir;
-
-const SETUP: &str = "material = \"plastic\"
-[camera]
-eye = [15, -16, 12]
-[[light]]
-position = [4, -16, 30]
-[sensor]
-focal = 16
-film = [8.8, 6.6]
-resolution = [160, 120]
-[detector]
-threshold = 10
-";
 
 const SETUPS: &str = "[viewing]
 count = 4
@@ -53,10 +39,6 @@ fn prepared() -> TempDir {
     folder
 }
 
-fn said(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
 /// What is said of words that are wrong, with all files as they were.
 #[track_caller]
 fn refused(folder: &Path, words: &str) -> String {
@@ -78,13 +60,6 @@ fn refused(folder: &Path, words: &str) -> String {
         "{words}: a file is changed, lost or left"
     );
     text
-}
-
-#[track_caller]
-fn assert_says(text: &str, words: &[&str]) {
-    for word in words {
-        assert!(text.contains(word), "`{word}` is not in: {text}");
-    }
 }
 
 #[test]
@@ -559,63 +534,6 @@ fn what_cannot_be_seen_is_said() {
             "in 7 of 12 setups",
         ],
     );
-}
-
-#[cfg(unix)]
-#[test]
-fn no_name_steers_a_terminal_or_breaks_a_file() {
-    let folder = folder(&[("setup.toml", SETUP)]);
-    let path = folder.path();
-    let name = "a<b>&\"c'\u{1b}[31m\u{7f}\u{9b}\u{202e}.padl";
-    fs::write(path.join(name), common::PART).unwrap();
-    let run = |arguments: &[&str]| common::command(path, "").args(arguments).output().unwrap();
-    let steers = |c: char| c != '\n' && (c.is_control() || c == '\u{202e}');
-    let wrong = "no\u{1b}[31m\u{9b}\u{202e}.padl";
-    for arguments in [
-        vec!["info", wrong],
-        vec!["--json", "info", wrong],
-        vec!["\u{1b}[31m"],
-        vec!["info", name, "--part", "\u{1b}[31m"],
-        vec!["info", name, "--\u{1b}[31m"],
-    ] {
-        let output = run(&arguments);
-        assert_eq!(output.status.code(), Some(2), "{output:?}");
-        assert!(!said(&output).contains(steers), "{output:?}");
-    }
-    for format in ["step", "stl", "obj", "glb", "3mf", "json"] {
-        let file = format!("out.{format}");
-        let output = run(&["export", name, "-o", &file]);
-        assert!(output.status.success(), "{output:?}");
-        let bytes = fs::read(path.join(&file)).unwrap();
-        let text = String::from_utf8_lossy(&bytes);
-        match format {
-            "step" => assert!(!text.contains(steers) && text.contains("c''\\X2\\001B")),
-            "obj" => assert!(!text.contains(steers) && text.contains("o a<b>&\"c' [31m")),
-            "json" => assert!(!text.contains(steers)),
-            "glb" => {
-                let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
-                let json = std::str::from_utf8(&bytes[20..20 + length]).unwrap();
-                assert!(!json.contains(steers), "{json}");
-                let root: Value = serde_json::from_str(json).unwrap();
-                let stem = name.strip_suffix(".padl").unwrap();
-                assert_eq!(root["nodes"][0]["name"], stem);
-            }
-            _ => (),
-        }
-    }
-    let title = ["contours", name, "--views", "front", "--title", name, "-o"];
-    for file in ["out.svg", "out.dxf"] {
-        let output = run(&[&title[..], &[file]].concat());
-        assert!(output.status.success(), "{output:?}");
-        let text = fs::read_to_string(path.join(file)).unwrap();
-        assert!(!text.contains(steers), "{file}");
-        let shown = if file == "out.svg" {
-            "a&lt;b&gt;&amp;"
-        } else {
-            "\\U+001B"
-        };
-        assert_says(&text, &[shown]);
-    }
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! through P, so there the root s = 0 is divided out (twice where the line is tangent, on a limb),
 //! and never has to be told from zero.
 
+use crate::face_box::{FaceBox, Pierced, face_box};
 use crate::projection::{Projection, Sight};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
@@ -11,10 +12,9 @@ use premio_kernel::brep::locate::{Locator, Place};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::sign::{ROUNDING, Sign};
+use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 use std::f64::consts::TAU;
 
 /// A line of sight from a point towards the eye.
@@ -140,8 +140,6 @@ fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-type FaceBox = GeomWithData<Rectangle<[f64; 3]>, FaceId>;
-
 /// The boundary, ready for lines of sight.
 #[derive(Debug)]
 pub struct Scene<'a> {
@@ -158,75 +156,6 @@ pub struct Scene<'a> {
     pub tilt: f64,
     tree: RTree<FaceBox>,
     bounds: Box3,
-}
-
-struct Pierced {
-    origin: [f64; 3],
-    inverse: [f64; 3],
-    length: f64,
-}
-
-impl Pierced {
-    fn of(ray: &Ray) -> Self {
-        Self {
-            origin: ray.origin.into(),
-            // Finite, so that zero times it is zero: a line in the plane of a side is inside.
-            inverse: ray
-                .towards
-                .map(|x| (1.0 / x).clamp(f64::MIN, f64::MAX))
-                .into(),
-            length: ray.length,
-        }
-    }
-
-    fn meets(&self, lo: &[f64; 3], hi: &[f64; 3]) -> bool {
-        let (mut from, mut to) = (0.0f64, self.length);
-        for i in 0..3 {
-            let a = (lo[i] - self.origin[i]) * self.inverse[i];
-            let b = (hi[i] - self.origin[i]) * self.inverse[i];
-            from = from.max(a.min(b));
-            to = to.min(a.max(b));
-        }
-        from.is_at_most(to)
-    }
-}
-
-impl SelectionFunction<FaceBox> for Pierced {
-    fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
-        self.meets(&e.lower(), &e.upper())
-    }
-    fn should_unpack_leaf(&self, leaf: &FaceBox) -> bool {
-        let e = leaf.envelope();
-        self.meets(&e.lower(), &e.upper())
-    }
-}
-
-/// A box around a face.
-fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, band: f64) -> Box3 {
-    let whole = |o: &Point3<f64>, z: &Vector3<f64>, tube: f64, spine: f64| {
-        let reach = |i: usize| tube + spine * (1.0 - z[i] * z[i]).max(0.0).sqrt();
-        Box3 {
-            min: std::array::from_fn(|i| o[i] - reach(i)),
-            max: std::array::from_fn(|i| o[i] + reach(i)),
-        }
-    };
-    let hull = match brep.surface(face) {
-        Surface::Sphere(s) => whole(&s.frame.origin, &s.frame.z, s.radius, 0.0),
-        Surface::Torus(s) => whole(&s.frame.origin, &s.frame.z, s.minor, s.major),
-        // Every point of these lies on a segment between two points of the boundary; of a cone that
-        // holds its apex perhaps one of them is that.
-        surface => {
-            let own = locator.face(face);
-            let hull = own.boxes().iter().fold(Box3::EMPTY, |a, b| a.hull(b));
-            match surface {
-                Surface::Cone(s) if own.place(&s.frame.origin) != Place::Outside => {
-                    hull.hull(&Box3::of(&s.frame.origin))
-                }
-                _ => hull,
-            }
-        }
-    };
-    hull.grown(4.0 * band)
 }
 
 /// The box of boxes.

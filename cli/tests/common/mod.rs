@@ -11,6 +11,20 @@ pub const PART: &str = "BASE = BLO(X=6, Y=4, Z=2)
 PART = BASE DIF CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1)
 ";
 
+/// A setup for it.
+pub const SETUP: &str = "material = \"plastic\"
+[camera]
+eye = [15, -16, 12]
+[[light]]
+position = [4, -16, 30]
+[sensor]
+focal = 16
+film = [8.8, 6.6]
+resolution = [160, 120]
+[detector]
+threshold = 10
+";
+
 /// The program with these words behind its name, in a folder.
 pub fn command(folder: &Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
@@ -21,6 +35,19 @@ pub fn command(folder: &Path, words: &str) -> Command {
 /// What the program does.
 pub fn premio(folder: &Path, words: &str) -> Output {
     command(folder, words).output().unwrap()
+}
+
+/// What the program says on its standard error.
+pub fn said(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Asserts that a text has all these words.
+#[track_caller]
+pub fn assert_says(text: &str, words: &[&str]) {
+    for word in words {
+        assert!(text.contains(word), "`{word}` is not in: {text}");
+    }
 }
 
 /// A folder with the part, and with more files.

@@ -275,13 +275,21 @@ impl Faced<'_> {
         }
         let mut end = first[1];
         covered[1..].iter().all(|next| {
-            let [a, b] = [end, next[0]];
+            let gap = [end, next[0]];
             end = end.max(next[1]);
-            let place = self.place(&track.curve.point(0.5 * (a + b)));
-            // Around a pole what is not told may be in the face; a torus' face touches itself there.
-            let is_torus = matches!(self.brep.surface(self.face), Surface::Torus(_));
-            b <= a || place == Place::Outside || (is_torus && place == Place::On)
+            // What is met in one place has its parameters apart by rounding.
+            let is_none = gap[1] - gap[0] <= 2.0 * self.band * track.by;
+            is_none || self.place_between(track, gap) == Place::Outside
         })
+    }
+
+    /// Where a track lies between two of its parameters; on the face's boundary only if several of its
+    /// points are.
+    fn place_between(&self, track: &Track, [a, b]: [f64; 2]) -> Place {
+        let parts = [0.5, 0.31, 0.73].into_iter();
+        let mut places = parts.map(|part| self.place(&track.curve.point(a + part * (b - a))));
+        let clear = places.find(|place| *place != Place::On);
+        clear.unwrap_or(Place::On)
     }
 
     /// The pieces of a seam in the face, across the angle `across` at a value; none where that is not

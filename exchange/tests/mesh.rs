@@ -218,6 +218,18 @@ fn single_precision_is_refused_far_from_the_origin() {
     assert!(glb::write(&facets, "far", Unit::Metre).is_ok());
 }
 
+/// The lune between two balls is 3e-8 thick at most, less than single precision tells at their radius:
+/// both sides of it would be one. Of two blocks that touch along an edge each has its own.
+#[test]
+fn a_sliver_below_single_precision_is_refused() {
+    let lune = part("A = SPH(R=2) DIF SPH(R=2) AT (MOVX=0.00000003)");
+    let lune = facets(&lune, 0.01).unwrap();
+    assert!(matches!(stl::write(&lune), Err(MeshError::Coarse { .. })));
+    assert!(!obj::write(&lune, "lune").is_empty());
+    let blocks = part("A = BLO(X=1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=1, MOVY=1)");
+    assert!(stl::write(&facets(&blocks, 0.01).unwrap()).is_ok());
+}
+
 #[test]
 fn an_empty_part_is_refused() {
     let nothing = part("A = BLO(X=1, Y=1, Z=1) DIF BLO(X=1, Y=1, Z=1)");

@@ -2,6 +2,7 @@
 
 use super::{Facet, Facets, MeshError, sound};
 use nalgebra::Point3;
+use std::collections::HashMap;
 
 /// Triangles whose points are in single precision.
 #[derive(Clone, Debug)]
@@ -35,6 +36,22 @@ impl Single {
         };
         sound::mend(&exact, &mut single.facets).map_err(|corner| facets.coarse(corner))?;
         Ok(single)
+    }
+
+    /// A corner at which rounding lays a side of triangles on another that the exact `points` keep
+    /// apart: readers, who join corners by their places, would take the two for one.
+    pub fn closed_gap(&self, points: &[Point3<f64>]) -> Option<u32> {
+        // Adding zero makes one of its two signs.
+        let place = |c: u32| self.points[c as usize].map(|x| (x + 0.0).to_bits());
+        let exact = |c: u32| points[c as usize];
+        let mut sides = HashMap::with_capacity(3 * self.facets.len());
+        let mut all = self.facets.iter().flat_map(sound::sides_of);
+        let is_laid_on_another = |&[a, b]: &[u32; 2]| {
+            let ends = [exact(a), exact(b)];
+            let other = sides.entry([place(a), place(b)]).or_insert(ends);
+            *other != ends
+        };
+        all.find(is_laid_on_another).map(|[a, _]| a)
     }
 
     /// The corners of a triangle.

@@ -31,7 +31,8 @@ pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<()
     Ok(())
 }
 
-fn sides_of(facet: &Facet) -> [[u32; 2]; 3] {
+/// The sides of a triangle, each from a corner to the next.
+pub(super) fn sides_of(facet: &Facet) -> [[u32; 2]; 3] {
     let [a, b, c] = facet.corners;
     [[a, b], [b, c], [c, a]]
 }

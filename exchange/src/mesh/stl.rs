@@ -10,6 +10,9 @@ use stl_io::{Normal, Triangle, Vertex, write_stl};
 /// The bytes of a file.
 pub fn write(facets: &Facets) -> Result<Vec<u8>, MeshError> {
     let single = Single::of(facets, &Point3::origin())?;
+    if let Some(corner) = single.closed_gap(&facets.points) {
+        return Err(facets.coarse(corner));
+    }
     if u32::try_from(single.facets.len()).is_err() {
         let triangles = single.facets.len();
         return Err(MeshError::TooMany { triangles });

@@ -4,20 +4,11 @@
 
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Point3;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_fuzz::BORED_BLOCK;
 use premio_matching::camera::CameraFile;
 use premio_visibility::projection::Projection;
 use premio_visibility::{Camera, contours};
 use std::ops::Range;
-use std::sync::LazyLock;
-
-/// A block with a bore.
-static PART: LazyLock<Evaluation> = LazyLock::new(|| {
-    let text = "PART = BLO(X=6, Y=4, Z=2) DIF (CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1))";
-    let read = read("part", text.as_bytes(), Format::Padl, &Options::default());
-    evaluate(&read.expect("it is read").tree, &EvaluationOptions::default()).expect("it is simple")
-});
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else {
@@ -28,12 +19,12 @@ fuzz_target!(|bytes: &[u8]| {
         Ok(camera) => {
             let again = serde_json::to_string(&camera).expect("a camera is written");
             assert_eq!(Camera::from_json(&again), Ok(camera.clone()), "{again}");
-            let size = PART.bounds.diagonal();
+            let size = BORED_BLOCK.bounds.diagonal();
             let projection = Projection::new(&camera, size);
             let depth = projection.depth(&Point3::new(3.0, 2.0, 1.0));
             assert!(!depth.is_nan(), "{text}");
             // What has no view says so.
-            let _ = contours(&PART.brep, &camera, PART.resolution);
+            let _ = contours(&BORED_BLOCK.brep, &camera, BORED_BLOCK.resolution);
         }
     }
     match CameraFile::from_json(text) {

@@ -3,18 +3,9 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_fuzz::BORED_BLOCK;
 use premio_matching::learned::Learned;
 use premio_predict::model::file::{ModelFile, parse, sealed};
-use std::sync::LazyLock;
-
-/// The part that the seeds are models of.
-static PART: LazyLock<Evaluation> = LazyLock::new(|| {
-    let text = "PART = BLO(X=6, Y=4, Z=2) DIF (CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1))";
-    let read = read("part", text.as_bytes(), Format::Padl, &Options::default());
-    evaluate(&read.expect("it is read").tree, &EvaluationOptions::default()).expect("it is simple")
-});
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else {
@@ -24,12 +15,15 @@ fuzz_target!(|bytes: &[u8]| {
     if let Some(text) = sealed(text)
         && let Some(model) = tried(&text)
     {
-        let learned = Learned::of(&model.records, &PART.brep);
+        let learned = Learned::of(&model.records, &BORED_BLOCK.brep);
         for record in &model.records {
             if let premio_predict::model::record::Record::Feature(feature) = record {
                 let states = learned.states(&feature.source);
                 let sums = states.map(|s| s.iter().sum::<f64>());
-                assert!(sums.iter().all(|s| (s - 1.0).abs() < 1e-9), "{states:?}\n{text}");
+                assert!(
+                    sums.iter().all(|s| (s - 1.0).abs() < 1e-9),
+                    "{states:?}\n{text}"
+                );
             }
         }
     }

@@ -10,9 +10,9 @@ use premio_fuzz::{Part, Recipe, Sight};
 use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
 use premio_text::escape::is_unsafe;
+use premio_visibility::contours;
 use premio_visibility::drawing::sheet::{self, Sheet, View};
 use premio_visibility::drawing::{self, Drawing, dxf, svg};
-use premio_visibility::contours;
 use std::io::{Cursor, Read};
 
 /// So many of the first bytes are the name.
@@ -61,7 +61,9 @@ fn exchange(text: &str) {
     let mut used = std::collections::HashSet::new();
     for line in outside.lines() {
         let number = |text: &str| -> Option<u32> {
-            let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+            let end = text
+                .find(|c: char| !c.is_ascii_digit())
+                .unwrap_or(text.len());
             text[..end].parse().ok()
         };
         let mut numbers = line.split('#').skip(1).filter_map(number);
@@ -115,18 +117,32 @@ fn package(bytes: &[u8], count: usize) {
 
 /// How many elements of a name an XML document has.
 fn document(text: &str, name: &str) -> usize {
-    assert!(!text.contains(|c: char| c != '\n' && is_unsafe(c)), "{text:?}");
+    assert!(
+        !text.contains(|c: char| c != '\n' && is_unsafe(c)),
+        "{text:?}"
+    );
     let document = roxmltree::Document::parse(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let elements = document.descendants();
     elements.filter(|e| e.tag_name().name() == name).count()
 }
 
 fn wavefront(text: &str, count: usize) {
-    assert!(!text.contains(|c: char| c != '\n' && is_unsafe(c)), "{text:?}");
-    let of = |kind: &str| text.lines().filter(|l| l.split(' ').next() == Some(kind)).count();
+    assert!(
+        !text.contains(|c: char| c != '\n' && is_unsafe(c)),
+        "{text:?}"
+    );
+    let of = |kind: &str| {
+        text.lines()
+            .filter(|l| l.split(' ').next() == Some(kind))
+            .count()
+    };
     let (points, normals) = (of("v"), of("vn"));
     assert_eq!(of("f"), count);
-    for corner in text.lines().filter_map(|l| l.strip_prefix("f ")).flat_map(|l| l.split(' ')) {
+    for corner in text
+        .lines()
+        .filter_map(|l| l.strip_prefix("f "))
+        .flat_map(|l| l.split(' '))
+    {
         let (point, normal) = corner.split_once("//").expect("a point and a normal");
         let index = |text: &str| text.parse::<usize>().expect("a number");
         assert!((1..=points).contains(&index(point)), "{corner}");
@@ -170,7 +186,10 @@ fn drawings(part: &Part, sight: &Sight, name: &str) {
 
 /// The groups of a DXF: a code and a value, each in its line, up to the end.
 fn groups(text: &str) {
-    assert!(text.bytes().all(|b| matches!(b, b'\n' | b' '..=b'~')), "{text:?}");
+    assert!(
+        text.bytes().all(|b| matches!(b, b'\n' | b' '..=b'~')),
+        "{text:?}"
+    );
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len() % 2, 0);
     for pair in lines.chunks(2) {

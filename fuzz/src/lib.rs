@@ -15,6 +15,19 @@ use premio_csg::tree::Tree;
 use premio_visibility::Camera;
 
 pub use recipe::{Recipe, Sight};
+use std::sync::LazyLock;
+
+/// A block with a bore: what the targets for models and cameras look at.
+pub static BORED_BLOCK: LazyLock<Evaluation> = LazyLock::new(|| {
+    let text = "PART = BLO(X=6, Y=4, Z=2) DIF (CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1))";
+    let format = premio_csg::reader::Format::Padl;
+    let read = read("part", text.as_bytes(), format, &Options::default());
+    evaluate(
+        &read.expect("it is read").tree,
+        &EvaluationOptions::default(),
+    )
+    .expect("it is simple")
+});
 
 /// A part to be tried.
 #[derive(Debug)]

@@ -10,7 +10,7 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
     ("text", "premio-text", &[]),
     ("memory", "premio-memory", &[]),
     ("kernel", "premio-kernel", &[]),
-    ("csg", "premio-csg", &["premio-kernel"]),
+    ("csg", "premio-csg", &["premio-kernel", "premio-text"]),
     (
         "visibility",
         "premio-visibility",

@@ -23,9 +23,9 @@ pub struct Message {
 #[derive(Debug, Serialize)]
 struct Place {
     file: String,
-    line: u32,
+    line: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
-    column: Option<u32>,
+    column: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     found: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,7 +36,7 @@ struct Place {
 
 impl Place {
     /// A line, and no more.
-    fn line(file: &str, line: u32) -> Self {
+    fn line(file: &str, line: usize) -> Self {
         Self {
             file: file.to_owned(),
             line,
@@ -102,20 +102,19 @@ impl Message {
     pub fn at(name: &str, text: &[u8], span: &Range<usize>, words: &str) -> Self {
         let LineColumn { line, column } = LineColumn::of(text, span.start);
         let place = [line, column];
-        let told = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         Self {
             text: format!("{name}:{line}:{column}: {words}"),
             excerpt: Some(Excerpt::around(name.to_owned(), place, span, text)),
             place: Some(Place {
-                column: Some(told(column)),
-                ..Place::line(name, told(line))
+                column: Some(column),
+                ..Place::line(name, line)
             }),
             ..Self::default()
         }
     }
 
     /// What there is to know of a line of a file.
-    pub fn at_line(file: &str, line: u32, text: &str) -> Self {
+    pub fn at_line(file: &str, line: usize, text: &str) -> Self {
         Self {
             text: text.to_owned(),
             place: Some(Place::line(file, line)),

@@ -10,7 +10,7 @@ use premio_csg::reader::{ErrorKind, Note, ReadError};
 use premio_kernel::number::sign::CloseCall;
 use premio_predict::outline::stage::StageError;
 use premio_predict::setup::SetupError;
-use premio_text::escape;
+use premio_text::{LineColumn, escape};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::ops::Range;
@@ -158,9 +158,7 @@ impl Voice {
     /// Tells the notes of a reader.
     pub fn notes(self, name: &str, text: &[u8], notes: &[Note]) {
         for note in notes {
-            let before = text.get(..note.span.start).unwrap_or(text);
-            let lines = before.iter().filter(|&&b| b == b'\n').count();
-            let line = u32::try_from(lines + 1).unwrap_or(u32::MAX);
+            let line = LineColumn::of(text, note.span.start).line;
             self.tell(&Message::at_line(name, line, &note.text));
         }
     }

@@ -1,5 +1,6 @@
 //! What is wrong with a text, and where.
 
+use premio_text::{LineColumn, nearest};
 use std::fmt;
 use std::ops::Range;
 
@@ -22,9 +23,9 @@ pub struct ReadError {
     /// The place in the text, in bytes.
     pub span: Range<usize>,
     /// The line, from 1.
-    pub line: u32,
+    pub line: usize,
     /// The column in characters, from 1.
-    pub column: u32,
+    pub column: usize,
     /// What stands there.
     pub found: Box<str>,
     /// What should stand there.
@@ -113,7 +114,7 @@ impl Fault {
 
     /// The error with its line and column.
     pub(super) fn locate(self, name: &str, text: &[u8]) -> ReadError {
-        let (line, column) = line_and_column(text, self.span.start);
+        let LineColumn { line, column } = LineColumn::of(text, self.span.start);
         ReadError {
             name: name.into(),
             kind: self.kind,
@@ -125,56 +126,4 @@ impl Fault {
             help: self.help.map(Into::into),
         }
     }
-}
-
-/// The line and the column, both from 1, of a place in a text.
-pub(super) fn line_and_column(text: &[u8], at: usize) -> (u32, u32) {
-    let before = &text[..at.min(text.len())];
-    let lines = before.iter().filter(|&&b| b == b'\n').count();
-    let start = before
-        .iter()
-        .rposition(|&b| b == b'\n')
-        .map_or(0, |i| i + 1);
-    let characters = String::from_utf8_lossy(&before[start..]).chars().count();
-    let number = |count: usize| u32::try_from(count + 1).unwrap_or(u32::MAX);
-    (number(lines), number(characters))
-}
-
-/// A piece of the text for a message: short, on one line.
-pub(super) fn quote(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let shown = text
-        .chars()
-        .take(LONGEST)
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c });
-    let mut shown: String = shown.collect();
-    if text.chars().nth(LONGEST).is_some() {
-        shown.push('…');
-    }
-    format!("`{shown}`")
-}
-
-fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    const LONGEST: usize = 64;
-    if word.len() > LONGEST {
-        return None;
-    }
-    let word = word.to_lowercase();
-    let allowed = match word.chars().count() {
-        0 | 1 => return None,
-        2 | 3 => 1,
-        _ => 2,
-    };
-    known
-        .into_iter()
-        .filter(|candidate| candidate.len() <= LONGEST)
-        .map(|candidate| {
-            (
-                strsim::osa_distance(&word, &candidate.to_lowercase()),
-                candidate,
-            )
-        })
-        .filter(|(distance, _)| *distance <= allowed)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
 }

@@ -8,7 +8,8 @@ use winnow::error::ContextError;
 use winnow::prelude::*;
 use winnow::token::{any, none_of, one_of, take_till, take_until, take_while};
 
-use super::error::{Fault, quote};
+use super::error::Fault;
+use premio_text::escape::quote;
 
 /// What sets the languages apart before grammar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

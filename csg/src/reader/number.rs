@@ -6,8 +6,9 @@ use premio_kernel::number::rational::{
     DecimalError, MAX_DIGITS, MAX_EXPONENT, Rational, bits, from_decimal, to_f64,
 };
 
-use super::error::{Fault, quote};
+use super::error::Fault;
 use crate::primitive::PrimitiveError;
+use premio_text::escape::quote;
 
 /// The longest number that arithmetic in a description may make, in bits.
 pub(super) const MAX_BITS: usize = 1 << 13;

@@ -16,7 +16,7 @@ use premio_kernel::number::rational::Rational;
 use self::combination::{Combination, Item};
 use self::solids::{NotOurs, Solid};
 use self::words::{Word, commands};
-use super::error::{Fault, line_and_column, quote};
+use super::error::Fault;
 use super::frame::Vector;
 use super::notes::Notes;
 use super::number::literal;
@@ -24,6 +24,8 @@ use super::placement::DOUBLES;
 use super::{Options, Source};
 use crate::builder::{Builder, Part};
 use crate::tree::Operation;
+use premio_text::LineColumn;
+use premio_text::escape::quote;
 
 pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
     if source.starts_with("I ") {
@@ -150,7 +152,7 @@ impl<'a> Database<'a> {
         }
         if let Some(&earlier) = self.names.get(name.text) {
             let start = self.objects[earlier].name.span.start;
-            let line = line_and_column(source.as_bytes(), start).0;
+            let line = LineColumn::of(source.as_bytes(), start).line;
             let found = format!("{}, which is put already", quote(name.text));
             return Err(Fault::input(name.span.clone(), found, "a new name")
                 .help(format!("it was put on line {line}")));

@@ -9,7 +9,8 @@ use winnow::error::ContextError;
 use winnow::prelude::*;
 use winnow::token::{take_till, take_while};
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
+use premio_text::escape::quote;
 
 /// A word without its braces or quotes, and its place.
 #[derive(Debug, Clone)]

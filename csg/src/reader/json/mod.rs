@@ -8,12 +8,13 @@ use premio_kernel::number::rational::Rational;
 
 use self::value::{Content, Document, Member, Value, ValueId, parse};
 use super::Source;
-use super::error::{Fault, quote};
+use super::error::Fault;
 use super::number::{bad_length, literal};
 use crate::builder::{Builder, MAX_MOTION_BITS, Part};
 use crate::moves::{self, Moves};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::tree::Operation;
+use premio_text::escape::quote;
 
 pub(super) fn read(source: &str) -> Result<Source, Fault> {
     let document = parse(source)?;

@@ -4,8 +4,9 @@
 
 use std::ops::Range;
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
 use super::super::lexer::{Cursor, Dialect, Lexeme, Token};
+use premio_text::escape::quote;
 
 /// The index of a value in its document.
 pub(super) type ValueId = usize;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
 use super::super::lexer::Lexeme;
 use super::super::number::bad_length;
 use super::expression::Operand;
@@ -12,6 +12,7 @@ use super::words::{MOTIONS, Shape};
 use crate::builder::{Builder, MAX_MOTION_BITS, Part};
 use crate::moves::{Moves, Step, along};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
+use premio_text::escape::quote;
 
 /// What is around an expression.
 pub(super) enum Bracket<'a> {

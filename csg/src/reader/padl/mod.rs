@@ -13,11 +13,13 @@ use std::ops::Range;
 use self::brackets::{Bracket, Call, Placing};
 use self::expression::{Expression, Operand, Operator, Value};
 use self::words::{KEYWORDS, Keyword};
-use super::error::{Fault, line_and_column, quote};
+use super::error::Fault;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::number::literal;
 use super::{Options, Source};
 use crate::builder::{Builder, Part};
+use premio_text::LineColumn;
+use premio_text::escape::quote;
 
 pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
     let mut parser = Parser::new(source)?;
@@ -63,8 +65,8 @@ impl<'a> Parser<'a> {
         })
     }
 
-    fn line(&self, at: usize) -> u32 {
-        line_and_column(self.cursor.source().as_bytes(), at).0
+    fn line(&self, at: usize) -> usize {
+        LineColumn::of(self.cursor.source().as_bytes(), at).line
     }
 
     /// Reads one statement; false at the end of the text.

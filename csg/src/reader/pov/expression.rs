@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
 use super::super::frame::Vector;
 use super::super::lexer::{Lexeme, Token};
 use super::super::number::{check_length, literal};
 use super::words::truth;
 use super::{Reader, Value};
 use crate::moves::along;
+use premio_text::escape::quote;
 
 /// Brackets are nested at most so deep, and with them this recursion.
 const MAX_DEPTH: usize = 100;

@@ -16,12 +16,14 @@ use premio_kernel::number::rational::Rational;
 
 use self::solid::Object;
 use self::words::{PASSED_OVER, SOLIDS};
-use super::error::{Fault, line_and_column, quote};
+use super::error::Fault;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::notes::Notes;
 use super::{Options, Source};
 use crate::builder::{Builder, Part};
 use crate::tree::Operation;
+use premio_text::LineColumn;
+use premio_text::escape::quote;
 
 /// What is told of every scene.
 const LEFT_HANDED: &str = "POV-Ray's axes are left-handed: coordinates are kept as they are \
@@ -291,7 +293,7 @@ impl<'a> Reader<'a> {
 
     fn unclosed(&self, end: Lexeme, open: Lexeme) -> Fault {
         let source = self.cursor.source().as_bytes();
-        let line = line_and_column(source, open.span().start).0;
+        let line = LineColumn::of(source, open.span().start).line;
         let fault = self.cursor.unexpected(end, "a closing bracket");
         fault.help(format!("the bracket opened on line {line} is not closed"))
     }

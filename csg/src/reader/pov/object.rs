@@ -1,12 +1,13 @@
 //! Objects as they stand in a text: a word, braces, what the object is made of, and modifiers.
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
 use super::super::lexer::{Lexeme, Token};
 use super::solid::{self, Object};
 use super::words::{self, FLAGS, NOT_OURS, REFUSED, SOLIDS, SURFACES};
 use super::{NO_MACROS, Reader, Value};
 use crate::builder::Part;
 use crate::tree::Operation;
+use premio_text::escape::quote;
 
 /// Objects are declared inside objects at most so deep.
 const MAX_INSIDE: usize = 100;

@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
 use super::super::frame::{Axis, Vector, difference};
 use super::super::number::bad_length;
 use crate::builder::{Builder, Part};
 use crate::moves::{Moves, Step};
 use crate::primitive::{Primitive, PrimitiveError};
 use crate::tree::Operation;
+use premio_text::escape::quote;
 
 /// What an object is.
 #[derive(Debug, Clone)]

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
 use super::super::lexer::{Cursor, Lexeme, Token};
 use super::super::number::{literal, show};
+use premio_text::escape::quote;
 
 /// Nothing in a flattened file is nested deeper: a matrix is a list of lists.
 const MAX_DEPTH: usize = 4;

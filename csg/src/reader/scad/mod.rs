@@ -15,6 +15,7 @@ use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::notes::Notes;
 use super::{Options, Source};
 use crate::builder::{Builder, Part};
+use premio_text::LineColumn;
 
 pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
     let cursor = Cursor::new(source, Dialect::Scad)?;
@@ -111,7 +112,7 @@ impl<'a> Reader<'a> {
                 let expected = if block.single { "a node or `;`" } else { "`}`" };
                 let start = block.open.span().start;
                 let source = self.cursor.source().as_bytes();
-                let line = super::error::line_and_column(source, start).0;
+                let line = LineColumn::of(source, start).line;
                 Err(self
                     .cursor
                     .unexpected(end, expected)

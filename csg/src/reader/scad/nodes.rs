@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::{Fault, quote};
+use super::super::error::Fault;
 use super::super::lexer::Lexeme;
 use super::super::notes::Notes;
 use super::super::placement::{NotRigid, Placement, placement};
@@ -13,6 +13,7 @@ use super::extrusion::{self, Raise};
 use super::shapes::{self, Shape};
 use crate::builder::{Builder, Part};
 use crate::tree::Operation;
+use premio_text::escape::quote;
 
 /// What becomes of the children of a block.
 pub(super) enum Kind {

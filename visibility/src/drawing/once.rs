@@ -133,20 +133,9 @@ impl<'c> Canvas<'c> {
     }
 }
 
-/// Where the course of an arc between two stops is compared with another's.
-const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
-
-/// The ranges of an arc over which none of the others runs. Analytic curves that share a stretch
-/// share all of it up to an end of one of them, so only these ends are stops.
+/// The ranges of an arc over which none of the others runs.
 fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Vec<[f64; 2]> {
     let [lo, hi] = arc.range();
-    let others: Vec<&&ImageArc<'_>> = others
-        .iter()
-        .filter(|other| may_share(arc, other, tolerance))
-        .collect();
-    if others.is_empty() {
-        return vec![[lo, hi]];
-    }
     let ends = others.iter().flat_map(|other| other.ends());
     let on_arc = ends.map(|p| arc.nearest(&p));
     let mut stops: Vec<f64> = on_arc
@@ -155,34 +144,120 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
         .chain([lo, hi])
         .collect();
     stops.sort_by(f64::total_cmp);
-    let mut ranges: Vec<[f64; 2]> = Vec::new();
+    let mut covered: Vec<[f64; 2]> = Vec::new();
     for pair in stops.windows(2).filter(|pair| pair[0] < pair[1]) {
-        let places = PLACES.map(|part| arc.point(pair[0] + (pair[1] - pair[0]) * part));
-        let runs_along = |other: &&&ImageArc<'_>| {
-            let mut all = places.iter();
-            all.all(|p| other.nearest(p).distance <= tolerance)
+        let span = [pair[0], pair[1]];
+        let search = Search {
+            arc,
+            span,
+            tolerance,
         };
-        if others.iter().any(runs_along) {
-            continue;
-        }
-        match ranges.last_mut() {
-            Some(last) if last[1] == pair[0] => last[1] = pair[1],
-            _ => ranges.push([pair[0], pair[1]]),
+        match others.iter().any(|other| search.is_whole(other)) {
+            true => covered.push(span),
+            false => covered.extend(others.iter().flat_map(|other| search.stretches(other))),
         }
     }
-    ranges
+    covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut free = Vec::new();
+    let mut from = lo;
+    for [start, end] in covered {
+        if from < start {
+            free.push([from, start]);
+        }
+        from = from.max(end);
+    }
+    if from < hi {
+        free.push([from, hi]);
+    }
+    free
 }
 
-/// Whether two arcs may share a stretch: an end of one of them, or a point of one that has no ends,
-/// is near the other.
-fn may_share(arc: &ImageArc<'_>, other: &ImageArc<'_>, tolerance: f64) -> bool {
-    // A polyline's own distance is some thousand times the tolerance.
-    let near = tolerance + arc.deviation().max(other.deviation());
-    let touches = |a: &ImageArc<'_>, b: &ImageArc<'_>| {
-        let mut ends = a.ends().into_iter();
-        ends.any(|p| b.rough_distance(&p) <= near)
-    };
-    touches(arc, other) || touches(other, arc)
+/// Where the course of an arc between two stops is compared with another's.
+const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// Curves that cross or touch are within the tolerance over less than this many times of it: where they
+/// touch, over about the root of the tolerance and the drawing's size.
+const TOUCHING: f64 = (1u32 << 13) as f64;
+/// Into so many parts a span is cut first, so that the chords of a part tell its length.
+const PARTS: u32 = 8;
+/// By how much a part may be longer than its two chords.
+const BENT: f64 = 1.5;
+/// How often a span is halved to find where arcs part.
+const HALVINGS: u32 = 40;
+
+/// The search for where an arc runs along others, between two parameters.
+struct Search<'a, 'c> {
+    arc: &'a ImageArc<'c>,
+    span: [f64; 2],
+    tolerance: f64,
+}
+
+impl Search<'_, '_> {
+    fn is_on(&self, t: f64, other: &ImageArc<'_>) -> bool {
+        other.nearest(&self.arc.point(t)).distance <= self.tolerance
+    }
+
+    /// Whether all of the span runs along another arc: analytic curves that share more than points
+    /// share all up to an end of one of them.
+    fn is_whole(&self, other: &ImageArc<'_>) -> bool {
+        let [lo, hi] = self.span;
+        let mut places = PLACES.iter().map(|part| lo + (hi - lo) * part);
+        places.all(|t| self.is_on(t, other))
+    }
+
+    /// The ranges over which another arc stays within the tolerance, without those where the two only
+    /// cross or touch. A limb and an edge next to it may run so for a while.
+    fn stretches(&self, other: &ImageArc<'_>) -> Vec<[f64; 2]> {
+        let [lo, hi] = self.span;
+        let at = |k: u32| lo + (hi - lo) * f64::from(k) / f64::from(PARTS);
+        let mut parts: Vec<[f64; 2]> = (0..PARTS).rev().map(|k| [at(k), at(k + 1)]).collect();
+        let mut runs: Vec<[f64; 2]> = Vec::new();
+        let reach = self.tolerance + other.deviation();
+        while let Some([a, b]) = parts.pop() {
+            let middle = 0.5 * (a + b);
+            let [from, p, to] = [a, middle, b].map(|t| self.arc.point(t));
+            let length = BENT * ((p - from).norm() + (to - p).norm());
+            if other.rough_distance(&p) > reach + length {
+                continue;
+            }
+            // Four such parts are as long as curves touch.
+            if 4.0 * length > TOUCHING * self.tolerance && a < middle && middle < b {
+                parts.extend([[middle, b], [a, middle]]);
+                continue;
+            }
+            if !self.is_on(middle, other) {
+                continue;
+            }
+            match runs.last_mut() {
+                Some(last) if last[1] == a => last[1] = b,
+                _ => runs.push([a, b]),
+            }
+        }
+        let ends = runs.into_iter().map(|run| self.ends(run, other));
+        let length = |[a, b]: [f64; 2]| (self.arc.point(b) - self.arc.point(a)).norm();
+        ends.filter(|run| length(*run) > TOUCHING * self.tolerance)
+            .collect()
+    }
+
+    /// Where a run really starts and ends: a little outside or inside of where it was seen.
+    fn ends(&self, [a, b]: [f64; 2], other: &ImageArc<'_>) -> [f64; 2] {
+        let middle = 0.5 * (a + b);
+        let [lo, hi] = self.span;
+        let outside = [a - 0.5 * (b - a), b + 0.5 * (b - a)].map(|t| t.clamp(lo, hi));
+        outside.map(|outside| {
+            if self.is_on(outside, other) {
+                return outside;
+            }
+            let (mut off, mut on) = (outside, middle);
+            for _ in 0..HALVINGS {
+                let between = 0.5 * (off + on);
+                match self.is_on(between, other) {
+                    true => on = between,
+                    false => off = between,
+                }
+            }
+            on
+        })
+    }
 }
 
 #[cfg(test)]
@@ -283,6 +358,35 @@ mod tests {
         assert_eq!(first(&strokes[0]), [0.0, 2.0]);
         let [from, to] = first(&strokes[1]);
         assert!((from + 1.0).abs() < 1e-6 && to.abs() < 1e-6);
+    }
+
+    /// y = x⁴ is within 1e-6 of the line y = 0 up to x = 10^(-3/2), y = x² up to x = 1e-3, which is no
+    /// more than curves touch.
+    #[test]
+    fn a_curve_is_drawn_from_where_it_leaves_another() {
+        let power = |exponent: i32| {
+            let curve = move |t: f64| Point2::new(t, t.powi(exponent));
+            let sample = |k: i32| {
+                let t = f64::from(k) / 32.0;
+                Sample { t, point: curve(t) }
+            };
+            ImageArc::Projected {
+                curve: Rc::new(curve),
+                samples: (0..=32).map(sample).collect(),
+            }
+        };
+        for (exponent, start) in [(2, 0.0), (4, 0.001f64.sqrt())] {
+            let arcs = vec![
+                drawn(segment([-1.0, 2.0], 0.0), true),
+                drawn(power(exponent), true),
+            ];
+            let strokes = strokes(arcs, TOLERANCE);
+            assert_eq!(strokes.len(), 2);
+            let Shape::Path(points) = &strokes[1].shape else {
+                panic!("{:?}", strokes[1]);
+            };
+            assert!((points[0].x - start).abs() < 1e-6, "{}", points[0]);
+        }
     }
     use super::super::Shape;
 }

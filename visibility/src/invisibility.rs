@@ -24,8 +24,9 @@ pub enum Method {
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 16.0;
 /// Where in a piece its faces in front are counted, one after the other until an answer is plain. Not
-/// in the middle: there a symmetric part has its special points.
-const PLACES: [f64; 3] = [0.47, 0.31, 0.73];
+/// in the middle, where a symmetric part has its special points; at last near the ends, where contours
+/// that part slowly are farthest apart.
+const PLACES: [f64; 5] = [0.47, 0.31, 0.73, 0.07, 0.93];
 
 /// The count for a piece of a strand over [lo, hi].
 pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Count {

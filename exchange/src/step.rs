@@ -9,12 +9,14 @@
 mod part21;
 mod product;
 mod shape;
+mod thin;
 
 use crate::seamed::{SeamError, Seamed};
 use crate::spline::SplineError;
 use part21::Exchange;
 use premio_kernel::brep::Brep;
 use premio_kernel::unit::Unit;
+pub use thin::Thin;
 
 /// The application protocol that a file names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,6 +55,22 @@ pub enum StepError {
     /// A curve was not followed.
     #[error(transparent)]
     Spline(#[from] SplineError),
+    /// Something is as thin as points and edges of other kernels are wide, which are valid nowhere then.
+    #[error(
+        "{what} as {size:.3e} at ({:.9}, {:.9}, {:.9}): other kernels take what is not more than \
+         {least:.0e} apart for one",
+        place[0], place[1], place[2]
+    )]
+    Thin {
+        /// What it is.
+        what: Thin,
+        /// A point of it.
+        place: [f64; 3],
+        /// How long or wide it is, in the part's unit.
+        size: f64,
+        /// What it had to be more than.
+        least: f64,
+    },
 }
 
 /// Splines are within this part of the part's size of the curves they follow, where nothing is said.
@@ -67,6 +85,7 @@ pub fn write(brep: &Brep, options: &Options) -> Result<String, StepError> {
     if brep.topology.solids.is_empty() {
         return Err(StepError::Empty);
     }
+    thin::check(brep, options.unit)?;
     let seamed = Seamed::of(brep, options.resolution)?;
     let mut exchange = Exchange::default();
     let context = product::context(&mut exchange, options);

@@ -1,0 +1,63 @@
+//! What is too thin for a STEP file.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use approx::assert_relative_eq;
+use premio_csg::boundary::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, Options as Reading, read};
+use premio_exchange::step::{ACCURACY, Options, Protocol, StepError, Thin, write};
+use premio_kernel::unit::Unit;
+
+fn written(text: &str, unit: Unit) -> Result<String, StepError> {
+    let part = read("part", text.as_bytes(), Format::Padl, &Reading::default()).unwrap();
+    let evaluation = evaluate(&part.tree, &EvaluationOptions::default()).unwrap();
+    let options = Options {
+        name: "part".to_owned(),
+        protocol: Protocol::default(),
+        unit,
+        accuracy: ACCURACY * evaluation.bounds.diagonal(),
+        resolution: evaluation.resolution,
+    };
+    write(&evaluation.brep, &options)
+}
+
+#[track_caller]
+fn assert_refused(text: &str, thin: Thin, thickness: f64) {
+    match written(text, Unit::Millimetre) {
+        Err(StepError::Thin {
+            what, size, least, ..
+        }) => {
+            assert_eq!(what, thin);
+            assert_relative_eq!(size, thickness, max_relative = 1e-2);
+            assert_relative_eq!(least, 1e-7);
+        }
+        other => panic!("{other:?}"),
+    }
+    assert!(written(text, Unit::Metre).is_ok());
+}
+
+/// A step of 5e-8.
+#[test]
+fn a_short_edge_is_refused() {
+    let text = "PART = BLO(X=4, Y=4, Z=2) UN BLO(X=2, Y=4, Z=2.00000005)";
+    assert_refused(text, Thin::Edge, 5e-8);
+}
+
+/// A step all around, which has no short edge.
+#[test]
+fn a_narrow_face_is_refused() {
+    let text = "PART = CYL(R=2, H=2) UN CYL(R=1, H=2.00000005)";
+    assert_refused(text, Thin::Face, 5e-8);
+}
+
+/// Half the area of a sphere on either side, and its section times the way between.
+#[test]
+fn a_thin_wall_is_refused() {
+    let text = "PART = SPH(R=2) DIF SPH(R=2) AT (MOVX=0.00000003)";
+    assert_refused(text, Thin::Shell, 1.5e-8);
+}
+
+#[test]
+fn what_is_thicker_is_written() {
+    let text = "PART = CYL(R=2, H=2) UN CYL(R=1, H=2.00000015)";
+    assert!(written(text, Unit::Millimetre).is_ok());
+}

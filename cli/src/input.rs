@@ -9,6 +9,7 @@ use premio_kernel::number::sign::Zeros;
 use premio_matching::camera::CameraFile;
 use premio_predict::model::record::Description as Written;
 use premio_visibility::Camera;
+use premio_visibility::camera::CameraError;
 use std::path::Path;
 use std::time::Instant;
 
@@ -121,6 +122,9 @@ fn evaluated(
     let evaluation =
         evaluate(&description.tree, &how).map_err(|e| Failure::evaluation(&name, &e))?;
     drop(working);
+    if evaluation.brep.topology.solids.is_empty() {
+        voice.note(&name, EMPTY);
+    }
     Ok(Part {
         name,
         description,
@@ -130,6 +134,9 @@ fn evaluated(
         evaluate: started.elapsed().as_secs_f64(),
     })
 }
+
+/// What is said of a part without a solid.
+pub const EMPTY: &str = "the part is empty: it has no solid";
 
 /// Why there is no view of some parts.
 const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do not tell them apart: \
@@ -165,11 +172,17 @@ pub fn format(path: &Path) -> Result<Format, Failure> {
     })
 }
 
-/// The camera of a file.
-pub fn camera_of_file(path: &Path, session: Session) -> Result<Camera, Failure> {
+/// The camera of a file, and the file's text.
+pub fn camera_of_file(path: &Path, session: Session) -> Result<(Camera, String), Failure> {
     let text = session.limits.read_text(path)?;
+    let camera = Camera::from_json(&text).map_err(|e| refused_camera(path, &text, &e))?;
+    Ok((camera, text))
+}
+
+/// That a camera of a file is refused, at the key that is wrong.
+pub fn refused_camera(path: &Path, text: &str, error: &CameraError) -> Failure {
     let name = path.display().to_string();
-    Camera::from_json(&text).map_err(|e| Failure::at(&name, &text, e.span(&text), &e))
+    Failure::at(&name, text, error.span(text), error)
 }
 
 /// The camera of a file that took pictures.

@@ -12,6 +12,7 @@ use premio_predict::model::record::Head;
 use premio_predict::outline::stage::StageError;
 use premio_predict::prediction::{self, Draft, Memory};
 use premio_predict::processing::Detector;
+use premio_predict::setup::light::Light;
 use premio_predict::setup::{Conditions, Setup, SetupError, detector_from_toml};
 use premio_predict::subject::Subject;
 use std::path::Path;
@@ -31,7 +32,7 @@ pub struct SetupFile<T> {
 pub fn setup(path: &Path, session: Session) -> Result<SetupFile<Setup>, Failure> {
     let file = read(path, session, Setup::from_toml)?;
     file.check_pixels(&file.value.conditions, session)?;
-    if file.value.lights.is_empty() {
+    if is_dark(&file.value.lights) {
         file.note_darkness(&file.value.conditions, session);
     }
     Ok(file)
@@ -41,10 +42,15 @@ pub fn setup(path: &Path, session: Session) -> Result<SetupFile<Setup>, Failure>
 pub fn setups(path: &Path, session: Session) -> Result<SetupFile<Setups>, Failure> {
     let file = read(path, session, Setups::from_toml)?;
     file.check_pixels(&file.value.conditions, session)?;
-    if file.value.lights.is_empty() && file.value.illumination.is_none() {
+    if is_dark(&file.value.lights) && file.value.illumination.is_none() {
         file.note_darkness(&file.value.conditions, session);
     }
     Ok(file)
+}
+
+/// Whether there is no light, or none that shines.
+fn is_dark(lights: &[Light]) -> bool {
+    lights.iter().all(|light| light.intensity() <= 0.0)
 }
 
 /// The detector of a file.
@@ -85,7 +91,7 @@ impl<T> SetupFile<T> {
 
     fn note_darkness(&self, conditions: &Conditions, session: Session) {
         let said = format!(
-            "there is no `[[light]]`: only the surroundings shine, evenly (ambient {}), and nothing \
+            "there is no `[[light]]` that shines: only the surroundings shine, evenly (ambient {}), and nothing \
              casts a shadow",
             conditions.ambient
         );

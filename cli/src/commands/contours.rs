@@ -10,7 +10,9 @@ use premio_kernel::unit::Unit;
 use premio_visibility::camera::CameraError;
 use premio_visibility::drawing::sheet::{self, Angle, Paper, Sheet, View};
 use premio_visibility::drawing::{self, Drawing, dxf, svg};
+use premio_visibility::view::ViewError;
 use premio_visibility::{Camera, Contours, contours};
+use std::path::Path;
 
 /// Runs the command.
 pub fn run(options: &ContoursOptions, session: Session) -> Result<(), Failure> {
@@ -28,7 +30,7 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), Failure> {
     let part = input::part(&options.description, session)?;
     let camera = given.camera(&part)?;
     let working = voice.working("finding the contours");
-    let mut seen = seen(&part, &camera)?;
+    let mut seen = seen(&part, &camera, Some(&given))?;
     drop(working);
     match format {
         ContoursFormat::Json => {
@@ -42,10 +44,15 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), Failure> {
     }
 }
 
-fn seen(part: &Part, camera: &Camera) -> Result<Contours, Failure> {
+/// What a camera sees; `given` is how it was given, where that was not by the name of a view.
+fn seen(part: &Part, camera: &Camera, given: Option<&Given<'_>>) -> Result<Contours, Failure> {
     let resolution = input::resolution_of_views(part)?;
-    contours(&part.evaluation.brep, camera, resolution)
-        .map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
+    let failed = |error: ViewError| {
+        let beyond = || Failure::limit(format!("{}: {error}", part.name));
+        let refused = given.and_then(|given| given.refused(&error));
+        refused.unwrap_or_else(beyond)
+    };
+    contours(&part.evaluation.brep, camera, resolution).map_err(failed)
 }
 
 fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
@@ -73,7 +80,7 @@ fn on_sheet(
         ContoursFormat::Dxf => dxf::write_sheet,
     };
     let asked = &options.sheet;
-    let alone = match asked.views.is_empty() {
+    let given = match asked.views.is_empty() {
         true => {
             let chosen = options.camera.choice().map_err(Failure::input)?;
             Some(Given::read(chosen, session)?)
@@ -81,15 +88,18 @@ fn on_sheet(
         false => None,
     };
     let part = input::part(&options.description, session)?;
-    let cameras = match alone {
-        Some(Given::Choice(CameraChoice::Named(name))) => cameras(&part, &[name])?,
+    let cameras = match &given {
+        Some(Given::Choice(CameraChoice::Named(name))) => cameras(&part, &[*name])?,
         Some(given) => vec![(None, given.camera(&part)?)],
         None => cameras(&part, &asked.views)?,
     };
     let bar = session.voice.progress(cameras.len() as u64);
     let mut views = Vec::new();
     for (view, camera) in cameras {
-        views.push((view, drawing(&seen(&part, &camera)?, options)));
+        views.push((
+            view,
+            drawing(&seen(&part, &camera, given.as_ref())?, options),
+        ));
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -108,7 +118,14 @@ fn on_sheet(
 /// A camera, before there is a part.
 enum Given<'a> {
     /// That of a file.
-    Camera(Camera),
+    File {
+        /// The file.
+        path: &'a Path,
+        /// Its text.
+        text: String,
+        /// Its camera.
+        camera: Camera,
+    },
     /// One that depends on the part.
     Choice(CameraChoice<'a>),
 }
@@ -116,21 +133,24 @@ enum Given<'a> {
 impl<'a> Given<'a> {
     fn read(choice: CameraChoice<'a>, session: Session) -> Result<Self, Failure> {
         match choice {
-            CameraChoice::File(path) => input::camera_of_file(path, session).map(Self::Camera),
+            CameraChoice::File(path) => {
+                let (camera, text) = input::camera_of_file(path, session)?;
+                Ok(Self::File { path, text, camera })
+            }
             choice => Ok(Self::Choice(choice)),
         }
     }
 
-    fn camera(self, part: &Part) -> Result<Camera, Failure> {
+    fn camera(&self, part: &Part) -> Result<Camera, Failure> {
         let failed = |e: CameraError| Failure::input(e.to_string());
         match self {
-            Self::Camera(camera) => Ok(camera),
+            Self::File { camera, .. } => Ok(camera.clone()),
             Self::Choice(CameraChoice::File(path)) => {
                 Err(Failure::input(format!("{}: is not read", path.display())))
             }
             Self::Choice(CameraChoice::Named(name)) => {
                 let Extent { middle, size } = Extent::of(part);
-                View::from(name).camera(middle, size).map_err(failed)
+                View::from(*name).camera(middle, size).map_err(failed)
             }
             Self::Choice(CameraChoice::Eye {
                 eye,
@@ -139,13 +159,32 @@ impl<'a> Given<'a> {
                 focal,
             }) => {
                 let middle = Extent::of(part).middle;
-                let (eye, up) = (Point3::from(eye), up.into());
+                let (eye, up) = (Point3::from(*eye), (*up).into());
                 let target = target.map_or(middle, Point3::from);
                 match focal {
-                    Some(focal) => Camera::perspective(eye, target, up, focal).map_err(failed),
+                    Some(focal) => Camera::perspective(eye, target, up, *focal).map_err(failed),
                     None => Camera::orthographic(eye, target, up).map_err(failed),
                 }
             }
+        }
+    }
+
+    /// That the camera is refused where the eye is; none where that is not what is wrong.
+    fn refused(&self, error: &ViewError) -> Option<Failure> {
+        let words = match error {
+            ViewError::EyeInside(_) => "lies inside the material of the part",
+            ViewError::EyeFar { .. } => "is too far from the part for its resolution",
+            ViewError::Limb(_) => return None,
+        };
+        match self {
+            Self::File { path, text, .. } => {
+                let error = CameraError::Value("eye", words);
+                Some(input::refused_camera(path, text, &error))
+            }
+            Self::Choice(CameraChoice::Eye { .. }) => {
+                Some(Failure::input(format!("`--eye` is wrong: {error}")))
+            }
+            Self::Choice(_) => None,
         }
     }
 }

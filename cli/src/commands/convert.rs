@@ -16,6 +16,9 @@ pub fn run(options: &ConvertOptions, session: Session) -> Result<(), Failure> {
     let source = source(&name, options, session)?;
     let failed = |e: &dyn std::fmt::Display| Failure::limit(format!("{name}: {e}"));
     let tree = source.builder.finish(source.part).map_err(|e| failed(&e))?;
+    if tree.is_empty() {
+        voice.note(&name, input::EMPTY);
+    }
     let text = match writer::write(&source.builder, source.part, target) {
         Err(e @ writer::WriteError::ReadOnly) => {
             let file = options.output.display();

@@ -344,8 +344,9 @@ fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<C
         && known.decisions.coincident > 0
         && tree.leaves().count() <= FEW;
     let fine = is_asked.then(|| finely(tree, &EvaluationOptions::default()).ok())??;
-    let least = noise.unwrap_or(0.0) * known.bounds.diagonal();
-    thin::remainder(&fine.measures.mass(&fine.brep), &known.bounds, least)
+    let written = noise.unwrap_or(0.0) * known.bounds.diagonal();
+    let noise = thin::rounding(tree, &known.bounds).max(written);
+    thin::remainder(&fine.measures.mass(&fine.brep), noise)
 }
 
 /// In 237 bits: by the resolution, and where what coincides by it contradicts itself, by the finest,

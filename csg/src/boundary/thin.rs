@@ -23,13 +23,12 @@ pub(super) fn list(tree: &Tree, judge: &Judge) {
     }
 }
 
-/// The close call that left nothing of a part: by finer numbers it is a solid, thicker than `least`
-/// and than coordinates are rounded.
-pub(super) fn remainder(fine: &Mass, bounds: &Box3, least: f64) -> Option<CloseCall> {
-    let rounding = ROUNDINGS * f64::EPSILON * bounds.diagonal();
+/// The close call that left nothing of a part: by finer numbers it is a solid, thicker than the `noise`
+/// of the description.
+pub(super) fn remainder(fine: &Mass, noise: f64) -> Option<CloseCall> {
     // A plate has two sides.
     let thickness = 2.0 * fine.volume / fine.area;
-    thickness.is_beyond(rounding.max(least)).then(|| CloseCall {
+    thickness.is_beyond(noise).then(|| CloseCall {
         question: "opposite faces of the part, of which nothing is left",
         place: fine.centroid.into(),
         distance: thickness,
@@ -37,8 +36,20 @@ pub(super) fn remainder(fine: &Mass, bounds: &Box3, least: f64) -> Option<CloseC
     })
 }
 
-/// So many roundings are no distance that anybody wrote.
-const ROUNDINGS: f64 = 8.0;
+/// How far faces may be off that are meant to coincide: turns by other than quarters are rounded to the
+/// digits of a double.
+pub(super) fn rounding(tree: &Tree, bounds: &Box3) -> f64 {
+    let is_exact =
+        |entry: &Rational| entry.is_zero() || entry.is_one() || (-entry.clone()).is_one();
+    let is_quarter = |placed: &Placed| {
+        let matrix = placed.motion.rotation_matrix();
+        matrix.iter().flatten().all(is_exact)
+    };
+    match tree.leaves().all(|(_, placed)| is_quarter(placed)) {
+        true => 0.0,
+        false => f64::EPSILON * bounds.diagonal(),
+    }
+}
 
 /// The least distance between opposite faces of a primitive, or across it.
 fn thickness(primitive: &Primitive) -> f64 {

@@ -15,7 +15,7 @@ const DIRECTIONS: usize = 96;
 /// The least brightness of a highlight, in grey levels: what a threshold may tell from nothing.
 const FAINT: f64 = 4.0;
 
-/// So far from its brightest point, in pixels, an outline is not looked for: beyond the image regions
+/// So far from its brightest point, in pixels, an outline is not looked for: outside the image regions
 /// have no end.
 const FURTHEST: f64 = 1_048_576.0;
 
@@ -55,6 +55,7 @@ pub fn add_highlights(
             seen: only,
             face,
             light,
+            resolution: conditions.sensor.resolution,
         };
         let source = Source::Highlight {
             light: light as u32,
@@ -121,9 +122,20 @@ struct Glow<'s, 'p> {
     seen: Seen,
     face: FaceId,
     light: usize,
+    /// That of the image.
+    resolution: [usize; 2],
 }
 
 impl Glow<'_, '_> {
+    /// Whether a point is in the image or no farther from it than the image is wide and high: outside the
+    /// image regions have no end.
+    fn is_near(&self, at: [f64; 2]) -> bool {
+        at.iter().zip(self.resolution).all(|(x, n)| {
+            let n = n as f64;
+            (-n..=2.0 * n).contains(x)
+        })
+    }
+
     fn inside(&self, at: [f64; 2]) -> bool {
         self.regions.at(at) == self.region
     }
@@ -142,7 +154,10 @@ impl Glow<'_, '_> {
             let [x, y] = best.at;
             let around = [[x + step, y], [x - step, y], [x, y + step], [x, y - step]];
             let mut moved = false;
-            for at in around.into_iter().filter(|at| self.inside(*at)) {
+            for at in around
+                .into_iter()
+                .filter(|at| self.is_near(*at) && self.inside(*at))
+            {
                 let mut hint = self.shading.distance(&self.seen.point);
                 let mirrored = self.shading.mirrored(at, self.face, self.light, &mut hint);
                 if let Some(mirrored) = mirrored.filter(|m| *m > best.mirrored) {

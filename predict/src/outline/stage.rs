@@ -40,11 +40,8 @@ impl StageError {
     pub fn setup_error(&self) -> Option<SetupError> {
         match self {
             Self::Setup(error) => Some(error.clone()),
-            Self::View(error) => Some(SetupError::value("camera", format!("has no view: {error}"))),
-            Self::Light(i, error) => {
-                let reason = format!("has no view of the part, as an eye: {error}");
-                Some(SetupError::value(format!("light[{i}]"), reason))
-            }
+            Self::View(error) => Some(no_view("camera", "eye", error)),
+            Self::Light(i, error) => Some(no_view(&format!("light[{i}]"), "position", error)),
             Self::OutOfSight(why) => {
                 let reason = format!("sees nothing of the part: {why}");
                 Some(SetupError::value("camera", reason))
@@ -85,24 +82,22 @@ pub struct Eyes {
 impl Eyes {
     /// The eyes of a setup about a part.
     pub fn new(subject: &Subject<'_>, setup: &Setup) -> Result<Self, StageError> {
+        let eye = setup.camera.eye.map(Point3::from);
+        if eye.is_some_and(|eye| subject.contains(&eye)) {
+            return Err(SetupError::value("camera.eye", INSIDE).into());
+        }
         let matrices = setup
             .camera
             .matrices(&setup.conditions.sensor, &subject.centre)?;
         let centre = -(matrices.r.transpose() * matrices.t);
-        let eye = setup.camera.eye.map_or(centre.into(), Point3::from);
-        if subject.contains(&eye) {
-            let key = if setup.camera.eye.is_some() {
-                "eye"
-            } else {
-                "t"
-            };
-            return Err(inside(format!("camera.{key}")));
+        if eye.is_none() && subject.contains(&centre.into()) {
+            return Err(SetupError::value("camera.t", INSIDE).into());
         }
         let mut lights = Vec::with_capacity(setup.lights.len());
         for (i, light) in setup.lights.iter().enumerate() {
             let source = light::Source::new(light, &subject.centre);
             if matches!(source.place(), Place::Near(p) if subject.contains(&p)) {
-                return Err(inside(format!("light[{i}].position")));
+                return Err(SetupError::value(format!("light[{i}].position"), INSIDE).into());
             }
             let cameras = light_cameras(&source, subject).map_err(|error| {
                 SetupError::value(format!("light[{i}].position"), error.to_string())
@@ -118,9 +113,17 @@ impl Eyes {
     }
 }
 
-fn inside(key: String) -> StageError {
-    let reason = "is inside the part: expected a point outside";
-    SetupError::value(key, reason).into()
+/// What is wrong with an eye or a light in the part.
+const INSIDE: &str = "is inside the part: expected a point outside";
+
+/// That a camera or a light sees nothing of the part, about its place where that is the reason.
+fn no_view(table: &str, place: &str, error: &ViewError) -> SetupError {
+    let key = format!("{table}.{place}");
+    match error {
+        ViewError::EyeInside(_) => SetupError::value(key, INSIDE),
+        ViewError::EyeFar { .. } => SetupError::value(key, format!("is too far: {error}")),
+        ViewError::Limb(_) => SetupError::value(table, format!("has no view of the part: {error}")),
+    }
 }
 
 fn light_cameras(

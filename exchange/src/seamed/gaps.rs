@@ -142,9 +142,13 @@ impl Sampled {
     }
 }
 
-/// The axis of a sphere's parameters for a face: one that keeps well away from the edges, and to
-/// which most of them are parallel circles; its own, if no other is better.
-pub(super) fn axis(sphere: &Sphere, samples: &Samples, circles: &[Vector3<f64>]) -> Vector3<f64> {
+/// Axes of a sphere's parameters for a face, the best first: those that keep well away from the edges, and
+/// of them one to which most edges are parallel circles; its own, if no other is better.
+pub(super) fn axes(
+    sphere: &Sphere,
+    samples: &Samples,
+    circles: &[Vector3<f64>],
+) -> Vec<Vector3<f64>> {
     let arm = |p: &Point3<f64>| (p - sphere.frame.origin).normalize();
     let arms: Vec<Vector3<f64>> = samples.points().map(arm).collect();
     let away = |z: &Vector3<f64>| {
@@ -165,18 +169,17 @@ pub(super) fn axis(sphere: &Sphere, samples: &Samples, circles: &[Vector3<f64>])
             best
         }
     });
-    if let Some(z) = best {
-        return *z;
-    }
     let spread = (0..SPREAD).map(|k| {
         let z = (f64::from(k) + 0.5) / f64::from(SPREAD);
         let (sin, cos) = (GOLDEN * f64::from(k)).sin_cos();
         let r = (1.0 - z * z).sqrt();
         Vector3::new(r * cos, r * sin, z)
     });
-    let all = [f.x, f.y].into_iter().chain(spread);
-    all.max_by(|a, b| away(a).total_cmp(&away(b)))
-        .unwrap_or(f.z)
+    // Later ones first, which are taken where two are as far away.
+    let mut all: Vec<Vector3<f64>> = [f.x, f.y].into_iter().chain(spread).collect();
+    all.reverse();
+    all.sort_by(|a, b| away(b).total_cmp(&away(a)));
+    best.copied().into_iter().chain(all).collect()
 }
 
 /// Directions are the same if their cosine is less by this than one.

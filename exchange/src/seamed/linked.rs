@@ -445,7 +445,8 @@ fn nested(outlines: Vec<Outline>) -> Option<Vec<Vec<Outline>>> {
         outlines.into_iter().partition(|o| o.area > 0.0);
     let mut pieces: Vec<Vec<Outline>> = outer.into_iter().map(|o| vec![o]).collect();
     for hole in holes {
-        let p = *hole.points.first()?;
+        // In the middle of an edge: in a vertex it may touch another loop.
+        let p = *hole.points.get(STEPS as usize / 2)?;
         let around = pieces.iter_mut().filter(|piece| piece[0].encloses(&p));
         let smallest = around.min_by(|a, b| a[0].area.total_cmp(&b[0].area));
         smallest?.push(hole);

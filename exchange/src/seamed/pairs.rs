@@ -2,6 +2,7 @@
 
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
+use premio_kernel::geometry::surface::Surface;
 use std::collections::{HashMap, HashSet};
 
 /// The edges and vertices of a boundary without seams, each edge between two sides of faces.
@@ -36,7 +37,11 @@ impl Pairs {
         }
         for face in topology.face_ids() {
             let rings = pairs.rings_of(brep, face, &partner);
-            pairs.rings.push(rings);
+            pairs.rings.push(match brep.surface(face) {
+                // Loops around a torus close where the face touches itself, and not before.
+                Surface::Torus(_) => rings,
+                _ => rings.into_iter().flat_map(|r| simple(brep, r)).collect(),
+            });
         }
         pairs.ends = vec![None; pairs.edges.len()];
         pairs.find_fans(brep, &partner);
@@ -90,14 +95,13 @@ impl Pairs {
     /// An edge of a loop that encloses nothing: it runs along the same edges there and back, with only
     /// the face's outside between its two sides.
     pub fn crack(&self, brep: &Brep) -> Option<EdgeId> {
-        let edge = |c: &CoedgeId| brep.topology.coedge(*c).edge;
-        let is_twice = |ring: &[CoedgeId], c: &CoedgeId| {
-            let mut others = ring.iter().filter(|other| *other != c);
-            others.any(|other| edge(other) == edge(c))
-        };
-        let rings = self.rings.iter().flatten();
-        let mut cracks = rings.filter(|ring| ring.iter().all(|c| is_twice(ring, c)));
-        cracks.find_map(|ring| ring.first()).map(edge)
+        let mut cracks = self
+            .rings
+            .iter()
+            .flatten()
+            .filter(|ring| is_crack(brep, ring));
+        let first = cracks.find_map(|ring| ring.first());
+        first.map(|c| brep.topology.coedge(*c).edge)
     }
 
     /// Gives every edge its vertices: around a fan each edge's other side goes on to the next.
@@ -134,4 +138,38 @@ impl Pairs {
             }
         }
     }
+}
+
+/// Whether a loop runs along all of its edges twice.
+fn is_crack(brep: &Brep, ring: &[CoedgeId]) -> bool {
+    let edge = |c: &CoedgeId| brep.topology.coedge(*c).edge;
+    ring.iter().all(|c| {
+        let mut others = ring.iter().filter(|other| *other != c);
+        others.any(|other| edge(other) == edge(c))
+    })
+}
+
+/// A loop cut where it passes a vertex twice, so that the face touches itself there: other kernels take
+/// simple loops only.
+fn simple(brep: &Brep, mut ring: Vec<CoedgeId>) -> Vec<Vec<CoedgeId>> {
+    let mut loops = Vec::new();
+    let mut places: HashMap<VertexId, usize> = HashMap::new();
+    let mut k = 0;
+    while k < ring.len() {
+        let Some([vertex, _]) = brep.topology.run(ring[k]) else {
+            return vec![ring];
+        };
+        let met = places.insert(vertex, k);
+        let rest = |first: usize| [&ring[..first], &ring[k..]].concat();
+        match met.filter(|&f| !is_crack(brep, &ring[f..k]) && !is_crack(brep, &rest(f))) {
+            Some(first) => {
+                loops.push(ring.drain(first..k).collect());
+                places.retain(|_, place| *place < first);
+                k = first;
+            }
+            None => k += 1,
+        }
+    }
+    loops.push(ring);
+    loops
 }

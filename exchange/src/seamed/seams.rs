@@ -6,7 +6,7 @@
 //! seams of a torus cross in a vertex of their own.
 
 use super::SeamError;
-use super::gaps::{Samples, axis};
+use super::gaps::{Samples, axes};
 use crate::parameters::{Window, turned, with_axis};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
@@ -117,10 +117,22 @@ impl Cut {
 
 impl Faced<'_> {
     fn cut(&self) -> Option<Cut> {
-        let surface = match self.brep.surface(self.face) {
-            Surface::Sphere(s) => with_axis(s, axis(s, &self.samples, &self.circles())),
-            other => *other,
+        let Surface::Sphere(sphere) = self.brep.surface(self.face) else {
+            return self.cut_of(*self.brep.surface(self.face));
         };
+        let axes = axes(sphere, &self.samples, &self.circles());
+        let of_axis = |z: Vector3<f64>| self.cut_of(with_axis(sphere, z));
+        let mut cuts = axes.into_iter().take(AXES).map(of_axis);
+        let first = cuts.next()?;
+        // Where seams run from both poles to one loop, readers take them for none.
+        match first.as_ref().is_some_and(|cut| cut.seams.len() < 2) {
+            true => first,
+            false => least(std::iter::once(first).chain(cuts)),
+        }
+    }
+
+    /// The cut of a face whose parameters are those of a surface.
+    fn cut_of(&self, surface: Surface) -> Option<Cut> {
         let starts = [0.0; 2];
         let origin = surface.frame().origin;
         let away = self.samples.points().map(|p| (p - origin).norm());
@@ -457,6 +469,8 @@ impl Faced<'_> {
 
 /// From how many places a closed seam is tried.
 const STARTS: usize = 4;
+/// How many axes are tried for a sphere that is cut in pieces by the first.
+const AXES: usize = 16;
 
 fn cuts_something(cut: &Option<Cut>) -> bool {
     cut.as_ref().is_some_and(|cut| !cut.seams.is_empty())

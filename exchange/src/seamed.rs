@@ -10,6 +10,7 @@ mod gaps;
 mod linked;
 mod pairs;
 mod seams;
+pub(crate) mod short;
 
 use crate::parameters::Window;
 use nalgebra::Point3;

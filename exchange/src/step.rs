@@ -85,8 +85,12 @@ pub fn write(brep: &Brep, options: &Options) -> Result<String, StepError> {
     if brep.topology.solids.is_empty() {
         return Err(StepError::Empty);
     }
-    thin::check(brep, options.unit)?;
-    let seamed = Seamed::of(brep, options.resolution)?;
+    let least = thin::apart(options.unit);
+    thin::check_shells(brep, least)?;
+    let mut seamed = Seamed::of(brep, options.resolution)?;
+    seamed.draw_together(least);
+    seamed.close_narrow(least);
+    thin::check(brep, &seamed, least)?;
     let mut exchange = Exchange::default();
     let context = product::context(&mut exchange, options);
     let mut shape = shape::Shape::new(&mut exchange, &seamed, options.accuracy / NEARER);

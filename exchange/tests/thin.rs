@@ -35,18 +35,41 @@ fn assert_refused(text: &str, thin: Thin, thickness: f64) {
     assert!(written(text, Unit::Metre).is_ok());
 }
 
-/// A step of 5e-8.
-#[test]
-fn a_short_edge_is_refused() {
-    let text = "PART = BLO(X=4, Y=4, Z=2) UN BLO(X=2, Y=4, Z=2.00000005)";
-    assert_refused(text, Thin::Edge, 5e-8);
+/// The faces of the same part without what is thin, which the file has.
+#[track_caller]
+fn assert_closed(text: &str, faces: usize) {
+    let count = |unit| {
+        written(text, unit)
+            .unwrap()
+            .matches("=ADVANCED_FACE(")
+            .count()
+    };
+    assert_eq!(count(Unit::Millimetre), faces);
+    assert!(count(Unit::Metre) > faces);
 }
 
-/// A step all around, which has no short edge.
+/// A step of 5e-8 along one side of a block.
 #[test]
-fn a_narrow_face_is_refused() {
-    let text = "PART = CYL(R=2, H=2) UN CYL(R=1, H=2.00000005)";
-    assert_refused(text, Thin::Face, 5e-8);
+fn a_narrow_step_is_closed() {
+    assert_closed(
+        "PART = BLO(X=4, Y=4, Z=2) UN BLO(X=2, Y=4, Z=2.00000005)",
+        7,
+    );
+}
+
+/// A step all around.
+#[test]
+fn a_narrow_ring_is_closed() {
+    assert_closed("PART = CYL(R=2, H=2) UN CYL(R=1, H=2.00000005)", 4);
+}
+
+/// The end of a slot is 1e-4 beyond the middle of the bore that rounds it: it is 2.7e-9 wide.
+#[test]
+fn a_rounded_slot_is_closed() {
+    let text = "PART = BLO(X=80, Y=14, Z=9) AT (MOVY=-7) \
+        DIF BLO(X=20.2687, Y=3.6625, Z=4) AT (MOVX=30.4032, MOVY=-1.8312, MOVZ=6) \
+        DIF CYL(R=1.8312, H=4) AT (MOVX=50.6718, MOVZ=6)";
+    assert!(written(text, Unit::Millimetre).is_ok());
 }
 
 /// Half the area of a sphere on either side, and its section times the way between.

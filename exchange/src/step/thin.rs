@@ -1,19 +1,17 @@
 //! Edges, faces and walls that are too thin for other kernels, whose vertices and edges have a width.
 
 use super::StepError;
+use crate::seamed::{Edge, Seamed, short};
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::mass::Measures;
 use premio_kernel::brep::topology::ShellId;
-use premio_kernel::geometry::curve::Curve;
 use premio_kernel::unit::Unit;
 use std::fmt;
 
 /// What is no farther apart other kernels take for one, in millimetres (Open CASCADE's
 /// `Precision::Confusion`).
 const APART: f64 = 1.0 / 10_000_000.0;
-/// An edge is as long as a polyline of so many sides, for the purpose.
-const SIDES: u32 = 16;
 
 /// A part of a boundary that is thin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,39 +34,49 @@ impl fmt::Display for Thin {
     }
 }
 
-/// That nothing in a boundary is as thin as other kernels take points to be wide.
-pub(super) fn check(brep: &Brep, unit: Unit) -> Result<(), StepError> {
-    let least = APART / unit.millimetres();
-    let thin = |what: Thin, place: Point3<f64>, size: f64| StepError::Thin {
+/// What is no farther apart other kernels take for one, in the part's unit.
+pub(super) fn apart(unit: Unit) -> f64 {
+    APART / unit.millimetres()
+}
+
+/// That every edge is longer than that, and every face wider.
+pub(super) fn check(brep: &Brep, seamed: &Seamed<'_>, least: f64) -> Result<(), StepError> {
+    let areas = Measures::of(brep).areas(brep);
+    let length = |edge: &Edge<'_>| short::length(&edge.curve, edge.range);
+    let lengths: Vec<f64> = seamed.edges.iter().map(length).collect();
+    let start = |edge: usize| seamed.points[seamed.edges[edge].ends[0]];
+    for face in &seamed.faces {
+        let edges = || face.loops.iter().flatten().map(|half| half.0);
+        if let Some(edge) = edges().find(|&edge| lengths[edge] <= least) {
+            return Err(thin(Thin::Edge, start(edge), lengths[edge], least));
+        }
+        let Some(first) = edges().next() else {
+            continue;
+        };
+        let perimeter: f64 = edges().map(|edge| lengths[edge]).sum();
+        // A strip has two long sides.
+        let width = 2.0 * areas[face.source.index()].area / perimeter;
+        if width <= least {
+            return Err(thin(Thin::Face, start(first), width, least));
+        }
+    }
+    Ok(())
+}
+
+fn thin(what: Thin, place: Point3<f64>, size: f64, least: f64) -> StepError {
+    StepError::Thin {
         what,
         place: place.into(),
         size,
         least,
-    };
-    let topology = &brep.topology;
-    let start = |edge| brep.curve(edge).point(brep.range(edge)[0]);
-    let lengths: Vec<f64> = topology
-        .edge_ids()
-        .map(|e| length(brep.curve(e), brep.range(e)))
-        .collect();
-    for (edge, &length) in topology.edge_ids().zip(&lengths) {
-        if length <= least {
-            return Err(thin(Thin::Edge, start(edge), length));
-        }
     }
+}
+
+/// That no shell has its two sides as near.
+pub(super) fn check_shells(brep: &Brep, least: f64) -> Result<(), StepError> {
+    let topology = &brep.topology;
     let measures = Measures::of(brep);
     let areas = measures.areas(brep);
-    for (face, covered) in topology.face_ids().zip(&areas) {
-        let Some(first) = topology.edges_of(face).next() else {
-            continue;
-        };
-        let perimeter: f64 = topology.edges_of(face).map(|e| lengths[e.index()]).sum();
-        // A strip has two long sides.
-        let width = 2.0 * covered.area / perimeter;
-        if width <= least {
-            return Err(thin(Thin::Face, start(first), width));
-        }
-    }
     for (shell, id) in topology.shells.iter().zip(0..) {
         let area: f64 = shell.faces.iter().map(|f| areas[f.index()].area).sum();
         // A plate has two large sides.
@@ -79,14 +87,9 @@ pub(super) fn check(brep: &Brep, unit: Unit) -> Result<(), StepError> {
             .flat_map(|&f| topology.edges_of(f))
             .next();
         if let (Some(edge), true) = (first, thickness <= least) {
-            return Err(thin(Thin::Shell, start(edge), thickness));
+            let place = brep.curve(edge).point(brep.range(edge)[0]);
+            return Err(thin(Thin::Shell, place, thickness, least));
         }
     }
     Ok(())
-}
-
-/// How long an edge is.
-fn length(curve: &Curve, [lo, hi]: [f64; 2]) -> f64 {
-    let at = |k: u32| curve.point(lo + (hi - lo) * (f64::from(k) / f64::from(SIDES)));
-    (0..SIDES).map(|k| (at(k + 1) - at(k)).norm()).sum()
 }

@@ -4,7 +4,8 @@
 //! An edge of four faces or more is taken apart into pairs of faces that enclose material between
 //! them, a vertex into its fans (`pairs`); so the solids that touch there are as many as before. A
 //! face that closes around its surface is cut along a ruling, a meridian or a circle of a torus, its
-//! seam, which it has on both sides (`seams`, `linked`).
+//! seam, which it has on both sides (`seams`, `linked`). What is smaller than the points of other
+//! kernels are apart is closed (`short`).
 
 mod gaps;
 mod linked;

@@ -1,4 +1,6 @@
-"""What is exported and read back: every named case, and the corpus if PREMIO_CORPUS names its folder."""
+"""What is exported and read back: every named case, parts whose files were wrong once (`found`), and the
+corpus if PREMIO_CORPUS names its folder.
+"""
 
 import json
 import os
@@ -6,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 CASES = Path(__file__).parent.parent / "cases"
+FOUND = Path(__file__).parent / "found"
 # The program's status for what is refused, and for what is no description.
 REFUSED, UNREAD = 3, 2
 
@@ -14,6 +17,8 @@ def descriptions(folder):
     """Every description with its name; those of the corpus are trees in a table, and files."""
     for case in sorted(CASES.iterdir()):
         yield case.name, str(case / "model.padl")
+    for path in sorted(FOUND.glob("*.padl")):
+        yield path.stem, str(path)
     corpus = os.environ.get("PREMIO_CORPUS")
     if not corpus:
         print("PREMIO_CORPUS is not set: the corpus is passed over")

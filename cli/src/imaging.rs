@@ -1,9 +1,16 @@
 //! Grey images in files, and drawings on them.
 
+mod jpeg;
+mod netpbm;
+mod png;
+
 use crate::diagnostics::Failure;
 use crate::session::Session;
 use font8x8::legacy::BASIC_LEGACY;
-use image::{DynamicImage, ImageFormat, ImageReader, Rgb, RgbImage};
+use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Rgb, RgbImage};
+use jpeg::JpegError;
+use netpbm::NetpbmError;
+use png::PngError;
 use premio_matching::finding::Match;
 use premio_matching::picture::Picture;
 use premio_predict::feature::ink::bresenham;
@@ -13,40 +20,15 @@ use premio_predict::prediction::Prediction;
 use premio_predict::processing::Grey;
 use std::io::Cursor;
 use std::path::Path;
-use zune_core::bytestream::ZCursor;
-use zune_core::options::DecoderOptions;
-use zune_jpeg::JpegDecoder;
 
 /// The grey image of a file: PNG, PGM or JPEG; a picture in colours by its luma.
 ///
 /// # Errors
 /// The file is no picture, or not all of one, or it has more pixels than the limit, or none.
 pub fn read(path: &Path, session: Session) -> Result<Grey, Failure> {
-    let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: {e}", path.display()));
     let bytes = session.limits.read(path)?;
-    let opened = || ImageReader::new(Cursor::new(&bytes)).with_guessed_format();
-    let reader = opened().map_err(|e| failed(&e))?;
-    let format = reader.format();
-    let (width, height) = reader.into_dimensions().map_err(|e| failed(&e))?;
-    let (pixels, most) = (u64::from(width) * u64::from(height), session.limits.pixels);
-    if pixels == 0 {
-        let found = format!("found {width} x {height} pixels, expected at least one");
-        return Err(failed(&found));
-    }
-    if pixels > most {
-        let found = format!("found {width} x {height}, {pixels} pixels, expected at most {most}");
-        return Err(failed(&format!("{found}: --max-pixels sets another limit")));
-    }
-    if format.is_some_and(|format| !is_whole(&bytes, format)) {
-        return Err(failed(
-            &"found a part of a picture: the file ends before it",
-        ));
-    }
-    let mut reader = opened().map_err(|e| failed(&e))?;
-    let mut memory = image::Limits::default();
-    memory.max_alloc = Some(LARGEST_PIXEL * pixels + SLACK);
-    reader.limits(memory);
-    let image = reader.decode().map_err(|e| failed(&e))?;
+    let image = decode(&bytes, session.limits.pixels)
+        .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let levels = match image {
         // Levels of eight bits, whatever there are.
@@ -63,77 +45,71 @@ pub fn read(path: &Path, session: Session) -> Result<Grey, Failure> {
     })
 }
 
+/// Why a picture is not read.
+#[derive(Debug, thiserror::Error)]
+enum PictureError {
+    #[error("found {width} x {height} pixels, expected at least one")]
+    Empty { width: u32, height: u32 },
+    #[error(
+        "found {width} x {height}, {} pixels, expected at most {limit}: --max-pixels sets another limit",
+        u64::from(*width) * u64::from(*height)
+    )]
+    Large { width: u32, height: u32, limit: u64 },
+    #[error("{0}")]
+    Png(#[from] PngError),
+    #[error("{0}")]
+    Jpeg(#[from] JpegError),
+    #[error("{0}")]
+    Netpbm(#[from] NetpbmError),
+    #[error("{0}")]
+    Read(#[from] std::io::Error),
+    #[error("{0}")]
+    Decoder(#[from] ImageError),
+}
+
 /// A pixel has at most so many bytes as it is decoded, and a picture so many besides.
 const LARGEST_PIXEL: u64 = 16;
 const SLACK: u64 = 1 << 24;
 
-/// Whether a picture's file has its end, which decoders do not ask for.
-fn is_whole(bytes: &[u8], format: ImageFormat) -> bool {
+/// The picture of a file's bytes, of which nothing is missing or damaged, as far as the format tells.
+fn decode(bytes: &[u8], limit: u64) -> Result<DynamicImage, PictureError> {
+    let opened = || ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+    let reader = opened()?;
+    let format = reader.format();
+    let png_size = match format {
+        Some(ImageFormat::Png) => {
+            png::check_chunks(bytes)?;
+            png::size(bytes)
+        }
+        _ => None,
+    };
+    let (width, height) = match png_size {
+        Some([width, height]) => (width, height),
+        None => reader.into_dimensions()?,
+    };
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels == 0 {
+        return Err(PictureError::Empty { width, height });
+    }
+    if pixels > limit {
+        return Err(PictureError::Large {
+            width,
+            height,
+            limit,
+        });
+    }
+    let memory = LARGEST_PIXEL * pixels + SLACK;
     match format {
-        ImageFormat::Jpeg => jpeg_has_all(bytes),
-        ImageFormat::Png => png_has_end(bytes),
-        // What is shorter is refused by the decoder.
-        _ => true,
+        Some(ImageFormat::Png) => return Ok(png::decode(bytes, memory)?),
+        Some(ImageFormat::Jpeg) => jpeg::check(bytes)?,
+        Some(ImageFormat::Pnm) => netpbm::check_samples(bytes)?,
+        _ => (),
     }
-}
-
-/// Whether the chunks of a PNG go on to its end.
-fn png_has_end(bytes: &[u8]) -> bool {
-    const SIGNATURE: usize = 8;
-    const AROUND: usize = 12;
-    let mut at = SIGNATURE;
-    while let Some([a, b, c, d, kind @ ..]) = bytes.get(at..at + SIGNATURE) {
-        let length = u32::from_be_bytes([*a, *b, *c, *d]) as usize;
-        at += length + AROUND;
-        if kind == b"IEND" {
-            return at <= bytes.len();
-        }
-    }
-    false
-}
-
-/// Whether the segments and scans of a JPEG go on to its end (ITU T.81, annex B), and a strict decoder
-/// finds all of its data.
-fn jpeg_has_all(bytes: &[u8]) -> bool {
-    let strict = DecoderOptions::default()
-        .set_strict_mode(true)
-        .set_max_width(usize::from(u16::MAX))
-        .set_max_height(usize::from(u16::MAX));
-    let decoded = JpegDecoder::new_with_options(ZCursor::new(bytes), strict).decode();
-    // Bytes between segments are of no harm.
-    let is_read = decoded.map_or_else(|e| e.to_string().contains("Extra bytes"), |_| true);
-    jpeg_has_end(bytes) && is_read
-}
-
-fn jpeg_has_end(bytes: &[u8]) -> bool {
-    const END: u8 = 0xd9;
-    const SCAN: u8 = 0xda;
-    let mut at = 0;
-    loop {
-        match bytes.get(at..at + 2) {
-            Some([0xff, END]) => return true,
-            // Filling, and what stands alone: the start, restarts, and data that are no marker.
-            Some([0xff, 0xff]) => at += 1,
-            Some([0xff, 0x00 | 0x01 | 0xd0..=0xd8]) => at += 2,
-            Some([0xff, kind]) => {
-                let Some([high, low]) = bytes.get(at + 2..at + 4) else {
-                    return false;
-                };
-                at += 2 + usize::from(u16::from_be_bytes([*high, *low]));
-                if *kind == SCAN {
-                    let is_marker = |pair: &[u8]| pair[0] == 0xff && pair[1] != 0;
-                    let rest = bytes.get(at..).unwrap_or_default();
-                    let Some(data) = rest.windows(2).position(is_marker) else {
-                        return false;
-                    };
-                    at += data;
-                }
-            }
-            // After a restart the scan goes on.
-            Some(_) => at += 1,
-            None => return false,
-        }
-    }
+    let mut reader = opened()?;
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(memory);
+    reader.limits(limits);
+    Ok(reader.decode()?)
 }
 
 /// The bytes of a grey image of so many levels: PNG, or PGM, by the file's ending.
@@ -302,6 +278,37 @@ fn text(picture: &mut RgbImage, [left, top]: [i32; 2], height: usize, words: &st
                 let place = [left + 8 * k as i32 + column, top + row as i32];
                 put(picture, place, height, overlay::MISSING);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every kind of samples is read as the decoder of all formats reads it.
+    #[test]
+    fn pictures_are_read_as_the_decoder_of_all_formats_reads_them() {
+        let grey =
+            image::GrayImage::from_fn(31, 17, |x, y| image::Luma([((7 * x) ^ (9 * y)) as u8]));
+        let grey = DynamicImage::ImageLuma8(grey);
+        let rgb = RgbImage::from_fn(31, 17, |x, y| Rgb([x as u8, y as u8, (x * y) as u8]));
+        let rgb = DynamicImage::ImageRgb8(rgb);
+        for image in [
+            grey.clone(),
+            grey.to_luma16().into(),
+            grey.to_luma_alpha8().into(),
+            rgb.to_luma_alpha16().into(),
+            rgb.to_rgb16().into(),
+            rgb.to_rgba8().into(),
+            rgb.to_rgba16().into(),
+            rgb,
+        ] {
+            let mut bytes = Cursor::new(Vec::new());
+            image.write_to(&mut bytes, ImageFormat::Png).unwrap();
+            let bytes = bytes.into_inner();
+            assert_eq!(decode(&bytes, 1000).unwrap(), image);
+            assert_eq!(image::load_from_memory(&bytes).unwrap(), image);
         }
     }
 }

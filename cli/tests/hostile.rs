@@ -4,63 +4,10 @@
 
 mod common;
 
-use common::{SETUP, assert_says, folder, premio, said};
+use common::{SETUP, SETUPS, assert_says, folder, premio, prepared, refused, said};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use tempfile::TempDir;
-
-const SETUPS: &str = "[viewing]
-count = 4
-radius = 25
-[illumination]
-count = 2
-radius = 40
-[sensor]
-resolution = [160, 120]
-";
-
-const CAMERA: &str = r#"{"K": [[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]]}"#;
-
-/// A folder with a part, its setups, its model, a camera and a picture.
-fn prepared() -> TempDir {
-    let folder = folder(&[
-        ("setup.toml", SETUP),
-        ("setups.toml", SETUPS),
-        ("camera.json", CAMERA),
-    ]);
-    for words in [
-        "model part.padl --setups setups.toml -o part.model",
-        "render part.padl --setup setup.toml -o photo.png",
-    ] {
-        let output = premio(folder.path(), words);
-        assert!(output.status.success(), "{output:?}");
-    }
-    folder
-}
-
-/// What is said of words that are wrong, with all files as they were.
-#[track_caller]
-fn refused(folder: &Path, words: &str) -> String {
-    let files = || {
-        let all = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().path());
-        let mut all: Vec<_> = all.map(|path| (fs::read(&path).ok(), path)).collect();
-        all.sort();
-        all
-    };
-    let before = files();
-    let output = premio(folder, words);
-    let text = said(&output);
-    assert_eq!(output.status.code(), Some(2), "{words}: {text}");
-    assert!(!text.contains("panicked"), "{words}: {text}");
-    assert!(
-        before == files(),
-        "{words}: a file is changed, lost or left"
-    );
-    text
-}
 
 #[test]
 fn an_output_is_no_input() {

@@ -25,6 +25,20 @@ resolution = [160, 120]
 threshold = 10
 ";
 
+/// Setups for it.
+pub const SETUPS: &str = "[viewing]
+count = 4
+radius = 25
+[illumination]
+count = 2
+radius = 40
+[sensor]
+resolution = [160, 120]
+";
+
+/// A camera for its pictures.
+pub const CAMERA: &str = r#"{"K": [[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]]}"#;
+
 /// The program with these words behind its name, in a folder.
 pub fn command(folder: &Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
@@ -57,6 +71,46 @@ pub fn folder(more: &[(&str, &str)]) -> TempDir {
         fs::write(folder.path().join(name), text).unwrap();
     }
     folder
+}
+
+/// A folder with a part, its setups, its model, a camera and a picture.
+pub fn prepared() -> TempDir {
+    let folder = folder(&[
+        ("setup.toml", SETUP),
+        ("setups.toml", SETUPS),
+        ("camera.json", CAMERA),
+    ]);
+    for words in [
+        "model part.padl --setups setups.toml -o part.model",
+        "render part.padl --setup setup.toml -o photo.png",
+    ] {
+        let output = premio(folder.path(), words);
+        assert!(output.status.success(), "{output:?}");
+    }
+    folder
+}
+
+/// What is said of words that are wrong, with all files as they were.
+#[track_caller]
+pub fn refused(folder: &Path, words: &str) -> String {
+    let files = || {
+        let all = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path());
+        let mut all: Vec<_> = all.map(|path| (fs::read(&path).ok(), path)).collect();
+        all.sort();
+        all
+    };
+    let before = files();
+    let output = premio(folder, words);
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{words}: {text}");
+    assert!(!text.contains("panicked"), "{words}: {text}");
+    assert!(
+        before == files(),
+        "{words}: a file is changed, lost or left"
+    );
+    text
 }
 
 /// The published schema of a format, held against what the program tells of it.

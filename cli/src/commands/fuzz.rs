@@ -13,6 +13,7 @@ use crate::fuzz::worker::{Worker, serve};
 use crate::fuzz::write::Format;
 use crate::interrupt::{stop, threads};
 use crate::output;
+use crate::session::Session;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -23,7 +24,8 @@ impl From<Error> for Failure {
 }
 
 /// Runs the command.
-pub fn run(options: &FuzzOptions, voice: Voice) -> Result<(), Failure> {
+pub fn run(options: &FuzzOptions, session: Session) -> Result<(), Failure> {
+    let voice = session.voice;
     let limit = Duration::from_secs_f64(options.limit);
     if let Some(terms) = &options.worker {
         return worker(terms, limit);
@@ -34,7 +36,7 @@ pub fn run(options: &FuzzOptions, voice: Voice) -> Result<(), Failure> {
         None => None,
     };
     let state = match &options.state {
-        Some(path) => State::load(path, plan)?,
+        Some(path) => State::load(path, plan, &session.limits)?,
         None => State::new(plan),
     };
     let stop = stop()?;

@@ -31,14 +31,6 @@ pub enum Error {
         /// Why.
         source: io::Error,
     },
-    /// A file is no state of a run.
-    #[error("{path}: found something else, expected the state of a run of `premio fuzz`: {source}")]
-    NoState {
-        /// Which.
-        path: String,
-        /// Where it is not.
-        source: serde_json::Error,
-    },
     /// The state of a run with other arguments.
     #[error(
         "{path}: found the state of a run with other arguments, expected the same ones or another file"

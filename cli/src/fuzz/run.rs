@@ -426,12 +426,12 @@ mod tests {
         let half = ran(State::new(plan()), 2, 50, Some(&path));
         assert!(half.done() > 0 && half.done() < 100);
         // Stopped again, while failures are made small.
-        let read = State::load(&path, plan()).unwrap();
+        let read = State::load(&path, plan(), &Default::default()).unwrap();
         assert_eq!(told(&read), told(&half));
         let most = ran(read, 2, 100, Some(&path));
         assert_eq!(most.done(), 100);
         assert_ne!(told(&most), told(&whole));
-        let read = State::load(&path, plan()).unwrap();
+        let read = State::load(&path, plan(), &Default::default()).unwrap();
         let rest = ran(read, 3, usize::MAX, Some(&path));
         assert_eq!(told(&rest), told(&whole));
     }

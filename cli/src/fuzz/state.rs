@@ -3,11 +3,16 @@
 use super::Error;
 use super::profile::Profile;
 use super::trial::{Outcome, Terms, Verdict, Wrong, reason};
+use crate::diagnostics::Failure;
 use crate::output;
+use crate::session::Limits;
+use premio_text::Document;
+use premio_text::escape::quote;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// What to try.
@@ -177,20 +182,57 @@ impl State {
     }
 
     /// The run of a file; a new one where there is no file.
-    pub fn load(path: &Path, plan: Plan) -> Result<Self, Error> {
-        let text = match fs::read_to_string(path) {
-            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Self::new(plan)),
-            read => read.map_err(|source| Error::file(path, source))?,
-        };
-        let name = || path.display().to_string();
-        let state: Self = serde_json::from_str(&text).map_err(|source| Error::NoState {
-            path: name(),
-            source,
-        })?;
-        if state.schema != SCHEMA || state.plan != plan {
-            return Err(Error::OtherPlan { path: name() });
+    ///
+    /// # Errors
+    /// The file cannot be read, is longer than the limit, or holds no state of this plan.
+    pub fn load(path: &Path, plan: Plan, limits: &Limits) -> Result<Self, Failure> {
+        if fs::metadata(path).is_err_and(|e| e.kind() == io::ErrorKind::NotFound) {
+            return Ok(Self::new(plan));
         }
-        Ok(state)
+        let text = limits.read_text(path)?;
+        let name = path.display().to_string();
+        let refused = |span: Range<usize>, words: String| {
+            let words = format!("{words}: expected the state of a run of `premio fuzz`");
+            Failure::in_bytes(&name, text.as_bytes(), span, &words)
+        };
+        // What is twice or not finite is told at its place.
+        let document = Document::from_json(&text)
+            .map_err(|e| refused(e.span.clone().unwrap_or(0..0), e.to_string()))?;
+        let state: Self = serde_json::from_str(&text).map_err(|e| {
+            let at = byte_of(&text, e.line(), e.column());
+            refused(at..at, without_place(&e))
+        })?;
+        if state.schema != SCHEMA {
+            let span = document.span("schema").unwrap_or(0..0);
+            let words = format!("found the schema {}, not `{SCHEMA}`", quote(&state.schema));
+            return Err(refused(span, words));
+        }
+        if state.plan != plan {
+            return Err(Error::OtherPlan { path: name }.into());
+        }
+        match state.is_consistent() {
+            true => Ok(state),
+            false => {
+                let span = document.span("done").unwrap_or(0..0);
+                let words = "`done` is not of as many trees as `tallies`".to_owned();
+                Err(refused(span, words))
+            }
+        }
+    }
+
+    /// Whether what is done is of the plan, and as many trees are counted.
+    fn is_consistent(&self) -> bool {
+        let mut end = 0;
+        for (&from, &to) in &self.done {
+            if from < end || to <= from {
+                return false;
+            }
+            end = to;
+        }
+        let counts = self.tallies.values();
+        let mut counts = counts.flat_map(|tally| [tally.right, tally.refused, tally.wrong]);
+        let counted = counts.try_fold(0u64, u64::checked_add);
+        end <= self.plan.trees() && counted == Some(self.done())
     }
 
     /// Saves the run: the whole file, or none.
@@ -234,6 +276,19 @@ impl State {
             }
         }
     }
+}
+
+/// The byte of a place that is told by line and column, from 1, the column in bytes.
+fn byte_of(text: &str, line: usize, column: usize) -> usize {
+    let before = text.split_inclusive('\n').take(line.saturating_sub(1));
+    before.map(str::len).sum::<usize>() + column.saturating_sub(1)
+}
+
+/// What is wrong, without the place, which is told before it.
+fn without_place(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    text.strip_suffix(&place).unwrap_or(&text).to_owned()
 }
 
 #[cfg(test)]
@@ -297,18 +352,21 @@ mod tests {
     fn a_file_is_read_as_it_was() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state.json");
-        let mut state = State::load(&path, plan()).unwrap();
+        let mut state = State::load(&path, plan(), &Limits::default()).unwrap();
         assert_eq!(state, State::new(plan()));
         for n in [4, 9, 5, 12] {
             state.record(n, outcome(n), 0.1 + n as f64, Some("{}".to_owned()));
         }
         state.save(&path).unwrap();
-        assert_eq!(State::load(&path, plan()).unwrap(), state);
+        assert_eq!(
+            State::load(&path, plan(), &Limits::default()).unwrap(),
+            state
+        );
         let other = Plan { from: 6, ..plan() };
-        let error = State::load(&path, other).unwrap_err();
-        assert!(matches!(error, Error::OtherPlan { .. }));
+        let error = State::load(&path, other, &Limits::default()).unwrap_err();
+        assert!(format!("{error:?}").contains("other arguments"));
         fs::write(&path, "{").unwrap();
-        let error = State::load(&path, plan()).unwrap_err();
-        assert!(matches!(error, Error::NoState { .. }));
+        let error = State::load(&path, plan(), &Limits::default()).unwrap_err();
+        assert!(format!("{error:?}").contains("state.json:1:2"));
     }
 }

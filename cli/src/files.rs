@@ -7,11 +7,16 @@ use crate::output;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 
+/// The option with a folder of many outputs.
+const MODELS: &str = "--write";
+
 /// What a command reads and writes.
 #[derive(Debug, Default)]
 pub struct Files {
     inputs: Vec<Named>,
     outputs: Vec<Named>,
+    /// A folder of many outputs.
+    folder: Option<PathBuf>,
 }
 
 /// A file, and what the command line calls it.
@@ -98,8 +103,9 @@ impl Files {
                 // A folder that is yet to be made holds no file that could be lost.
                 let folder = options.write.as_ref().filter(|folder| folder.is_dir());
                 let manifest = folder.map(|folder| folder.join(MANIFEST));
-                files.writes("--write", manifest.as_deref());
+                files.writes(MODELS, manifest.as_deref());
                 files.writes("-o", options.output.as_deref());
+                files.folder = options.write.clone();
             }
             Command::Schema(options) => files.writes("-o", options.output.path()),
             Command::Man(options) => files.writes("-o", options.output.path()),
@@ -132,11 +138,34 @@ impl Files {
         self.outputs.extend(Named::new(option, path));
     }
 
+    /// Whether no other output is among those of a folder.
+    fn check_folder(&self) -> Result<(), Failure> {
+        let Some(folder) = &self.folder else {
+            return Ok(());
+        };
+        let Ok(folder) = fs::canonicalize(folder).or_else(|_| absent(folder)) else {
+            return Ok(());
+        };
+        for output in self.outputs.iter().filter(|o| o.option != MODELS) {
+            let target = output::target(&output.path);
+            let real = target.and_then(|target| absent(&target));
+            if real.is_ok_and(|path| path.starts_with(&folder)) {
+                return Err(output.refused(&format!(
+                    "`{}` is in the folder of `{MODELS}`, expected a file outside of {}",
+                    output.option,
+                    folder.display()
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// Whether every output is a file of its own, in a folder that is there.
     ///
     /// # Errors
     /// Two outputs are one file, an output is an input, or an output cannot be a file.
     pub fn check(&self) -> Result<(), Failure> {
+        self.check_folder()?;
         let mut known: Vec<(&Named, Identity)> = Vec::new();
         for output in &self.outputs {
             let Some(identity) = output.identity_of_output()? else {
@@ -192,6 +221,9 @@ impl Named {
 
     /// What the file that is written is known by; none for devices and pipes, which lose nothing.
     fn identity_of_output(&self) -> Result<Option<Identity>, Failure> {
+        if is_folder(&self.path) {
+            return Err(self.refused("found the path of a folder, expected that of a file"));
+        }
         let target = output::target(&self.path).map_err(|e| self.refused(&e.to_string()))?;
         match fs::metadata(&target) {
             Ok(found) if found.is_dir() => Err(self.refused("found a folder, expected a file")),
@@ -202,6 +234,13 @@ impl Named {
                 .map_err(|e| self.refused(&format!("its folder: {e}"))),
         }
     }
+}
+
+/// Whether a path can be that of a folder only, though there is none.
+fn is_folder(path: &Path) -> bool {
+    let text = path.to_string_lossy();
+    let last = text.rsplit(std::path::is_separator).next();
+    matches!(last, Some("" | "." | "..")) && !text.is_empty()
 }
 
 fn identity(path: &Path) -> Option<Identity> {

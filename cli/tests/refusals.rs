@@ -3,8 +3,44 @@
 
 mod common;
 
-use common::{assert_says, folder, premio, refused};
+use common::{assert_says, folder, premio, prepared, refused};
 use std::fs;
+
+#[test]
+fn an_output_has_no_path_of_a_folder() {
+    let folder = prepared();
+    for words in [
+        "export part.padl --format step -o new/",
+        "convert part.padl new.padl/",
+        "contours part.padl -o new.svg/",
+        "predict part.padl --setup setup.toml --overlay new.svg/",
+        "match part.model photo.png --camera camera.json --csv new/",
+        "schema match -o new/",
+    ] {
+        assert_says(&refused(folder.path(), words), &["the path of a folder"]);
+    }
+}
+
+#[test]
+fn the_folder_of_models_holds_no_other_output() {
+    let folder = folder(&[]);
+    let path = folder.path();
+    let fuzz = "fuzz --profile grid --count 1 --rays 100 --write w";
+    for words in ["-o w", "--state w"] {
+        assert_says(&refused(path, &format!("{fuzz} {words}")), &["`--write`"]);
+    }
+    fs::create_dir(path.join("w")).unwrap();
+    for words in [
+        "-o w/grid-0.padl",
+        "--state w/grid-0.padl",
+        "-o ./w/../w/out.txt",
+        "--state w/manifest.jsonl",
+    ] {
+        let text = refused(path, &format!("{fuzz} {words}"));
+        assert_says(&text, &["in the folder of `--write`", "outside"]);
+    }
+    assert_eq!(fs::read_dir(path.join("w")).unwrap().count(), 0);
+}
 
 #[test]
 fn a_state_is_read_as_any_other_input() {

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{assert_says, folder, premio, prepared, refused};
+use common::{SETUP, assert_says, folder, premio, prepared, refused, said};
 use std::fs;
 
 #[test]
@@ -64,4 +64,52 @@ fn a_state_is_read_as_any_other_input() {
     }
     fs::write(path.join("run.json"), b"{\"schema\":\"\xff\"}").unwrap();
     assert_says(&refused(path, fuzz), &["run.json:1:12: ", "UTF-8"]);
+}
+
+#[test]
+fn numbers_are_told_as_they_are_written() {
+    let folder = prepared();
+    let path = folder.path();
+    for (from, to, expected) in [
+        (
+            "focal = 16",
+            "focal = 1e300",
+            ["bad.toml:7:1: ", "is 1e300 mm"],
+        ),
+        (
+            "focal = 16",
+            "focal = 1e-320",
+            ["bad.toml:7:1: ", "is 1e-320 mm"],
+        ),
+        (
+            "[160, 120]",
+            "[1e9, 1e9]",
+            [
+                "found 1000000000.0",
+                "from 0 to 18446744073709551615, written without",
+            ],
+        ),
+        (
+            "[160, 120]",
+            "[320.0, 240.0]",
+            ["found 320.0", "written without a point"],
+        ),
+        (
+            "threshold = 10",
+            "threshold = 10\n[features]\nreach = 1e300",
+            ["is 1e300, ", "0.5 to 8 pixels"],
+        ),
+    ] {
+        let text = SETUP.replace(from, to);
+        assert_ne!(text, SETUP);
+        fs::write(path.join("bad.toml"), text).unwrap();
+        let text = refused(path, "predict part.padl --setup bad.toml -o out.json");
+        assert_says(&text, &expected);
+    }
+    let output = premio(
+        path,
+        "contours part.padl --views front --scale 1e300:1 -o out.svg",
+    );
+    assert_eq!(output.status.code(), Some(2));
+    assert_says(&said(&output), &["at 1e300:1 the views take 6e300 mm"]);
 }

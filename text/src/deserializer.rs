@@ -20,8 +20,16 @@ impl de::Error for TextError {
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        let as_written = match (&found, words(expected).starts_with(WHOLE)) {
+            (Unexpected::Float(value), true) if value.fract() == 0.0 => {
+                ", written without a point and an exponent"
+            }
+            _ => "",
+        };
         let (found, expected) = (in_words(found), words(expected));
-        Self::custom(format_args!("found {found}, expected {expected}"))
+        Self::custom(format_args!(
+            "found {found}, expected {expected}{as_written}"
+        ))
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -66,7 +74,8 @@ fn in_words(found: Unexpected<'_>) -> String {
         Unexpected::Bool(value) => format!("{value}"),
         Unexpected::Unsigned(value) => format!("{value}"),
         Unexpected::Signed(value) => format!("{value}"),
-        Unexpected::Float(value) => format!("{value}"),
+        // With its point or exponent, which tell it from a whole number.
+        Unexpected::Float(value) => format!("{value:?}"),
         Unexpected::Str(text) => format!("the text {}", quote(text)),
         Unexpected::Unit | Unexpected::Option => "null".to_owned(),
         Unexpected::Seq => "an array".to_owned(),
@@ -75,13 +84,26 @@ fn in_words(found: Unexpected<'_>) -> String {
     }
 }
 
+/// How what is expected of a whole number begins.
+const WHOLE: &str = "a whole number";
+
+fn whole(least: impl Display, most: impl Display) -> String {
+    format!("{WHOLE} from {least} to {most}")
+}
+
 /// What was expected, in the words of a text's author.
 fn words(expected: &dyn Expected) -> String {
     let expected = expected.to_string();
     let known = match expected.as_str() {
         "f64" | "f32" => "a number",
-        "u64" | "u32" | "u16" | "u8" | "usize" => "a whole number that is not below zero",
-        "i64" | "i32" | "i16" | "i8" | "isize" => "a whole number",
+        "u64" | "usize" => return whole(0, u64::MAX),
+        "u32" => return whole(0, u32::MAX),
+        "u16" => return whole(0, u16::MAX),
+        "u8" => return whole(0, u8::MAX),
+        "i64" | "isize" => return whole(i64::MIN, i64::MAX),
+        "i32" => return whole(i32::MIN, i32::MAX),
+        "i16" => return whole(i16::MIN, i16::MAX),
+        "i8" => return whole(i8::MIN, i8::MAX),
         "a sequence" => "an array",
         "a map" => "a table",
         "a string" | "a borrowed string" => "a text",

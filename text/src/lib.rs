@@ -7,9 +7,11 @@
 mod deserializer;
 pub mod escape;
 mod json;
+mod number;
 mod place;
 mod toml_text;
 mod value;
 
+pub use number::number;
 pub use place::{LineColumn, nearest};
 pub use value::{Content, Document, Member, TextError, Value};

@@ -197,7 +197,8 @@ impl Value {
             Content::Bool(value) => format!("{value}"),
             Content::Negative(value) => format!("{value}"),
             Content::Whole(value) => format!("{value}"),
-            Content::Float(value) => format!("{value}"),
+            // With its point or exponent, which tell it from a whole number.
+            Content::Float(value) => format!("{value:?}"),
             Content::Text(text) => format!("the text {}", crate::escape::quote(text)),
             Content::Time(text) => format!("the time {text}"),
             Content::Array(items) => format!("an array of {}", items.len()),

@@ -11,6 +11,7 @@ use premio_exchange::step::{self, Protocol};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
+use premio_text::number;
 
 /// Runs the command.
 pub fn run(options: &ExportOptions, session: Session) -> Result<(), Failure> {
@@ -100,8 +101,9 @@ fn check_fineness(part: &Part, options: &ExportOptions) -> Result<(), Failure> {
     for (option, asked, least) in finer {
         if let Some(asked) = asked.filter(|asked| *asked < least) {
             return Err(Failure::limit(format!(
-                "{}: `--{option} {asked}` is beyond the limit, expected at least {least:.1e}",
-                part.name
+                "{}: `--{option} {}` is beyond the limit, expected at least {least:.1e}",
+                part.name,
+                number(asked)
             )));
         }
     }

@@ -11,6 +11,7 @@ pub use evidence::{Evidence, Fragment, State};
 pub use reason::Reason;
 
 use crate::setup::SetupError;
+use premio_text::number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -46,12 +47,13 @@ impl Criteria {
         if !shares {
             let reason = format!(
                 "is {} and `features.least` {}: they must be 0 < least <= whole <= 1",
-                self.whole, self.least
+                number(self.whole),
+                number(self.least)
             );
             return Err(SetupError::value("features.whole", reason));
         }
         if !(0.5..=8.0).contains(&self.reach) {
-            let reason = format!("is {}, and must be 0.5 to 8 pixels", self.reach);
+            let reason = format!("is {}, and must be 0.5 to 8 pixels", number(self.reach));
             return Err(SetupError::value("features.reach", reason));
         }
         if !(1..=4096).contains(&self.draws) {

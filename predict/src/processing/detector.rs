@@ -10,6 +10,7 @@ use super::segments::Fitter;
 use super::shrink::shrink;
 use super::thinning::{connect, edge_pixels, pick};
 use super::workspace::Workspace;
+use premio_text::number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -72,7 +73,7 @@ pub enum Thinning {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DetectorError {
     /// A value is not a number, or out of its range.
-    #[error("`{name}` is {value}, and should be {range}")]
+    #[error("`{name}` is {}, and should be {range}", number(*value))]
     Value {
         /// The name of the field.
         name: &'static str,
@@ -82,7 +83,7 @@ pub enum DetectorError {
         range: &'static str,
     },
     /// The low threshold is above the other.
-    #[error("`low` is {low}, above `threshold`, {threshold}")]
+    #[error("`low` is {}, above `threshold`, {}", number(*low), number(*threshold))]
     LowAboveThreshold {
         /// The low threshold, in levels per pixel.
         low: f64,

@@ -2,6 +2,7 @@
 
 use super::{Optics, Polarisation, Reflectance, Surface};
 use nalgebra::Vector3;
+use premio_text::number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_PI;
@@ -59,7 +60,7 @@ pub struct Constants {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum MaterialError {
     /// A constant is out of its range, or no number.
-    #[error("`{key}` is {value}, and must be from {least} to {most}")]
+    #[error("`{key}` is {}, and must be from {least} to {most}", number(*value))]
     OutOfRange {
         /// The constant's key.
         key: &'static str,
@@ -71,7 +72,10 @@ pub enum MaterialError {
         most: f64,
     },
     /// The specular and the diffuse fraction are more than the whole.
-    #[error("`s` + `d` is {s} + {d}, and must be at most 1: they are fractions of one reflectance")]
+    #[error(
+        "`s` + `d` is {} + {}, and must be at most 1: they are fractions of one reflectance",
+        number(*s), number(*d)
+    )]
     Fractions {
         /// The specular fraction.
         s: f64,

@@ -12,7 +12,7 @@ use crate::feature::Criteria;
 use crate::processing::{Detector, DetectorError};
 use crate::reflectance::{Constants, GREEN, Material, Named};
 use light::Light;
-use premio_text::{Content, Document, TextError};
+use premio_text::{Content, Document, TextError, number};
 use schemars::JsonSchema;
 use sensor::Sensor;
 use serde::de::value::MapAccessDeserializer;
@@ -290,7 +290,7 @@ pub(crate) fn at_least_zero(key: &str, x: f64) -> Result<(), SetupError> {
         true => Ok(()),
         false => Err(SetupError::value(
             key,
-            format!("is {x}, and must be 0 or more"),
+            format!("is {}, and must be 0 or more", number(x)),
         )),
     }
 }
@@ -301,7 +301,7 @@ pub(crate) fn above_zero(key: &str, x: f64) -> Result<(), SetupError> {
         true => Ok(()),
         false => Err(SetupError::value(
             key,
-            format!("is {x}, and must be above 0"),
+            format!("is {}, and must be above 0", number(x)),
         )),
     }
 }

@@ -1,6 +1,7 @@
 //! The sensor: a pinhole camera with a lens and a film of pixels.
 
 use super::{SetupError, above_zero, at_least_zero};
+use premio_text::number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -57,6 +58,7 @@ fn is_length(key: &str, x: f64) -> Result<(), SetupError> {
     match (least..=most).contains(&x) {
         true => Ok(()),
         false => {
+            let x = number(x);
             let reason = format!("is {x} mm, and must be {least:.0e} to {most:.0e} mm");
             Err(SetupError::value(key, reason))
         }

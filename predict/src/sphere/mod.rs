@@ -7,6 +7,7 @@ mod icosahedron;
 
 pub use cone::Cone;
 use nalgebra::Vector3;
+use premio_text::number;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -46,13 +47,13 @@ pub enum SphereError {
     #[error("the number of points must be at least 1")]
     NoCount,
     /// The angle between neighbours is none.
-    #[error("the angle between neighbours is {0}°, and must be more than 0° and at most 180°")]
+    #[error("the angle between neighbours is {}°, and must be more than 0° and at most 180°", number(*.0))]
     Angle(f64),
     /// A cone has no direction.
     #[error("the axis of cone {0} has no direction")]
     Axis(usize),
     /// A cone has no half angle.
-    #[error("the half angle of cone {cone} is {angle}°, and must be more than 0° and at most 180°")]
+    #[error("the half angle of cone {cone} is {}°, and must be more than 0° and at most 180°", number(*angle))]
     HalfAngle {
         /// Which cone, counted from 0.
         cone: usize,

@@ -6,6 +6,7 @@ use super::Drawing;
 use crate::camera::{Camera, CameraError};
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use premio_kernel::unit::Unit;
+use premio_text::number;
 use std::collections::BTreeMap;
 
 /// A view along an axis of the part's frame, z up, or the isometric one.
@@ -163,7 +164,7 @@ const DECADES: i32 = 16;
 
 impl std::fmt::Display for Scale {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}:{}", self.drawn, self.of)
+        write!(f, "{}:{}", number(self.drawn), number(self.of))
     }
 }
 
@@ -186,7 +187,7 @@ pub struct Options {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SheetError {
     /// There is no room for them.
-    #[error("at {scale} the views take {width:.0} mm by {height:.0} mm, and {paper} has {room_width:.0} mm by {room_height:.0} mm for them: a greater `--paper`, a smaller `--scale`, or none, helps", paper = paper.name())]
+    #[error("at {scale} the views take {} mm by {} mm, and {paper} has {room_width:.0} mm by {room_height:.0} mm for them: a greater `--paper`, a smaller `--scale`, or none, helps", number(width.round()), number(height.round()), paper = paper.name())]
     Room {
         /// The scale.
         scale: Scale,

@@ -8,6 +8,7 @@ use premio_csg::reader::{self, Description, Format, Options};
 use premio_kernel::number::sign::Zeros;
 use premio_matching::camera::CameraFile;
 use premio_predict::model::record::Description as Written;
+use premio_text::escape::quote;
 use premio_visibility::Camera;
 use premio_visibility::camera::CameraError;
 use std::path::Path;
@@ -73,15 +74,23 @@ pub fn described(path: &Path, session: Session) -> Result<Part, Failure> {
 
 /// The part of a description that a model holds.
 pub fn part_of_model(name: &str, written: Written, voice: Voice) -> Result<Part, Failure> {
-    let language = &written.language;
-    let format = Format::ALL.into_iter().find(|f| f.ending() == language);
-    let format = format.ok_or_else(|| {
-        let said = "found a description in an unknown language";
-        Failure::input(format!("{name}: {said}: {language}"))
-    })?;
+    let format = language(&written).map_err(|e| Failure::input(format!("{name}: {e}")))?;
     // Places in it are not places in the model.
     let name = format!("{name} (its description)");
     evaluated(name, format, written, Digits::Filtered, voice)
+}
+
+/// The language of a description in a model.
+///
+/// # Errors
+/// There is none of this name.
+pub fn language(written: &Written) -> Result<Format, String> {
+    let language = &written.language;
+    let format = Format::ALL.into_iter().find(|f| f.ending() == language);
+    format.ok_or_else(|| {
+        let all: Vec<&str> = Format::ALL.iter().map(|f| f.ending()).collect();
+        format!("is {}, expected one of {}", quote(language), all.join(", "))
+    })
 }
 
 /// What the reader says of bytes that are no text.

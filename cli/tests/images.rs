@@ -183,7 +183,7 @@ fn a_model_is_the_same_for_any_shards_and_threads() {
     fs::write(folder.path().join("2-3.shard"), cut).unwrap();
     refused(
         "model merge 1-3.shard 2-3.shard 3-3.shard -o no.model",
-        "is missing",
+        "2-3.shard:3:1: found the end of the shard, expected setup 8",
     );
     assert!(!folder.path().join("no.model").exists());
 }

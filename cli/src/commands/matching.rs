@@ -4,7 +4,7 @@ use crate::arguments::{MatchOptions, SoughtOptions, StrategyName, TrackOptions};
 use crate::diagnostics::Failure;
 use crate::input::{self, Part as Described};
 use crate::interrupt::stop;
-use crate::model::file;
+use crate::model::file::ReadModel;
 use crate::output::Outputs;
 use crate::session::Session;
 use crate::{imaging, output};
@@ -131,10 +131,10 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
     let mut known = None;
     let (described, records) = match is_model {
         true => {
-            let ModelFile { head, records } = file::read(path, session)?;
-            let written = head.description.clone();
+            let model = ReadModel::read(path, session)?;
+            let described = model.part(session)?;
+            let ModelFile { head, records } = model.file;
             known = Some(head.setups.conditions.detector);
-            let described = input::part_of_model(&name, written, session.voice)?;
             (described, records)
         }
         false => (input::described(path, session)?, Vec::new()),

@@ -6,12 +6,14 @@ use crate::input::Part;
 use crate::interrupt::{pool, stop};
 use crate::model::format;
 use crate::model::run::{Workers, summed};
-use crate::model::shard::{Run, Shard, digest};
+use crate::model::shard::{Head, Run, Shard, digest};
 use crate::session::Session;
 use crate::setup::{SetupFile, setups};
 use crate::{input, output};
 use indicatif::ProgressBar;
+use premio_kernel::brep::Brep;
 use premio_predict::model::Setups;
+use premio_predict::model::consistency::SourceLimits;
 use premio_predict::model::record::Record;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -81,7 +83,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), Failure>
     match &made {
         // A run that is interrupted goes on from what there is.
         Err(Failure::Interrupted) => (),
-        Err(_) if options.resume => (),
+        Err(_) if folder.was_there => (),
         _ => folder.remove(),
     }
     made
@@ -108,7 +110,7 @@ fn whole(
     bar.finish_and_clear();
     let paths: Vec<PathBuf> = (1..=of).map(|i| folder.shard(i)).collect();
     let shards = opened(&paths, session)?;
-    write(summed_up(run, &shards, session)?)
+    write(summed_up(run, &shards, workers.subject.brep, session)?)
 }
 
 /// What this part in these setups is told from others by: all that observations depend on.
@@ -129,6 +131,8 @@ fn told_apart(part: &Part, options: &ModelRunOptions, setups: &str) -> String {
 /// The folder of a run's shards, beside its output.
 struct Parts {
     path: PathBuf,
+    /// Whether an interrupted run left it.
+    was_there: bool,
     /// Removed at the end, if the output is no file.
     _temporary: Option<tempfile::TempDir>,
 }
@@ -140,6 +144,7 @@ impl Parts {
             let path = folder.path().to_owned();
             return Ok(Self {
                 path,
+                was_there: false,
                 _temporary: Some(folder),
             });
         };
@@ -147,14 +152,18 @@ impl Parts {
         name.push(".parts");
         let path = PathBuf::from(name);
         let failed = |e: std::io::Error| Failure::input(format!("{}: {e}", path.display()));
-        if path.exists() && !resume {
+        let was_there = path.exists();
+        if was_there && !resume {
             let said =
                 "is left of a run that was interrupted: --resume goes on with it; or remove it";
             return Err(Failure::input(format!("{}: {said}", path.display())));
         }
-        fs::create_dir_all(&path).map_err(failed)?;
+        if !was_there {
+            fs::create_dir(&path).map_err(failed)?;
+        }
         Ok(Self {
             path,
+            was_there,
             _temporary: None,
         })
     }
@@ -171,7 +180,7 @@ impl Parts {
             return Ok(false);
         }
         let found = Shard::open(path, session)?.head;
-        match found.digest == run.digest && found.shard == shard {
+        match found == Head::new(run, shard) {
             true => Ok(true),
             false => Err(Failure::input(format!(
                 "{}: found a shard of another run, of {}: remove {}",
@@ -206,44 +215,58 @@ fn opened(paths: &[PathBuf], session: Session) -> Result<Vec<Shard>, Failure> {
     paths.iter().map(open).collect()
 }
 
-fn summed_up(run: &Run, shards: &[Shard], session: Session) -> Result<Vec<Record>, Failure> {
+fn summed_up(
+    run: &Run,
+    shards: &[Shard],
+    brep: &Brep,
+    session: Session,
+) -> Result<Vec<Record>, Failure> {
     let bar = session.voice.progress(2 * run.setups.len() as u64);
-    let all = summed(run, shards, &bar);
+    let limits = SourceLimits::of_part(brep).with_setups(&run.setups);
+    let all = summed(run, shards, &limits, &bar);
     bar.finish_and_clear();
     all
+}
+
+/// Whether shards are all those of one run, in order.
+fn check_run(shards: &[Shard]) -> Result<(), Failure> {
+    let first = &shards[0].head;
+    let said = |shard: &Shard, words: String| {
+        Err(Failure::input(format!(
+            "{}:1:1: {words}",
+            shard.path().display()
+        )))
+    };
+    for (i, shard) in shards.iter().enumerate() {
+        if !shard.head.is_of_run(first) {
+            let words = format!(
+                "found a shard of another run, of {}, expected one of {}, as {} is",
+                shard.head.part,
+                first.part,
+                shards[0].path().display()
+            );
+            return said(shard, words);
+        }
+        if shard.head.shard[0] != i + 1 {
+            let (found, of) = (shard.head.shard[0], first.shard[1]);
+            let words = format!("found shard {found}/{of}, expected {}/{of}", i + 1);
+            return said(shard, words);
+        }
+    }
+    match (shards.len(), first.shard[1]) {
+        (found, of) if found == of => Ok(()),
+        (found, of) => Err(Failure::input(format!(
+            "expected {of} shards, found {found}"
+        ))),
+    }
 }
 
 fn merged(options: &MergeOptions, session: Session) -> Result<(), Failure> {
     let format = format::asked(&options.output)?;
     let mut shards = opened(&options.shards, session)?;
     shards.sort_by_key(|shard| shard.head.shard[0]);
+    check_run(&shards)?;
     let first = shards[0].head.clone();
-    for (i, shard) in shards.iter().enumerate() {
-        let head = &shard.head;
-        if head.digest != first.digest || head.shard[1] != first.shard[1] {
-            let [one, other] = [&shards[0], shard].map(|s| s.path().display());
-            let said = format!(
-                "{other}: found a shard of another run, of {}, expected one of {}, as {one} is",
-                head.part, first.part
-            );
-            return Err(Failure::input(said));
-        }
-        if head.shard[0] != i + 1 {
-            let of = first.shard[1];
-            return Err(Failure::input(format!(
-                "{}: found shard {}/{of}, expected {}/{of}",
-                shard.path().display(),
-                head.shard[0],
-                i + 1
-            )));
-        }
-    }
-    if shards.len() != first.shard[1] {
-        let (found, of) = (shards.len(), first.shard[1]);
-        return Err(Failure::input(format!(
-            "expected {of} shards, found {found}"
-        )));
-    }
     let setups = Setups::from_toml(&first.setups)
         .map_err(|error| Failure::setup("the setups of the shards", &error, &first.setups))?;
     if setups.len() != first.count {
@@ -259,7 +282,9 @@ fn merged(options: &MergeOptions, session: Session) -> Result<(), Failure> {
         text: first.setups,
         setups,
     };
-    let records = summed_up(&run, &shards, session)?;
+    let name = shards[0].path().display().to_string();
+    let part = input::part_of_model(&name, run.description.clone(), session.voice)?;
+    let records = summed_up(&run, &shards, &part.evaluation.brep, session)?;
     let file = SetupFile {
         name: "the setups of the shards".to_owned(),
         text: run.text.clone(),

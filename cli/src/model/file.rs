@@ -1,16 +1,55 @@
 //! Models in files.
 
 use crate::diagnostics::Failure;
+use crate::input::{self, Part};
 use crate::session::Session;
-use premio_predict::model::file::{ModelFile, parse};
+use premio_predict::model::consistency::SourceLimits;
+use premio_predict::model::file::{ModelError, ModelFile, parse};
 use std::path::Path;
 
-/// Reads a model.
-///
-/// # Errors
-/// The file is none, is of another schema, says what does not add up, or is not as it was written.
-pub fn read(path: &Path, session: Session) -> Result<ModelFile, Failure> {
-    let text = session.limits.read_text(path)?;
-    let name = path.display().to_string();
-    parse(&text).map_err(|error| Failure::at(&name, &text, Some(error.span.clone()), &error))
+/// A model, with its text, at whose lines it is refused.
+#[derive(Debug)]
+pub struct ReadModel {
+    /// What it says.
+    pub file: ModelFile,
+    name: String,
+    text: String,
+}
+
+impl ReadModel {
+    /// Reads a model.
+    ///
+    /// # Errors
+    /// The file is none, is of another schema, says what does not add up, or is not as it was written.
+    pub fn read(path: &Path, session: Session) -> Result<Self, Failure> {
+        let text = session.limits.read_text(path)?;
+        let name = path.display().to_string();
+        match parse(&text) {
+            Ok(file) => Ok(Self { file, name, text }),
+            Err(error) => Err(refused(&name, &text, &error)),
+        }
+    }
+
+    /// The part that its description describes.
+    ///
+    /// # Errors
+    /// The description is none, or the model is of another part.
+    pub fn part(&self, session: Session) -> Result<Part, Failure> {
+        let written = &self.file.head.description;
+        let failed = |error: ModelError| refused(&self.name, &self.text, &error);
+        if let Err(words) = input::language(written) {
+            let key = "description.language";
+            return Err(failed(self.file.in_head(&self.text, key, &words)));
+        }
+        let part = input::part_of_model(&self.name, written.clone(), session.voice)?;
+        let limits = SourceLimits::of_part(&part.evaluation.brep);
+        self.file
+            .check_sources(&self.text, &limits)
+            .map_err(failed)?;
+        Ok(part)
+    }
+}
+
+fn refused(name: &str, text: &str, error: &ModelError) -> Failure {
+    Failure::at(name, text, Some(error.span.clone()), error)
 }

@@ -4,6 +4,7 @@ use super::shard::{Head, Run, Shard, Writer};
 use crate::diagnostics::Failure;
 use indicatif::ProgressBar;
 use premio_predict::image::shading::Finishes;
+use premio_predict::model::consistency::SourceLimits;
 use premio_predict::model::record::{Record, records};
 use premio_predict::model::summary::Summary;
 use premio_predict::model::{Observation, observe};
@@ -81,17 +82,22 @@ impl Workers<'_> {
 }
 
 /// The records of a model, from all shards of a run, in order.
-pub fn summed(run: &Run, shards: &[Shard], bar: &ProgressBar) -> Result<Vec<Record>, Failure> {
+pub fn summed(
+    run: &Run,
+    shards: &[Shard],
+    limits: &SourceLimits,
+    bar: &ProgressBar,
+) -> Result<Vec<Record>, Failure> {
     let mut summary = Summary::default();
     for shard in shards {
-        shard.each(|observation| {
+        shard.each(limits, |observation| {
             summary.add(observation);
             bar.inc(1);
         })?;
     }
     summary.begin_second();
     for shard in shards {
-        shard.each(|observation| {
+        shard.each(limits, |observation| {
             summary.add_again(observation);
             bar.inc(1);
         })?;

@@ -1,8 +1,11 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
 use crate::diagnostics::Failure;
-use crate::output;
 use crate::session::{Limited, Session};
+use crate::{input, output};
+use premio_predict::model::consistency::{
+    Inconsistency, SourceLimits, check_description, check_observation,
+};
 use premio_predict::model::file::hexadecimal;
 use premio_predict::model::record::Description;
 use premio_predict::model::{Observation, Setups};
@@ -49,6 +52,15 @@ impl Head {
             shard,
             count: run.setups.len(),
         }
+    }
+
+    /// Whether it is of the same run as another shard.
+    pub fn is_of_run(&self, other: &Self) -> bool {
+        let run = |head: &Self| Self {
+            shard: [1, head.shard[1]],
+            ..head.clone()
+        };
+        run(self) == run(other)
     }
 
     /// The setups of the shard.
@@ -165,6 +177,10 @@ impl Shard {
     /// # Errors
     /// It is none, it is of another schema, or it is not as it was written.
     pub fn open(path: &Path, session: Session) -> Result<Self, Failure> {
+        if output::is_no_file(path) {
+            let said = "a shard is read twice: found a folder, a pipe or a device, expected a file";
+            return Err(failed(path, &said));
+        }
         let mut lines = Lines::open(path, session)?;
         let first = lines.next_line()?.unwrap_or_default();
         let head = lines.parsed(&first, Head::from_json)?;
@@ -190,7 +206,7 @@ impl Shard {
         };
         if !is_whole || !last.ends_with('\n') {
             // Perhaps a line says what is wrong.
-            shard.each(|_| ())?;
+            shard.each(&SourceLimits::NONE, |_| ())?;
             end?;
             let said =
                 "the lines before are not those that this digest is of: make the shard again";
@@ -204,28 +220,62 @@ impl Shard {
         &self.path
     }
 
-    /// Tells every observation of it, in order.
-    pub fn each(&self, mut report: impl FnMut(&Observation)) -> Result<(), Failure> {
+    /// Hands on every observation of it, in order.
+    ///
+    /// # Errors
+    /// One is missing, is not one, or is of what there is not; or there are more.
+    pub fn each(
+        &self,
+        limits: &SourceLimits,
+        mut report: impl FnMut(&Observation),
+    ) -> Result<(), Failure> {
         let mut lines = Lines::open(&self.path, self.session)?;
         lines.next_line()?;
         for setup in self.head.range() {
-            let Some(line) = lines.next_line()? else {
-                return Err(failed(&self.path, &format!("setup {setup} is missing")));
+            let line = lines.next_line()?;
+            let Some(line) = line.filter(|line| End::from_json(line).is_err()) else {
+                let said = format!("found the end of the shard, expected setup {setup}");
+                return Err(lines.wrong(0..0, "", &said));
             };
-            // What is right needs no places.
-            let observation = match serde_json::from_str::<Observation>(&line) {
-                Ok(observation) => observation,
-                Err(_) => lines.parsed(&line, |line| Document::from_json(line)?.read())?,
-            };
-            if observation.setup != setup {
-                let found = observation.setup;
-                let said = format!("found setup {found}, expected setup {setup}");
-                return Err(lines.wrong(0..0, &line, &said));
-            }
-            report(&observation);
+            report(&observation(&lines, &line, setup, limits)?);
         }
-        Ok(())
+        let line = lines.next_line()?.unwrap_or_default();
+        lines.parsed(&line, End::from_json)?;
+        match lines.next_line()? {
+            None => Ok(()),
+            Some(line) => Err(lines.wrong(0..0, &line, "found a line after the end of the shard")),
+        }
     }
+}
+
+/// The observation of a line.
+fn observation(
+    lines: &Lines,
+    line: &str,
+    setup: usize,
+    limits: &SourceLimits,
+) -> Result<Observation, Failure> {
+    // What is right needs no places.
+    let observation = match serde_json::from_str::<Observation>(line) {
+        Ok(observation) => observation,
+        Err(_) => lines.parsed(line, |line| Document::from_json(line)?.read())?,
+    };
+    if observation.setup != setup {
+        let found = observation.setup;
+        let said = format!("found setup {found}, expected setup {setup}");
+        return Err(lines.wrong(0..0, line, &said));
+    }
+    match check_observation(&observation, limits) {
+        Ok(()) => Ok(observation),
+        Err(error) => lines.parsed(line, |line| Err(inconsistent(line, &error))),
+    }
+}
+
+/// A value of a line that does not fit to the rest.
+fn inconsistent(line: &str, error: &Inconsistency) -> TextError {
+    let document = Document::from_json(line);
+    let span = document.ok().and_then(|document| document.span(&error.key));
+    TextError::at(span.unwrap_or(0..0), error.to_string())
 }
 
 impl Head {
@@ -248,13 +298,16 @@ impl Head {
         }
         let head: Self = document.read()?;
         let [index, of] = head.shard;
-        match index > 0 && index <= of {
-            true => Ok(head),
-            false => refused(
-                "shard",
-                format!("found shard {index}/{of}, expected one of them"),
-            ),
+        if index == 0 || index > of {
+            let words = format!("found shard {index}/{of}, expected one of them");
+            return refused("shard", words);
         }
+        if let Err(words) = input::language(&head.description) {
+            let key = "description.language";
+            return refused(key, format!("`{key}` {words}"));
+        }
+        check_description(&head.description).map_err(|error| inconsistent(line, &error))?;
+        Ok(head)
     }
 }
 
@@ -283,11 +336,17 @@ impl Lines {
     }
 
     fn next_line(&mut self) -> Result<Option<String>, Failure> {
-        let mut line = String::new();
-        let read = self.reader.read_line(&mut line);
+        let mut bytes = Vec::new();
+        let read = self.reader.read_until(b'\n', &mut bytes);
         let read = read.map_err(|e| failed(&self.path, &e))?;
         self.count += usize::from(read > 0);
-        Ok((read > 0).then_some(line))
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let at = e.utf8_error().valid_up_to();
+            let byte = e.as_bytes().get(at).copied().unwrap_or_default();
+            let said = format!("found the byte {byte:#04x}, expected a text in UTF-8");
+            self.wrong(at..at + 1, &String::from_utf8_lossy(e.as_bytes()), &said)
+        })?;
+        Ok((read > 0).then_some(text))
     }
 
     fn parsed<T>(

@@ -1,9 +1,15 @@
 //! Whether what the records of a model say adds up.
 
-use super::observation::ATTRIBUTES;
+use super::observation::{ATTRIBUTES, Observation};
 use super::record::{
-    Aspect, Attributes, Codetection, Feature, Head, NO_DIGEST, Rate, Record, SCHEMA, Tuple,
+    Aspect, Attributes, Codetection, Description, Feature, Head, NO_DIGEST, Rate, Record, SCHEMA,
+    Tuple,
 };
+use super::setups::Setups;
+use super::summary::MOST_PAIRED;
+use crate::outline::Source;
+use premio_kernel::brep::Brep;
+use premio_text::number;
 
 /// A value that does not fit to the rest.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -27,6 +33,112 @@ fn check(holds: bool, key: impl Into<String>, reason: impl Into<String>) -> Chec
     }
 }
 
+/// How many things of each kind there are that features are the images of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SourceLimits {
+    edges: usize,
+    faces: usize,
+    lights: usize,
+}
+
+impl SourceLimits {
+    /// No limits, where neither part nor setups are known.
+    pub const NONE: Self = Self {
+        edges: usize::MAX,
+        faces: usize::MAX,
+        lights: usize::MAX,
+    };
+
+    /// Those of a part.
+    pub fn of_part(brep: &Brep) -> Self {
+        Self {
+            edges: brep.topology.edges.len(),
+            faces: brep.topology.faces.len(),
+            ..Self::NONE
+        }
+    }
+
+    /// Those of setups.
+    pub fn of_setups(setups: &Setups) -> Self {
+        Self::NONE.with_setups(setups)
+    }
+
+    /// The same, with those of setups.
+    #[must_use]
+    pub fn with_setups(self, setups: &Setups) -> Self {
+        let lights = setups.lights.len() + usize::from(setups.illumination.is_some());
+        Self { lights, ..self }
+    }
+
+    /// Whether what a feature is the image of is there.
+    ///
+    /// # Errors
+    /// It is beyond the limits.
+    pub fn check(&self, key: &str, source: &Source) -> Result<(), Inconsistency> {
+        let [face, caster] = [source.face(), source.caster()];
+        let all = [
+            source.edge().map(|id| ("edge", id.0, self.edges, "edges")),
+            face.map(|id| ("face", id.0, self.faces, "faces")),
+            caster.map(|id| ("caster", id.0, self.faces, "faces")),
+            source
+                .light()
+                .map(|light| ("light", light, self.lights, "lights")),
+        ];
+        for (name, number, count, what) in all.into_iter().flatten() {
+            let reason = format!("is {number}, and there are {count} {what}");
+            check((number as usize) < count, format!("{key}.{name}"), reason)?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a description can be read as it says.
+///
+/// # Errors
+/// Its resolution is no distance.
+pub fn check_description(description: &Description) -> Result<(), Inconsistency> {
+    let Some(resolution) = description.resolution else {
+        return Ok(());
+    };
+    positive("description.resolution", resolution)?;
+    let reason = "is there with `exact`, expected one of them";
+    check(!description.exact, "description.resolution", reason)
+}
+
+/// Whether what a setup shows adds up.
+///
+/// # Errors
+/// A value is out of its range, or features are not in order.
+pub fn check_observation(observation: &Observation, limits: &SourceLimits) -> Checked {
+    let sights = &observation.sights;
+    for (i, sight) in sights.iter().enumerate() {
+        let key = |name: &str| format!("sights[{i}].{name}");
+        limits.check(&key("source"), &sight.source)?;
+        let is_next = i == 0 || sights[i - 1].source < sight.source;
+        check(is_next, key("source"), "is not in order, or is there twice")?;
+        positive(&key("length"), sight.length)?;
+        share(&key("share"), sight.share)?;
+        for growth in sight.growth.iter().flatten() {
+            positive(&key("growth"), *growth)?;
+        }
+    }
+    for (i, tuple) in observation.tuples.iter().enumerate() {
+        let key = format!("tuples[{i}].members");
+        check(tuple.members.len() > 1, &*key, "are less than two")?;
+        for member in &tuple.members {
+            let reason = format!("has {member}, and there are {} sights", sights.len());
+            check((*member as usize) < sights.len(), &*key, reason)?;
+        }
+    }
+    let [near, pairs] = observation.chance;
+    check(near <= pairs, "chance", "is of more pairs than there are")?;
+    for deviation in observation.pose.iter().flatten() {
+        positive("pose", *deviation)?;
+    }
+    let is_nothing = observation.unseen.is_none() || sights.is_empty();
+    check(is_nothing, "unseen", "is there, and so are sights")
+}
+
 /// How many records of each kind have been seen.
 #[derive(Clone, Debug)]
 pub struct Consistency {
@@ -45,6 +157,7 @@ impl Consistency {
     pub fn new(head: &Head) -> Result<Self, Inconsistency> {
         let schema = format!("is \"{}\", expected \"{SCHEMA}\"", head.schema);
         check(head.schema == SCHEMA, "schema", schema)?;
+        check_description(&head.description)?;
         let setups = head.setups.len() as u64;
         let reason = format!("is {}, and there are {setups} setups", head.count);
         check(head.count == setups, "count", reason)?;
@@ -118,7 +231,8 @@ impl Consistency {
             let reason = format!("is {expected}, and {found} of them follow");
             check(found == expected, key, reason)?;
         }
-        Ok(())
+        let reason = "is `codetection` in no line that follows, expected it in one";
+        check(self.codetections == 1, "record", reason)
     }
 
     fn feature(&self, feature: &Feature) -> Checked {
@@ -143,6 +257,7 @@ impl Consistency {
         let within = counted.is_some_and(|n| n <= self.head.count);
         check(within, "fragments", "are of more setups than there are")?;
         share("share", feature.share)?;
+        SourceLimits::of_setups(&self.head.setups).check("source", &feature.source)?;
         attributes("attributes", feature.attributes.as_ref())
     }
 
@@ -177,6 +292,9 @@ impl Consistency {
     }
 
     fn codetection(&self, codetection: &Codetection) -> Checked {
+        let (found, expected) = (codetection.tree.len(), self.head.features.min(MOST_PAIRED));
+        let reason = format!("has {found} features, expected {expected}");
+        check(found == expected, "tree", reason)?;
         for (i, node) in codetection.tree.iter().enumerate() {
             let key = |name: &str| format!("tree[{i}].{name}");
             self.rank(&key("feature"), node.feature)?;
@@ -226,8 +344,13 @@ fn ranked(rank: usize, known: &mut usize, expected: usize) -> Checked {
     Ok(())
 }
 
+fn positive(key: &str, value: f64) -> Checked {
+    let reason = format!("is {}, and must be above 0", number(value));
+    check(value.is_finite() && value > 0.0, key, reason)
+}
+
 fn share(key: &str, value: f64) -> Checked {
-    let reason = format!("is {value}, and must be 0 to 1");
+    let reason = format!("is {}, and must be 0 to 1", number(value));
     check((0.0..=1.0).contains(&value), key, reason)
 }
 

@@ -1,7 +1,7 @@
 //! The text of a model (`premio.model/1`): written with its digest, read, and held against its own
 //! counts and the digest.
 
-use super::consistency::{Consistency, Inconsistency};
+use super::consistency::{Consistency, Inconsistency, SourceLimits};
 use super::record::{Aspect, Codetection, Feature, Head, NO_DIGEST, Record, SCHEMA, Tuple};
 use premio_text::{Content, Document, TextError, Value};
 use serde::de::DeserializeOwned;
@@ -15,6 +15,32 @@ pub struct ModelFile {
     pub head: Head,
     /// All of its records.
     pub records: Vec<Record>,
+}
+
+impl ModelFile {
+    /// Whether features are images of edges and faces that the part has.
+    ///
+    /// # Errors
+    /// One is not, at its line of the model's text.
+    pub fn check_sources(&self, text: &str, limits: &SourceLimits) -> Result<(), ModelError> {
+        let mut start = 0;
+        for (record, line) in self.records.iter().zip(text.lines()) {
+            if let Record::Feature(feature) = record {
+                let checked = limits.check("source", &feature.source);
+                if let Err(error) = checked {
+                    return Err(Line::of(line, start)?.inconsistent(&error));
+                }
+            }
+            start += line.len() + 1;
+        }
+        Ok(())
+    }
+
+    /// What is wrong with a value of the first line of the model's text.
+    pub fn in_head(&self, text: &str, key: &str, words: &str) -> ModelError {
+        let first = text.lines().next().unwrap_or_default();
+        Line::of(first, 0).map_or_else(|error| error, |line| line.wrong(key, words))
+    }
 }
 
 /// The digits of a digest.

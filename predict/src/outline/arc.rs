@@ -71,6 +71,33 @@ impl Source {
         }
     }
 
+    /// The face that it is a limb of, or that it lies on.
+    pub fn face(&self) -> Option<FaceId> {
+        match *self {
+            Self::Limb { face, .. } => Some(FaceId(face)),
+            _ => self.ground(),
+        }
+    }
+
+    /// The face whose limb casts it, of a shadow.
+    pub fn caster(&self) -> Option<FaceId> {
+        match *self {
+            Self::LimbShadow { caster, .. } => Some(FaceId(caster)),
+            _ => None,
+        }
+    }
+
+    /// The light that it depends on.
+    pub fn light(&self) -> Option<u32> {
+        match *self {
+            Self::Edge { .. } | Self::Limb { .. } => None,
+            Self::EdgeShadow { light, .. }
+            | Self::LimbShadow { light, .. }
+            | Self::Terminator { light, .. }
+            | Self::Highlight { light, .. } => Some(light),
+        }
+    }
+
     /// The face that it lies on, where it is none of its boundary.
     pub fn ground(&self) -> Option<FaceId> {
         match *self {

@@ -6,7 +6,7 @@ use crate::session::Session;
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{self, Description, Format, Options};
 use premio_kernel::number::sign::Zeros;
-use premio_matching::camera::CameraFile;
+use premio_matching::camera::{CameraFile, Pinhole};
 use premio_predict::model::record::Description as Written;
 use premio_text::escape::quote;
 use premio_visibility::Camera;
@@ -194,9 +194,35 @@ pub fn refused_camera(path: &Path, text: &str, error: &CameraError) -> Failure {
     Failure::at(&name, text, error.span(text), error)
 }
 
-/// The camera of a file that took pictures.
-pub fn pinhole_of_file(path: &Path, session: Session) -> Result<CameraFile, Failure> {
-    let text = session.limits.read_text(path)?;
-    let name = path.display().to_string();
-    CameraFile::from_json(&text).map_err(|e| Failure::at(&name, &text, e.span(&text), &e))
+/// The camera that took pictures, with its file.
+#[derive(Debug)]
+pub struct PinholeFile {
+    name: String,
+    text: String,
+    camera: CameraFile,
+}
+
+impl PinholeFile {
+    /// Reads a camera.
+    ///
+    /// # Errors
+    /// The file is no camera's.
+    pub fn read(path: &Path, session: Session) -> Result<Self, Failure> {
+        let text = session.limits.read_text(path)?;
+        let name = path.display().to_string();
+        let camera = CameraFile::from_json(&text)
+            .map_err(|e| Failure::at(&name, &text, e.span(&text), &e))?;
+        Ok(Self { name, text, camera })
+    }
+
+    /// The camera for a picture of so many pixels.
+    ///
+    /// # Errors
+    /// It did not take the picture.
+    pub fn for_picture(&self, picture: &Path, size: [usize; 2]) -> Result<Pinhole, Failure> {
+        self.camera.for_picture(size).map_err(|error| {
+            let words = format!("{error} (for the picture {})", picture.display());
+            Failure::at(&self.name, &self.text, error.span(&self.text), &words)
+        })
+    }
 }

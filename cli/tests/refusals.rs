@@ -67,6 +67,53 @@ fn a_state_is_read_as_any_other_input() {
 }
 
 #[test]
+fn a_camera_that_took_no_such_picture_is_refused_at_its_place() {
+    let folder = prepared();
+    let path = folder.path();
+    let matrix = |values: &str| format!("{{\n \"K\": {values}\n}}");
+    for (text, expected) in [
+        (
+            matrix("[[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]], \"width\": 320"),
+            ["bad.json:2:", "320 x 120 pixels"],
+        ),
+        (
+            matrix("[[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]],\n\"height\": 90"),
+            ["bad.json:3:1: ", "160 x 90 pixels"],
+        ),
+        (
+            matrix("[[290.9, 0, 2000], [0, 290.9, 59.5], [0, 0, 1]]"),
+            ["bad.json:2:2: ", "centre at (2000, 60)"],
+        ),
+        (
+            // In millimetres.
+            matrix("[[8, 0, 4.4], [0, 8, 3.3], [0, 0, 1]]"),
+            [
+                "bad.json:2:2: ",
+                "8 pixels, for a picture of 160: expected 0.1 to 1000",
+            ],
+        ),
+        (
+            matrix("[[1e300, 0, 79.5], [0, 1e300, 59.5], [0, 0, 1]]"),
+            ["bad.json:2:2: ", "1e300 pixels"],
+        ),
+        (
+            matrix("[[290.9, 40, 79.5], [0, 290.9, 59.5], [0, 0, 1]]"),
+            ["bad.json:2:2: ", "skew of 40 pixels"],
+        ),
+        (
+            matrix("[[290.9, 0, 79.5], [0, 90, 59.5], [0, 0, 1]]"),
+            ["bad.json:2:2: ", "290.9 and 90 pixels"],
+        ),
+    ] {
+        fs::write(path.join("bad.json"), text).unwrap();
+        let words = "match part.model photo.png --camera bad.json -o out.json";
+        assert_says(&refused(path, words), &expected);
+    }
+    let words = "match part.jsonl photo.png --camera camera.json";
+    assert_says(&refused(path, words), &["part.jsonl", ".model", ".padl"]);
+}
+
+#[test]
 fn numbers_are_told_as_they_are_written() {
     let folder = prepared();
     let path = folder.path();

@@ -1,7 +1,7 @@
 //! The camera that took a picture: OpenCV's matrix.
 
 use nalgebra::{Isometry3, Matrix3, Point2, Point3, Vector3};
-use premio_text::{Document, TextError};
+use premio_text::{Document, TextError, number};
 use premio_visibility::camera::{Camera, Model};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -24,7 +24,7 @@ pub enum PinholeError {
     /// The picture has another size.
     #[error(
         "camera: it is of {} x {} pixels, the picture has {} x {}",
-        .camera[0], .camera[1], .picture[0], .picture[1]
+        number(.camera[0]), number(.camera[1]), .picture[0], .picture[1]
     )]
     Size {
         /// The camera's width and height in pixels.
@@ -34,9 +34,9 @@ pub enum PinholeError {
     },
     /// No camera sees so much, or so little.
     #[error(
-        "camera: `K` has a focal length of {focal} pixels, for a picture of {size}: expected between {} \
-         and {} times as many",
-        FOCALS[0], FOCALS[1]
+        "camera: `K` has a focal length of {} pixels, for a picture of {size}: expected {} to {} times \
+         as many, as for views of {:.0} to {:.2} degrees{}",
+        number(*focal), FOCALS[0], FOCALS[1], view(FOCALS[0]), view(FOCALS[1]), hint(*focal, *size)
     )]
     Focal {
         /// In pixels.
@@ -45,18 +45,62 @@ pub enum PinholeError {
         size: usize,
     },
     /// The optical axis is far out of the picture.
-    #[error("camera: `K` has its centre at ({x:.0}, {y:.0}), far outside the picture")]
+    #[error(
+        "camera: `K` has its centre at ({}, {}), far outside the picture",
+        number(x.round()), number(y.round())
+    )]
     Centre {
         /// The column.
         x: f64,
         /// The row.
         y: f64,
     },
+    /// The pixels of no sensor are so long.
+    #[error(
+        "camera: `K` has focal lengths of {} and {} pixels: expected at most {ASPECT} times as many in \
+         one direction",
+        number(.focal[0]), number(.focal[1])
+    )]
+    Aspect {
+        /// fx and fy.
+        focal: [f64; 2],
+    },
+    /// The rows and columns of no sensor are so far from perpendicular.
+    #[error(
+        "camera: `K` has a skew of {} pixels: expected at most {SKEW} of its focal length, {}",
+        number(*skew), number(*focal)
+    )]
+    Skew {
+        /// s.
+        skew: f64,
+        /// fx.
+        focal: f64,
+    },
 }
 
-/// The focal lengths of cameras, in the picture's longer side: views of 169 and of a twentieth of a
-/// degree.
-const FOCALS: [f64; 2] = [0.05, 1000.0];
+/// The focal lengths of cameras, in the picture's longer side. Lenses that keep lines straight see 130
+/// degrees at most: the shortest leaves them room, and tells millimetres from pixels.
+const FOCALS: [f64; 2] = [0.1, 1000.0];
+
+/// The most that fx and fy differ by, as a quotient: pixels of video fields and of anamorphic lenses
+/// are twice as long one way.
+const ASPECT: f64 = 2.5;
+
+/// The most skew, in focal lengths: six degrees.
+const SKEW: f64 = 0.1;
+
+/// What a focal length that is too short probably is.
+fn hint(focal: f64, size: usize) -> &'static str {
+    match focal < size as f64 {
+        true => "; is it in millimetres?",
+        false => "",
+    }
+}
+
+/// The view of a focal length in the picture's side, in degrees.
+fn view(focal: f64) -> f64 {
+    2.0 * 0.5f64.atan2(focal).to_degrees()
+}
 
 impl PinholeError {
     /// The bytes of the camera's JSON at which it is, where they are known.
@@ -64,8 +108,13 @@ impl PinholeError {
         let key = match self {
             Self::Text(error) => return error.span.clone(),
             Self::Value(key, _) => key,
-            Self::Matrix(_) | Self::Focal { .. } | Self::Centre { .. } => "K",
+            Self::Matrix(_)
+            | Self::Focal { .. }
+            | Self::Centre { .. }
+            | Self::Aspect { .. }
+            | Self::Skew { .. } => "K",
             Self::Distorted => "dist",
+            Self::Size { camera, picture } if camera[0] == picture[0] as f64 => "height",
             Self::Size { .. } => "width",
         };
         let document = Document::from_json(text).ok()?;
@@ -199,10 +248,18 @@ impl Pinhole {
                 "has a focal length that is not above zero",
             ));
         }
+        if focal[0].max(focal[1]) > ASPECT * focal[0].min(focal[1]) {
+            return Err(PinholeError::Aspect { focal });
+        }
+        let (skew, [focal_x, _]) = (k[(0, 1)], focal);
+        if skew.abs() > SKEW * focal_x {
+            let focal = focal_x;
+            return Err(PinholeError::Skew { skew, focal });
+        }
         Ok(Self {
             focal,
             centre: [k[(0, 2)], k[(1, 2)]],
-            skew: k[(0, 1)],
+            skew,
         })
     }
 

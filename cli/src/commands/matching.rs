@@ -2,14 +2,15 @@
 
 use crate::arguments::{MatchOptions, SoughtOptions, StrategyName, TrackOptions};
 use crate::diagnostics::Failure;
-use crate::input::{self, Part as Described};
+use crate::input::{self, Part as Described, PinholeFile};
 use crate::interrupt::stop;
 use crate::model::file::ReadModel;
 use crate::output::Outputs;
 use crate::session::Session;
 use crate::{imaging, output};
 use nalgebra::Isometry3;
-use premio_matching::camera::{CameraFile, Pinhole, PinholeError};
+use premio_csg::reader::Format;
+use premio_matching::camera::Pinhole;
 use premio_matching::explain::explained;
 use premio_matching::finding::{Finding, Match, Options};
 use premio_matching::learned::Learned;
@@ -33,8 +34,7 @@ struct Sought {
     band: f64,
     records: Vec<Record>,
     detector: Detector,
-    camera: CameraFile,
-    camera_name: String,
+    camera: PinholeFile,
     options: Options,
 }
 
@@ -79,12 +79,6 @@ pub fn track(options: &TrackOptions, session: Session) -> Result<(), Failure> {
 }
 
 impl Sought {
-    /// What is told of a picture that the camera did not take.
-    fn refused_camera(&self, picture: &Path, error: &PinholeError) -> Failure {
-        let picture = picture.display();
-        Failure::input(format!("{picture}: {}: {error}", self.camera_name))
-    }
-
     fn learned(&self, options: &SoughtOptions) -> Learned {
         match (options.uniform, self.records.is_empty()) {
             (true, _) => Learned::uniform(),
@@ -126,18 +120,24 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
     if let Some(path) = &options.overlay {
         imaging::format(path)?;
     }
-    let camera = input::pinhole_of_file(&options.camera, session)?;
+    let camera = PinholeFile::read(&options.camera, session)?;
     let is_model = path.extension().is_some_and(|e| e == "model");
     let mut known = None;
-    let (described, records) = match is_model {
-        true => {
+    let (described, records) = match (is_model, Format::from_path(path)) {
+        (true, _) => {
             let model = ReadModel::read(path, session)?;
             let described = model.part(session)?;
             let ModelFile { head, records } = model.file;
             known = Some(head.setups.conditions.detector);
             (described, records)
         }
-        false => (input::described(path, session)?, Vec::new()),
+        (false, Some(_)) => (input::described(path, session)?, Vec::new()),
+        (false, None) => {
+            let expected =
+                "expected a model (.model), or a description (.padl, .csg, .json, .asc or .pov)";
+            let said = format!("{name}: found a file of an unknown kind, {expected}");
+            return Err(Failure::input(said));
+        }
     };
     let detector = match &options.detector {
         Some(path) => crate::setup::detector(path, session)?,
@@ -156,7 +156,6 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
         records,
         detector,
         camera,
-        camera_name: options.camera.display().to_string(),
         options: Options {
             strategy: match options.strategy {
                 StrategyName::Bounded => Strategy::Bounded,
@@ -246,8 +245,8 @@ fn at(
     session: Session,
 ) -> Result<Sight, Failure> {
     let grey = imaging::read(path, session)?;
-    let camera = sought.camera.for_picture([grey.width, grey.height]);
-    let camera = camera.map_err(|e| sought.refused_camera(path, &e))?;
+    let size = [grey.width, grey.height];
+    let camera = sought.camera.for_picture(path, size)?;
     let started = Instant::now();
     let (grey, camera, scale) = reduced(grey, camera);
     let picture = Picture::new(&grey, &sought.detector);

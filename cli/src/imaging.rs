@@ -71,7 +71,7 @@ enum PictureError {
 const LARGEST_PIXEL: u64 = 16;
 const SLACK: u64 = 1 << 24;
 
-/// The picture of a file's bytes, of which nothing is missing or damaged, as far as the format tells.
+/// Reads the picture in a file's bytes. The format's checksums and codes must show no loss or damage.
 fn decode(bytes: &[u8], limit: u64) -> Result<DynamicImage, PictureError> {
     let opened = || ImageReader::new(Cursor::new(bytes)).with_guessed_format();
     let reader = opened()?;

@@ -218,8 +218,8 @@ fn single_precision_is_refused_far_from_the_origin() {
     assert!(glb::write(&facets, "far", Unit::Metre).is_ok());
 }
 
-/// The lune between two balls is 3e-8 thick at most, less than single precision tells at their radius:
-/// both sides of it would be one. Of two blocks that touch along an edge each has its own.
+/// The lune between two balls is at most 3e-8 thick, less than the spacing of f32 at their radius: its two
+/// sides would coincide. Blocks that touch along an edge are written, each with its own edge.
 #[test]
 fn a_sliver_below_single_precision_is_refused() {
     let lune = part("A = SPH(R=2) DIF SPH(R=2) AT (MOVX=0.00000003)");

@@ -57,8 +57,8 @@ impl SelectionFunction<FaceBox> for Pierced {
     }
 }
 
-/// A box around a face.
-pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, band: f64) -> Box3 {
+/// A box around a face, grown by a few resolutions.
+pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f64) -> Box3 {
     let whole = |o: &Point3<f64>, z: &Vector3<f64>, tube: f64, spine: f64| {
         let reach = |i: usize| tube + spine * (1.0 - z[i] * z[i]).max(0.0).sqrt();
         Box3 {
@@ -82,5 +82,5 @@ pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, band: f64) -> 
             }
         }
     };
-    hull.grown(4.0 * band)
+    hull.grown(4.0 * resolution)
 }

@@ -195,7 +195,7 @@ impl State {
             let words = format!("{words}: expected the state of a run of `premio fuzz`");
             Failure::in_bytes(&name, text.as_bytes(), span, &words)
         };
-        // What is twice or not finite is told at its place.
+        // The document's own reader gives duplicate keys and non-finite numbers a place.
         let document = Document::from_json(&text)
             .map_err(|e| refused(e.span.clone().unwrap_or(0..0), e.to_string()))?;
         let state: Self = serde_json::from_str(&text).map_err(|e| {
@@ -278,7 +278,7 @@ impl State {
     }
 }
 
-/// The byte of a place that is told by line and column, from 1, the column in bytes.
+/// The byte offset of a line and a column, both from 1; columns count bytes.
 fn byte_of(text: &str, line: usize, column: usize) -> usize {
     let before = text.split_inclusive('\n').take(line.saturating_sub(1));
     before.map(str::len).sum::<usize>() + column.saturating_sub(1)

@@ -132,14 +132,14 @@ impl Picture {
                         if component.nonzero.len() <= unit {
                             component.nonzero.resize(unit + 1, 0);
                         }
-                        let mut band = Band {
+                        let mut selection = SpectralSelection {
                             last: scan.last,
                             nonzero: &mut component.nonzero[unit],
                             zero_blocks,
                         };
                         match is_refinement {
-                            false => band.first(scan.first, bits, other()?)?,
-                            true => band.refined(scan.first, bits, other()?)?,
+                            false => selection.first(scan.first, bits, other()?)?,
+                            true => selection.refined(scan.first, bits, other()?)?,
                         }
                     }
                 }
@@ -150,12 +150,12 @@ impl Picture {
 
     /// Puts down what is known after a scan.
     fn learn(&mut self, scan: &Scan) {
-        let (band, bit) = match self.is_progressive {
+        let (selected, bit) = match self.is_progressive {
             true => (scan.first..=scan.last, scan.bit),
             false => (0..=63, 0),
         };
         for &(component, _) in &scan.members {
-            self.components[component].known[band.clone()].fill(Some(bit));
+            self.components[component].known[selected.clone()].fill(Some(bit));
         }
     }
 }
@@ -211,14 +211,14 @@ fn sequential(bits: &mut Bits<'_>, mean: &Huffman, other: &Huffman) -> Result<()
 }
 
 /// Coefficients of a block in a progressive scan.
-struct Band<'p> {
+struct SpectralSelection<'p> {
     last: usize,
     nonzero: &'p mut u64,
     /// How many more blocks have nothing new.
     zero_blocks: &'p mut u32,
 }
 
-impl Band<'_> {
+impl SpectralSelection<'_> {
     /// A run of blocks that have nothing new, of which this is the first.
     fn run(&mut self, zeros: usize, bits: &mut Bits<'_>) -> Result<(), EntropyError> {
         *self.zero_blocks = (1 << zeros) + bits.take(zeros as u32)?;

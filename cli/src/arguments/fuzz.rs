@@ -1,0 +1,111 @@
+//! The options of `fuzz`.
+
+use super::{ModelFormat, positive, seconds};
+use crate::fuzz::profile::Profile;
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Options of `fuzz`.
+#[derive(Debug, Args)]
+pub struct FuzzOptions {
+    /// The kinds of trees
+    #[arg(
+        long,
+        value_name = "P",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "all"
+    )]
+    pub profile: Vec<ProfileChoice>,
+    /// The first seed
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub from: u64,
+    /// How many seeds of each profile
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    pub count: u64,
+    /// How many trees at a time [default: as many as there are processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Evaluate each tree once more with no decision made in doubles, and compare
+    #[arg(long)]
+    pub unfiltered: bool,
+    /// Draw five views, follow the boundary of the shadow in each, and read the sheets back
+    #[arg(long)]
+    pub sheets: bool,
+    /// Count the pieces of five views again, and look for missing contours
+    #[arg(long)]
+    pub views: bool,
+    /// Write STEP files and meshes, read them back and hold them against the boundary
+    #[arg(long)]
+    pub step: bool,
+    /// After how many seconds a tree is given up
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "120")]
+    pub limit: f64,
+    /// How many rays measure each volume
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    pub rays: u32,
+    /// Make the first finds of each kind as small as they fail in the same way
+    #[arg(long)]
+    pub shrink: bool,
+    /// Write the models to a folder, with a manifest of their true measures
+    #[arg(long, value_name = "DIR")]
+    pub write: Option<PathBuf>,
+    /// How the models are written
+    #[arg(
+        long,
+        value_name = "F",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "padl",
+        requires = "write"
+    )]
+    pub write_format: Vec<ModelFormat>,
+    /// Keep in a file how far the run is; with the same arguments it goes on from there
+    #[arg(long, value_name = "FILE")]
+    pub state: Option<PathBuf>,
+    /// What lies nearer than this coincides, in the part's unit [default: 1e-11 of its size]
+    #[arg(long, value_name = "D", value_parser = positive)]
+    pub resolution: Option<f64>,
+    /// Refuse a tree where a decision was closer than a hundred to one
+    #[arg(long)]
+    pub strict: bool,
+    /// Where to write the summary [default: standard output]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Be a worker: answer models from standard input, on these terms
+    #[arg(long, hide = true, value_name = "TERMS")]
+    pub worker: Option<String>,
+}
+
+/// A profile, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProfileChoice {
+    /// Every profile.
+    All,
+    /// This one.
+    One(Profile),
+}
+
+impl ValueEnum for ProfileChoice {
+    fn value_variants<'a>() -> &'a [Self] {
+        use Profile::{Deep, Grid, Near, Parts, Tangent, Wide};
+        const CHOICES: [ProfileChoice; 7] = [
+            ProfileChoice::All,
+            ProfileChoice::One(Grid),
+            ProfileChoice::One(Near),
+            ProfileChoice::One(Tangent),
+            ProfileChoice::One(Deep),
+            ProfileChoice::One(Wide),
+            ProfileChoice::One(Parts),
+        ];
+        &CHOICES
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            Self::All => Some(PossibleValue::new("all").help("Every profile")),
+            Self::One(profile) => profile.to_possible_value(),
+        }
+    }
+}

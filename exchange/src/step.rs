@@ -6,6 +6,7 @@
 //! voids as voids. Of ISO 10303-42 no more is used than every application protocol with boundary
 //! representations has.
 
+mod clearance;
 mod part21;
 mod product;
 mod shape;
@@ -57,7 +58,7 @@ pub enum StepError {
     Spline(#[from] SplineError),
     /// Something is as thin as points and edges of other kernels are wide, which are valid nowhere then.
     #[error(
-        "{what} as {size:.3e} at ({:.9}, {:.9}, {:.9}): other kernels take what is not more than \
+        "{what} {size:.3e} at ({:.9}, {:.9}, {:.9}): other kernels take what is not more than \
          {least:.0e} apart for one",
         place[0], place[1], place[2]
     )]
@@ -90,7 +91,7 @@ pub fn write(brep: &Brep, options: &Options) -> Result<String, StepError> {
     let mut seamed = Seamed::of(brep, options.resolution)?;
     seamed.draw_together(least);
     seamed.close_narrow(least);
-    thin::check(brep, &seamed, least)?;
+    thin::check(brep, &seamed, options.resolution, least)?;
     let mut exchange = Exchange::default();
     let context = product::context(&mut exchange, options);
     let mut shape = shape::Shape::new(&mut exchange, &seamed, options.accuracy / NEARER);

@@ -1,6 +1,6 @@
 //! Edges, faces and walls that are too thin for other kernels, whose vertices and edges have a width.
 
-use super::StepError;
+use super::{StepError, clearance};
 use crate::seamed::{Edge, Seamed, short};
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
@@ -13,6 +13,10 @@ use std::fmt;
 /// `Precision::Confusion`).
 const APART: f64 = 1.0 / 10_000_000.0;
 
+/// Two edges of a face cross for other kernels where they are no farther apart than this part of that
+/// (Open CASCADE's `Precision::Intersection`).
+const CROSSING: f64 = 1.0 / 100.0;
+
 /// A part of a boundary that is thin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Thin {
@@ -20,6 +24,8 @@ pub enum Thin {
     Edge,
     /// A face is narrow.
     Face,
+    /// Two edges of a face are next to each other.
+    Gap,
     /// The two sides of a shell are next to each other.
     Shell,
 }
@@ -27,9 +33,10 @@ pub enum Thin {
 impl fmt::Display for Thin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Edge => "an edge as short",
-            Self::Face => "a face as narrow",
-            Self::Shell => "a wall or gap as thin",
+            Self::Edge => "an edge as short as",
+            Self::Face => "a face as narrow as",
+            Self::Gap => "two edges of a face as near as",
+            Self::Shell => "a wall or gap as thin as",
         })
     }
 }
@@ -39,8 +46,17 @@ pub(super) fn apart(unit: Unit) -> f64 {
     APART / unit.millimetres()
 }
 
-/// That every edge is longer than that, and every face wider.
-pub(super) fn check(brep: &Brep, seamed: &Seamed<'_>, least: f64) -> Result<(), StepError> {
+/// That every edge is longer than that, every face wider, and that edges of a face touch or are well apart.
+pub(super) fn check(
+    brep: &Brep,
+    seamed: &Seamed<'_>,
+    resolution: f64,
+    least: f64,
+) -> Result<(), StepError> {
+    let crossing = least * CROSSING;
+    if let Some(near) = clearance::near_edges(seamed, resolution, crossing) {
+        return Err(thin(Thin::Gap, near.place, near.distance, crossing));
+    }
     let areas = Measures::of(brep).areas(brep);
     let length = |edge: &Edge<'_>| short::length(&edge.curve, edge.range);
     let lengths: Vec<f64> = seamed.edges.iter().map(length).collect();

@@ -11,13 +11,13 @@ use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Rgb, RgbImage};
 use jpeg::JpegError;
 use netpbm::NetpbmError;
 use png::PngError;
+use premio_detect::Grey;
 use premio_matching::finding::Match;
 use premio_matching::picture::Picture;
 use premio_predict::feature::ink::bresenham;
 use premio_predict::outline::Source;
 use premio_predict::overlay;
 use premio_predict::prediction::Prediction;
-use premio_predict::processing::Grey;
 use std::io::Cursor;
 use std::path::Path;
 

@@ -11,8 +11,8 @@ use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
 use premio_text::escape::is_unsafe;
 use premio_visibility::contours;
-use premio_visibility::drawing::sheet::{self, Sheet, View};
-use premio_visibility::drawing::{self, Drawing, dxf, svg};
+use premio_drawing::sheet::{self, Sheet, View};
+use premio_drawing::{Drawing, dxf, svg};
 use std::io::{Cursor, Read};
 
 /// So many of the first bytes are the name.
@@ -162,10 +162,10 @@ fn drawings(part: &Part, sight: &Sight, name: &str) {
     };
     let json = serde_json::to_string(&seen).expect("contours are written");
     let _: serde_json::Value = serde_json::from_str(&json).expect("it is JSON");
-    let how = drawing::Options {
+    let how = premio_drawing::Options {
         hidden: true,
         smooth: true,
-        ..drawing::Options::default()
+        ..premio_drawing::Options::default()
     };
     let view = || Drawing::new(&seen, &how);
     document(&svg::write(&view()), "path");

@@ -8,8 +8,8 @@ use crate::picture::Picture;
 use crate::predicted::Arc;
 use crate::search::Relation;
 use nalgebra::{Point2, Point3, Vector2};
+use premio_detect::Shape;
 use premio_kernel::brep::topology::VertexId;
-use premio_predict::processing::Shape;
 use std::collections::BTreeMap;
 
 /// An edge ends in a vertex if it comes as near, in pixels, and goes on no farther.

@@ -7,8 +7,8 @@ use crate::part::{Part, Stroke};
 use crate::picture::Picture;
 use crate::pose::circle::{circles, edge_poses};
 use nalgebra::Point3;
+use premio_detect::Shape;
 use premio_kernel::geometry::curve::Curve;
-use premio_predict::processing::Shape;
 use rayon::prelude::*;
 
 /// An arc of an ellipse with fewer edge pixels tells no circle.

@@ -3,7 +3,7 @@
 //! A [`Subject`](subject::Subject) is put before a camera and under lights ([`setup`]); the visible
 //! contours, the boundaries of cast shadows and the outlines of highlights divide the image into
 //! regions ([`outline`]); pixels next to these get their grey levels ([`image`]); the detector
-//! ([`processing`]) finds edges in them, and these are told to what they are the image of
+//! ([`premio_detect`]) finds edges in them, and these are told to what they are the image of
 //! ([`feature`]).
 
 pub mod advise;
@@ -14,7 +14,6 @@ pub mod model;
 pub mod outline;
 pub mod overlay;
 pub mod prediction;
-pub mod processing;
 pub mod reflectance;
 pub mod render;
 pub mod setup;

@@ -8,8 +8,8 @@ use crate::image::blur::blur;
 use crate::image::response::respond;
 use crate::image::shading::Shading;
 use crate::outline::Seen;
-use crate::processing::{Domain, Grey};
 use crate::setup::sensor::Sensor;
+use premio_detect::{Domain, Grey};
 
 /// How many samples a pixel next to a change has on a side.
 pub const FINE: usize = 8;

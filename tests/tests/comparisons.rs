@@ -40,7 +40,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("csg/src/reader", "whether a text says what it may"),
     ("csg/src/writer", "how a text is written"),
     ("csg/src/primitive.rs", "whether lengths are what they may"),
-    ("visibility/src/drawing", "it draws what is decided"),
+    ("drawing/src", "it draws what is decided"),
 ];
 
 /// Calls that give whole numbers.

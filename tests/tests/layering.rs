@@ -16,6 +16,12 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         "premio-visibility",
         &["premio-kernel", "premio-text"],
     ),
+    (
+        "drawing",
+        "premio-drawing",
+        &["premio-visibility", "premio-kernel", "premio-text"],
+    ),
+    ("detect", "premio-detect", &["premio-text"]),
     // Its tests make boundaries of descriptions.
     (
         "exchange",
@@ -25,7 +31,13 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
     (
         "predict",
         "premio-predict",
-        &["premio-visibility", "premio-kernel", "premio-text"],
+        &[
+            "premio-visibility",
+            "premio-drawing",
+            "premio-detect",
+            "premio-kernel",
+            "premio-text",
+        ],
     ),
     // Its tests make boundaries of descriptions.
     (
@@ -33,6 +45,7 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         "premio-matching",
         &[
             "premio-predict",
+            "premio-detect",
             "premio-visibility",
             "premio-kernel",
             "premio-text",
@@ -48,6 +61,8 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
             "premio-text",
             "premio-csg",
             "premio-visibility",
+            "premio-drawing",
+            "premio-detect",
             "premio-exchange",
             "premio-predict",
             "premio-matching",

@@ -4,6 +4,7 @@
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options as Reading, read};
+use premio_detect::Grey;
 use premio_matching::camera::Pinhole;
 use premio_matching::finding::{Finding, Limits, Match, Options};
 use premio_matching::learned::Learned;
@@ -12,7 +13,6 @@ use premio_matching::part::Part;
 use premio_matching::picture::{Picture, detector};
 use premio_matching::search::Strategy;
 use premio_predict::prediction::{Memory, with_draft};
-use premio_predict::processing::Grey;
 use premio_predict::render;
 use premio_predict::setup::Setup;
 use premio_predict::subject::Subject;

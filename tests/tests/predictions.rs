@@ -3,11 +3,11 @@
 
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
+use premio_detect::Domain;
 use premio_predict::agreement::{Agreement, matches};
 use premio_predict::outline::Source;
 use premio_predict::outline::stage::StageError;
 use premio_predict::prediction::{self, Draft, Memory, prediction};
-use premio_predict::processing::Domain;
 use premio_predict::render;
 use premio_predict::setup::Setup;
 use premio_predict::subject::Subject;

@@ -4,11 +4,11 @@
 
 use premio_csg::boundary::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
+use premio_drawing::sheet::View;
+use premio_drawing::{Drawing, Layer};
 use premio_visibility::Contours;
 use premio_visibility::contour::ImageCurve;
 use premio_visibility::contours;
-use premio_visibility::drawing::sheet::View;
-use premio_visibility::drawing::{self, Drawing, Layer};
 use std::f64::consts::PI;
 
 fn seen(part: &str, view: View) -> Contours {
@@ -21,9 +21,9 @@ fn seen(part: &str, view: View) -> Contours {
 }
 
 fn drawn(part: &str, view: View, smooth: bool) -> Drawing {
-    let options = drawing::Options {
+    let options = premio_drawing::Options {
         smooth,
-        ..drawing::Options::default()
+        ..premio_drawing::Options::default()
     };
     Drawing::new(&seen(part, view), &options)
 }

@@ -6,7 +6,6 @@ pub mod candidates;
 pub mod contour;
 pub mod correction;
 pub mod crossing;
-pub mod drawing;
 pub mod edgewise;
 mod face_box;
 mod facing;

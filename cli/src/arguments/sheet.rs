@@ -2,7 +2,7 @@
 
 use super::{LengthUnit, positive};
 use clap::{Args, ValueEnum};
-use premio_visibility::drawing::sheet::{Angle, Paper, Scale, View};
+use premio_drawing::sheet::{Angle, Paper, Scale, View};
 
 /// A sheet of paper with a frame and a title block; any of these asks for it.
 #[derive(Debug, Args)]

@@ -3,9 +3,9 @@
 use premio_csg::boundary::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_csg::tree::Tree;
+use premio_drawing::Drawing;
+use premio_drawing::sheet::View;
 use premio_kernel::geometry::bounds::Box3;
-use premio_visibility::drawing::sheet::View;
-use premio_visibility::drawing::{self, Drawing};
 use premio_visibility::{Camera, Contours, contours};
 
 /// A part and its front view.
@@ -29,7 +29,7 @@ pub(super) fn front_view(text: &str) -> FrontView {
         .camera(bounds.centre(), bounds.diagonal())
         .unwrap();
     let seen = contours(&known.brep, &camera, known.resolution).unwrap();
-    let drawing = Drawing::new(&seen, &drawing::Options::default());
+    let drawing = Drawing::new(&seen, &premio_drawing::Options::default());
     FrontView {
         tree,
         bounds,

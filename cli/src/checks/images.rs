@@ -2,9 +2,9 @@
 //! for the image of a curve.
 
 use super::window::{Seen, Window};
+use premio_drawing::Layer;
 use premio_kernel::geometry::curve::Curve;
 use premio_visibility::Contours;
-use premio_visibility::drawing::Layer;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 

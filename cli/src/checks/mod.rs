@@ -22,9 +22,9 @@ pub use sheets::{SheetFault, SheetReport};
 use premio_csg::boundary::Evaluation;
 use premio_csg::rays::{Clearance, Estimate, Material};
 use premio_csg::tree::Tree;
+use premio_drawing::Drawing;
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::number::sign::ROUNDING;
-use premio_visibility::drawing::{self, Drawing};
 use premio_visibility::projection::Projection;
 use premio_visibility::{Camera, Contours, contours};
 use std::fmt;
@@ -301,7 +301,7 @@ impl<'a> Checker<'a> {
     fn drawing(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
         let projection = Projection::new(&seen.camera, clearance.size);
-        let drawing = Drawing::new(seen, &drawing::Options::default());
+        let drawing = Drawing::new(seen, &premio_drawing::Options::default());
         let size = (drawing.extent[1] - drawing.extent[0]).norm();
         // In the image lengths are as many times greater as the part is.
         let near = clearance.shift * size / clearance.size;

@@ -8,7 +8,7 @@ use super::Finding;
 use super::strokes::{Strokes, is_outline, point};
 use nalgebra::{Point2, Vector2};
 use premio_csg::rays::{Material, Ray};
-use premio_visibility::drawing::Drawing;
+use premio_drawing::Drawing;
 use premio_visibility::projection::{Projection, Sight};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -204,7 +204,7 @@ impl fmt::Display for ShadowOutline {
 mod tests {
     use super::*;
     use crate::checks::fixture::{FrontView, front_view};
-    use premio_visibility::drawing::Layer;
+    use premio_drawing::Layer;
 
     /// A dome on its cylinder from the front, with the strokes that are kept.
     fn outline(keeps: impl Fn(Layer, usize) -> bool) -> ShadowOutline {

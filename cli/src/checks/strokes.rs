@@ -1,7 +1,7 @@
 //! The strokes of a drawing, found by place.
 
 use nalgebra::{Point2, Vector2};
-use premio_visibility::drawing::{Layer, Shape, Stroke};
+use premio_drawing::{Layer, Shape, Stroke};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::f64::consts::TAU;

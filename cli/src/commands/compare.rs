@@ -7,10 +7,10 @@ use crate::output::Outputs;
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input};
+use premio_detect::Domain;
 use premio_predict::agreement::{Agreement, Match, SCHEMA, matches};
 use premio_predict::outline::Source;
 use premio_predict::prediction::prediction;
-use premio_predict::processing::Domain;
 use serde::Serialize;
 use std::fmt::Write;
 

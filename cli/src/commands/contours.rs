@@ -6,10 +6,10 @@ use crate::input::Part;
 use crate::session::Session;
 use crate::{input, output};
 use nalgebra::Point3;
+use premio_drawing::sheet::{self, Angle, Paper, Sheet, View};
+use premio_drawing::{Drawing, dxf, svg};
 use premio_kernel::unit::Unit;
 use premio_visibility::camera::CameraError;
-use premio_visibility::drawing::sheet::{self, Angle, Paper, Sheet, View};
-use premio_visibility::drawing::{self, Drawing, dxf, svg};
 use premio_visibility::view::ViewError;
 use premio_visibility::{Camera, Contours, contours};
 use std::path::Path;
@@ -56,10 +56,10 @@ fn seen(part: &Part, camera: &Camera, given: Option<&Given<'_>>) -> Result<Conto
 }
 
 fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
-    let how = drawing::Options {
+    let how = premio_drawing::Options {
         hidden: options.hidden,
         smooth: options.smooth_edges,
-        ..drawing::Options::default()
+        ..premio_drawing::Options::default()
     };
     Drawing::new(seen, &how)
 }

@@ -5,8 +5,8 @@ use crate::diagnostics::{Failure, Voice};
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input, output};
+use premio_detect::Grey;
 use premio_predict::prediction::Draft;
-use premio_predict::processing::Grey;
 use premio_predict::render;
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Edge pixels by place and orientation.
 
 use nalgebra::{Point2, Vector2};
-use premio_predict::processing::{Detection, Shape};
+use premio_detect::{Detection, Shape};
 use std::f64::consts::PI;
 
 /// How many classes of orientation there are.

@@ -1,7 +1,7 @@
 //! Lines of a picture: straight segments, and those that become one where an edge is broken.
 
 use nalgebra::{Point2, Vector2};
-use premio_predict::processing::{Detection, Shape};
+use premio_detect::{Detection, Shape};
 
 /// How far, in pixels, pieces of one line may lie off it.
 const OFF: f64 = 1.5;

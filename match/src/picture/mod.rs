@@ -10,7 +10,7 @@ pub use edges::{Edges, Hit, PIECE, Reach, bin};
 pub use lines::{Line, lines};
 pub use reduced::reduced;
 
-use premio_predict::processing::{Detection, Detector, Domain, Grey, Mask, Shape};
+use premio_detect::{Detection, Detector, Domain, Grey, Mask, Shape};
 
 /// A picture with its features.
 #[derive(Clone, Debug)]

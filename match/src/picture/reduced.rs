@@ -1,7 +1,7 @@
 //! Pictures of many pixels, made smaller: what detectors and distances in pixels are made for.
 
 use crate::camera::Pinhole;
-use premio_predict::processing::Grey;
+use premio_detect::Grey;
 
 /// A picture with a longer side is halved, in pixels.
 const LONGEST: usize = 1280;

@@ -2,7 +2,7 @@
 
 use super::Criteria;
 use super::ink::Ink;
-use crate::processing::{Detection, Detector, EdgePixel};
+use premio_detect::{Detection, Detector, EdgePixel};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

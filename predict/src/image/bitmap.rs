@@ -1,6 +1,6 @@
 //! Sets of pixels, a bit for each.
 
-use crate::processing::Domain;
+use premio_detect::Domain;
 use std::ops::Range;
 
 /// A set of pixels of an image.

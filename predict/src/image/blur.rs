@@ -1,6 +1,6 @@
 //! The point spread of the optics: a Gaussian, on the pixels that are known.
 
-use crate::processing::{Domain, Grey};
+use premio_detect::{Domain, Grey};
 use std::ops::Range;
 
 /// How many standard deviations of the point spread count.

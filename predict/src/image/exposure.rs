@@ -5,7 +5,7 @@ use super::field::Field;
 use super::shading::Shading;
 use crate::outline::scanline::{LINES, line_y};
 use crate::outline::{Region, Regions};
-use crate::processing::{Domain, Grey};
+use premio_detect::{Domain, Grey};
 use std::ops::Range;
 
 /// How many pixels apart the light of one region is reckoned, where it runs straight in between.

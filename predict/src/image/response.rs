@@ -1,8 +1,8 @@
 //! The sensor's response: photon noise, read noise, and the steps of its grey levels.
 
-use crate::processing::{Domain, Grey};
 use crate::setup::sensor::Sensor;
 use crate::statistics::Random;
+use premio_detect::{Domain, Grey};
 
 /// Turns levels into what the sensor tells: for a seed the noise of a pixel is the same whichever
 /// other pixels are asked for.

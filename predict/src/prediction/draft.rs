@@ -13,10 +13,10 @@ use crate::outline::highlight::add_highlights;
 use crate::outline::shadow::add_shadows;
 use crate::outline::stage::{Eyes, StageError};
 use crate::outline::{Arc, Regions, Stage};
-use crate::processing::{Detection, Domain, Grey, Workspace};
 use crate::setup::{Conditions, Setup};
 use crate::statistics::hash;
 use crate::subject::Subject;
+use premio_detect::{Detection, Domain, Grey, Workspace};
 use std::cell::RefCell;
 
 /// What a prediction is made of.
@@ -273,7 +273,7 @@ fn step_response(conditions: &Conditions) -> f64 {
     };
     let all = Domain::full(size, size);
     blur(&mut step, &all, conditions.sensor.blur);
-    let detector = crate::processing::Detector {
+    let detector = premio_detect::Detector {
         threshold: 1.0,
         low: None,
         ..conditions.detector.clone()

@@ -7,8 +7,8 @@ use crate::feature::group::{Boundary, Chain, boundaries, chains, triplets};
 use crate::feature::junction::{Junction, Nodes, junctions};
 use crate::feature::reason::Reason;
 use crate::outline::{Arc, Source};
-use crate::processing::Shape;
 use crate::setup::Setup;
+use premio_detect::Shape;
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -9,9 +9,9 @@ pub mod viewpoint;
 mod written;
 
 use crate::feature::Criteria;
-use crate::processing::{Detector, DetectorError};
 use crate::reflectance::{Constants, GREEN, Material, Named};
 use light::Light;
+use premio_detect::{Detector, DetectorError};
 use premio_text::{Content, Document, TextError, number};
 use schemars::JsonSchema;
 use sensor::Sensor;

@@ -7,7 +7,7 @@ use super::{Conditions, FacesFinish, Finish, Setup, SetupError};
 use crate::feature::Criteria;
 use crate::model::Setups;
 use crate::model::setups::Sphere;
-use crate::processing::Detector;
+use premio_detect::Detector;
 use premio_text::Document;
 use serde::Deserialize;
 

@@ -2,8 +2,8 @@
 
 use super::Placing;
 use nalgebra::{Point2, Vector2};
-use premio_visibility::drawing::sheet::Sheet;
-use premio_visibility::drawing::{Layer, Shape, Stroke};
+use premio_drawing::sheet::Sheet;
+use premio_drawing::{Layer, Shape, Stroke};
 use std::f64::consts::TAU;
 
 /// A group: its code and its value.

@@ -12,12 +12,12 @@ use super::images::Images;
 use super::strokes::{Strokes, point};
 use super::window::Window;
 use nalgebra::Point2;
+use premio_drawing::sheet::{self, Sheet, SheetError};
+use premio_drawing::{Drawing, Layer, Shape, Stroke};
 use premio_kernel::geometry::bounds::Box3;
 use premio_kernel::unit::Unit;
 use premio_visibility::Contours;
 use premio_visibility::contour::ImageCurve;
-use premio_visibility::drawing::sheet::{self, Sheet, SheetError};
-use premio_visibility::drawing::{self, Drawing, Layer, Shape, Stroke};
 use premio_visibility::projection::Projection;
 use std::fmt;
 
@@ -96,10 +96,10 @@ impl SheetReport {
     pub fn new(seen: &Contours, bounds: &Box3, size: f64) -> Self {
         let mut report = Self::default();
         for smooth in [false, true] {
-            let options = drawing::Options {
+            let options = premio_drawing::Options {
                 smooth,
                 distance: Some(size * FINE),
-                ..drawing::Options::default()
+                ..premio_drawing::Options::default()
             };
             report.drawing(seen, bounds, Drawing::new(seen, &options), size);
         }
@@ -131,8 +131,12 @@ impl SheetReport {
             size,
         };
         let texts = [
-            svg::read(&drawing::svg::write_sheet(&sheet), sheet.size.y, &paper),
-            dxf::read(&drawing::dxf::write_sheet(&sheet), &sheet, &paper),
+            svg::read(
+                &premio_drawing::svg::write_sheet(&sheet),
+                sheet.size.y,
+                &paper,
+            ),
+            dxf::read(&premio_drawing::dxf::write_sheet(&sheet), &sheet, &paper),
         ];
         for (read, format) in texts.into_iter().zip(["SVG", "DXF"]) {
             match read {

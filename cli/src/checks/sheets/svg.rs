@@ -2,7 +2,7 @@
 
 use super::Placing;
 use nalgebra::{Point2, Vector2};
-use premio_visibility::drawing::{Layer, Shape, Stroke};
+use premio_drawing::{Layer, Shape, Stroke};
 use std::f64::consts::TAU;
 
 /// The strokes of the views on a sheet of a height, in the coordinates of the drawing.

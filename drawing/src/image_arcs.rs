@@ -3,12 +3,12 @@
 use super::Layer;
 use super::image_arc::{Ellipse, ImageArc, Sample};
 use super::supports::ordered;
-use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
-use crate::image::{folds_of_conic, map_of_ellipse};
-use crate::projection::Projection;
 use nalgebra::{Matrix3, Point2, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::sign::ROUNDING;
+use premio_visibility::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
+use premio_visibility::image::{folds_of_conic, map_of_ellipse};
+use premio_visibility::projection::Projection;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 

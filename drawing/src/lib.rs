@@ -13,10 +13,10 @@ pub mod sheet;
 mod supports;
 pub mod svg;
 
-use crate::contour::{Contour, Contours, Kind};
-use crate::projection::{Projection, Sight};
 use image_arcs::ArcMaker;
 use nalgebra::{Point2, Vector2};
+use premio_visibility::contour::{Contour, Contours, Kind};
+use premio_visibility::projection::{Projection, Sight};
 
 /// What a stroke shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

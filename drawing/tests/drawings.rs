@@ -1,13 +1,14 @@
 //! Drawings of parts built by hand.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../visibility/tests/parts/mod.rs"]
 mod parts;
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use parts::{BAND, Builder, tilted};
+use premio_drawing::{Drawing, Options, Shape, dxf, svg};
 use premio_kernel::geometry::frame::Frame;
 use premio_visibility::contour::Contours;
-use premio_visibility::drawing::{Drawing, Options, Shape, dxf, svg};
 use premio_visibility::projection::Projection;
 use premio_visibility::{Camera, contours};
 

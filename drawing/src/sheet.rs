@@ -3,10 +3,10 @@
 //! Lengths are millimetres on the paper, from its lower left corner, y up.
 
 use super::Drawing;
-use crate::camera::{Camera, CameraError};
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use premio_kernel::unit::Unit;
 use premio_text::number;
+use premio_visibility::camera::{Camera, CameraError};
 use std::collections::BTreeMap;
 
 /// A view along an axis of the part's frame, z up, or the isometric one.

@@ -2,11 +2,10 @@
 //! touches files and the terminal.
 
 mod arguments;
-pub mod checks;
 mod commands;
 mod diagnostics;
 mod files;
-pub mod fuzz;
+mod fuzz;
 mod imaging;
 mod input;
 mod interrupt;

@@ -2,5 +2,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    premio::run(std::env::args_os())
+    premio_cli::run(std::env::args_os())
 }

@@ -5,7 +5,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Vector3;
-use premio::checks::{Checker, Finding};
+use premio_verify::checks::{Checker, Finding};
 use premio_csg::rays::Material;
 use premio_fuzz::{Part, Recipe};
 use premio_kernel::brep::inside::holds;

@@ -7,8 +7,8 @@
 mod recipe;
 
 use nalgebra::{Point3, Vector3};
-use premio::fuzz::model::Model;
-use premio::fuzz::write::{Format, write};
+use premio_verify::generator::model::Model;
+use premio_verify::generator::write::{Format, write};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Options, read};
 use premio_csg::tree::Tree;

@@ -1,6 +1,6 @@
 //! Bytes, taken one after the other, as choices.
 
-use premio::fuzz::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+use premio_verify::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
 
 /// Bytes that are taken as choices; where they end, each further one is the first.
 #[derive(Debug)]

@@ -4,11 +4,11 @@
 //! `cargo run --release -p premio-tests --example trees -- --from 0 --count 10000 --views`
 
 use clap::Parser;
-use premio::fuzz::model::Model;
-use premio::fuzz::profile::Profile;
-use premio::fuzz::shrink::shrink;
 use premio_tests::examine::{Depth, VIEWS, examine};
 use premio_tests::random::text;
+use premio_verify::generator::model::Model;
+use premio_verify::generator::profile::Profile;
+use premio_verify::generator::shrink::shrink;
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 use std::process::{Command, ExitCode, Stdio};
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Parser)]
 struct Arguments {
     /// The kind of trees.
-    #[arg(long, value_enum, default_value_t = Profile::Grid)]
+    #[arg(long, default_value_t = Profile::Grid)]
     profile: Profile,
     /// The first seed.
     #[arg(long, default_value_t = 0)]

@@ -3,7 +3,7 @@
 //!
 //! A mesh is only near to the boundary. A sample counts where the rays around it agree on what lies
 //! well before it; what lies just before it leaves room in the answer; and where another contour
-//! passes it in the image, the exact rays on the tree (`premio::checks`) answer, not this.
+//! passes it in the image, the exact rays on the tree (`premio_verify::checks`) answer, not this.
 
 use glam::{Vec3A, vec3a};
 use nalgebra::{Point3, Vector3};

@@ -4,11 +4,11 @@
 
 use crate::cast::Cast;
 use nalgebra::Point3;
-use premio::checks::{Checker, views};
-use premio::fuzz::trial::message;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::brep::locate::{FaceLocator, Place};
+use premio_verify::checks::{Checker, views};
+use premio_verify::trial::message;
 use premio_visibility::contour::{Contour, Piece};
 use premio_visibility::invisibility::Method;
 use premio_visibility::projection::Projection;
@@ -18,7 +18,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
 
-pub use premio::fuzz::trial::VIEWS;
+pub use premio_verify::trial::VIEWS;
 
 /// The place in a piece that is asked first for what lies before it, as a part of its range.
 const COUNTED_AT: f64 = 0.47;

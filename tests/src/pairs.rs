@@ -1,12 +1,12 @@
 //! Pairs of solids that coincide in some way, and lie next to that as far as a gap says.
 
 use clap::ValueEnum;
-use premio::checks::Checker;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_csg::tree::Tree;
 use premio_kernel::brep::topology::Census;
 use premio_kernel::number::sign::Zeros;
+use premio_verify::checks::Checker;
 
 /// Two solids in PADL, with `D` by how much they miss the coincidence.
 #[derive(Clone, Copy, Debug)]

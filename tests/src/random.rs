@@ -1,8 +1,8 @@
 //! Random trees on a half-unit grid as JSON values, to be joined and scaled by the tests.
 
-use premio::fuzz::model::Model;
-use premio::fuzz::profile::Profile;
-use premio::fuzz::write::{Format, write};
+use premio_verify::generator::model::Model;
+use premio_verify::generator::profile::Profile;
+use premio_verify::generator::write::{Format, write};
 use serde_json::Value;
 
 /// The tree of a seed of `premio fuzz --profile grid`, in the JSON that the reader takes.

@@ -4,12 +4,12 @@
 //! the same description at several values of its parameters.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio::checks::{Checker, ViewChecks, views};
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, Options, read};
 use premio_csg::tree::Tree;
 use premio_tests::examine::within;
 use premio_tests::formula::Definitions;
+use premio_verify::checks::{Checker, ViewChecks, views};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

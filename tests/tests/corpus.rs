@@ -1,12 +1,12 @@
 //! Descriptions with known answers, from the folder that PREMIO_CORPUS names.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio::checks::{Checker, Subject};
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, Options, read};
 use premio_kernel::brep::signature::Signature;
 use premio_kernel::number::sign::{Decisions, Zeros};
 use premio_tests::examine::within;
+use premio_verify::checks::{Checker, Subject};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeSet;

@@ -53,9 +53,23 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         ],
     ),
     (
-        "cli",
-        "premio",
+        "verify",
+        "premio-verify",
         &[
+            "premio-kernel",
+            "premio-text",
+            "premio-csg",
+            "premio-visibility",
+            "premio-drawing",
+            "premio-exchange",
+            "premio-predict",
+        ],
+    ),
+    (
+        "cli",
+        "premio-cli",
+        &[
+            "premio-verify",
             "premio-kernel",
             "premio-memory",
             "premio-text",

@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
 
 use nalgebra::{Point3, Vector3};
-use premio::checks::Checker;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_csg::tree::Tree;
 use premio_tests::parts::tee;
+use premio_verify::checks::Checker;
 use premio_visibility::invisibility::Method;
 use premio_visibility::view::contours_by;
 use premio_visibility::{Camera, contours};

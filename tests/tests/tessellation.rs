@@ -1,12 +1,12 @@
 //! Triangles follow the boundary of every named case, and rays on them see what is hidden.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio::checks::views;
 use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, Options, read};
 use premio_kernel::tessellation::{Accuracy, tessellate};
 use premio_tests::cast::Cast;
 use premio_tests::random::tree;
+use premio_verify::checks::views;
 use premio_visibility::contours;
 use std::collections::HashSet;
 use std::fs;

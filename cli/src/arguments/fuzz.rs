@@ -1,9 +1,9 @@
 //! The options of `fuzz`.
 
 use super::{ModelFormat, positive, seconds};
-use crate::fuzz::profile::Profile;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
+use premio_verify::generator::profile::Profile;
 use std::path::PathBuf;
 
 /// Options of `fuzz`.
@@ -105,7 +105,9 @@ impl ValueEnum for ProfileChoice {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         match self {
             Self::All => Some(PossibleValue::new("all").help("Every profile")),
-            Self::One(profile) => profile.to_possible_value(),
+            Self::One(profile) => {
+                Some(PossibleValue::new(profile.name()).help(profile.description()))
+            }
         }
     }
 }

@@ -1,10 +1,10 @@
 //! `premio check`: every self-check there is, on one description.
 
 use crate::arguments::CheckOptions;
-use crate::checks::{Check, Checker, Finding, Report};
 use crate::diagnostics::Failure;
 use crate::session::Session;
 use crate::{input, output};
+use premio_verify::checks::{Check, Checker, Finding, Report};
 use serde::Serialize;
 
 /// Runs the command.

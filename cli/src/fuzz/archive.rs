@@ -1,11 +1,11 @@
 //! The models written to a folder, with a manifest of their true measures.
 
 use super::Error;
-use super::model::Model;
 use super::state::{Item, State};
-use super::trial::{Measures, Outcome, Verdict};
-use super::write::{Format, read, write};
 use crate::output;
+use premio_verify::generator::model::Model;
+use premio_verify::generator::write::{Format, read, write};
+use premio_verify::trial::{Measures, Outcome, Verdict};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 

@@ -1,21 +1,14 @@
-//! Fuzzing: random trees by a profile and a seed, what is asked of each, and what was found.
+//! Fuzzing runs: many seeds dealt to worker processes, and what was found.
 //!
-//! A [`profile`] makes a [`model`] of a seed; [`trial`] says what is right, refused or wrong about
-//! it; [`worker`] does that in a process that may hang or die; [`run`] deals many trees to threads,
-//! [`mod@shrink`] makes small what failed, [`state`] keeps what is done, [`summary`] tells it, and
-//! [`archive`] keeps the models, which [`mod@write`] turns into text.
+//! [`worker`] puts a part through [`premio_verify::trial`] in a process that may hang or die; [`run`] deals
+//! many parts to threads, [`state`] keeps what is done, [`summary`] reports it, and [`archive`] keeps the
+//! models.
 
 pub mod archive;
-pub mod model;
-pub mod profile;
-mod random;
 pub mod run;
-pub mod shrink;
 pub mod state;
 pub mod summary;
-pub mod trial;
 pub mod worker;
-pub mod write;
 
 use std::io;
 use std::path::Path;

@@ -2,12 +2,12 @@
 
 use super::Error;
 use super::archive::Archive;
-use super::model::Model;
-use super::shrink::shrink;
 use super::state::{Finds, Item, State};
-use super::trial::{Outcome, Verdict, Wrong, reason};
 use super::worker::Examine;
-use super::write::{Format, write};
+use premio_verify::generator::model::Model;
+use premio_verify::generator::shrink::shrink;
+use premio_verify::generator::write::{Format, write};
+use premio_verify::trial::{Outcome, Verdict, Wrong, reason};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -311,11 +311,11 @@ impl Job {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzz::model::{Kind, Primitive};
-    use crate::fuzz::profile::Profile;
     use crate::fuzz::state::Plan;
     use crate::fuzz::summary::Summary;
-    use crate::fuzz::trial::{Measures, Terms};
+    use premio_verify::generator::model::{Kind, Primitive};
+    use premio_verify::generator::profile::Profile;
+    use premio_verify::trial::{Measures, Terms};
     use std::io;
 
     /// Holds that tori are wrong and spheres refused; stops after some trees.

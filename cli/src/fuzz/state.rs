@@ -1,13 +1,13 @@
 //! What a run is, and how far it is: kept in a file, so that it goes on where it ended.
 
 use super::Error;
-use super::profile::Profile;
-use super::trial::{Outcome, Terms, Verdict, Wrong, reason};
 use crate::diagnostics::Failure;
 use crate::output;
 use crate::session::Limits;
 use premio_text::Document;
 use premio_text::escape::quote;
+use premio_verify::generator::profile::Profile;
+use premio_verify::trial::{Outcome, Terms, Verdict, Wrong, reason};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;

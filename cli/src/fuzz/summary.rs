@@ -3,8 +3,8 @@
 //! All but the times is the same for any number of threads: finds are in the order of profiles,
 //! kinds and seeds, and the times stand apart, at the end.
 
-use super::profile::Profile;
 use super::state::{Find, Finds, Plan, State, Tally};
+use premio_verify::generator::profile::Profile;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;

@@ -4,8 +4,8 @@
 //! it dies or takes too long; then it is ended, and the tree is tried once more in a new process,
 //! which alone counts: what went wrong must be the tree's doing, and not that of those before it.
 
-use super::model::Model;
-use super::trial::{Outcome, Terms, Wrong, guarded};
+use premio_verify::generator::model::Model;
+use premio_verify::trial::{Outcome, Terms, Wrong, guarded};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};

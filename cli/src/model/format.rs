@@ -26,7 +26,7 @@ pub fn asked(output: &ModelOutput) -> Result<RecordsFormat, Failure> {
 fn without() -> Failure {
     Failure::input(
         "this program is built without Parquet: build it with \
-         `cargo build --release -p premio --features parquet`, or ask for `--format jsonl`",
+         `cargo build --release -p premio-cli --features parquet`, or ask for `--format jsonl`",
     )
 }
 

@@ -1,7 +1,7 @@
 //! One operation on many primitives.
 
-use crate::fuzz::model::{Axis, Model, NodeId, Operation, Primitive, Step};
-use crate::fuzz::random::Random;
+use crate::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+use crate::generator::random::Random;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 4;

@@ -9,8 +9,8 @@ mod hollow;
 mod round;
 mod turned;
 
-use crate::fuzz::model::{Axis, Model, NodeId, Step};
-use crate::fuzz::random::Random;
+use crate::generator::model::{Axis, Model, NodeId, Step};
+use crate::generator::random::Random;
 use draft::Draft;
 
 /// What sets this profile's numbers apart.

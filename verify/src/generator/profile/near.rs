@@ -2,8 +2,8 @@
 //! coincided is missed by all orders of magnitude, above the resolution and below.
 
 use super::grid;
-use crate::fuzz::model::{Axis, Kind, Model, NodeId, Primitive, Step};
-use crate::fuzz::random::Random;
+use crate::generator::model::{Axis, Kind, Model, NodeId, Primitive, Step};
+use crate::generator::random::Random;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 1;

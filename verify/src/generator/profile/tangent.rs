@@ -5,8 +5,8 @@
 //! same (from inside).
 
 use super::grid;
-use crate::fuzz::model::{Axis, Model, NodeId, Operation, Primitive, Step};
-use crate::fuzz::random::Random;
+use crate::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+use crate::generator::random::Random;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 2;

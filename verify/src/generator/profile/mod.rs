@@ -8,25 +8,25 @@ mod tangent;
 mod wide;
 
 use super::model::Model;
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::str::FromStr;
 
 /// A kind of random trees. A profile and a seed are one tree, on every machine.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Profile {
-    /// 2 to 8 primitives on a half-unit grid: coplanar, tangent and coaxial ones abound
+    /// 2 to 8 primitives on a half-unit grid: coplanar, tangent and coaxial ones abound.
     Grid,
-    /// A tree of `grid` with primitives moved, turned or grown a little: coincidences just missed
+    /// A tree of `grid` with primitives moved, turned or grown a little: coincidences just missed.
     Near,
-    /// Two primitives that touch, turned in common, cut by up to two others through the contact
+    /// Two primitives that touch, turned in common, cut by up to two others through the contact.
     Tangent,
-    /// A chain of 100 to 3000 levels of operations, each with a small primitive
+    /// A chain of 100 to 3000 levels of operations, each with a small primitive.
     Deep,
-    /// One operation on 8 to 1500 primitives, most in a lattice
+    /// One operation on 8 to 1500 primitives, most in a lattice.
     Wide,
-    /// A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing
+    /// A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing.
     Parts,
 }
 
@@ -53,6 +53,28 @@ impl Profile {
         }
     }
 
+    /// One line that describes the parts of the profile.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Grid => {
+                "2 to 8 primitives on a half-unit grid: coplanar, tangent and coaxial ones abound"
+            }
+            Self::Near => {
+                "A tree of `grid` with primitives moved, turned or grown a little: coincidences just missed"
+            }
+            Self::Tangent => {
+                "Two primitives that touch, turned in common, cut by up to two others through the contact"
+            }
+            Self::Deep => {
+                "A chain of 100 to 3000 levels of operations, each with a small primitive"
+            }
+            Self::Wide => "One operation on 8 to 1500 primitives, most in a lattice",
+            Self::Parts => {
+                "A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing"
+            }
+        }
+    }
+
     /// The tree of a seed.
     pub fn model(self, seed: u64) -> Model {
         match self {
@@ -72,10 +94,20 @@ impl fmt::Display for Profile {
     }
 }
 
+impl FromStr for Profile {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let named = |profile: &Self| profile.name() == name;
+        let found = Self::ALL.into_iter().find(named);
+        found.ok_or_else(|| format!("`{name}` is no profile"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzz::write::{Format, read, write};
+    use crate::generator::write::{Format, read, write};
 
     #[test]
     fn every_seed_is_a_tree() {

@@ -1,7 +1,7 @@
 //! Flanges, shafts, bearings and pulleys.
 
 use super::draft::{Draft, Length, UNIT};
-use crate::fuzz::model::{Axis, NodeId};
+use crate::generator::model::{Axis, NodeId};
 
 /// A disc with a bore, a hub, a raised face and a circle of bolts.
 pub fn flange(d: &mut Draft<'_>) -> NodeId {

@@ -1,7 +1,7 @@
 //! A part as it is put together: lengths, primitives in common positions, operations.
 
-use crate::fuzz::model::{Axis, Model, NodeId, Notation, Operation, Primitive, Step};
-use crate::fuzz::random::Random;
+use crate::generator::model::{Axis, Model, NodeId, Notation, Operation, Primitive, Step};
+use crate::generator::random::Random;
 
 /// A length in ten-thousandths of the unit, so that sums and halves of lengths are exact.
 pub type Length = i64;

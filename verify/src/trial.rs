@@ -2,9 +2,9 @@
 //! nothing is outside the box, the volumes of unions and intersections add up, and, if asked for, no
 //! piece of a view is wrong and no contour missing.
 
-use super::model::{Kind, Model, Operation};
-use super::write::{Format, read, write};
 use crate::checks::{Check, Checker, Finding, Report, Subject, ViewChecks, views};
+use crate::generator::model::{Kind, Model, Operation};
+use crate::generator::write::{Format, read, write};
 use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
 use premio_csg::tree::Tree;
@@ -393,7 +393,7 @@ fn size(models: &[&Model]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzz::model::{Primitive, Step};
+    use crate::generator::model::{Primitive, Step};
 
     const TERMS: Terms = Terms {
         resolution: None,

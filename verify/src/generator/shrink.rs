@@ -178,11 +178,11 @@ fn with_lengths(primitive: &Primitive, lengths: &[f64]) -> Option<Primitive> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzz::model::Operation;
-    use crate::fuzz::profile::Profile;
-    use crate::fuzz::write::{Format, read, write};
+    use crate::generator::model::Operation;
+    use crate::generator::profile::Profile;
+    use crate::generator::write::{Format, read, write};
 
-    fn is_ball(node: &crate::fuzz::model::Node) -> bool {
+    fn is_ball(node: &crate::generator::model::Node) -> bool {
         matches!(node.kind, Kind::Leaf(Primitive::Sphere(_)))
     }
 

@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, Length, UNIT};
 use super::flat::rounded_plate;
-use crate::fuzz::model::{Axis, NodeId};
+use crate::generator::model::{Axis, NodeId};
 
 /// A hollow box, open above or closed, with bosses in its corners, blind holes and a window.
 pub fn housing(d: &mut Draft<'_>) -> NodeId {

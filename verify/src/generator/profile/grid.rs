@@ -1,7 +1,7 @@
 //! Random trees on a half-unit grid: coplanar, tangent and coaxial cases abound.
 
-use crate::fuzz::model::{Axis, Model, NodeId, Operation, Primitive, Step};
-use crate::fuzz::random::{Random, halves};
+use crate::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+use crate::generator::random::{Random, halves};
 
 /// 2 to 8 primitives with lengths and places on a half-unit grid, turned about the axes by
 /// multiples of 90, by 45, 30 and 17 degrees.

@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, Length, Place, UNIT};
 use super::flat::rounded_plate;
-use crate::fuzz::model::{Axis, NodeId};
+use crate::generator::model::{Axis, NodeId};
 
 /// A box with all edges rounded, or those along z and around the top, with a bore or a cavity.
 pub fn rounded_box(d: &mut Draft<'_>) -> NodeId {

@@ -1,7 +1,7 @@
 //! Plates, brackets, clevises, links and wedges.
 
 use super::draft::{Draft, Length, Place, UNIT};
-use crate::fuzz::model::{Axis, NodeId};
+use crate::generator::model::{Axis, NodeId};
 
 /// A plate with sharp or rounded corners, holes at the corners, a bore and a slot.
 pub fn plate(d: &mut Draft<'_>) -> NodeId {

@@ -99,7 +99,7 @@ fn placed(steps: &[Step], number: &impl Fn(f64) -> Rational) -> Moves {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzz::profile::Profile;
+    use crate::generator::profile::Profile;
     use premio_csg::boundary::evaluate;
 
     fn volume(description: &Description) -> f64 {

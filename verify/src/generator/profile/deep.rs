@@ -1,7 +1,7 @@
 //! Chains of operations: every level puts one primitive to all that is below.
 
-use crate::fuzz::model::{Axis, Model, NodeId, Operation, Primitive, Step};
-use crate::fuzz::random::Random;
+use crate::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+use crate::generator::random::Random;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 3;

@@ -16,7 +16,7 @@ pub use predict::{
     AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions, ModelOutput,
     ModelRunOptions, PredictOptions, RecordsFormat, RenderOptions, SchemaName, SchemaOptions,
 };
-use premio_csg::reader::Options;
+use premio_csg::reader::ReadOptions;
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetOptions, ViewName};
 use std::path::{Path, PathBuf};
@@ -165,8 +165,8 @@ pub struct ReadingOptions {
 
 impl ReadingOptions {
     /// What the readers are told.
-    pub fn options(&self) -> Options {
-        Options {
+    pub fn options(&self) -> ReadOptions {
+        ReadOptions {
             smooth: self.smooth,
             part: self.part.clone(),
         }

@@ -3,9 +3,9 @@
 use crate::arguments::DescriptionOptions;
 use crate::diagnostics::{Failure, Voice};
 use crate::session::Session;
-use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{self, Description, Format, Options};
-use premio_kernel::number::sign::Zeros;
+use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{self, Description, Format, ReadOptions};
+use premio_kernel::number::predicates::CoincidencePolicy;
 use premio_matching::camera::{CameraFile, Pinhole};
 use premio_predict::model::record::Description as Written;
 use premio_text::escape::quote;
@@ -47,8 +47,8 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<Part, Fail
         exact: options.exact,
     };
     let digits = match options.unfiltered {
-        true => Digits::Many,
-        false => Digits::Filtered,
+        true => Arithmetic::Many,
+        false => Arithmetic::Filtered,
     };
     let part = evaluated(name, format, written, digits, voice)?;
     let calls = &part.evaluation.decisions.close_calls;
@@ -77,7 +77,7 @@ pub fn part_of_model(name: &str, written: Written, voice: Voice) -> Result<Part,
     let format = language(&written).map_err(|e| Failure::input(format!("{name}: {e}")))?;
     // Places in it are not places in the model.
     let name = format!("{name} (its description)");
-    evaluated(name, format, written, Digits::Filtered, voice)
+    evaluated(name, format, written, Arithmetic::Filtered, voice)
 }
 
 /// The language of a description in a model.
@@ -95,7 +95,7 @@ pub fn language(written: &Written) -> Result<Format, String> {
 
 /// What the reader says of bytes that are no text.
 fn not_a_text(name: &str, format: Format, bytes: &[u8]) -> Result<String, Failure> {
-    match reader::parse(name, bytes, format, &Options::default()) {
+    match reader::parse(name, bytes, format, &ReadOptions::default()) {
         Err(error) => Err(Failure::read(&error, bytes)),
         Ok(_) => Ok(String::from_utf8_lossy(bytes).into_owned()),
     }
@@ -105,11 +105,11 @@ fn evaluated(
     name: String,
     format: Format,
     written: Written,
-    digits: Digits,
+    digits: Arithmetic,
     voice: Voice,
 ) -> Result<Part, Failure> {
     let started = Instant::now();
-    let how = Options {
+    let how = ReadOptions {
         smooth: written.smooth,
         part: written.part.clone(),
     };
@@ -121,8 +121,8 @@ fn evaluated(
         resolution: written.resolution,
         noise: description.digits,
         zeros: match written.exact {
-            true => Zeros::Exact,
-            false => Zeros::ByResolution,
+            true => CoincidencePolicy::Exact,
+            false => CoincidencePolicy::ByResolution,
         },
         digits,
         ..EvaluationOptions::default()
@@ -160,7 +160,7 @@ pub fn resolution_of_views(part: &Part) -> Result<f64, Failure> {
 fn description(
     name: &str,
     (format, text): (Format, &[u8]),
-    how: &Options,
+    how: &ReadOptions,
     voice: Voice,
 ) -> Result<Description, Failure> {
     let working = voice.working("reading");

@@ -5,8 +5,8 @@ use crate::input::{self, Part};
 use crate::session::Session;
 use nalgebra::Point3;
 use premio_detect::Detector;
-use premio_kernel::brep::extent::bounds;
-use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::brep::bounding_box::bounds;
+use premio_kernel::geometry::bounds::Aabb;
 use premio_predict::image::shading::Finishes;
 use premio_predict::model::Setups;
 use premio_predict::model::record::Head;
@@ -182,7 +182,7 @@ impl SetupFile<Setups> {
 }
 
 /// Whether a box holds a point.
-fn holds(bounds: &Box3, p: &Point3<f64>) -> bool {
+fn holds(bounds: &Aabb, p: &Point3<f64>) -> bool {
     (0..3).all(|i| (bounds.min[i]..=bounds.max[i]).contains(&p[i]))
 }
 

@@ -8,9 +8,9 @@ use std::rc::Rc;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::{Rational, bits};
 
-use crate::moves::{Moves, Step};
 use crate::primitive::Primitive;
-use crate::tree::{Node, NodeId, Operation, Placed, Tree};
+use crate::transform::{Transform, TransformStep};
+use crate::tree::{NodeId, Operation, PlacedPrimitive, Tree, TreeNode};
 
 /// The largest number of leaves a tree may have.
 pub const MAX_LEAVES: u64 = 1_000_000;
@@ -39,9 +39,9 @@ pub enum TreeError {
 
 /// A part of a [`Builder`]; possibly empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part(Option<usize>);
+pub struct SolidId(Option<usize>);
 
-impl Part {
+impl SolidId {
     /// The part without any points.
     pub const EMPTY: Self = Self(None);
 
@@ -53,7 +53,7 @@ impl Part {
 
 /// What a part is made of. Children come before their parents.
 #[derive(Debug)]
-pub(crate) enum Draft {
+pub(crate) enum BuilderNode {
     Leaf(Primitive),
     Operation {
         op: Operation,
@@ -70,7 +70,7 @@ pub(crate) enum Draft {
 /// How a part was placed, as it was asked for.
 #[derive(Debug, Clone)]
 pub(crate) enum Placing {
-    Steps(Vec<Step>),
+    Steps(Vec<TransformStep>),
     MirrorY,
     Scale(Rational),
 }
@@ -120,7 +120,7 @@ impl Placement {
 /// Collects the parts of a description; [`finish`](Builder::finish) makes the tree.
 #[derive(Debug, Default)]
 pub struct Builder {
-    drafts: Vec<Draft>,
+    drafts: Vec<BuilderNode>,
     /// The number of leaves of each draft, with every use counted.
     leaves: Vec<u64>,
     entries: Vec<Entry>,
@@ -132,43 +132,43 @@ impl Builder {
         Self::default()
     }
 
-    fn add(&mut self, draft: Draft, leaves: u64) -> Part {
+    fn add(&mut self, draft: BuilderNode, leaves: u64) -> SolidId {
         self.drafts.push(draft);
         self.leaves.push(leaves);
-        Part(Some(self.drafts.len() - 1))
+        SolidId(Some(self.drafts.len() - 1))
     }
 
     /// A primitive in its own frame.
-    pub fn primitive(&mut self, primitive: Primitive) -> Part {
-        self.add(Draft::Leaf(primitive), 1)
+    pub fn primitive(&mut self, primitive: Primitive) -> SolidId {
+        self.add(BuilderNode::Leaf(primitive), 1)
     }
 
     /// An operation on parts. Of no parts at all, and where the outcome is empty by its
     /// construction, the empty part.
-    pub fn operation(&mut self, op: Operation, parts: &[Part]) -> Part {
+    pub fn operation(&mut self, op: Operation, parts: &[SolidId]) -> SolidId {
         let emptied = match op {
             Operation::Union => false,
             Operation::Intersection => parts.iter().any(|part| part.is_empty()),
             Operation::Difference => parts.first().is_none_or(|part| part.is_empty()),
         };
         if emptied {
-            return Part::EMPTY;
+            return SolidId::EMPTY;
         }
         let children: Vec<usize> = parts.iter().filter_map(|part| part.0).collect();
         match children.as_slice() {
-            [] => Part::EMPTY,
-            &[only] => Part(Some(only)),
+            [] => SolidId::EMPTY,
+            &[only] => SolidId(Some(only)),
             _ => {
                 let leaves = children
                     .iter()
                     .fold(0u64, |sum, &child| sum.saturating_add(self.leaves[child]));
-                self.add(Draft::Operation { op, children }, leaves)
+                self.add(BuilderNode::Operation { op, children }, leaves)
             }
         }
     }
 
     /// A part, moved.
-    pub fn moved(&mut self, part: Part, moves: Moves) -> Part {
+    pub fn moved(&mut self, part: SolidId, moves: Transform) -> SolidId {
         if moves.motion().is_identity() {
             return part;
         }
@@ -181,7 +181,7 @@ impl Builder {
     }
 
     /// The image of a part in the mirror `y -> -y`.
-    pub fn mirrored_y(&mut self, part: Part) -> Part {
+    pub fn mirrored_y(&mut self, part: SolidId) -> SolidId {
         let placement = Placement {
             mirrored: true,
             ..Placement::default()
@@ -190,7 +190,7 @@ impl Builder {
     }
 
     /// A part, about the origin `factor` times as large; `factor` must be greater than zero.
-    pub fn scaled(&mut self, part: Part, factor: Rational) -> Part {
+    pub fn scaled(&mut self, part: SolidId, factor: Rational) -> SolidId {
         if factor.is_one() {
             return part;
         }
@@ -201,26 +201,26 @@ impl Builder {
         self.place(part, placement, Placing::Scale(factor))
     }
 
-    fn place(&mut self, part: Part, placement: Placement, placing: Placing) -> Part {
+    fn place(&mut self, part: SolidId, placement: Placement, placing: Placing) -> SolidId {
         let Some(child) = part.0 else {
-            return Part::EMPTY;
+            return SolidId::EMPTY;
         };
         // Placements in a row become one, so that the cost of a use is that of its leaves.
         let (child, placement, before) = match &self.drafts[child] {
             // Beyond the limit for good: finishing it is an error, wherever it is put.
-            Draft::Moved { placement, .. } if placement.bits() > MAX_MOTION_BITS => {
+            BuilderNode::Moved { placement, .. } if placement.bits() > MAX_MOTION_BITS => {
                 return part;
             }
-            Draft::Moved {
+            BuilderNode::Moved {
                 child,
                 placement: inner,
                 entry,
             } => (*child, inner.then(&placement), Some(*entry)),
-            Draft::Leaf(_) | Draft::Operation { .. } => (child, placement, None),
+            BuilderNode::Leaf(_) | BuilderNode::Operation { .. } => (child, placement, None),
         };
         self.entries.push(Entry { placing, before });
         let leaves = self.leaves[child];
-        let draft = Draft::Moved {
+        let draft = BuilderNode::Moved {
             child,
             placement,
             entry: self.entries.len() - 1,
@@ -229,16 +229,16 @@ impl Builder {
     }
 
     /// How many leaves a part has, with every use counted.
-    pub(crate) fn leaves(&self, part: Part) -> u64 {
+    pub(crate) fn leaves(&self, part: SolidId) -> u64 {
         part.0.map_or(0, |draft| self.leaves[draft])
     }
 
     /// What a part is made of; `None` for the empty part.
-    pub(crate) fn draft_of(&self, part: Part) -> Option<usize> {
+    pub(crate) fn draft_of(&self, part: SolidId) -> Option<usize> {
         part.0
     }
 
-    pub(crate) fn draft(&self, index: usize) -> &Draft {
+    pub(crate) fn draft(&self, index: usize) -> &BuilderNode {
         &self.drafts[index]
     }
 
@@ -247,7 +247,7 @@ impl Builder {
     }
 
     /// The tree of one part.
-    pub fn finish(&self, part: Part) -> Result<Tree, TreeError> {
+    pub fn finish(&self, part: SolidId) -> Result<Tree, TreeError> {
         let Some(top) = part.0 else {
             return Ok(Tree::default());
         };
@@ -300,9 +300,9 @@ impl<'a> Expansion<'a> {
 
     fn expand(&mut self, task: Task) -> Result<(), TreeError> {
         match &self.builder.drafts[task.draft] {
-            Draft::Leaf(primitive) => self.expand_leaf(primitive, &task),
-            Draft::Operation { op, children } => self.expand_operation(*op, children, &task),
-            Draft::Moved {
+            BuilderNode::Leaf(primitive) => self.expand_leaf(primitive, &task),
+            BuilderNode::Operation { op, children } => self.expand_operation(*op, children, &task),
+            BuilderNode::Moved {
                 child, placement, ..
             } => {
                 let outer = placement.then(&task.placement);
@@ -335,14 +335,17 @@ impl<'a> Expansion<'a> {
         } else {
             motion.clone()
         };
-        self.attach(Node::Leaf(Placed { primitive, motion }), task.parent);
+        self.attach(
+            TreeNode::Leaf(PlacedPrimitive { primitive, motion }),
+            task.parent,
+        );
     }
 
     fn expand_operation(&mut self, op: Operation, children: &[usize], task: &Task) {
         let parent = match task.parent {
             Some(parent) if self.merges(op, parent, task.minuend) => parent,
             other => self.attach(
-                Node::Operation {
+                TreeNode::Operation {
                     op,
                     children: Vec::new(),
                 },
@@ -363,7 +366,7 @@ impl<'a> Expansion<'a> {
     /// (A + B) + C = A + B + C, the same for intersection, (A - B) - C = A - B - C,
     /// A - (B + C) = A - B - C.
     fn merges(&self, op: Operation, parent: NodeId, minuend: bool) -> bool {
-        let Node::Operation { op: above, .. } = &self.tree.nodes[parent.0] else {
+        let TreeNode::Operation { op: above, .. } = &self.tree.nodes[parent.0] else {
             return false;
         };
         match above {
@@ -373,13 +376,13 @@ impl<'a> Expansion<'a> {
         }
     }
 
-    fn attach(&mut self, node: Node, parent: Option<NodeId>) -> NodeId {
+    fn attach(&mut self, node: TreeNode, parent: Option<NodeId>) -> NodeId {
         let id = NodeId(self.tree.nodes.len());
         self.tree.nodes.push(node);
         match parent {
             None => self.tree.root = Some(id),
             Some(parent) => {
-                if let Node::Operation { children, .. } = &mut self.tree.nodes[parent.0] {
+                if let TreeNode::Operation { children, .. } = &mut self.tree.nodes[parent.0] {
                     children.push(id);
                 }
             }
@@ -392,19 +395,19 @@ impl<'a> Expansion<'a> {
 mod tests {
     use super::*;
 
-    fn shift(x: i32, y: i32, z: i32) -> Moves {
-        Moves::shift([x, y, z].map(Rational::from))
+    fn shift(x: i32, y: i32, z: i32) -> Transform {
+        Transform::shift([x, y, z].map(Rational::from))
     }
 
-    fn ball(b: &mut Builder) -> Part {
+    fn ball(b: &mut Builder) -> SolidId {
         b.primitive(Primitive::sphere(Rational::ONE).unwrap())
     }
 
     /// The tree in brackets, each leaf by the x of its place.
     fn text(tree: &Tree) -> String {
         let show = |id: NodeId, below: &[String]| match &tree[id] {
-            Node::Leaf(placed) => placed.motion.offset()[0].to_string(),
-            Node::Operation { op, children } => {
+            TreeNode::Leaf(placed) => placed.motion.offset()[0].to_string(),
+            TreeNode::Operation { op, children } => {
                 let sign = match op {
                     Operation::Union => '+',
                     Operation::Intersection => '*',
@@ -421,7 +424,7 @@ mod tests {
         texts.first().cloned().unwrap_or_default()
     }
 
-    fn balls<const N: usize>(b: &mut Builder) -> [Part; N] {
+    fn balls<const N: usize>(b: &mut Builder) -> [SolidId; N] {
         std::array::from_fn(|i| {
             let part = ball(b);
             b.moved(part, shift(i as i32, 0, 0))
@@ -433,7 +436,7 @@ mod tests {
         use Operation::*;
         let mut b = Builder::new();
         let [a, c] = balls(&mut b);
-        let none = Part::EMPTY;
+        let none = SolidId::EMPTY;
         assert_eq!(b.operation(Union, &[none, a, none]), a);
         assert_eq!(b.operation(Intersection, &[a, none]), none);
         assert_eq!(b.operation(Difference, &[none, a]), none);
@@ -532,9 +535,9 @@ mod tests {
     fn numbers_have_a_limit() {
         let mut b = Builder::new();
         let mut part = ball(&mut b);
-        let mut turn = Moves::new();
+        let mut turn = Transform::new();
         let (axis, degrees) = ([0, 0, 1].map(Rational::from), 7.into());
-        turn.push(Step::Turn { axis, degrees }).unwrap();
+        turn.push(TransformStep::Turn { axis, degrees }).unwrap();
         for _ in 0..2000 {
             part = b.moved(part, turn.clone());
         }

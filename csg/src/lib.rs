@@ -1,10 +1,10 @@
 //! Descriptions of solids: primitives, the tree of set operations, the readers, and the writers.
-pub mod boundary;
 pub mod builder;
-pub mod model;
-pub mod moves;
+pub mod evaluate;
+pub mod object_model;
 pub mod primitive;
-pub mod rays;
+pub mod ray_casting;
 pub mod reader;
+pub mod transform;
 pub mod tree;
 pub mod writer;

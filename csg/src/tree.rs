@@ -31,7 +31,7 @@ pub enum Operation {
 
 /// A primitive at its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Placed {
+pub struct PlacedPrimitive {
     /// The solid in its own frame.
     pub primitive: Primitive,
     /// Where it is put.
@@ -47,7 +47,7 @@ pub struct Departure {
     pub furthest: f64,
 }
 
-impl Placed {
+impl PlacedPrimitive {
     /// How far points of a primitive are from those of another of its kind, at the most; `None` of
     /// another kind.
     fn distance(&self, other: &Self) -> Option<f64> {
@@ -76,9 +76,9 @@ impl Placed {
     reason = "more than half of all nodes are leaves"
 )]
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Node {
+pub enum TreeNode {
     /// A primitive at its place.
-    Leaf(Placed),
+    Leaf(PlacedPrimitive),
     /// An operation on two children or more.
     Operation {
         /// What is done with the children.
@@ -96,7 +96,7 @@ pub enum Node {
 /// below one that it could be merged into.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tree {
-    pub(crate) nodes: Vec<Node>,
+    pub(crate) nodes: Vec<TreeNode>,
     pub(crate) root: Option<NodeId>,
 }
 
@@ -107,7 +107,7 @@ impl Tree {
     }
 
     /// All nodes, a parent before its children.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[TreeNode] {
         &self.nodes
     }
 
@@ -117,11 +117,11 @@ impl Tree {
     }
 
     /// The placed primitives, in the order written.
-    pub fn leaves(&self) -> impl Iterator<Item = (NodeId, &Placed)> {
+    pub fn leaves(&self) -> impl Iterator<Item = (NodeId, &PlacedPrimitive)> {
         let nodes = self.nodes.iter().enumerate();
         nodes.filter_map(|(index, node)| match node {
-            Node::Leaf(placed) => Some((NodeId(index), placed)),
-            Node::Operation { .. } => None,
+            TreeNode::Leaf(placed) => Some((NodeId(index), placed)),
+            TreeNode::Operation { .. } => None,
         })
     }
 
@@ -133,12 +133,12 @@ impl Tree {
         }
         for (a, b) in self.nodes.iter().zip(&other.nodes) {
             match (a, b) {
-                (Node::Leaf(a), Node::Leaf(b)) if a == b => {}
-                (Node::Leaf(a), Node::Leaf(b)) => {
+                (TreeNode::Leaf(a), TreeNode::Leaf(b)) if a == b => {}
+                (TreeNode::Leaf(a), TreeNode::Leaf(b)) => {
                     departure.leaves += 1;
                     departure.furthest = departure.furthest.max(a.distance(b)?);
                 }
-                (Node::Operation { .. }, Node::Operation { .. }) if a == b => {}
+                (TreeNode::Operation { .. }, TreeNode::Operation { .. }) if a == b => {}
                 _ => return None,
             }
         }
@@ -149,14 +149,14 @@ impl Tree {
     /// gives none.
     pub(crate) fn with_primitives(
         &self,
-        other: impl Fn(&Placed) -> Option<Primitive>,
+        other: impl Fn(&PlacedPrimitive) -> Option<Primitive>,
     ) -> Option<Self> {
         let mut changed: Option<Self> = None;
         for (id, placed) in self.leaves() {
             if let Some(primitive) = other(placed) {
                 let motion = placed.motion.clone();
                 let tree = changed.get_or_insert_with(|| self.clone());
-                tree.nodes[id.0] = Node::Leaf(Placed { primitive, motion });
+                tree.nodes[id.0] = TreeNode::Leaf(PlacedPrimitive { primitive, motion });
             }
         }
         changed
@@ -164,10 +164,10 @@ impl Tree {
 }
 
 impl Index<NodeId> for Tree {
-    type Output = Node;
+    type Output = TreeNode;
 
     /// The node of an id of this tree. An id of another tree may panic.
-    fn index(&self, id: NodeId) -> &Node {
+    fn index(&self, id: NodeId) -> &TreeNode {
         &self.nodes[id.0]
     }
 }

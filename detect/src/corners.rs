@@ -1,6 +1,6 @@
 //! Corners: where segments meet at an angle (Haralick & Shapiro ch. 11).
 
-use super::detection::{Chain, Corner, EdgePixel, Segment, Shape};
+use super::detection::{DetectedCorner, DetectedSegment, EdgeChain, EdgePixel, SegmentShape};
 use super::detector::Detector;
 use super::fit::foot_on_conic;
 use super::joining::End;
@@ -24,9 +24,9 @@ struct Arm {
 pub(super) fn corners(
     detector: &Detector,
     pixels: &[EdgePixel],
-    chains: &[Chain],
-    segments: &[Segment],
-) -> Vec<Corner> {
+    chains: &[EdgeChain],
+    segments: &[DetectedSegment],
+) -> Vec<DetectedCorner> {
     let reach = reach(detector);
     let (arms, mut groups) = arms(pixels, chains, segments);
     let mut free: Vec<usize> = (0..arms.len()).filter(|&i| arms[i].free).collect();
@@ -61,11 +61,15 @@ fn reach(detector: &Detector) -> f64 {
 
 /// Brings the ends of lines that make corners next to these: there the mask rounds the edge off, or
 /// sees none.
-pub(super) fn extend(detector: &Detector, corners: &[Corner], segments: &mut [Segment]) {
+pub(super) fn extend(
+    detector: &Detector,
+    corners: &[DetectedCorner],
+    segments: &mut [DetectedSegment],
+) {
     let reach = reach(detector);
     for corner in corners {
         for &s in &corner.segments {
-            let Shape::Line { ends } = &mut segments[s as usize].shape else {
+            let SegmentShape::Line { ends } = &mut segments[s as usize].shape else {
                 continue;
             };
             let away = ends.map(|p| (p[0] - corner.at[0]).hypot(p[1] - corner.at[1]));
@@ -84,7 +88,11 @@ pub(super) fn extend(detector: &Detector, corners: &[Corner], segments: &mut [Se
 
 /// The ends of all segments, two for each, and for each the one it is joined to along the chain, or
 /// itself.
-fn arms(pixels: &[EdgePixel], chains: &[Chain], segments: &[Segment]) -> (Vec<Arm>, Vec<usize>) {
+fn arms(
+    pixels: &[EdgePixel],
+    chains: &[EdgeChain],
+    segments: &[DetectedSegment],
+) -> (Vec<Arm>, Vec<usize>) {
     let mut arms = Vec::new();
     let mut groups: Vec<usize> = Vec::new();
     let mut first = 0;
@@ -118,17 +126,17 @@ fn arms(pixels: &[EdgePixel], chains: &[Chain], segments: &[Segment]) -> (Vec<Ar
 }
 
 /// The ends of a shape, with the tangents there; where it has none, bare points.
-fn tangents(shape: &Shape, bare: [[f64; 2]; 2]) -> [End; 2] {
+fn tangents(shape: &SegmentShape, bare: [[f64; 2]; 2]) -> [End; 2] {
     match shape {
-        Shape::Line { ends } => {
+        SegmentShape::Line { ends } => {
             let along = unit([ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]]);
             ends.map(|at| End { at, along })
         }
-        Shape::Arc { conic, ends, .. } => ends.map(|at| End {
+        SegmentShape::Arc { conic, ends, .. } => ends.map(|at| End {
             at,
             along: tangent(conic, at),
         }),
-        Shape::Ellipse { conic, .. } => bare.map(|p| {
+        SegmentShape::Ellipse { conic, .. } => bare.map(|p| {
             let at = foot_on_conic(conic, p);
             End {
                 at,
@@ -159,7 +167,7 @@ fn marked(p: &Arm, q: &Arm) -> bool {
 }
 
 /// The corner of ends, if two of them make a marked angle: the point nearest to their lines.
-fn meet(arms: &[&Arm], far: f64) -> Option<Corner> {
+fn meet(arms: &[&Arm], far: f64) -> Option<DetectedCorner> {
     let pair = |(i, p): (usize, &&Arm)| arms[i + 1..].iter().any(|q| marked(p, q));
     if !arms.iter().enumerate().any(pair) {
         return None;
@@ -187,7 +195,7 @@ fn meet(arms: &[&Arm], far: f64) -> Option<Corner> {
     let mut segments: Vec<u32> = arms.iter().map(|a| a.segment).collect();
     segments.sort_unstable();
     segments.dedup();
-    Some(Corner {
+    Some(DetectedCorner {
         at: [0, 1].map(|c| middle[c] + if told { step[c] } else { 0.0 }),
         segments,
     })

@@ -10,11 +10,11 @@ pub struct Detection {
     /// The edge pixels after thinning, row by row; also those of chains that are too short.
     pub pixels: Vec<EdgePixel>,
     /// The pixels linked in order.
-    pub chains: Vec<Chain>,
+    pub chains: Vec<EdgeChain>,
     /// The chains cut into lines and conics; those of a chain follow one another.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<DetectedSegment>,
     /// Where segments meet at an angle.
-    pub corners: Vec<Corner>,
+    pub corners: Vec<DetectedCorner>,
 }
 
 /// A pixel that an edge passes through.
@@ -34,7 +34,7 @@ pub struct EdgePixel {
 /// Edge pixels in order along an edge, so that in the image, y downwards, the bright side is on the
 /// right.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Chain {
+pub struct EdgeChain {
     /// Indices into the pixels of the detection. A pixel where edges branch may be the end of
     /// several chains.
     pub pixels: Vec<u32>,
@@ -44,13 +44,13 @@ pub struct Chain {
 
 /// A piece of a chain that is one line or one conic.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Segment {
+pub struct DetectedSegment {
     /// The index of its chain.
     pub chain: u32,
     /// Which pixels of the chain it takes, half open. A closed chain starts where a segment does.
     pub range: [u32; 2],
     /// The fitted curve.
-    pub shape: Shape,
+    pub shape: SegmentShape,
     /// The root mean square distance, in pixels, of the fitted points from the curve. Next to the
     /// ends of a long segment, where the mask sees what is beyond, points are not fitted.
     pub rms: f64,
@@ -59,7 +59,7 @@ pub struct Segment {
 /// A fitted curve; its ends are in the order of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
-pub enum Shape {
+pub enum SegmentShape {
     /// A straight line.
     Line {
         /// The first and the last pixel, brought onto the line; at a corner, the point next to it;
@@ -89,7 +89,7 @@ pub enum Shape {
 /// Where segments meet at an angle: consecutive ones of a chain, or those at chain ends close
 /// together.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Corner {
+pub struct DetectedCorner {
     /// The point nearest to all their lines, or tangents.
     pub at: [f64; 2],
     /// The indices of the segments, increasing; one alone where a closed arc meets itself.

@@ -2,10 +2,10 @@
 
 use super::corners::{corners, extend};
 use super::detection::Detection;
-use super::domain::Domain;
 use super::grey::Grey;
 use super::joining::join;
 use super::linking::link;
+use super::pixel_mask::PixelMask;
 use super::segments::Fitter;
 use super::shrink::shrink;
 use super::thinning::{connect, edge_pixels, pick};
@@ -182,12 +182,12 @@ impl Detector {
 
     /// Finds the edges in the known pixels of an image. Nothing is found where image and domain are
     /// of different sizes.
-    pub fn detect(&self, grey: &Grey, domain: &Domain) -> Detection {
+    pub fn detect(&self, grey: &Grey, domain: &PixelMask) -> Detection {
         self.detect_with(&mut Workspace::new(), grey, domain)
     }
 
     /// Finds the same in memory that is used again.
-    pub fn detect_with(&self, work: &mut Workspace, grey: &Grey, domain: &Domain) -> Detection {
+    pub fn detect_with(&self, work: &mut Workspace, grey: &Grey, domain: &PixelMask) -> Detection {
         let size = grey.width.checked_mul(grey.height);
         let usable = size.is_some_and(|n| n == grey.levels.len() && u32::try_from(n).is_ok());
         if !usable || [domain.width(), domain.height()] != [grey.width, grey.height] {

@@ -1,8 +1,8 @@
 //! Gradients by masks (Haralick & Shapiro ch. 7).
 
 use super::detector::Mask;
-use super::domain::Domain;
 use super::grey::Grey;
+use super::pixel_mask::PixelMask;
 use std::ops::Range;
 
 /// Magnitudes this near, relatively, are equal: what rounding makes of equal ones must not open
@@ -34,7 +34,7 @@ impl Gradient {
     }
 
     /// Finds the gradient on `inner`, which is `domain` eroded by the radius of the mask.
-    pub fn find(&mut self, mask: Mask, grey: &Grey, domain: &Domain, inner: &Domain) {
+    pub fn find(&mut self, mask: Mask, grey: &Grey, domain: &PixelMask, inner: &PixelMask) {
         match mask {
             Mask::Roberts => self.by_diagonals(grey, inner),
             Mask::Prewitt => self.by_differences(grey, inner, 1.0),
@@ -54,7 +54,7 @@ impl Gradient {
     }
 
     /// Differences of three neighbours, the middle one with its own weight: Prewitt and Sobel.
-    fn by_differences(&mut self, grey: &Grey, inner: &Domain, weight: f32) {
+    fn by_differences(&mut self, grey: &Grey, inner: &PixelMask, weight: f32) {
         let scale = 1.0 / (2.0 * (2.0 + weight));
         for run in runs(inner, self.width) {
             let n = run.len();
@@ -73,7 +73,7 @@ impl Gradient {
     }
 
     /// Differences along the diagonals of two by two pixels, turned to the image axes: Roberts.
-    fn by_diagonals(&mut self, grey: &Grey, inner: &Domain) {
+    fn by_diagonals(&mut self, grey: &Grey, inner: &PixelMask) {
         for run in runs(inner, self.width) {
             let n = run.len();
             let a = &grey.levels[run.start..][..n + 1];
@@ -88,7 +88,7 @@ impl Gradient {
     }
 
     /// Derivatives of a Gaussian, along the rows first and then down the columns.
-    fn by_gaussian(&mut self, taps: &Taps, grey: &Grey, domain: &Domain, inner: &Domain) {
+    fn by_gaussian(&mut self, taps: &Taps, grey: &Grey, domain: &PixelMask, inner: &PixelMask) {
         self.smooth.resize(grey.levels.len(), 0.0);
         self.slope.resize(grey.levels.len(), 0.0);
         let (width, radius) = (self.width, taps.radius());
@@ -105,7 +105,7 @@ impl Gradient {
 }
 
 /// The known stretches of rows by their places in the image.
-pub(super) fn runs(domain: &Domain, width: usize) -> impl Iterator<Item = Range<usize>> {
+pub(super) fn runs(domain: &PixelMask, width: usize) -> impl Iterator<Item = Range<usize>> {
     (0..domain.height()).flat_map(move |y| {
         let spans = domain.spans(y).iter();
         spans.map(move |r| y * width + r.start as usize..y * width + r.end as usize)
@@ -185,10 +185,10 @@ mod tests {
         Mask::Gaussian { sigma: 2.3 },
     ];
 
-    fn gradient(mask: Mask, grey: &Grey) -> (Gradient, Domain) {
+    fn gradient(mask: Mask, grey: &Grey) -> (Gradient, PixelMask) {
         let mut gradient = Gradient::default();
         gradient.resize(grey.width, grey.height);
-        let domain = Domain::full(grey.width, grey.height);
+        let domain = PixelMask::full(grey.width, grey.height);
         let inner = domain.eroded(mask.radius());
         gradient.find(mask, grey, &domain, &inner);
         (gradient, inner)

@@ -1,6 +1,6 @@
 //! Joining of chains across gaps.
 
-use super::detection::{Chain, EdgePixel};
+use super::detection::{EdgeChain, EdgePixel};
 use super::detector::Detector;
 
 /// The cosine of the largest angle between chains that are joined: 30 degrees.
@@ -23,7 +23,7 @@ pub(super) struct End {
 }
 
 /// The first end of a chain, and the last; both directions are along the chain.
-pub(super) fn ends(chain: &Chain, pixels: &[EdgePixel]) -> [End; 2] {
+pub(super) fn ends(chain: &EdgeChain, pixels: &[EdgePixel]) -> [End; 2] {
     let list = &chain.pixels;
     let reach = list.len().min(REACH);
     let [first, last] = [&list[..reach], &list[list.len() - reach..]];
@@ -63,7 +63,11 @@ fn direction(list: &[u32], pixels: &[EdgePixel]) -> [f64; 2] {
 
 /// Joins chains whose ends are near in the detector's sense, drops the short ones, and brings the
 /// others into the order of their first pixels.
-pub(super) fn join(chains: Vec<Chain>, pixels: &[EdgePixel], detector: &Detector) -> Vec<Chain> {
+pub(super) fn join(
+    chains: Vec<EdgeChain>,
+    pixels: &[EdgePixel],
+    detector: &Detector,
+) -> Vec<EdgeChain> {
     let next = partners(&chains, pixels, detector.gap);
     let mut preceded = vec![false; chains.len()];
     for &n in next.iter().flatten() {
@@ -84,7 +88,7 @@ pub(super) fn join(chains: Vec<Chain>, pixels: &[EdgePixel], detector: &Detector
 }
 
 /// The chain that follows each one, if any.
-fn partners(chains: &[Chain], pixels: &[EdgePixel], gap: f64) -> Vec<Option<usize>> {
+fn partners(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<Option<usize>> {
     let mut next = vec![None; chains.len()];
     let mut taken = vec![false; chains.len()];
     for (_, tail, head) in pairs(chains, pixels, gap) {
@@ -97,7 +101,7 @@ fn partners(chains: &[Chain], pixels: &[EdgePixel], gap: f64) -> Vec<Option<usiz
 }
 
 /// The chains of which the second may follow the first, the nearest and straightest pairs first.
-fn pairs(chains: &[Chain], pixels: &[EdgePixel], gap: f64) -> Vec<(f64, usize, usize)> {
+fn pairs(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<(f64, usize, usize)> {
     let open = (0..chains.len()).filter(|&i| !chains[i].closed);
     let ends: Vec<(usize, [End; 2])> = open.map(|i| (i, ends(&chains[i], pixels))).collect();
     let mut heads: Vec<(usize, End)> = ends.iter().map(|(i, e)| (*i, e[0])).collect();
@@ -138,7 +142,12 @@ fn cost(tail: &End, head: &End, gap: f64) -> Option<f64> {
 }
 
 /// A chain with all that follow it.
-fn concatenate(start: usize, chains: &[Chain], next: &[Option<usize>], used: &mut [bool]) -> Chain {
+fn concatenate(
+    start: usize,
+    chains: &[EdgeChain],
+    next: &[Option<usize>],
+    used: &mut [bool],
+) -> EdgeChain {
     let mut chain = chains[start].clone();
     used[start] = true;
     let mut here = start;
@@ -160,7 +169,7 @@ fn concatenate(start: usize, chains: &[Chain], next: &[Option<usize>], used: &mu
     chain
 }
 
-fn length(chain: &Chain, pixels: &[EdgePixel]) -> f64 {
+fn length(chain: &EdgeChain, pixels: &[EdgePixel]) -> f64 {
     let at = |i: u32| pixels[i as usize].at;
     let steps = chain.pixels.windows(2);
     let steps = steps.map(|pair| [at(pair[0]), at(pair[1])]);

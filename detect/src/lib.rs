@@ -5,18 +5,18 @@
 //! 1986), linking of pixels to [chains](Chain) (ch. 11), splitting of chains at corners (Ramer
 //! 1972), and [fits](fit) of lines and ellipses to the pieces (ch. 11, Fitzgibbon 1999).
 //!
-//! No step looks at a pixel outside the [`Domain`], so that an image of which little is known gives
+//! No step looks at a pixel outside the [`PixelMask`], so that an image of which little is known gives
 //! the same edges as the whole one wherever [`Detector::radius`] pixels about them are known.
 
 mod corners;
 mod detection;
 mod detector;
-mod domain;
 pub mod fit;
 mod gradient;
 mod grey;
 mod joining;
 mod linking;
+mod pixel_mask;
 mod segments;
 mod shrink;
 mod splitting;
@@ -27,8 +27,10 @@ mod workspace;
 #[cfg(test)]
 mod tests;
 
-pub use detection::{Chain, Corner, Detection, EdgePixel, Segment, Shape};
+pub use detection::{
+    DetectedCorner, DetectedSegment, Detection, EdgeChain, EdgePixel, SegmentShape,
+};
 pub use detector::{Detector, DetectorError, Mask, Thinning};
-pub use domain::Domain;
 pub use grey::Grey;
+pub use pixel_mask::PixelMask;
 pub use workspace::Workspace;

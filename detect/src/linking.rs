@@ -1,7 +1,7 @@
 //! Linking of edge pixels to chains, from end to end, from branch to branch and around (Haralick &
 //! Shapiro ch. 11).
 
-use super::detection::{Chain, EdgePixel};
+use super::detection::{EdgeChain, EdgePixel};
 use super::gradient::Gradient;
 use super::workspace::{Workspace, neighbours};
 
@@ -87,13 +87,13 @@ impl Links {
 
     /// The chains between ends and branches, and the closed ones, each with the bright side on the
     /// right. Where edges branch, the pixel ends each of the chains.
-    pub fn chains(&self, pixels: &[EdgePixel]) -> Vec<Chain> {
+    pub fn chains(&self, pixels: &[EdgePixel]) -> Vec<EdgeChain> {
         let mut chains = Vec::new();
         let mut taken = vec![false; self.near.len()];
         let all = 0..self.near.len() as u32;
         for node in all.clone().filter(|&p| self.count(p) != 2) {
             if self.count(node) == 0 {
-                chains.push(Chain {
+                chains.push(EdgeChain {
                     pixels: vec![node],
                     closed: false,
                 });
@@ -124,7 +124,7 @@ impl Links {
     }
 
     /// The chain that starts with two pixels.
-    fn follow(&self, start: u32, next: u32, taken: &mut [bool]) -> Chain {
+    fn follow(&self, start: u32, next: u32, taken: &mut [bool]) -> EdgeChain {
         let mut path = vec![start, next];
         let (mut before, mut here) = (start, next);
         while here != start && self.count(here) == 2 {
@@ -138,7 +138,7 @@ impl Links {
         if closed {
             path.pop();
         }
-        Chain {
+        EdgeChain {
             pixels: path,
             closed,
         }
@@ -167,7 +167,7 @@ fn near(place: u32, gradient: &Gradient, marks: &[u32]) -> Near {
 }
 
 /// Turns a chain so that the gradients point to its right.
-fn orient(chain: &mut Chain, pixels: &[EdgePixel]) {
+fn orient(chain: &mut EdgeChain, pixels: &[EdgePixel]) {
     let mut side = 0.0;
     for pair in chain.pixels.windows(2) {
         let [p, q] = [pair[0], pair[1]].map(|i| &pixels[i as usize]);

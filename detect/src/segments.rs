@@ -1,7 +1,7 @@
 //! Lines and conics along chains: the pieces between splits, merged where one curve holds several
 //! (Haralick & Shapiro ch. 11).
 
-use super::detection::{Chain, EdgePixel, Segment, Shape};
+use super::detection::{DetectedSegment, EdgeChain, EdgePixel, SegmentShape};
 use super::detector::Detector;
 use super::fit::{Fit, LineFit, distance_to_conic, ellipse, line};
 use super::splitting::{outermost, split, split_closed};
@@ -29,7 +29,7 @@ pub(super) struct Fitter<'a> {
     detector: &'a Detector,
     pixels: &'a [EdgePixel],
     /// The segments so far, chain by chain.
-    pub found: Vec<Segment>,
+    pub found: Vec<DetectedSegment>,
 }
 
 /// The pieces of a chain, with what is known of them.
@@ -57,13 +57,13 @@ impl<'a> Fitter<'a> {
 
     /// Finds the segments of chains, and gives the chains back: the closed ones start where a
     /// segment does.
-    pub fn segments(&mut self, chains: Vec<Chain>) -> Vec<Chain> {
+    pub fn segments(&mut self, chains: Vec<EdgeChain>) -> Vec<EdgeChain> {
         let numbered = (0_u32..).zip(chains);
         let chains = numbered.map(|(number, chain)| self.chain(number, chain));
         chains.collect()
     }
 
-    fn chain(&mut self, number: u32, chain: Chain) -> Chain {
+    fn chain(&mut self, number: u32, chain: EdgeChain) -> EdgeChain {
         let mut walk = Walk::new(chain, self.pixels);
         let tolerance = self.detector.corner;
         let breaks = if walk.chain.closed {
@@ -116,7 +116,7 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    fn segment(&self, chain: u32, walk: &Walk, stretch: &Stretch, whole: bool) -> Segment {
+    fn segment(&self, chain: u32, walk: &Walk, stretch: &Stretch, whole: bool) -> DetectedSegment {
         let all = &walk.points[stretch.range.clone()];
         // Beyond a corner the mask sees another edge, which pulls the pixels next to it.
         let outer = self.detector.radius().min(all.len() / 4);
@@ -127,7 +127,7 @@ impl<'a> Fitter<'a> {
         let curved = whole || straight.is_none_or(|fit| fit.rms > FINE);
         let curve = (stretch.bent && curved).then(|| ellipse(fitted)).flatten();
         let fit = curve.map(Fit::Ellipse).or(straight.map(Fit::Line));
-        Segment {
+        DetectedSegment {
             chain,
             range: [stretch.range.start as u32, stretch.range.end as u32],
             shape: shape(fit, walk, &stretch.range, whole),
@@ -137,25 +137,25 @@ impl<'a> Fitter<'a> {
 }
 
 /// The shape of a fit to a range of points.
-fn shape(fit: Option<Fit>, walk: &Walk, range: &Range<usize>, whole: bool) -> Shape {
+fn shape(fit: Option<Fit>, walk: &Walk, range: &Range<usize>, whole: bool) -> SegmentShape {
     let points = &walk.points[range.clone()];
     let onto = |p: [f64; 2]| fit.map_or(p, |f| f.foot(p));
     let ends = [points[0], points[points.len() - 1]].map(onto);
     match fit {
-        Some(Fit::Ellipse(fit)) if whole => Shape::Ellipse {
+        Some(Fit::Ellipse(fit)) if whole => SegmentShape::Ellipse {
             conic: fit.conic,
             centre: fit.centre,
             axes: fit.axes,
         },
-        Some(Fit::Ellipse(fit)) => Shape::Arc {
+        Some(Fit::Ellipse(fit)) => SegmentShape::Arc {
             conic: fit.conic,
             ends,
             middle: onto(points[points.len() / 2]),
         },
-        Some(Fit::Line(fit)) if !whole => Shape::Line {
+        Some(Fit::Line(fit)) if !whole => SegmentShape::Line {
             ends: reaching(&fit, ends, walk.beyond(range)),
         },
-        _ => Shape::Line { ends },
+        _ => SegmentShape::Line { ends },
     }
 }
 

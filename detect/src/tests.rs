@@ -21,7 +21,7 @@ fn draw(width: usize, height: usize, inside: impl Fn(f64, f64) -> bool) -> Grey 
 
 fn detect(detector: &Detector, grey: &Grey) -> Detection {
     detector.validate().unwrap();
-    let found = detector.detect(grey, &Domain::full(grey.width, grey.height));
+    let found = detector.detect(grey, &PixelMask::full(grey.width, grey.height));
     check(&found);
     found
 }
@@ -167,7 +167,7 @@ fn a_circle_is_one_ellipse() {
             found.segments
         );
         assert!(found.corners.is_empty());
-        let Shape::Ellipse { centre, axes, .. } = found.segments[0].shape else {
+        let SegmentShape::Ellipse { centre, axes, .. } = found.segments[0].shape else {
             panic!("{:?}", found.segments);
         };
         assert!(distance(centre, middle) < 0.05, "{mask:?} {centre:?}");
@@ -196,10 +196,10 @@ fn a_half_circle_is_an_arc() {
     let line = found
         .segments
         .iter()
-        .find(|s| matches!(s.shape, Shape::Line { .. }));
+        .find(|s| matches!(s.shape, SegmentShape::Line { .. }));
     assert!(line.is_some());
     let arc = found.segments.iter().find_map(|s| match s.shape {
-        Shape::Arc { middle, ends, .. } => Some((middle, ends)),
+        SegmentShape::Arc { middle, ends, .. } => Some((middle, ends)),
         _ => None,
     });
     let (at, ends) = arc.unwrap();
@@ -235,7 +235,7 @@ fn a_slight_bend_is_a_corner_and_no_arc() {
     };
     for degrees in [2.0, 2.5, 3.0, 5.0] {
         let found = detect(&detector, &bend(degrees));
-        let lines = |s: &Segment| matches!(s.shape, Shape::Line { .. });
+        let lines = |s: &DetectedSegment| matches!(s.shape, SegmentShape::Line { .. });
         assert!(
             found.segments.iter().all(lines),
             "{degrees}: {:?}",
@@ -259,7 +259,10 @@ fn a_flat_arc_is_an_arc() {
         let [segment] = &found.segments[..] else {
             panic!("{radius}: {:?}", found.segments);
         };
-        assert!(matches!(segment.shape, Shape::Arc { .. }), "{radius}");
+        assert!(
+            matches!(segment.shape, SegmentShape::Arc { .. }),
+            "{radius}"
+        );
     }
 }
 
@@ -267,7 +270,7 @@ fn a_flat_arc_is_an_arc() {
 fn an_ellipse_and_a_slot() {
     let ellipse = |x: f64, y: f64| ((x - 60.0) / 40.0).powi(2) + ((y - 50.0) / 15.0).powi(2) < 1.0;
     let found = detect(&Detector::default(), &draw(120, 100, ellipse));
-    let Shape::Ellipse { axes, .. } = found.segments[0].shape else {
+    let SegmentShape::Ellipse { axes, .. } = found.segments[0].shape else {
         panic!("{:#?}", found.segments);
     };
     assert!((distance(axes[0], [0.0; 2]) - 40.0).abs() < 0.1, "{axes:?}");
@@ -278,7 +281,7 @@ fn an_ellipse_and_a_slot() {
     let lines = found
         .segments
         .iter()
-        .filter(|s| matches!(s.shape, Shape::Line { .. }));
+        .filter(|s| matches!(s.shape, SegmentShape::Line { .. }));
     assert_eq!(lines.count(), 2);
 }
 
@@ -313,7 +316,7 @@ fn gaps_are_joined_up_to_a_width() {
     let chains = |gap, known: &dyn Fn(usize, usize) -> bool| {
         let plain = Grey::of(80, 30, |_, y| if y < 15 { 50.0 } else { 150.0 });
         let mask: Vec<bool> = (0..80 * 30).map(|i| known(i % 80, i / 80)).collect();
-        let domain = Domain::of_mask(80, 30, &mask);
+        let domain = PixelMask::of_mask(80, 30, &mask);
         let detector = Detector {
             gap,
             ..Detector::default()
@@ -369,7 +372,7 @@ fn a_band_shows_what_the_whole_shows() {
         for (level, known) in spoilt.levels.iter_mut().zip(&known) {
             *level = if *known { *level } else { f32::NAN };
         }
-        let domain = Domain::of_mask(130, 120, &known);
+        let domain = PixelMask::of_mask(130, 120, &known);
         assert!(domain.len() < 130 * 120);
         assert_eq!(
             detector.detect(&spoilt, &domain),
@@ -389,7 +392,7 @@ fn a_workspace_is_used_again() {
     for size in [40, 90, 33] {
         let half = size as f64 / 2.0;
         let grey = draw(size, size + 5, square([half, half], half / 2.0, 0.4));
-        let domain = Domain::full(size, size + 5);
+        let domain = PixelMask::full(size, size + 5);
         let again = detector.detect_with(&mut work, &grey, &domain);
         assert_eq!(again, detector.detect(&grey, &domain));
         assert!(!again.segments.is_empty());
@@ -420,13 +423,13 @@ fn nothing_crashes() {
                 low: Some(1.0),
                 ..Detector::default()
             };
-            check(&detector.detect(&grey, &Domain::full(width, height)));
+            check(&detector.detect(&grey, &PixelMask::full(width, height)));
             let mask: Vec<bool> = grey
                 .levels
                 .iter()
                 .map(|_| noise(&mut seed) < 0.98)
                 .collect();
-            check(&detector.detect(&grey, &Domain::of_mask(width, height, &mask)));
+            check(&detector.detect(&grey, &PixelMask::of_mask(width, height, &mask)));
         }
     }
 }
@@ -438,7 +441,7 @@ fn what_is_no_detector_does_not_crash() {
         height: 3,
         levels: vec![],
     };
-    let found = Detector::default().detect(&grey, &Domain::full(3, 3));
+    let found = Detector::default().detect(&grey, &PixelMask::full(3, 3));
     assert_eq!(found, Detection::default());
     let flat = Grey::of(40, 40, |x, y| (x + 2 * y) as f32);
     let wrong = Detector {
@@ -449,7 +452,7 @@ fn what_is_no_detector_does_not_crash() {
         mask: Mask::Gaussian { sigma: f64::NAN },
         ..Detector::default()
     };
-    check(&wrong.detect(&flat, &Domain::full(40, 40)));
+    check(&wrong.detect(&flat, &PixelMask::full(40, 40)));
     let zero = Detector {
         threshold: 0.0,
         gap: 0.0,
@@ -459,14 +462,14 @@ fn what_is_no_detector_does_not_crash() {
     };
     check(&zero.detect(
         &draw(60, 60, square([30.0, 30.0], 14.0, 0.3)),
-        &Domain::full(60, 60),
+        &PixelMask::full(60, 60),
     ));
 }
 
 /// The line nearest to a known one, by its ends.
 fn ends_of_lines(found: &Detection) -> Vec<[[f64; 2]; 2]> {
     let ends = found.segments.iter().map(|s| match s.shape {
-        Shape::Line { ends } => ends,
+        SegmentShape::Line { ends } => ends,
         other => panic!("{other:?}"),
     });
     ends.collect()
@@ -521,7 +524,7 @@ proptest! {
         let grey = Grey { width: 20, height: 20, levels };
         for thinning in [Thinning::NonMaximum, Thinning::Shrink] {
             let detector = Detector { thinning, low: Some(low), shortest: 0.0, corner: 0.5, ..Detector::default() };
-            check(&detector.detect(&grey, &Domain::full(20, 20)));
+            check(&detector.detect(&grey, &PixelMask::full(20, 20)));
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use super::detection::EdgePixel;
 use super::detector::{Detector, Thinning};
-use super::domain::Domain;
 use super::gradient::{Gradient, ROUNDING, runs};
+use super::pixel_mask::PixelMask;
 use super::workspace::{Workspace, neighbours};
 
 /// Finds the pixels that are strong enough, and of those, but where the edges shrink, the ones
 /// where the gradient is largest across the edge. They are marked.
-pub(super) fn pick(detector: &Detector, work: &mut Workspace, inner: &Domain) {
+pub(super) fn pick(detector: &Detector, work: &mut Workspace, inner: &PixelMask) {
     let least = detector.low.unwrap_or(detector.threshold) as f32;
     let gradient = &work.gradient;
     let all = detector.thinning == Thinning::Shrink;

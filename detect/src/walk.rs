@@ -1,6 +1,6 @@
 //! Chains with the stretches that curves hold, and where their boundaries are.
 
-use super::detection::{Chain, EdgePixel};
+use super::detection::{EdgeChain, EdgePixel};
 use super::fit::{Fit, ellipse, line};
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ pub(super) struct Stretch {
 
 /// A chain with its points and stretches.
 pub(super) struct Walk {
-    pub chain: Chain,
+    pub chain: EdgeChain,
     /// Where its pixels are.
     pub points: Vec<[f64; 2]>,
     /// One after the other, from the first point to the last.
@@ -22,7 +22,7 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    pub fn new(chain: Chain, pixels: &[EdgePixel]) -> Self {
+    pub fn new(chain: EdgeChain, pixels: &[EdgePixel]) -> Self {
         let at = |&i: &u32| pixels[i as usize].at;
         Self {
             points: chain.pixels.iter().map(at).collect(),

@@ -4,8 +4,8 @@
 //! On a sheet the part has its true size, in its own unit, and paper, frame and title block are as much
 //! larger as the scale makes it smaller.
 
-use super::sheet::{Mark, Sheet, Weight};
-use super::{Drawing, Layer, Shape, Stroke};
+use super::sheet::{Sheet, SheetMark, Weight};
+use super::{Drawing, Layer, Stroke, StrokeShape};
 use nalgebra::{Point2, Vector2};
 use premio_kernel::unit::Unit;
 use premio_text::escape;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// An ellipse as round as this is a circle.
-const ROUND: f64 = premio_kernel::number::sign::ROUNDING * 1024.0;
+const ROUND: f64 = premio_kernel::number::predicates::ROUNDING * 1024.0;
 
 /// Writes groups: a code and its value, a line each.
 struct Groups {
@@ -325,9 +325,9 @@ fn start(g: &mut Groups, name: &str, class: &str, layer: &str, owner: u32) {
 }
 
 /// A part of a sheet's frame or title block; `paper` is how long a millimetre on paper is.
-fn furniture(g: &mut Groups, mark: &Mark, paper: f64, owner: u32) {
+fn furniture(g: &mut Groups, mark: &SheetMark, paper: f64, owner: u32) {
     match mark {
-        Mark::Line([a, b], weight) => {
+        SheetMark::Line([a, b], weight) => {
             let (layer, _) = match weight {
                 Weight::Thick => FRAME,
                 Weight::Thin => TITLE,
@@ -336,12 +336,12 @@ fn furniture(g: &mut Groups, mark: &Mark, paper: f64, owner: u32) {
             g.point(10, a.x * paper, a.y * paper);
             g.point(11, b.x * paper, b.y * paper);
         }
-        Mark::Circle(centre, radius) => {
+        SheetMark::Circle(centre, radius) => {
             start(g, "CIRCLE", "AcDbCircle", TITLE.0, owner);
             g.point(10, centre.x * paper, centre.y * paper);
             g.number(40, radius * paper);
         }
-        Mark::Text(at, height, text) => {
+        SheetMark::Text(at, height, text) => {
             start(g, "TEXT", "AcDbText", TITLE.0, owner);
             g.point(10, at.x * paper, at.y * paper);
             g.number(40, height * paper);
@@ -355,13 +355,13 @@ fn furniture(g: &mut Groups, mark: &Mark, paper: f64, owner: u32) {
 fn entity(g: &mut Groups, stroke: &Stroke, placing: Placing, owner: u32) {
     let layer = &layer_name(stroke.layer, stroke.visible);
     match &stroke.shape {
-        Shape::Line(ends) => {
+        StrokeShape::Line(ends) => {
             let [a, b] = ends.map(|p| placing.point(&p));
             start(g, "LINE", "AcDbLine", layer, owner);
             g.point(10, a.x, a.y);
             g.point(11, b.x, b.y);
         }
-        Shape::Path(points) => {
+        StrokeShape::Path(points) => {
             start(g, "LWPOLYLINE", "AcDbPolyline", layer, owner);
             g.put(90, points.len());
             g.put(70, 0);
@@ -370,7 +370,7 @@ fn entity(g: &mut Groups, stroke: &Stroke, placing: Placing, owner: u32) {
                 g.number(20, p.y);
             }
         }
-        Shape::Ellipse {
+        StrokeShape::Ellipse {
             centre,
             major,
             ratio,

@@ -1,14 +1,14 @@
 //! Arcs in the image that do not fold back on themselves: segments, arcs of ellipses, and arcs of
 //! projected curves.
 
-use super::Shape;
+use super::StrokeShape;
 use nalgebra::{Matrix3, Point2, Vector2};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
 /// An ellipse: centre + cos s major + sin s minor, the minor half axis to the left of the major one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ellipse {
+pub struct ImageEllipse {
     /// The centre.
     pub centre: Point2<f64>,
     /// The longer half axis, of the parameter 0.
@@ -17,7 +17,7 @@ pub struct Ellipse {
     pub ratio: f64,
 }
 
-impl Ellipse {
+impl ImageEllipse {
     /// The image of the unit circle (cos t, sin t, 1) under a map to homogeneous coordinates; none
     /// where that is another conic.
     ///
@@ -128,7 +128,7 @@ pub enum ImageArc<'c> {
     /// An arc of an ellipse, by its parameters.
     Elliptic {
         /// The ellipse.
-        ellipse: Ellipse,
+        ellipse: ImageEllipse,
         /// The parameters, increasing by at most one turn.
         range: [f64; 2],
     },
@@ -346,10 +346,10 @@ impl ImageArc<'_> {
     }
 
     /// The shape of the arc.
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> StrokeShape {
         match self {
-            Self::Segment(ends) => Shape::Line(*ends),
-            Self::Elliptic { ellipse, range } => Shape::Ellipse {
+            Self::Segment(ends) => StrokeShape::Line(*ends),
+            Self::Elliptic { ellipse, range } => StrokeShape::Ellipse {
                 centre: ellipse.centre,
                 major: ellipse.major,
                 ratio: ellipse.ratio,
@@ -357,7 +357,7 @@ impl ImageArc<'_> {
                 sweep: (range[1] - range[0]).min(TAU),
             },
             Self::Projected { samples, .. } => {
-                Shape::Path(samples.iter().map(|s| s.point).collect())
+                StrokeShape::Path(samples.iter().map(|s| s.point).collect())
             }
         }
     }
@@ -382,8 +382,8 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    fn ellipse() -> Ellipse {
-        Ellipse {
+    fn ellipse() -> ImageEllipse {
+        ImageEllipse {
             centre: Point2::new(1.0, 2.0),
             major: Vector2::new(3.0, 4.0),
             ratio: 0.4,
@@ -394,11 +394,11 @@ mod tests {
     #[test]
     fn an_ellipse_has_its_half_axes() {
         let six = [4.0, 0.0, 9.0, -8.0, 36.0, 4.0];
-        let found = Ellipse::from_coefficients(&six).unwrap();
+        let found = ImageEllipse::from_coefficients(&six).unwrap();
         assert!((found.centre - Point2::new(1.0, -2.0)).norm() < 1e-12);
         assert!((found.major.norm() - 3.0).abs() < 1e-12 && found.major.y.abs() < 1e-12);
         assert!((found.ratio - 2.0 / 3.0).abs() < 1e-12);
-        assert!(Ellipse::from_coefficients(&[1.0, 0.0, -1.0, 0.0, 0.0, -1.0]).is_none());
+        assert!(ImageEllipse::from_coefficients(&[1.0, 0.0, -1.0, 0.0, 0.0, -1.0]).is_none());
     }
 
     /// A circle about (50, 40) that is seen so flat that its half axes are 2 and 2/1024.
@@ -417,20 +417,20 @@ mod tests {
             0.0,
             1.0,
         );
-        let found = Ellipse::from_map(&map).unwrap();
+        let found = ImageEllipse::from_map(&map).unwrap();
         assert!((found.centre - Point2::new(50.0, 40.0)).norm() < 1e-12);
         assert!((found.major - Vector2::new(cos, sin) * 2.0).norm() < 1e-9);
         assert!((found.ratio / ratio - 1.0).abs() < 1e-8);
         // In perspective: the points are those of the map.
         let tilted = Matrix3::new(1.0, 0.2, 3.0, 0.1, 0.7, -2.0, 0.05, -0.1, 1.0);
-        let found = Ellipse::from_map(&tilted).unwrap();
+        let found = ImageEllipse::from_map(&tilted).unwrap();
         for k in 0..12 {
             let t = f64::from(k);
             let h = tilted * Vector3::new(t.cos(), t.sin(), 1.0);
             assert!(found.distance(&Point2::new(h.x / h.z, h.y / h.z)) < 1e-12);
         }
         let beyond = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 2.0, 0.0, 1.0);
-        assert!(Ellipse::from_map(&beyond).is_none());
+        assert!(ImageEllipse::from_map(&beyond).is_none());
     }
 
     #[test]

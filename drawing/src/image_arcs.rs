@@ -1,13 +1,13 @@
 //! The image arcs of contours: runs of pieces of one visibility, cut where the image folds back.
 
 use super::Layer;
-use super::image_arc::{Ellipse, ImageArc, Sample};
+use super::image_arc::{ImageArc, ImageEllipse, Sample};
 use super::supports::ordered;
 use nalgebra::{Matrix3, Point2, Vector3};
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::number::sign::ROUNDING;
-use premio_visibility::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
-use premio_visibility::image::{folds_of_conic, map_of_ellipse};
+use premio_kernel::number::predicates::ROUNDING;
+use premio_visibility::contour::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
+use premio_visibility::image_curve::{folds_of_conic, map_of_ellipse};
 use premio_visibility::projection::Projection;
 use std::f64::consts::TAU;
 use std::rc::Rc;
@@ -75,7 +75,7 @@ impl<'c> ArcMaker<'c> {
     /// Neighbouring pieces of one visibility taken together, unless the image folds back between them.
     fn runs(&self, contour: &Contour) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
-        let mut before: Option<&Piece> = None;
+        let mut before: Option<&ContourPiece> = None;
         for piece in &contour.pieces {
             let goes_on = before.is_some_and(|before| {
                 before.visible == piece.visible
@@ -95,7 +95,7 @@ impl<'c> ArcMaker<'c> {
     }
 
     /// Whether the image folds back from one piece to the next. On a line that makes no difference.
-    fn folds(&self, contour: &Contour, before: &Piece, after: &Piece) -> bool {
+    fn folds(&self, contour: &Contour, before: &ContourPiece, after: &ContourPiece) -> bool {
         if matches!(contour.curve2, ImageCurve::Line { .. }) {
             return false;
         }
@@ -142,10 +142,10 @@ impl<'c> ArcMaker<'c> {
         let flip = if self.projection.y_down { -1.0 } else { 1.0 };
         let up = Matrix3::from_diagonal(&Vector3::new(1.0, flip, 1.0));
         let ellipse = match map_of_ellipse(&contour.curve3, self.projection) {
-            Some(map) => Ellipse::from_map(&(up * self.projection.in_units(&map)))?,
+            Some(map) => ImageEllipse::from_map(&(up * self.projection.in_units(&map)))?,
             None => {
                 let six = [k[0], k[1] * flip, k[2], k[3], k[4] * flip, k[5]];
-                Ellipse::from_coefficients(&six)?
+                ImageEllipse::from_coefficients(&six)?
             }
         };
         (ellipse.ratio > THIN).then_some(())?;

@@ -15,8 +15,8 @@ pub mod svg;
 
 use image_arcs::ArcMaker;
 use nalgebra::{Point2, Vector2};
-use premio_visibility::contour::{Contour, Contours, Kind};
-use premio_visibility::projection::{Projection, Sight};
+use premio_visibility::contour::{Contour, ContourKind, Contours};
+use premio_visibility::projection::{Projection, ViewRay};
 
 /// What a stroke shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -36,9 +36,9 @@ impl Layer {
     /// What a contour is drawn as.
     pub fn from_contour(contour: &Contour) -> Self {
         match (contour.kind, contour.smooth) {
-            (Kind::Limb, _) => Self::Limb,
-            (Kind::Boundary, true) => Self::Smooth,
-            (Kind::Boundary, false) => Self::Boundary,
+            (ContourKind::Limb, _) => Self::Limb,
+            (ContourKind::Boundary, true) => Self::Smooth,
+            (ContourKind::Boundary, false) => Self::Boundary,
         }
     }
 
@@ -54,7 +54,7 @@ impl Layer {
 
 /// The form of a stroke.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum StrokeShape {
     /// A straight line.
     Line([Point2<f64>; 2]),
     /// An arc of an ellipse: centre + cos s major + sin s minor.
@@ -78,7 +78,7 @@ pub enum Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
     /// Its form.
-    pub shape: Shape,
+    pub shape: StrokeShape,
     /// What it shows.
     pub layer: Layer,
     /// Whether nothing hides it.
@@ -87,7 +87,7 @@ pub struct Stroke {
 
 /// What is drawn, and how finely.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct DrawingOptions {
     /// Whether hidden lines are drawn too, dashed.
     pub hidden: bool,
     /// Whether boundaries are drawn along which the normal does not jump.
@@ -97,7 +97,7 @@ pub struct Options {
     pub distance: Option<f64>,
 }
 
-impl Default for Options {
+impl Default for DrawingOptions {
     fn default() -> Self {
         Self {
             hidden: true,
@@ -130,7 +130,7 @@ pub struct Drawing {
 
 impl Drawing {
     /// The drawing of contours: every line once, visible where any contour on it is.
-    pub fn new(contours: &Contours, options: &Options) -> Self {
+    pub fn new(contours: &Contours, options: &DrawingOptions) -> Self {
         let projection = Projection::new(&contours.camera, 1.0);
         let mut maker = ArcMaker {
             contours,
@@ -158,7 +158,7 @@ impl Drawing {
             extent,
             distance: maker.distance,
             tolerance,
-            to_scale: matches!(projection.sight, Sight::Direction(_)),
+            to_scale: matches!(projection.sight, ViewRay::Direction(_)),
         }
     }
 }
@@ -201,7 +201,7 @@ fn resolution(maker: &ArcMaker<'_>, contours: &[&Contour]) -> f64 {
     scale.fold(0.0, f64::max) * maker.contours.resolution
 }
 
-impl Shape {
+impl StrokeShape {
     /// The length.
     pub fn length(&self) -> f64 {
         match self {

@@ -262,7 +262,7 @@ impl Search<'_, '_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::image_arc::{Ellipse, Sample};
+    use super::super::image_arc::{ImageEllipse, Sample};
     use super::*;
     use nalgebra::{Point2, Vector2};
     use std::f64::consts::{PI, TAU};
@@ -323,7 +323,7 @@ mod tests {
     #[test]
     fn a_circle_is_drawn_around_once() {
         let circle = |turn: f64, range| ImageArc::Elliptic {
-            ellipse: Ellipse {
+            ellipse: ImageEllipse {
                 centre: Point2::new(1.0, 2.0),
                 major: Vector2::new(turn.cos(), turn.sin()) * 3.0,
                 ratio: 1.0,
@@ -352,7 +352,7 @@ mod tests {
         let strokes = strokes(arcs, TOLERANCE);
         assert_eq!(strokes.len(), 2);
         let first = |s: &Stroke| match &s.shape {
-            Shape::Path(points) => [points[0].x, points[points.len() - 1].x],
+            StrokeShape::Path(points) => [points[0].x, points[points.len() - 1].x],
             _ => [f64::NAN; 2],
         };
         assert_eq!(first(&strokes[0]), [0.0, 2.0]);
@@ -382,11 +382,11 @@ mod tests {
             ];
             let strokes = strokes(arcs, TOLERANCE);
             assert_eq!(strokes.len(), 2);
-            let Shape::Path(points) = &strokes[1].shape else {
+            let StrokeShape::Path(points) = &strokes[1].shape else {
                 panic!("{:?}", strokes[1]);
             };
             assert!((points[0].x - start).abs() < 1e-6, "{}", points[0]);
         }
     }
-    use super::super::Shape;
+    use super::super::StrokeShape;
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// A view along an axis of the part's frame, z up, or the isometric one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum View {
+pub enum StandardView {
     /// Along y: x to the right.
     Front,
     /// Against y.
@@ -28,7 +28,7 @@ pub enum View {
     Isometric,
 }
 
-impl View {
+impl StandardView {
     /// The name used in outputs.
     pub fn name(self) -> &'static str {
         match self {
@@ -70,19 +70,19 @@ pub enum Angle {
 
 impl Angle {
     /// The column and the row of a view, from the front view on, to the right and up.
-    fn cell(self, view: View) -> [i32; 2] {
+    fn cell(self, view: StandardView) -> [i32; 2] {
         let side = match self {
             Self::First => -1,
             Self::Third => 1,
         };
         match view {
-            View::Front => [0, 0],
-            View::Right => [side, 0],
-            View::Left => [-side, 0],
-            View::Top => [0, side],
-            View::Bottom => [0, -side],
-            View::Back => [2, 0],
-            View::Isometric => [side, side],
+            StandardView::Front => [0, 0],
+            StandardView::Right => [side, 0],
+            StandardView::Left => [-side, 0],
+            StandardView::Top => [0, side],
+            StandardView::Bottom => [0, -side],
+            StandardView::Back => [2, 0],
+            StandardView::Isometric => [side, side],
         }
     }
 }
@@ -170,7 +170,7 @@ impl std::fmt::Display for Scale {
 
 /// What stands on a sheet beside its views.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct SheetOptions {
     /// The title.
     pub title: String,
     /// The part's unit.
@@ -224,7 +224,7 @@ pub enum Weight {
 
 /// What is neither view nor paper.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Mark {
+pub enum SheetMark {
     /// A straight line.
     Line([Point2<f64>; 2], Weight),
     /// A circle, by centre and radius.
@@ -235,7 +235,7 @@ pub enum Mark {
 
 /// A view in its place.
 #[derive(Clone, Debug)]
-pub struct Placed {
+pub struct PlacedView {
     /// What it is called.
     pub name: &'static str,
     /// Its strokes.
@@ -250,15 +250,15 @@ pub struct Sheet {
     /// The width and height of the paper.
     pub size: Vector2<f64>,
     /// The views.
-    pub views: Vec<Placed>,
+    pub views: Vec<PlacedView>,
     /// Frame and title block.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<SheetMark>,
     /// The millimetres on paper of one image unit.
     pub factor: f64,
     /// The scale; none where the views are in perspective.
     pub scale: Option<Scale>,
     /// What was asked for.
-    pub options: Options,
+    pub options: SheetOptions,
 }
 
 /// How far the frame is from the left edge of the paper, to file it, and from the others (ISO 5457).
@@ -274,8 +274,11 @@ type Bands = BTreeMap<i32, [f64; 2]>;
 
 impl Sheet {
     /// Views on a paper. A view without a name among them stands alone.
-    pub fn of(views: Vec<(Option<View>, Drawing)>, options: Options) -> Result<Self, SheetError> {
-        let cell = |view: Option<View>| view.map_or([0, 0], |v| options.angle.cell(v));
+    pub fn of(
+        views: Vec<(Option<StandardView>, Drawing)>,
+        options: SheetOptions,
+    ) -> Result<Self, SheetError> {
+        let cell = |view: Option<StandardView>| view.map_or([0, 0], |v| options.angle.cell(v));
         let mut bands: [Bands; 2] = Default::default();
         for (view, drawing) in &views {
             let [low, high] = drawing.extent;
@@ -298,8 +301,8 @@ impl Sheet {
         });
         let placed = views.into_iter().map(|(view, drawing)| {
             let [column, row] = cell(view);
-            Placed {
-                name: view.map_or("view", View::name),
+            PlacedView {
+                name: view.map_or("view", StandardView::name),
                 drawing,
                 at: Point2::new(places[0][&column], places[1][&row]),
             }
@@ -327,7 +330,7 @@ fn fitted(
     gaps: [f64; 2],
     room: Vector2<f64>,
     to_scale: bool,
-    options: &Options,
+    options: &SheetOptions,
 ) -> Result<(f64, Option<Scale>), SheetError> {
     let fits = |axis: usize| (room[axis] - gaps[axis]) / taken[axis];
     let most = fits(0).min(fits(1));
@@ -386,13 +389,13 @@ const INSET: f64 = 2.0;
 const WIDE: f64 = 0.9;
 
 /// The frame and the title block.
-fn marks(options: &Options, scale: Option<Scale>) -> Vec<Mark> {
+fn marks(options: &SheetOptions, scale: Option<Scale>) -> Vec<SheetMark> {
     let [left, bottom] = [FILING, MARGIN];
     let corner = options.paper.size() - Vector2::new(MARGIN, MARGIN);
     let (right, top) = (corner.x, corner.y);
     let mut marks = Vec::new();
     let mut line = |from: [f64; 2], to: [f64; 2], weight| {
-        marks.push(Mark::Line([from.into(), to.into()], weight));
+        marks.push(SheetMark::Line([from.into(), to.into()], weight));
     };
     line([left, bottom], [right, bottom], Weight::Thick);
     line([right, bottom], [right, top], Weight::Thick);
@@ -414,12 +417,12 @@ fn marks(options: &Options, scale: Option<Scale>) -> Vec<Mark> {
         let letters = value.chars().count().max(1) as f64;
         let height = highest.min((width - 2.0 * INSET) / (letters * WIDE));
         let text =
-            |up: f64, height, text| Mark::Text([x + INSET, bottom + up].into(), height, text);
+            |up: f64, height, text| SheetMark::Text([x + INSET, bottom + up].into(), height, text);
         marks.push(text(TITLE[1] - INSET - LABEL, LABEL, label.to_owned()));
         marks.push(text((TITLE[1] - highest) / 2.0, height, value));
         x += width;
         let divider = [[x, bottom].into(), [x, ceiling].into()];
-        marks.push(Mark::Line(divider, Weight::Thin));
+        marks.push(SheetMark::Line(divider, Weight::Thin));
     }
     let middle = Point2::new(x + CELLS[4] / 2.0, bottom + TITLE[1] / 2.0);
     marks.extend(symbol(middle, options.angle));
@@ -428,7 +431,7 @@ fn marks(options: &Options, scale: Option<Scale>) -> Vec<Mark> {
 
 /// The symbol of the projection: a truncated cone from the side, and from its small end. That view
 /// stands beside the small end in the third angle, and beside the large end in the first.
-fn symbol(middle: Point2<f64>, angle: Angle) -> Vec<Mark> {
+fn symbol(middle: Point2<f64>, angle: Angle) -> Vec<SheetMark> {
     const SMALL: f64 = 2.0;
     const LARGE: f64 = 4.0;
     const LONG: f64 = 8.0;
@@ -445,9 +448,9 @@ fn symbol(middle: Point2<f64>, angle: Angle) -> Vec<Mark> {
         corner(1.0, -LARGE),
         corner(-1.0, -SMALL),
     ];
-    let lines = (0..4).map(|i| Mark::Line([corners[i], corners[(i + 1) % 4]], Weight::Thin));
+    let lines = (0..4).map(|i| SheetMark::Line([corners[i], corners[(i + 1) % 4]], Weight::Thin));
     let end = middle - Vector2::new(side, 0.0);
-    let circles = [SMALL, LARGE].map(|radius| Mark::Circle(end, radius));
+    let circles = [SMALL, LARGE].map(|radius| SheetMark::Circle(end, radius));
     lines.chain(circles).collect()
 }
 
@@ -468,16 +471,16 @@ mod tests {
     }
 
     /// The views of a block of 60 by 40 by 20.
-    fn views() -> Vec<(Option<View>, Drawing)> {
+    fn views() -> Vec<(Option<StandardView>, Drawing)> {
         vec![
-            (Some(View::Front), drawing(60.0, 20.0)),
-            (Some(View::Top), drawing(60.0, 40.0)),
-            (Some(View::Right), drawing(40.0, 20.0)),
+            (Some(StandardView::Front), drawing(60.0, 20.0)),
+            (Some(StandardView::Top), drawing(60.0, 40.0)),
+            (Some(StandardView::Right), drawing(40.0, 20.0)),
         ]
     }
 
-    fn options(angle: Angle) -> Options {
-        Options {
+    fn options(angle: Angle) -> SheetOptions {
+        SheetOptions {
             title: "block".to_owned(),
             unit: Unit::Millimetre,
             paper: Paper::A3,
@@ -512,13 +515,13 @@ mod tests {
         let sheet = Sheet::of(views(), options(Angle::First)).unwrap();
         assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("2:1"));
         assert_eq!(sheet.factor, 2.0);
-        let metres = Options {
+        let metres = SheetOptions {
             unit: Unit::Metre,
             ..options(Angle::First)
         };
         let sheet = Sheet::of(views(), metres.clone()).unwrap();
         assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("1:500"));
-        let too_large = Options {
+        let too_large = SheetOptions {
             scale: Some(Scale {
                 drawn: 1.0,
                 of: 200.0,
@@ -559,7 +562,7 @@ mod tests {
 
     #[test]
     fn what_has_no_size_has_no_scale() {
-        let point = vec![(Some(View::Front), drawing(0.0, 0.0))];
+        let point = vec![(Some(StandardView::Front), drawing(0.0, 0.0))];
         let error = Sheet::of(point, options(Angle::First)).unwrap_err();
         assert_eq!(error, SheetError::Size { size: 0.0 });
     }

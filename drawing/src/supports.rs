@@ -1,6 +1,6 @@
 //! Arcs on common supports: segments on one line and arcs of one ellipse, united by rank.
 
-use super::image_arc::{Ellipse, ImageArc};
+use super::image_arc::{ImageArc, ImageEllipse};
 use super::intervals::Intervals;
 use super::once::{Rank, RankedArc};
 use nalgebra::{Point2, Vector2};
@@ -17,7 +17,7 @@ enum Support {
         direction: Vector2<f64>,
     },
     /// An ellipse.
-    Ellipse(Ellipse),
+    Ellipse(ImageEllipse),
 }
 
 /// Arcs on one support.

@@ -1,7 +1,7 @@
 //! Drawings as SVG: readable by a browser, lines and ellipses exact.
 
-use super::sheet::{Mark, Placed, Sheet, Weight};
-use super::{Drawing, Layer, Shape, Stroke};
+use super::sheet::{PlacedView, Sheet, SheetMark, Weight};
+use super::{Drawing, Layer, Stroke, StrokeShape};
 use nalgebra::{Point2, Vector2};
 use premio_text::escape;
 use std::f64::consts::TAU;
@@ -43,9 +43,9 @@ impl Page {
         let seen = if stroke.visible { "visible" } else { "hidden" };
         let _ = write!(out, "<path class=\"{} {seen}\" d=\"", stroke.layer.name());
         match &stroke.shape {
-            Shape::Line([a, b]) => self.polyline(&[*a, *b], out),
-            Shape::Path(points) => self.polyline(points, out),
-            Shape::Ellipse { .. } => self.ellipse(&stroke.shape, out),
+            StrokeShape::Line([a, b]) => self.polyline(&[*a, *b], out),
+            StrokeShape::Path(points) => self.polyline(points, out),
+            StrokeShape::Ellipse { .. } => self.ellipse(&stroke.shape, out),
         }
         out.push_str("\"/>\n");
     }
@@ -58,8 +58,8 @@ impl Page {
         }
     }
 
-    fn ellipse(&self, shape: &Shape, out: &mut String) {
-        let Shape::Ellipse {
+    fn ellipse(&self, shape: &StrokeShape, out: &mut String) {
+        let StrokeShape::Ellipse {
             centre,
             major,
             ratio,
@@ -168,7 +168,7 @@ pub fn write_sheet(sheet: &Sheet) -> String {
     head(sheet.size.into(), "mm", SHEET_STYLE, &mut out);
     let _ = writeln!(out, "<title>{}</title>", escape::xml(&sheet.options.title));
     let down = |p: &Point2<f64>| Vector2::new(p.x, sheet.size.y - p.y);
-    for Placed { name, drawing, at } in &sheet.views {
+    for PlacedView { name, drawing, at } in &sheet.views {
         let page = Page {
             origin: down(at),
             scale: sheet.factor,
@@ -193,13 +193,13 @@ pub fn write_sheet(sheet: &Sheet) -> String {
 const CAPITAL: f64 = 0.72;
 
 impl Page {
-    fn mark(&self, mark: &Mark, out: &mut String) {
+    fn mark(&self, mark: &SheetMark, out: &mut String) {
         let at = |p: &Point2<f64>| {
             let (x, y) = self.at(p);
             (short(x), short(y))
         };
         let _ = match mark {
-            Mark::Line([a, b], weight) => {
+            SheetMark::Line([a, b], weight) => {
                 let weight = match weight {
                     Weight::Thick => "thick",
                     Weight::Thin => "thin",
@@ -210,14 +210,14 @@ impl Page {
                     "<path class=\"{weight}\" d=\"M{x} {y}L{to_x} {to_y}\"/>"
                 )
             }
-            Mark::Circle(centre, radius) => {
+            SheetMark::Circle(centre, radius) => {
                 let ((x, y), radius) = (at(centre), short(*radius));
                 writeln!(
                     out,
                     "<circle class=\"thin\" cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>"
                 )
             }
-            Mark::Text(start, height, text) => {
+            SheetMark::Text(start, height, text) => {
                 let ((x, y), size) = (at(start), short(height / CAPITAL));
                 let text = escape::xml(text);
                 writeln!(

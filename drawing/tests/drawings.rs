@@ -6,7 +6,7 @@ mod parts;
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use parts::{BAND, Builder, tilted};
-use premio_drawing::{Drawing, Options, Shape, dxf, svg};
+use premio_drawing::{Drawing, DrawingOptions, StrokeShape, dxf, svg};
 use premio_kernel::geometry::frame::Frame;
 use premio_visibility::contour::Contours;
 use premio_visibility::projection::Projection;
@@ -33,13 +33,13 @@ fn away(p: &Point2<f64>, drawing: &Drawing) -> f64 {
         let s = ((p - a).dot(&d) / d.norm_squared()).clamp(0.0, 1.0);
         (a + d * s - p).norm()
     };
-    let stroke = |shape: &Shape| match shape {
-        Shape::Line([a, b]) => segment(a, b),
-        Shape::Path(points) => points
+    let stroke = |shape: &StrokeShape| match shape {
+        StrokeShape::Line([a, b]) => segment(a, b),
+        StrokeShape::Path(points) => points
             .windows(2)
             .map(|w| segment(&w[0], &w[1]))
             .fold(f64::INFINITY, f64::min),
-        Shape::Ellipse {
+        StrokeShape::Ellipse {
             centre,
             major,
             ratio,
@@ -68,7 +68,7 @@ fn away(p: &Point2<f64>, drawing: &Drawing) -> f64 {
 fn strokes_follow_the_contours_within_the_distance() {
     let c = seen();
     let projection = Projection::new(&c.camera, 1.0);
-    let drawing = Drawing::new(&c, &Options::default());
+    let drawing = Drawing::new(&c, &DrawingOptions::default());
     for contour in &c.contours {
         for piece in &contour.pieces {
             for k in 0..=10 {
@@ -81,23 +81,23 @@ fn strokes_follow_the_contours_within_the_distance() {
     let ellipses = drawing
         .strokes
         .iter()
-        .filter(|s| matches!(s.shape, Shape::Ellipse { .. }));
+        .filter(|s| matches!(s.shape, StrokeShape::Ellipse { .. }));
     assert!(ellipses.count() >= 6);
 }
 
 #[test]
 fn documents_are_well_formed() {
     let c = seen();
-    let drawing = Drawing::new(&c, &Options::default());
+    let drawing = Drawing::new(&c, &DrawingOptions::default());
     let text = svg::write(&drawing);
     assert!(text.contains("class=\"boundary hidden\"") && text.contains("class=\"limb visible\""));
     assert!(!text.contains("NaN") && !text.contains("inf"));
     assert_eq!(text.matches("<g ").count(), text.matches("</g>").count());
     let bare = Drawing::new(
         &c,
-        &Options {
+        &DrawingOptions {
             hidden: false,
-            ..Options::default()
+            ..DrawingOptions::default()
         },
     );
     assert!(!svg::write(&bare).contains("hidden\" d"));
@@ -127,9 +127,9 @@ fn circles_stay_circles_along_an_axis() {
     let c = contours(&b.brep, &camera, BAND).unwrap();
     let text = dxf::write(&Drawing::new(
         &c,
-        &Options {
+        &DrawingOptions {
             hidden: false,
-            ..Options::default()
+            ..DrawingOptions::default()
         },
     ));
     assert_eq!(text.matches("\nCIRCLE\n").count(), 1);

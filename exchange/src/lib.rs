@@ -7,6 +7,6 @@
 
 pub mod mesh;
 mod parameters;
-pub mod seamed;
 pub mod spline;
 pub mod step;
+pub mod two_manifold;

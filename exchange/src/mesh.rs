@@ -5,11 +5,11 @@
 //! is written, by the crates that keep to the formats: binary STL, OBJ (which no crate writes in
 //! doubles), binary glTF and 3MF.
 
+mod f32_points;
 pub mod glb;
 pub mod obj;
-mod parted;
-mod single;
-mod sound;
+mod remove_slivers;
+mod split_non_manifold;
 pub mod stl;
 pub mod threemf;
 
@@ -87,10 +87,10 @@ impl Facets {
             return Err(MeshError::Empty);
         }
         let mesh = tessellate(brep, accuracy, band)?;
-        let mut facets = parted::facets(brep, &mesh)?;
+        let mut facets = split_non_manifold::facets(brep, &mesh)?;
         facets.deviation = accuracy.deviation;
         facets.facets.sort_by_key(|f| f.solid);
-        let mended = sound::mend(&facets.points, &mut facets.facets);
+        let mended = remove_slivers::mend(&facets.points, &mut facets.facets);
         mended.map_err(|corner| facets.coarse(corner))?;
         Ok(facets)
     }

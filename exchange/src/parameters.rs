@@ -3,14 +3,14 @@
 use nalgebra::{Point2, Point3};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Sphere, Surface, turn};
+use premio_kernel::number::analytic::Analytic;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::scalar::Scalar;
 use std::f64::consts::TAU;
 
 /// A surface with the window in which the parameters of a face of it lie: an angle from its start to
 /// a turn beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct ParameterWindow {
     /// The surface.
     pub surface: Surface,
     /// Where the window of each parameter starts that is an angle with a period.
@@ -31,7 +31,7 @@ fn angle(y: Jet<f64>, x: Jet<f64>) -> Jet<f64> {
     }
 }
 
-impl Window {
+impl ParameterWindow {
     /// The parameters of a point that moves on the surface, with two derivatives; not yet brought into
     /// the window. None on the axis, where there is no angle.
     pub fn along(&self, p: [Jet<f64>; 3]) -> Option<[Jet<f64>; 2]> {

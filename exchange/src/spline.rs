@@ -5,12 +5,12 @@
 //! Hermite ones; with knots at the arc lengths its error goes with the sixth power of their distance
 //! (Farin, Curves and Surfaces for CAGD, 2002, chapters 7 and 8).
 
-use crate::parameters::Window;
+use crate::parameters::ParameterWindow;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
+use premio_kernel::number::analytic::Analytic;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::scalar::Scalar;
 
 /// The degree of all splines.
 pub const DEGREE: usize = 5;
@@ -27,7 +27,7 @@ pub struct Spline<const D: usize> {
 
 /// The splines of one edge, over the same parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct BezierSegments {
     /// In space.
     pub space: Spline<3>,
     /// In the parameters of each surface.
@@ -161,14 +161,14 @@ pub(crate) struct Follow<'a> {
     /// From where to where.
     pub range: [f64; 2],
     /// The surfaces on which it runs.
-    pub windows: &'a [Window],
+    pub windows: &'a [ParameterWindow],
     /// How far off the splines may be, from the curve and from each surface.
     pub accuracy: f64,
 }
 
 impl Follow<'_> {
     /// The splines.
-    pub fn course(&self) -> Result<Course, SplineError> {
+    pub fn course(&self) -> Result<BezierSegments, SplineError> {
         let [lo, hi] = self.range;
         let breaks = self.curve.breaks(lo, hi);
         let mut nodes = vec![self.node(lo, None)];
@@ -207,7 +207,7 @@ impl Follow<'_> {
             Spline::through(knots.clone(), &on)
         });
         let space: Vec<&[Jet<f64>; 3]> = nodes.iter().map(|n| &n.space).collect();
-        Ok(Course {
+        Ok(BezierSegments {
             on: on.collect(),
             space: Spline::through(knots.clone(), &space),
         })
@@ -279,7 +279,7 @@ impl Follow<'_> {
     }
 
     /// The parameters on a surface by the length; on its axis from next to it, by Taylor's sum.
-    fn on(&self, window: &Window, t: f64, space: [Jet<f64>; 3]) -> [Jet<f64>; 2] {
+    fn on(&self, window: &ParameterWindow, t: f64, space: [Jet<f64>; 3]) -> [Jet<f64>; 2] {
         let beside = self.space(self.inner(t));
         let step = (0..3)
             .map(|i| (space[i].v - beside[i].v).powi(2))

@@ -12,8 +12,8 @@ mod product;
 mod shape;
 mod thin;
 
-use crate::seamed::{SeamError, Seamed};
 use crate::spline::SplineError;
+use crate::two_manifold::{SeamError, TwoManifold};
 use part21::Exchange;
 use premio_kernel::brep::Brep;
 use premio_kernel::unit::Unit;
@@ -31,7 +31,7 @@ pub enum Protocol {
 
 /// What a file is to say.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct StepOptions {
     /// What the product is called.
     pub name: String,
     /// The protocol.
@@ -82,13 +82,13 @@ pub const ACCURACY: f64 = 1.0 / 1_000_000.0;
 const NEARER: f64 = 64.0;
 
 /// The text of a file.
-pub fn write(brep: &Brep, options: &Options) -> Result<String, StepError> {
+pub fn write(brep: &Brep, options: &StepOptions) -> Result<String, StepError> {
     if brep.topology.solids.is_empty() {
         return Err(StepError::Empty);
     }
     let least = thin::apart(options.unit);
     thin::check_shells(brep, least)?;
-    let mut seamed = Seamed::of(brep, options.resolution)?;
+    let mut seamed = TwoManifold::of(brep, options.resolution)?;
     seamed.draw_together(least);
     seamed.close_narrow(least);
     thin::check(brep, &seamed, options.resolution, least)?;

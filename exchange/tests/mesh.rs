@@ -4,8 +4,8 @@
 use approx::assert_relative_eq;
 use gltf::{Glb, Gltf};
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_exchange::mesh::{Facets, MeshError, glb, obj, stl};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::tessellation::Accuracy;
@@ -14,7 +14,13 @@ use std::collections::HashSet;
 use std::io::Cursor;
 
 fn part(text: &str) -> Evaluation {
-    let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let part = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&part.tree, &EvaluationOptions::default()).unwrap()
 }
 

@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::Vector3;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_exchange::seamed::{SeamError, Seamed};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_exchange::step;
+use premio_exchange::two_manifold::{SeamError, TwoManifold};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::unit::Unit;
 use std::collections::HashMap;
@@ -66,12 +66,18 @@ const PARTS: &[(&str, &str, [usize; 3])] = &[
 ];
 
 fn part(text: &str) -> Evaluation {
-    let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let part = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&part.tree, &EvaluationOptions::default()).unwrap()
 }
 
 /// How many vertices edges end in.
-fn vertices(seamed: &Seamed<'_>) -> usize {
+fn vertices(seamed: &TwoManifold<'_>) -> usize {
     let mut used: Vec<usize> = seamed.edges.iter().flat_map(|e| e.ends).collect();
     used.sort_unstable();
     used.dedup();
@@ -79,7 +85,7 @@ fn vertices(seamed: &Seamed<'_>) -> usize {
 }
 
 /// Every edge has two sides, run in opposite senses; loops close, and edges end in their vertices.
-fn is_sound(name: &str, seamed: &Seamed<'_>) {
+fn is_sound(name: &str, seamed: &TwoManifold<'_>) {
     let mut sides: HashMap<usize, Vec<Sense>> = HashMap::new();
     for face in &seamed.faces {
         assert!(!face.loops.is_empty(), "{name}");
@@ -123,7 +129,7 @@ fn is_sound(name: &str, seamed: &Seamed<'_>) {
 fn seams_are_as_few_as_can_be() {
     for (name, text, expected) in PARTS {
         let known = part(text);
-        let seamed = Seamed::of(&known.brep, known.resolution).unwrap();
+        let seamed = TwoManifold::of(&known.brep, known.resolution).unwrap();
         is_sound(name, &seamed);
         let found = [seamed.faces.len(), seamed.edges.len(), vertices(&seamed)];
         assert_eq!(found, *expected, "{name}");
@@ -146,7 +152,7 @@ fn seams_that_meet_where_a_closed_edge_starts_leave_no_short_edge() {
             for turn in ["ROTX", "ROTY"] {
                 let name = format!("A = {solid} AT ({turn}={degrees})");
                 let known = part(&name);
-                let seamed = Seamed::of(&known.brep, known.resolution).unwrap();
+                let seamed = TwoManifold::of(&known.brep, known.resolution).unwrap();
                 is_sound(&name, &seamed);
             }
         }
@@ -159,7 +165,7 @@ fn seams_keep_the_characteristic() {
     for (name, text, _) in PARTS {
         let known = part(text);
         let topology = &known.brep.topology;
-        let seamed = Seamed::of(&known.brep, known.resolution).unwrap();
+        let seamed = TwoManifold::of(&known.brep, known.resolution).unwrap();
         let holes: usize = seamed.faces.iter().map(|f| f.loops.len() - 1).sum();
         let cells = (vertices(&seamed) + seamed.faces.len()) as i64;
         let euler = cells - (seamed.edges.len() + holes) as i64;
@@ -174,7 +180,7 @@ fn seams_keep_the_characteristic() {
 fn a_wall_without_thickness_is_refused() {
     let known = part("A = WED(X=4, Y=4, Z=4) DIF BLO(X=1, Y=2, Z=1) AT (MOVX=1, MOVY=1, MOVZ=1)");
     assert_eq!(known.brep.topology.edges_of_many_faces(), 1);
-    let error = Seamed::of(&known.brep, known.resolution).unwrap_err();
+    let error = TwoManifold::of(&known.brep, known.resolution).unwrap_err();
     assert_eq!(
         error,
         SeamError::Crack {
@@ -188,7 +194,7 @@ fn a_wall_without_thickness_is_refused() {
 #[test]
 fn a_seam_has_no_splines() {
     let known = part("A = SPH(R=2) AT (MOVX=0.3, ROTX=17, ROTZ=31)");
-    let options = step::Options {
+    let options = step::StepOptions {
         name: "ball".to_owned(),
         protocol: step::Protocol::Ap214,
         unit: Unit::Inch,
@@ -212,7 +218,7 @@ fn arcs_start_far_from_where_their_parameter_does() {
             UN CYL(R=6, H=10) AT (MOVX=6, MOVY=59) UN CYL(R=6, H=10) AT (MOVX=38, MOVY=59)
         ) AT (ROTZ=268.2, ROTX=278.9, ROTY=180)",
     );
-    let options = step::Options {
+    let options = step::StepOptions {
         name: "plate".to_owned(),
         protocol: step::Protocol::Ap214,
         unit: Unit::Millimetre,
@@ -260,7 +266,7 @@ fn arcs_start_far_from_where_their_parameter_does() {
 fn every_instance_of_a_file_is_written_before_it_is_named() {
     for (name, text, _) in PARTS {
         let known = part(text);
-        let options = step::Options {
+        let options = step::StepOptions {
             name: (*name).to_owned(),
             protocol: step::Protocol::Ap242,
             unit: Unit::Millimetre,

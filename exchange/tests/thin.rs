@@ -2,15 +2,15 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use approx::assert_relative_eq;
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options as Reading, read};
-use premio_exchange::step::{ACCURACY, Options, Protocol, StepError, Thin, write};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions as Reading, read};
+use premio_exchange::step::{ACCURACY, Protocol, StepError, StepOptions, Thin, write};
 use premio_kernel::unit::Unit;
 
 fn written(text: &str, unit: Unit) -> Result<String, StepError> {
     let part = read("part", text.as_bytes(), Format::Padl, &Reading::default()).unwrap();
     let evaluation = evaluate(&part.tree, &EvaluationOptions::default()).unwrap();
-    let options = Options {
+    let options = StepOptions {
         name: "part".to_owned(),
         protocol: Protocol::default(),
         unit,

@@ -6,9 +6,9 @@
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Vector3;
 use premio_verify::checks::{Checker, Finding};
-use premio_csg::rays::Material;
+use premio_csg::ray_casting::RayOracle;
 use premio_fuzz::{Part, Recipe};
-use premio_kernel::brep::inside::holds;
+use premio_kernel::brep::point_in_solid::holds;
 
 /// How many points are asked about.
 const POINTS: u32 = 32;
@@ -20,7 +20,7 @@ fuzz_target!(|bytes: &[u8]| {
         return;
     };
     let known = &part.evaluation;
-    let material = Material::of(&part.tree);
+    let material = RayOracle::of(&part.tree);
     // What is so near to the boundary tells nothing.
     let resolution = known.resolution_of_doubles();
     let near = 1000.0 * resolution;

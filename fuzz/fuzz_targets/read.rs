@@ -3,12 +3,12 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use premio_csg::reader::{Format, Options, parse, read};
+use premio_csg::reader::{Format, ReadOptions, parse, read};
 use premio_csg::writer::{WriteError, write};
 
 fuzz_target!(|bytes: &[u8]| {
     for smooth in [false, true] {
-        let options = Options { smooth, part: None };
+        let options = ReadOptions { smooth, part: None };
         for format in Format::ALL {
             match parse("input", bytes, format, &options) {
                 Err(error) => {
@@ -23,7 +23,7 @@ fuzz_target!(|bytes: &[u8]| {
 });
 
 /// Writes a part in each language; what can hold it means the same tree.
-fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::Part) {
+fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::SolidId) {
     let Ok(tree) = builder.finish(part) else {
         return;
     };
@@ -33,7 +33,7 @@ fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::Part
     for format in [Format::Csg, Format::Json] {
         // What these cannot hold is rounded, and may then be no solid.
         if let Ok(text) = write(builder, part, format) {
-            let _ = read("again", text.as_bytes(), format, &Options::default());
+            let _ = read("again", text.as_bytes(), format, &ReadOptions::default());
         }
     }
     match write(builder, part, Format::Padl) {
@@ -42,7 +42,7 @@ fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::Part
         Ok(text) if text.len() > 1000 => {}
         written => {
             let text = written.expect("a small part is written");
-            let other = read("again", text.as_bytes(), Format::Padl, &Options::default());
+            let other = read("again", text.as_bytes(), Format::Padl, &ReadOptions::default());
             let other = other.unwrap_or_else(|error| panic!("{error}\n{text}")).tree;
             assert!(tree.departure(&other).is_some(), "{text}");
         }

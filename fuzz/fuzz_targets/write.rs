@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use premio_csg::model::Model;
+use premio_csg::object_model::ObjectModel;
 use premio_exchange::mesh::{Facets, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
 use premio_fuzz::{Part, Recipe, Sight};
@@ -11,7 +11,7 @@ use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
 use premio_text::escape::is_unsafe;
 use premio_visibility::contours;
-use premio_drawing::sheet::{self, Sheet, View};
+use premio_drawing::sheet::{self, Sheet, StandardView};
 use premio_drawing::{Drawing, dxf, svg};
 use std::io::{Cursor, Read};
 
@@ -33,11 +33,11 @@ fuzz_target!(|bytes: &[u8]| {
 
 fn boundary(part: &Part, name: &str) {
     let known = &part.evaluation;
-    let text = serde_json::to_string(&Model::of(&known.brep)).expect("a boundary is written");
+    let text = serde_json::to_string(&ObjectModel::of(&known.brep)).expect("a boundary is written");
     let value: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
     assert!(value.is_object(), "{text}");
     let size = known.bounds.diagonal();
-    let how = step::Options {
+    let how = step::StepOptions {
         name: name.to_owned(),
         protocol: Protocol::Ap242,
         unit: Unit::Millimetre,
@@ -162,22 +162,22 @@ fn drawings(part: &Part, sight: &Sight, name: &str) {
     };
     let json = serde_json::to_string(&seen).expect("contours are written");
     let _: serde_json::Value = serde_json::from_str(&json).expect("it is JSON");
-    let how = premio_drawing::Options {
+    let how = premio_drawing::DrawingOptions {
         hidden: true,
         smooth: true,
-        ..premio_drawing::Options::default()
+        ..premio_drawing::DrawingOptions::default()
     };
     let view = || Drawing::new(&seen, &how);
     document(&svg::write(&view()), "path");
     groups(&dxf::write(&view()));
-    let titled = sheet::Options {
+    let titled = sheet::SheetOptions {
         title: name.to_owned(),
         unit: Unit::Millimetre,
         paper: sheet::Paper::A3,
         scale: None,
         angle: sheet::Angle::First,
     };
-    let views = vec![(Some(View::Front), view())];
+    let views = vec![(Some(StandardView::Front), view())];
     if let Ok(sheet) = Sheet::of(views, titled) {
         document(&svg::write_sheet(&sheet), "path");
         groups(&dxf::write_sheet(&sheet));

@@ -9,8 +9,8 @@ mod recipe;
 use nalgebra::{Point3, Vector3};
 use premio_verify::generator::model::Model;
 use premio_verify::generator::write::{Format, write};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{ReadOptions, read};
 use premio_csg::tree::Tree;
 use premio_visibility::Camera;
 
@@ -21,7 +21,7 @@ use std::sync::LazyLock;
 pub static BORED_BLOCK: LazyLock<Evaluation> = LazyLock::new(|| {
     let text = "PART = BLO(X=6, Y=4, Z=2) DIF (CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1))";
     let format = premio_csg::reader::Format::Padl;
-    let read = read("part", text.as_bytes(), format, &Options::default());
+    let read = read("part", text.as_bytes(), format, &ReadOptions::default());
     evaluate(
         &read.expect("it is read").tree,
         &EvaluationOptions::default(),
@@ -46,7 +46,7 @@ impl Part {
         let text = write(model, Format::Padl);
         let json = write(model, Format::Json);
         let format = premio_csg::reader::Format::Json;
-        let read = read("model", json.as_bytes(), format, &Options::default());
+        let read = read("model", json.as_bytes(), format, &ReadOptions::default());
         let tree = read.ok()?.tree;
         let evaluation = evaluate(&tree, &EvaluationOptions::default()).ok()?;
         Some(Self {

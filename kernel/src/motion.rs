@@ -8,7 +8,7 @@ use std::sync::Arc;
 use dashu::base::Sign;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::number::precision::Number;
+use crate::number::float::Float;
 use crate::number::rational::{Rational, bits, exact_sqrt, from_f64, to_f64};
 
 /// A 3x3 matrix by rows.
@@ -215,7 +215,7 @@ impl Motion {
     }
 
     /// The rotation, rounded once to numbers of some precision.
-    pub fn rounded_rotation<N: Number>(&self) -> Matrix3<N> {
+    pub fn rounded_rotation<N: Float>(&self) -> Matrix3<N> {
         match &self.rotation {
             Some(matrix) => Matrix3::from_fn(|i, j| N::nearest(&matrix[i][j])),
             None => Matrix3::identity(),

@@ -4,10 +4,12 @@ use approx::assert_abs_diff_eq;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::intersect::{Branch, Extent, Meeting, coincidence, meet};
-use premio_kernel::geometry::relation::Carrier;
+use premio_kernel::geometry::intersect::{
+    Branch, RegionOfInterest, SurfaceIntersection, coincidence, meet,
+};
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
-use premio_kernel::number::sign::Judge;
+use premio_kernel::geometry::surface_pair::Carrier;
+use premio_kernel::number::predicates::Predicates;
 
 /// A small generator, so that a failure names its seed.
 struct Random(u64);
@@ -135,11 +137,11 @@ fn check(seed: u64, grid: bool) {
     }
     let (i, j) = (rng.below(5), rng.below(5));
     let (a, b) = (rng.surface(i, grid), rng.surface(j, grid));
-    let extent = Extent {
+    let extent = RegionOfInterest {
         centre: Point3::origin(),
         radius: 12.0,
     };
-    let judge = Judge::new(1e-10);
+    let judge = Predicates::new(1e-10);
     if coincidence(Carrier::given(&a), Carrier::given(&b), &extent, &judge).is_some() {
         return;
     }
@@ -220,13 +222,13 @@ fn pairs_on_a_grid_meet_in_all_their_curves() {
 /// How far the parts of the named pairs reach.
 const REACH: f64 = 10.0;
 
-fn judge() -> Judge {
-    Judge::new(1e-11 * REACH)
+fn judge() -> Predicates {
+    Predicates::new(1e-11 * REACH)
 }
 
 /// Two surfaces that meet around the origin.
-fn met(a: &Surface, b: &Surface) -> Meeting {
-    let extent = Extent {
+fn met(a: &Surface, b: &Surface) -> SurfaceIntersection {
+    let extent = RegionOfInterest {
         centre: Point3::origin(),
         radius: REACH,
     };
@@ -264,12 +266,12 @@ fn no_node_lies_on_the_other_nappe() {
 }
 
 /// The torus (4, 1) about z at the origin, and another surface.
-fn on_a_ring(other: &Surface) -> Meeting {
+fn on_a_ring(other: &Surface) -> SurfaceIntersection {
     met(&torus(Point3::origin(), Vector3::z(), 4.0, 1.0), other)
 }
 
 /// The centres and radii of the circles among the branches.
-fn circles(meeting: &Meeting) -> Vec<[f64; 4]> {
+fn circles(meeting: &SurfaceIntersection) -> Vec<[f64; 4]> {
     let circle = |b: &Branch| match &b.curve {
         Curve::Circle(c) => Some([
             c.frame.origin.x,

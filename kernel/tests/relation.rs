@@ -3,14 +3,14 @@
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::intersect::Extent;
-use premio_kernel::geometry::relation::{Carrier, Coefficients, Pair, Relation};
+use premio_kernel::geometry::intersect::RegionOfInterest;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
+use premio_kernel::geometry::surface_pair::{Carrier, Coefficients, PairMeasure, SurfacePair};
+use premio_kernel::number::predicates::{CertifiedDistance, Predicates, Side};
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
-use premio_kernel::number::sign::{Distance, Judge, Side};
 use proptest::prelude::*;
 
-const EXTENT: Extent = Extent {
+const EXTENT: RegionOfInterest = RegionOfInterest {
     centre: Point3::new(0.5, -0.25, 1.0),
     radius: 8.0,
 };
@@ -55,13 +55,13 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
             radius: to_f64(&radius),
         });
         let (of_plane, of_sphere) = (|| plane.clone(), || sphere.clone());
-        let pair = Pair::new(
+        let pair = SurfacePair::new(
             Carrier::rounded(&p, &of_plane),
             Carrier::rounded(&s, &of_sphere),
             &EXTENT,
         );
-        let judge = Judge::new(to_f64(&band));
-        let touch = pair.how(Relation::PlaneOnSphere);
+        let judge = Predicates::new(to_f64(&band));
+        let touch = pair.how(PairMeasure::PlaneOnSphere);
         assert_eq!(judge.side("plane on sphere", touch, [0.0; 3]), side);
         let decisions = judge.decisions();
         assert_eq!((decisions.filtered, decisions.coincident), (0, 0));
@@ -121,36 +121,36 @@ fn numbers() -> impl Strategy<Value = Coefficients<Rational>> {
     })
 }
 
-const OF_TWO: &[Relation] = &[
-    Relation::Drift,
-    Relation::Lean,
-    Relation::Between,
-    Relation::Height,
-    Relation::OffAxis,
-    Relation::BetweenAxes,
-    Relation::OffLine,
-    Relation::PlaneOnSphere,
-    Relation::PlaneOnCylinder,
-    Relation::PlaneAcrossCylinder,
-    Relation::PlaneOnRuling,
-    Relation::PlaneAlongRuling(false),
-    Relation::PlaneAlongRuling(true),
-    Relation::SphereBesideSphere,
-    Relation::SphereInSphere,
-    Relation::CylinderBesideCylinder,
-    Relation::CylinderInCylinder,
-    Relation::PointOnQuadric,
+const OF_TWO: &[PairMeasure] = &[
+    PairMeasure::Drift,
+    PairMeasure::Lean,
+    PairMeasure::Between,
+    PairMeasure::Height,
+    PairMeasure::OffAxis,
+    PairMeasure::BetweenAxes,
+    PairMeasure::OffLine,
+    PairMeasure::PlaneOnSphere,
+    PairMeasure::PlaneOnCylinder,
+    PairMeasure::PlaneAcrossCylinder,
+    PairMeasure::PlaneOnRuling,
+    PairMeasure::PlaneAlongRuling(false),
+    PairMeasure::PlaneAlongRuling(true),
+    PairMeasure::SphereBesideSphere,
+    PairMeasure::SphereInSphere,
+    PairMeasure::CylinderBesideCylinder,
+    PairMeasure::CylinderInCylinder,
+    PairMeasure::PointOnQuadric,
 ];
 
-const OF_TORUS: &[Relation] = &[
-    Relation::Tilt,
-    Relation::Upright,
-    Relation::PlaneOnBothSides,
-    Relation::SizeOfTube,
-    Relation::LineOnTube,
-    Relation::BetweenTubes,
-    Relation::BesideTube,
-    Relation::InTube,
+const OF_TORUS: &[PairMeasure] = &[
+    PairMeasure::Tilt,
+    PairMeasure::Upright,
+    PairMeasure::PlaneOnBothSides,
+    PairMeasure::SizeOfTube,
+    PairMeasure::LineOnTube,
+    PairMeasure::BetweenTubes,
+    PairMeasure::BesideTube,
+    PairMeasure::InTube,
 ];
 
 proptest! {
@@ -162,7 +162,7 @@ proptest! {
         let first = if OF_TORUS.contains(&relation) { 4 } else { kinds.0 };
         let surfaces = [surface(first, &a), surface(kinds.1, &b)];
         let (of_a, of_b) = (|| a.clone(), || b.clone());
-        let pair = Pair::new(
+        let pair = SurfacePair::new(
             Carrier::rounded(&surfaces[0], &of_a),
             Carrier::rounded(&surfaces[1], &of_b),
             &EXTENT,

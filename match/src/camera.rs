@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point2, Point3, Vector3};
 use premio_text::{Document, TextError, number};
-use premio_visibility::camera::{Camera, Model};
+use premio_visibility::camera::{Camera, CameraModel};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -298,7 +298,7 @@ impl Pinhole {
     /// The camera of `visibility`, where the part is at a pose.
     pub fn at(&self, pose: &Isometry3<f64>, [width, height]: [usize; 2]) -> Camera {
         Camera {
-            model: Model::Matrices {
+            model: CameraModel::Matrices {
                 k: self.matrix(),
                 r: pose.rotation.to_rotation_matrix().into_inner(),
                 t: pose.translation.vector,

@@ -8,7 +8,7 @@ use crate::picture::Picture;
 use crate::predicted::Arc;
 use crate::search::Relation;
 use nalgebra::{Point2, Point3, Vector2};
-use premio_detect::Shape;
+use premio_detect::SegmentShape;
 use premio_kernel::brep::topology::VertexId;
 use std::collections::BTreeMap;
 
@@ -180,7 +180,7 @@ fn farthest(choice: &Choice, picture: &Picture, at: &Point2<f64>, outwards: &Vec
     let straight = |&s: &u32| {
         // A whole ellipse has no end.
         let shape = &picture.detection.segments[s as usize].shape;
-        !matches!(shape, Shape::Ellipse { .. })
+        !matches!(shape, SegmentShape::Ellipse { .. })
     };
     let ends = choice.segments.iter().filter(|s| straight(s));
     let ends = ends.flat_map(|&s| picture.ends(s));

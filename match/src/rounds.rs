@@ -7,7 +7,7 @@ use crate::part::{Part, Stroke};
 use crate::picture::Picture;
 use crate::pose::circle::{circles, edge_poses};
 use nalgebra::Point3;
-use premio_detect::Shape;
+use premio_detect::SegmentShape;
 use premio_kernel::geometry::curve::Curve;
 use rayon::prelude::*;
 
@@ -47,11 +47,11 @@ fn conics(picture: &Picture) -> Vec<[f64; 6]> {
     let segments = picture.detection.segments.iter();
     let mut all: Vec<(u32, [f64; 6])> = segments
         .filter_map(|s| match s.shape {
-            Shape::Ellipse { conic, .. } | Shape::Arc { conic, .. } => {
+            SegmentShape::Ellipse { conic, .. } | SegmentShape::Arc { conic, .. } => {
                 let length = s.range[1] - s.range[0];
                 (length >= SHORTEST).then_some((length, conic))
             }
-            Shape::Line { .. } => None,
+            SegmentShape::Line { .. } => None,
         })
         .collect();
     all.sort_by_key(|c| std::cmp::Reverse(c.0));

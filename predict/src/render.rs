@@ -9,7 +9,7 @@ use crate::image::response::respond;
 use crate::image::shading::Shading;
 use crate::outline::Seen;
 use crate::setup::sensor::Sensor;
-use premio_detect::{Domain, Grey};
+use premio_detect::{Grey, PixelMask};
 
 /// How many samples a pixel next to a change has on a side.
 pub const FINE: usize = 8;
@@ -47,7 +47,7 @@ pub fn finished(levels: Vec<f32>, sensor: &Sensor, seed: u64) -> Grey {
         height,
         levels,
     };
-    let all = Domain::full(width, height);
+    let all = PixelMask::full(width, height);
     blur(&mut image, &all, sensor.blur);
     respond(&mut image, &all, sensor, seed);
     image

@@ -2,14 +2,14 @@
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::extent;
-use premio_kernel::brep::inside::holds;
+use premio_kernel::brep::bounding_box;
+use premio_kernel::brep::point_in_solid::holds;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::tessellation::{Accuracy, Mesh, tessellate};
 use premio_visibility::camera::Camera;
 use premio_visibility::projection::Projection;
-use premio_visibility::sight::{Own, Ray, Scene};
+use premio_visibility::ray_casting::{OriginIncidence, Scene, SightLine};
 use std::f64::consts::PI;
 
 /// How many directions of the hemisphere are tried, and from how many points of a face at the most.
@@ -46,7 +46,7 @@ impl<'a> Subject<'a> {
         if brep.topology.faces.is_empty() {
             return Err(SubjectError::Empty);
         }
-        let hull = extent::bounds(brep);
+        let hull = bounding_box::bounds(brep);
         let mut subject = Self {
             brep,
             band,
@@ -97,12 +97,18 @@ fn open_part(subject: &Subject<'_>, scene: &Scene<'_>, mesh: &Mesh, face: FaceId
             let rho = ((k as f64 + 0.5) / DIRECTIONS as f64).sqrt();
             let (sin, cos) = (k as f64 * PI * (3.0 - 5f64.sqrt())).sin_cos();
             let direction = Vector3::new(rho * cos, rho * sin, (1.0 - rho * rho).sqrt());
-            let ray = Ray {
+            let ray = SightLine {
                 origin: p,
                 towards: up.vector(&direction),
                 length: f64::INFINITY,
             };
-            let own = |f| if f == face { Own::Through } else { Own::No };
+            let own = |f| {
+                if f == face {
+                    OriginIncidence::Through
+                } else {
+                    OriginIncidence::No
+                }
+            };
             open += usize::from(!scene.is_blocked(&ray, &own));
             all += 1;
         }

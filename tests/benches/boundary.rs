@@ -2,15 +2,15 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench fails by it")]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::tree::Tree;
 use premio_tests::parts::plate;
 use std::path::PathBuf;
 use std::time::Duration;
 
 fn tree(text: &[u8], format: Format) -> (Tree, EvaluationOptions) {
-    let description = read("part", text, format, &Options::default()).unwrap();
+    let description = read("part", text, format, &ReadOptions::default()).unwrap();
     let how = EvaluationOptions {
         noise: description.digits,
         ..EvaluationOptions::default()

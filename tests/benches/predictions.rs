@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench fails by it")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_predict::prediction::{Memory, prediction, with_draft};
 use premio_predict::render;
 use premio_predict::setup::Setup;
@@ -15,7 +15,13 @@ use std::time::Duration;
 
 fn part(json: &Value) -> Evaluation {
     let text = json.to_string();
-    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 

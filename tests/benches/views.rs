@@ -4,8 +4,8 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_tests::parts::{cube_with_cuts, plate, tee};
 use premio_visibility::{Camera, contours};
 use serde_json::Value;
@@ -13,7 +13,13 @@ use std::time::Duration;
 
 fn part(json: &Value) -> Evaluation {
     let text = json.to_string();
-    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 

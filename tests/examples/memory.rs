@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a report")]
 
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_tests::parts::plate;
 use premio_visibility::{Camera, contours};
 
@@ -19,7 +19,13 @@ fn peak() -> f64 {
 fn main() {
     let n = std::env::args().nth(1).map_or(32, |n| n.parse().unwrap());
     let text = plate(n, 3.0).to_string();
-    let tree = read("plate", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let tree = read(
+        "plate",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     let part = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
     println!("boundary of {} holes: {:.0} MiB", n * n, peak());
     let s = n as f64;

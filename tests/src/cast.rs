@@ -12,13 +12,13 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::ray::Ray;
-use premio_csg::boundary::Evaluation;
+use premio_csg::evaluate::Evaluation;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::SurfaceKind;
 use premio_kernel::tessellation::{Accuracy, Mesh, TessellationError, Triangle, tessellate};
 use premio_visibility::Contours;
-use premio_visibility::contour::{Contour, Piece};
+use premio_visibility::contour::{Contour, ContourPiece};
 use premio_visibility::projection::Projection;
 use std::f64::consts::TAU;
 use std::time::Duration;
@@ -178,7 +178,7 @@ impl Cast {
         &self,
         projection: &Projection,
         contour: &Contour,
-        piece: &Piece,
+        piece: &ContourPiece,
         part: f64,
     ) -> Option<[u32; 2]> {
         let (p, frame, reach) = sample(projection, contour, piece, part);
@@ -217,7 +217,7 @@ impl Cast {
         projection: &Projection,
         seen: &Contours,
         contour: &Contour,
-        piece: &Piece,
+        piece: &ContourPiece,
         part: f64,
     ) -> bool {
         let (p, frame, _) = sample(projection, contour, piece, part);
@@ -261,7 +261,7 @@ impl Cast {
 fn sample(
     projection: &Projection,
     contour: &Contour,
-    piece: &Piece,
+    piece: &ContourPiece,
     part: f64,
 ) -> (Point3<f64>, Frame, f64) {
     let [lo, hi] = piece.t;

@@ -4,12 +4,12 @@
 
 use crate::cast::Cast;
 use nalgebra::Point3;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::locate::{FaceLocator, Place};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_kernel::brep::locate::{FaceLocator, PointLocation};
 use premio_verify::checks::{Checker, views};
 use premio_verify::trial::message;
-use premio_visibility::contour::{Contour, Piece};
+use premio_visibility::contour::{Contour, ContourPiece};
 use premio_visibility::invisibility::Method;
 use premio_visibility::projection::Projection;
 use premio_visibility::view::contours_by;
@@ -68,7 +68,12 @@ pub fn examine(json: &str, depth: Depth) -> Vec<String> {
 }
 
 fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
-    let description = match read("tree", json.as_bytes(), Format::Json, &Options::default()) {
+    let description = match read(
+        "tree",
+        json.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    ) {
         Ok(description) => description,
         Err(error) => return vec![format!("refusal: {error}")],
     };
@@ -136,7 +141,7 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Opti
         return Some(format!("methods in {name}: not the same pieces"));
     }
     let both = carried.contours.iter().zip(&counted.contours);
-    let differ = |contour: &Contour, a: &Piece, b: &Piece| {
+    let differ = |contour: &Contour, a: &ContourPiece, b: &ContourPiece| {
         let apart = a.qi.abs_diff(b.qi) as usize;
         let told = || apart > lies_on(evaluation, contour, a);
         a.t != b.t || told() && apart > passing(evaluation, &carried, contour, a, camera)
@@ -158,7 +163,7 @@ fn passing(
     evaluation: &Evaluation,
     seen: &Contours,
     contour: &Contour,
-    piece: &Piece,
+    piece: &ContourPiece,
     camera: &Camera,
 ) -> usize {
     let [lo, hi] = piece.t;
@@ -171,7 +176,7 @@ fn passing(
         let own = other.id == contour.id;
         (q - p).dot(&v) > if own { size / f64::from(POINTS) } else { 0.0 }
     };
-    let passes = |other: &Contour, near: &Piece| {
+    let passes = |other: &Contour, near: &ContourPiece| {
         let [lo, hi] = near.t;
         let at = |k: f64| other.curve3.point(lo + (hi - lo) * (k / f64::from(POINTS)));
         let asked = (0..=POINTS)
@@ -196,7 +201,7 @@ fn passing(
 
 /// On how many faces that are not its own a piece lies within the resolution, next to its middle,
 /// where it is counted: whether these lie before it is not to be told.
-fn lies_on(evaluation: &Evaluation, contour: &Contour, piece: &Piece) -> usize {
+fn lies_on(evaluation: &Evaluation, contour: &Contour, piece: &ContourPiece) -> usize {
     let (brep, band) = (&evaluation.brep, evaluation.resolution);
     let [lo, hi] = piece.t;
     let p = contour.curve3.point(lo + (hi - lo) * COUNTED_AT);
@@ -204,7 +209,7 @@ fn lies_on(evaluation: &Evaluation, contour: &Contour, piece: &Piece) -> usize {
     let others = others.filter(|f| !contour.faces.contains(f));
     let on = others.filter(|&f| {
         let near = brep.surface(f).distance(&p).abs() <= ON * band;
-        near && FaceLocator::of(brep, f, band).place(&p) != Place::Outside
+        near && FaceLocator::of(brep, f, band).place(&p) != PointLocation::Outside
     });
     on.count()
 }

@@ -1,9 +1,9 @@
 //! The laws of sets, as laws of boundaries: both sides have the same combinatorics, volume and area.
 
 use crate::random::tree;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::mass::Mass;
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_kernel::brep::face_integrals::Mass;
 use premio_kernel::brep::signature::Signature;
 use serde_json::{Value, json};
 
@@ -145,7 +145,12 @@ fn scaled(tree: &Value, by: f64) -> Value {
 /// The boundary of a tree, as the laws see it.
 pub fn side(tree: &Value) -> Result<Side, String> {
     let text = tree.to_string();
-    let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+    let read = read(
+        "tree",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    );
     let tree = read.map_err(|error| error.to_string())?.tree;
     let part: Evaluation =
         evaluate(&tree, &EvaluationOptions::default()).map_err(|e| e.to_string())?;

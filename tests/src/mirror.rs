@@ -2,9 +2,9 @@
 
 use crate::random::tree;
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_visibility::contour::{Contour, ImageCurve, Kind};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_visibility::contour::{Contour, ContourKind, ImageCurve};
 use premio_visibility::{Camera, Contours, contours};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -69,7 +69,7 @@ fn shares(seen: &Contours) -> Shares {
     let mut shares = Shares::new();
     let is_seen = |c: &&Contour| !matches!(c.curve2, ImageCurve::Point { .. });
     for contour in seen.contours.iter().filter(is_seen) {
-        let limb = contour.kind == Kind::Limb;
+        let limb = contour.kind == ContourKind::Limb;
         for piece in &contour.pieces {
             let share = shares.entry((limb, contour.smooth, piece.qi)).or_default();
             let [lo, hi] = piece.t;
@@ -90,7 +90,12 @@ fn shares(seen: &Contours) -> Shares {
 
 fn evaluated(tree: &Value) -> Result<Evaluation, String> {
     let text = tree.to_string();
-    let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+    let read = read(
+        "tree",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    );
     let tree = read.map_err(|error| error.to_string())?.tree;
     evaluate(&tree, &EvaluationOptions::default()).map_err(|error| error.to_string())
 }

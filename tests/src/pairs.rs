@@ -1,11 +1,11 @@
 //! Pairs of solids that coincide in some way, and lie next to that as far as a gap says.
 
 use clap::ValueEnum;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::tree::Tree;
-use premio_kernel::brep::topology::Census;
-use premio_kernel::number::sign::Zeros;
+use premio_kernel::brep::topology::EntityCounts;
+use premio_kernel::number::predicates::CoincidencePolicy;
 use premio_verify::checks::Checker;
 
 /// Two solids in PADL, with `D` by how much they miss the coincidence.
@@ -156,7 +156,7 @@ pub fn faults(pair: &Pair, gap: &str, pose: Pose) -> Vec<String> {
     let mut faults = Vec::new();
     let mut slack = OFF;
     let mut volume = |solid: String| {
-        let part = evaluated(&solid, gap, pose, Zeros::ByResolution);
+        let part = evaluated(&solid, gap, pose, CoincidencePolicy::ByResolution);
         let known = part.and_then(|(tree, part)| {
             let report = Checker::new(&tree, &part).solid(RAYS);
             match report.failures().next() {
@@ -191,10 +191,10 @@ pub fn faults(pair: &Pair, gap: &str, pose: Pose) -> Vec<String> {
 pub fn changes(pair: &Pair, sign: &str, powers: &[i32], pose: Pose) -> Vec<String> {
     let mut changes = Vec::new();
     for solid in pair.operations() {
-        let mut first: Option<Census> = None;
+        let mut first: Option<EntityCounts> = None;
         for &power in powers {
             let power = power.max(pair.small);
-            match evaluated(&solid, &gap(sign, power), pose, Zeros::Exact) {
+            match evaluated(&solid, &gap(sign, power), pose, CoincidencePolicy::Exact) {
                 Err(fault) => changes.push(format!("{solid} at {sign}2^-{power}: {fault}")),
                 Ok((_, part)) => {
                     let found = part.brep.topology.census();
@@ -228,11 +228,16 @@ fn evaluated(
     solid: &str,
     gap: &str,
     pose: Pose,
-    zeros: Zeros,
+    zeros: CoincidencePolicy,
 ) -> Result<(Tree, Evaluation), String> {
     let motions = pose.motions();
     let text = format!("D = {gap}\nP = ({solid}) AT ({motions})\n");
-    let tree = read("part", text.as_bytes(), Format::Padl, &Options::default());
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    );
     let tree = tree.map_err(|error| error.to_string())?.tree;
     let options = EvaluationOptions {
         zeros,

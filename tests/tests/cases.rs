@@ -4,8 +4,8 @@
 //! the same description at several values of its parameters.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Description, Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Description, Format, ReadOptions, read};
 use premio_csg::tree::Tree;
 use premio_tests::examine::within;
 use premio_tests::formula::Definitions;
@@ -104,7 +104,7 @@ fn with_values(text: &str, set: &BTreeMap<String, String>) -> String {
 /// What is wrong with a model; nothing where all is well.
 fn examine(case: &Case, answer: &Answer, text: &str) -> Vec<String> {
     let text = with_values(text, &answer.set);
-    let options = Options::default();
+    let options = ReadOptions::default();
     match read("model.padl", text.as_bytes(), Format::Padl, &options) {
         Ok(_) if answer.refused.is_some() => vec!["is not refused".to_owned()],
         Ok(description) => compare(case, answer, &description),

@@ -1,10 +1,10 @@
 //! Descriptions with known answers, from the folder that PREMIO_CORPUS names.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Description, Format, Options, read};
+use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Description, Format, ReadOptions, read};
 use premio_kernel::brep::signature::Signature;
-use premio_kernel::number::sign::{Decisions, Zeros};
+use premio_kernel::number::predicates::{CoincidencePolicy, DecisionStats};
 use premio_tests::examine::within;
 use premio_verify::checks::{Checker, Subject};
 use serde::Deserialize;
@@ -61,7 +61,7 @@ impl Task {
     }
 
     fn description(&self) -> Result<Description, String> {
-        let options = Options {
+        let options = ReadOptions {
             smooth: self.smooth,
             part: None,
         };
@@ -79,7 +79,7 @@ impl Task {
     fn unlike(
         &self,
         how: EvaluationOptions,
-        fault: fn(&Decisions) -> Option<&'static str>,
+        fault: fn(&DecisionStats) -> Option<&'static str>,
     ) -> Result<bool, String> {
         let description = self.description()?;
         let known = evaluated(&description, EvaluationOptions::default())?;
@@ -238,7 +238,7 @@ fn unlike(
     folder: &Path,
     how: EvaluationOptions,
     meant: &[&str],
-    fault: fn(&Decisions) -> Option<&'static str>,
+    fault: fn(&DecisionStats) -> Option<&'static str>,
 ) -> Vec<String> {
     let mut complaints = Vec::new();
     let is_read = |task: &Task| REFUSED.iter().all(|(id, _)| *id != task.name);
@@ -259,7 +259,7 @@ fn unlike(
 fn the_same_with_no_decision_in_doubles() {
     let Some(folder) = corpus() else { return };
     let many = EvaluationOptions {
-        digits: Digits::Many,
+        digits: Arithmetic::Many,
         ..EvaluationOptions::default()
     };
     let complaints = unlike(&folder, many, &[], |known| {
@@ -272,7 +272,7 @@ fn the_same_with_no_decision_in_doubles() {
 fn the_same_exactly_but_for_noise() {
     let Some(folder) = corpus() else { return };
     let exact = EvaluationOptions {
-        zeros: Zeros::Exact,
+        zeros: CoincidencePolicy::Exact,
         ..EvaluationOptions::default()
     };
     let complaints = unlike(&folder, exact, MEANT, |known| {

@@ -3,11 +3,11 @@
 //! doubles: the boundary is the same.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{Digits, Evaluation, EvaluationError, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationError, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::tree::Tree;
 use premio_kernel::brep::signature::Signature;
-use premio_kernel::number::sign::Zeros;
+use premio_kernel::number::predicates::CoincidencePolicy;
 use premio_tests::random::tree;
 use serde_json::json;
 use std::fs;
@@ -60,7 +60,7 @@ const LONG: &[&str] = &[
     "torus-touched-by-cylinder-in-a-cusp",
 ];
 
-fn asked(tree: &Tree, zeros: Zeros) -> Result<Evaluation, EvaluationError> {
+fn asked(tree: &Tree, zeros: CoincidencePolicy) -> Result<Evaluation, EvaluationError> {
     let options = EvaluationOptions {
         zeros,
         ..EvaluationOptions::default()
@@ -68,17 +68,17 @@ fn asked(tree: &Tree, zeros: Zeros) -> Result<Evaluation, EvaluationError> {
     evaluate(tree, &options)
 }
 
-fn evaluated(tree: &Tree, zeros: Zeros) -> Evaluation {
+fn evaluated(tree: &Tree, zeros: CoincidencePolicy) -> Evaluation {
     asked(tree, zeros).unwrap()
 }
 
 /// What is not as it should be where no decision is made in doubles.
 fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
     let many = EvaluationOptions {
-        digits: Digits::Many,
+        digits: Arithmetic::Many,
         ..EvaluationOptions::default()
     };
-    let plain = evaluated(tree, Zeros::ByResolution);
+    let plain = evaluated(tree, CoincidencePolicy::ByResolution);
     let again = match evaluate(tree, &many) {
         Ok(again) => again,
         Err(error) => return Some(format!("{name}: {error}")),
@@ -107,24 +107,31 @@ fn a_curve_through_an_apex_has_no_other_start() {
         "transform":[{"rotate":[[1,0,0],17]},{"rotate":[[0,0,1],31]},
             {"translate":[0.3,0.7,-0.2]}]});
     let text = description.to_string();
-    let tree = read("part", text.as_bytes(), Format::Json, &Options::default())
-        .unwrap()
-        .tree;
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap()
+    .tree;
     assert_eq!(filtered_wrongly("cone and ball", &tree), None);
-    let topology = evaluated(&tree, Zeros::ByResolution).brep.topology;
+    let topology = evaluated(&tree, CoincidencePolicy::ByResolution)
+        .brep
+        .topology;
     assert_eq!((topology.edges.len(), topology.vertices), (14, 9));
 }
 
 /// What is not as it should be about the exact boundary of a case.
 fn faults(name: &str, tree: &Tree) -> Vec<String> {
     if REFUSED.iter().any(|(case, _)| *case == name) {
-        return match asked(tree, Zeros::Exact) {
+        return match asked(tree, CoincidencePolicy::Exact) {
             Err(EvaluationError::Vague { .. } | EvaluationError::Unsound(_)) => Vec::new(),
             Err(error) => vec![format!("{name}: {error}")],
             Ok(_) => vec![format!("{name} is no longer refused")],
         };
     }
-    let exact = evaluated(tree, Zeros::Exact);
+    let exact = evaluated(tree, CoincidencePolicy::Exact);
     let known = &exact.decisions;
     let mut faults = Vec::new();
     if known.coincident > 0 {
@@ -135,7 +142,7 @@ fn faults(name: &str, tree: &Tree) -> Vec<String> {
         let doubles = known.filtered;
         faults.push(format!("{name}: {doubles} decisions in doubles"));
     }
-    let plain = evaluated(tree, Zeros::ByResolution);
+    let plain = evaluated(tree, CoincidencePolicy::ByResolution);
     let [told, proven] = [&plain, &exact].map(|e| e.brep.topology.census());
     let meant = MEANT.iter().any(|(case, _)| *case == name);
     if (told == proven) == meant {
@@ -152,7 +159,7 @@ fn named_cases_by(faults: fn(&str, &Tree) -> Vec<String>) {
         let folder = folder.unwrap();
         let name = folder.file_name().into_string().unwrap();
         let text = fs::read(folder.path().join("model.padl")).unwrap();
-        let Ok(part) = read(&name, &text, Format::Padl, &Options::default()) else {
+        let Ok(part) = read(&name, &text, Format::Padl, &ReadOptions::default()) else {
             continue;
         };
         if !LONG.contains(&name.as_str()) {
@@ -180,7 +187,13 @@ fn random_trees_with_no_decision_in_doubles() {
     let mut faulty = Vec::new();
     for seed in 3_000_000..3_000_030 {
         let text = tree(seed).to_string();
-        let part = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+        let part = read(
+            "part",
+            text.as_bytes(),
+            Format::Json,
+            &ReadOptions::default(),
+        )
+        .unwrap();
         faulty.extend(filtered_wrongly(&seed.to_string(), &part.tree));
     }
     assert!(faulty.is_empty(), "{}", faulty.join("\n"));
@@ -193,8 +206,14 @@ fn a_tangent_ball_is_proven_to_touch() {
         let text = format!(
             "P = WED(X=4, Y=4, Z=3) UN SPH(R=1) AT (MOVX=2+0.6, MOVY=2, MOVZ=1.5+0.8+{gap})"
         );
-        let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
-        evaluated(&part.tree, Zeros::Exact)
+        let part = read(
+            "part",
+            text.as_bytes(),
+            Format::Padl,
+            &ReadOptions::default(),
+        )
+        .unwrap();
+        evaluated(&part.tree, CoincidencePolicy::Exact)
     };
     let exact = touching("0");
     assert_eq!(exact.brep.topology.touches.len(), 1);
@@ -223,9 +242,15 @@ fn what_is_nearly_zero_is_refused() {
             ("-1e-60", false),
         ] {
             let text = format!("D = {gap}\nP = {pair}\n");
-            let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+            let part = read(
+                "part",
+                text.as_bytes(),
+                Format::Padl,
+                &ReadOptions::default(),
+            )
+            .unwrap();
             let options = EvaluationOptions {
-                zeros: Zeros::Exact,
+                zeros: CoincidencePolicy::Exact,
                 ..EvaluationOptions::default()
             };
             match evaluate(&part.tree, &options) {
@@ -245,8 +270,14 @@ fn cones_of_one_angle_lie_nearly_along_a_ruling() {
     let text = "PART = CON(R=2, H=2) AT (ROTX=0.0000000074505806, MOVX=1.5, MOVY=1.5, MOVZ=0.5)
         UN CON(R=1, H=1) AT (MOVX=0.5, MOVY=1.5, MOVZ=0.5)";
     let text = text.replace('\n', " ");
-    let part = read("cones", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
-    let known = evaluated(&part.tree, Zeros::ByResolution);
+    let part = read(
+        "cones",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
+    let known = evaluated(&part.tree, CoincidencePolicy::ByResolution);
     let turn = 7.450_580_6e-9_f64.to_radians();
     let volume = 8.0 * std::f64::consts::PI / 3.0 + 2.0 / 3.0 * turn;
     assert!((known.mass().volume - volume).abs() < 1e-12 * volume);
@@ -264,8 +295,14 @@ fn a_sliver_at_an_apex_is_not_the_whole_ring() {
         INT CON(R=1, H=1.5) AT (MOVX=-0.25, MOVZ=-1.125, ROTY=-56.309932474020215, ROTZ=90))
         AT (ROTX=17, ROTZ=31, MOVX=0.3, MOVY=0.7, MOVZ=-0.2)";
     let text = text.replace('\n', " ");
-    let part = read("sliver", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
-    let measures = [Zeros::ByResolution, Zeros::Exact].map(|zeros| {
+    let part = read(
+        "sliver",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
+    let measures = [CoincidencePolicy::ByResolution, CoincidencePolicy::Exact].map(|zeros| {
         let known = evaluated(&part.tree, zeros);
         let (mass, bounds) = (known.mass(), known.tight_bounds());
         let measures = [&[mass.volume, mass.area][..], &bounds.min, &bounds.max];
@@ -285,8 +322,14 @@ fn a_ring_that_nearly_touches_a_floor_and_a_wall_has_its_box() {
         UN TOR(RMAJ=2.5, RMIN=0.9999999999999432) AT (MOVX=1, MOVZ=1.5, ROTX=-0.0009765625)
         UN BLO(X=2, Y=1, Z=0.5) AT (MOVX=1, MOVY=2)) AT (ROTY=45)";
     let text = text.replace('\n', " ");
-    let part = read("ring", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
-    let bounds = evaluated(&part.tree, Zeros::ByResolution).tight_bounds();
+    let part = read(
+        "ring",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
+    let bounds = evaluated(&part.tree, CoincidencePolicy::ByResolution).tight_bounds();
     let (s, lean) = (0.5_f64.sqrt(), 0.0009765625_f64.to_radians().cos());
     let top = s * (1.5 * lean - 1.0) + 2.5 * (1.0 - (s * lean).powi(2)).sqrt() + 1.0;
     assert!((bounds.max[2] - top).abs() < 1e-9, "{bounds:?}, not {top}");

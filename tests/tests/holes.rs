@@ -2,8 +2,8 @@
 //! of it below, where the face goes on to the apex.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 
 /// A cone with its base about the origin, turned about y, and a cylinder of this radius out of its side.
 /// The apex stands apart from the cylinder's axis by the sine of the turn.
@@ -16,7 +16,13 @@ fn a_hole_next_to_an_apex_is_no_face() {
     for turn in [14.0_f64, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0] {
         for part in [0.7, 0.8, 0.85, 0.9, 0.95, 0.99, 0.999] {
             let text = pierced(turn, part * turn.to_radians().sin());
-            let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+            let part = read(
+                "part",
+                text.as_bytes(),
+                Format::Padl,
+                &ReadOptions::default(),
+            )
+            .unwrap();
             let known = evaluate(&part.tree, &EvaluationOptions::default()).unwrap();
             assert_eq!(known.violations(), [], "{text}");
             // The bases of both, half of the cylinder's under the cone, its side twice.

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::Vector3;
-use premio_csg::boundary::{Evaluation, EvaluationError, EvaluationOptions, evaluate};
-use premio_csg::model::Model;
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationError, EvaluationOptions, evaluate};
+use premio_csg::object_model::ObjectModel;
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_tests::random;
 use premio_visibility::{Camera, contours};
 
@@ -13,7 +13,7 @@ fn evaluated(
     format: Format,
     options: &EvaluationOptions,
 ) -> Result<Evaluation, EvaluationError> {
-    let part = read("part", text.as_bytes(), format, &Options::default()).unwrap();
+    let part = read("part", text.as_bytes(), format, &ReadOptions::default()).unwrap();
     evaluate(&part.tree, options)
 }
 
@@ -57,7 +57,7 @@ fn written(seed: u64) -> [String; 2] {
     let seen = contours(&known.brep, &camera, known.resolution).unwrap();
     let drawn = (&seen.contours, &seen.junctions);
     [
-        serde_json::to_string(&Model::of(&known.brep)).unwrap(),
+        serde_json::to_string(&ObjectModel::of(&known.brep)).unwrap(),
         serde_json::to_string(&drawn).unwrap(),
     ]
 }

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options as Reading, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions as Reading, read};
 use premio_detect::Grey;
 use premio_matching::camera::Pinhole;
 use premio_matching::finding::{Finding, Limits, Match, Options};

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use approx::assert_relative_eq;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_kernel::number::sign::CloseCall;
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_kernel::number::predicates::CloseCall;
 use premio_tests::random::tree;
 
 /// A pair in PADL, `D` apart, and the number of its solids where it is apart, touches, overlaps.
@@ -41,7 +41,12 @@ const FAMILIES: &[Family] = &[
 /// The pair, apart by the given text.
 fn part(pair: &str, gap: &str) -> Evaluation {
     let text = format!("D = {gap}\nP = {pair}\n");
-    let tree = read("part", text.as_bytes(), Format::Padl, &Options::default());
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    );
     evaluate(&tree.unwrap().tree, &EvaluationOptions::default()).unwrap()
 }
 
@@ -125,7 +130,12 @@ const CLEAR: [(u64, &str); 21] = [
 /// The close calls of a random tree.
 fn calls(seed: u64) -> Vec<CloseCall> {
     let text = tree(seed).to_string();
-    let read = read("tree", text.as_bytes(), Format::Json, &Options::default());
+    let read = read(
+        "tree",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    );
     let part = evaluate(&read.unwrap().tree, &EvaluationOptions::default()).unwrap();
     part.decisions.close_calls
 }

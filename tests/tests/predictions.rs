@@ -1,9 +1,9 @@
 //! Predicted images against rays: what regions show, what pixels tell, and what a detector finds.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_detect::Domain;
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_detect::PixelMask;
 use premio_predict::agreement::{Agreement, matches};
 use premio_predict::outline::Source;
 use premio_predict::outline::stage::StageError;
@@ -19,7 +19,13 @@ use std::path::Path;
 
 fn part(json: &Value) -> Evaluation {
     let text = json.to_string();
-    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 
@@ -133,7 +139,7 @@ fn regions_of_named_cases_show_what_rays_meet() {
         let Ok(text) = fs::read(case.join("model.padl")) else {
             continue;
         };
-        let Ok(tree) = read("part", &text, Format::Padl, &Options::default()) else {
+        let Ok(tree) = read("part", &text, Format::Padl, &ReadOptions::default()) else {
             continue;
         };
         let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
@@ -175,7 +181,13 @@ fn regions_of_random_trees_show_what_rays_meet() {
     let (mut views, mut untold, mut all) = (0, 0.0, 0.0);
     for seed in 0..24u64 {
         let text = random::tree(seed).to_string();
-        let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+        let tree = read(
+            "part",
+            text.as_bytes(),
+            Format::Json,
+            &ReadOptions::default(),
+        )
+        .unwrap();
         let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
             continue;
         };
@@ -286,7 +298,7 @@ fn features_are_found_as_predicted() {
                 let sensor = &draft.conditions.sensor;
                 let levels = render::rows(&draft.shading, width, 0..height);
                 let image = render::finished(levels, sensor, 77);
-                let (_, found) = draft.evidence_in(&image, &Domain::full(width, height));
+                let (_, found) = draft.evidence_in(&image, &PixelMask::full(width, height));
                 let predicted = prediction(draft, &setup);
                 all.extend(matches(
                     &predicted.arcs,

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_visibility::{Camera, contours};
 
 /// Lengths in S.
@@ -24,7 +24,13 @@ fn told(part: &str, exponent: i32) -> Told {
         false => power.to_string(),
     };
     let text = format!("S = {scale}\nP = {part}");
-    let read = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let read = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     let known = evaluate(&read.tree, &EvaluationOptions::default()).unwrap();
     let at = |x: f64, y: f64, z: f64| Point3::new(size * x, size * y, size * z);
     let (eye, target) = (at(2.5, 5.5, -0.75), at(0.125, 0.125, 0.5));

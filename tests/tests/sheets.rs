@@ -2,28 +2,34 @@
 //! lost makes a sum too small, one that is drawn twice or hidden under a visible one too large.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_drawing::sheet::View;
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_drawing::sheet::StandardView;
 use premio_drawing::{Drawing, Layer};
 use premio_visibility::Contours;
 use premio_visibility::contour::ImageCurve;
 use premio_visibility::contours;
 use std::f64::consts::PI;
 
-fn seen(part: &str, view: View) -> Contours {
+fn seen(part: &str, view: StandardView) -> Contours {
     let text = format!("P = {part}");
-    let read = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let read = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     let known = evaluate(&read.tree, &EvaluationOptions::default()).unwrap();
     let bounds = known.tight_bounds();
     let camera = view.camera(bounds.centre(), bounds.diagonal()).unwrap();
     contours(&known.brep, &camera, known.resolution).unwrap()
 }
 
-fn drawn(part: &str, view: View, smooth: bool) -> Drawing {
-    let options = premio_drawing::Options {
+fn drawn(part: &str, view: StandardView, smooth: bool) -> Drawing {
+    let options = premio_drawing::DrawingOptions {
         smooth,
-        ..premio_drawing::Options::default()
+        ..premio_drawing::DrawingOptions::default()
     };
     Drawing::new(&seen(part, view), &options)
 }
@@ -37,7 +43,7 @@ fn lengths(drawing: &Drawing, suits: impl Fn(Layer) -> bool) -> [f64; 2] {
     })
 }
 
-fn assert_lengths(part: &str, view: View, expected: [f64; 2]) {
+fn assert_lengths(part: &str, view: StandardView, expected: [f64; 2]) {
     let found = lengths(&drawn(part, view, false), |_| true);
     for (found, expected) in found.iter().zip(expected) {
         assert!(
@@ -54,15 +60,19 @@ const PLATE: &str = "BLO(X=60,Y=30,Z=8) AT (MOVX=5) UN BLO(X=70,Y=20,Z=8) AT (MO
 
 #[test]
 fn a_plate_with_rounded_corners_is_closed() {
-    assert_lengths(PLATE, View::Front, [2.0 * (70.0 + 8.0), 0.0]);
-    assert_lengths(PLATE, View::Right, [2.0 * (30.0 + 8.0), 0.0]);
-    assert_lengths(PLATE, View::Top, [2.0 * (60.0 + 20.0) + 10.0 * PI, 0.0]);
+    assert_lengths(PLATE, StandardView::Front, [2.0 * (70.0 + 8.0), 0.0]);
+    assert_lengths(PLATE, StandardView::Right, [2.0 * (30.0 + 8.0), 0.0]);
+    assert_lengths(
+        PLATE,
+        StandardView::Top,
+        [2.0 * (60.0 + 20.0) + 10.0 * PI, 0.0],
+    );
 }
 
 /// From the front they are at 5 and at 65; those at 0 and at 70 are the outline.
 #[test]
 fn smooth_edges_are_drawn_where_they_are_not_the_outline() {
-    let drawing = drawn(PLATE, View::Front, true);
+    let drawing = drawn(PLATE, StandardView::Front, true);
     let [visible, hidden] = lengths(&drawing, |layer| layer == Layer::Smooth);
     assert!(
         (visible - 16.0).abs() < 1e-9 && hidden == 0.0,
@@ -95,26 +105,38 @@ fn a_rounded_box_has_its_outline() {
         }
     }
     let round = 10.0 * PI;
-    assert_lengths(&part, View::Front, [2.0 * (10.0 + 30.0) + round, 0.0]);
-    assert_lengths(&part, View::Right, [2.0 * (20.0 + 30.0) + round, 0.0]);
-    assert_lengths(&part, View::Top, [2.0 * (10.0 + 20.0) + round, 0.0]);
+    assert_lengths(
+        &part,
+        StandardView::Front,
+        [2.0 * (10.0 + 30.0) + round, 0.0],
+    );
+    assert_lengths(
+        &part,
+        StandardView::Right,
+        [2.0 * (20.0 + 30.0) + round, 0.0],
+    );
+    assert_lengths(&part, StandardView::Top, [2.0 * (10.0 + 20.0) + round, 0.0]);
 }
 
 /// The dome's edge on the cylinder is its outline from above, and nothing from the front.
 #[test]
 fn a_dome_has_an_outline() {
     let part = "CYL(R=10,H=10) UN SPH(R=10) AT (MOVZ=10)";
-    assert_lengths(part, View::Front, [10.0 + 10.0 + 20.0 + 10.0 * PI, 0.0]);
-    assert_lengths(part, View::Top, [20.0 * PI, 0.0]);
-    assert_lengths(part, View::Bottom, [20.0 * PI, 0.0]);
+    assert_lengths(
+        part,
+        StandardView::Front,
+        [10.0 + 10.0 + 20.0 + 10.0 * PI, 0.0],
+    );
+    assert_lengths(part, StandardView::Top, [20.0 * PI, 0.0]);
+    assert_lengths(part, StandardView::Bottom, [20.0 * PI, 0.0]);
 }
 
 /// The floor of a blind hole of radius 8, 12 deep, is a line of 16 between two of 12.
 #[test]
 fn the_floor_of_a_blind_hole_is_drawn() {
     let part = "BLO(X=60,Y=40,Z=20) DIF CYL(R=8,H=20) AT (MOVX=30,MOVY=20,MOVZ=8)";
-    assert_lengths(part, View::Front, [160.0, 12.0 + 12.0 + 16.0]);
-    assert_lengths(part, View::Top, [200.0 + 16.0 * PI, 0.0]);
+    assert_lengths(part, StandardView::Front, [160.0, 12.0 + 12.0 + 16.0]);
+    assert_lengths(part, StandardView::Top, [200.0 + 16.0 * PI, 0.0]);
 }
 
 /// Lines across at 0, 10, 14 and 30; sides of 10 and 16 at radius 10, and of 4 at radius 8.
@@ -122,8 +144,12 @@ fn the_floor_of_a_blind_hole_is_drawn() {
 fn a_groove_is_drawn_once() {
     let part = "CYL(R=10,H=30) DIF (CYL(R=12,H=4) DIF CYL(R=8,H=4)) AT (MOVZ=10)";
     let across = 4.0 * 20.0;
-    assert_lengths(part, View::Front, [across + 2.0 * (10.0 + 16.0 + 4.0), 0.0]);
-    assert_lengths(part, View::Top, [20.0 * PI, 16.0 * PI]);
+    assert_lengths(
+        part,
+        StandardView::Front,
+        [across + 2.0 * (10.0 + 16.0 + 4.0), 0.0],
+    );
+    assert_lengths(part, StandardView::Top, [20.0 * PI, 16.0 * PI]);
 }
 
 /// A cylinder of radius 4 through one of 10, across: the mouths are x² - z² = 84, and those behind
@@ -139,7 +165,7 @@ fn curves_without_a_closed_form_are_drawn_once() {
     let mouth: f64 = (0..steps)
         .map(|k| (at(k + 1).0 - at(k).0).hypot(at(k + 1).1 - at(k).1))
         .sum();
-    let drawing = drawn(part, View::Front, false);
+    let drawing = drawn(part, StandardView::Front, false);
     let [visible, hidden] = lengths(&drawing, |_| true);
     // What is drawn by polylines is as long as they are.
     let expected = 2.0 * 20.0 + 2.0 * (60.0 - 8.0) + 2.0 * mouth;
@@ -160,7 +186,7 @@ fn edges_seen_end_on_are_hidden_points() {
         "WED(X=80,Y=3,Z=1)",
         "BLO(X=4,Y=3,Z=4) DIF BLO(X=2,Y=5,Z=2) AT (MOVX=2,MOVY=-1,MOVZ=2)",
     ] {
-        for view in [View::Front, View::Back] {
+        for view in [StandardView::Front, StandardView::Back] {
             let seen = seen(part, view);
             let is_point = |c: &ImageCurve| matches!(c, ImageCurve::Point { .. });
             let points = seen.contours.iter().filter(|c| is_point(&c.curve2));
@@ -170,5 +196,5 @@ fn edges_seen_end_on_are_hidden_points() {
             assert!(are_hidden, "{part} {view:?} {pieces:?}");
         }
     }
-    assert_lengths("BLO(X=2,Y=3,Z=4)", View::Front, [12.0, 0.0]);
+    assert_lengths("BLO(X=2,Y=3,Z=4)", StandardView::Front, [12.0, 0.0]);
 }

@@ -1,8 +1,8 @@
 //! The volumes of slivers in doubles, against closed forms: they are known as far as what is thin is
 //! told by the rounding of coordinates.
 
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use std::error::Error;
 use std::f64::consts::PI;
 
@@ -47,7 +47,13 @@ fn slivers_have_their_volume() -> Result<(), Box<dyn Error>> {
         for digits in 2..=9 {
             let thickness = 10_f64.powi(-digits);
             let text = format!("D = {thickness:.10}\nP = {solid}\n");
-            let tree = read("part", text.as_bytes(), Format::Padl, &Options::default())?.tree;
+            let tree = read(
+                "part",
+                text.as_bytes(),
+                Format::Padl,
+                &ReadOptions::default(),
+            )?
+            .tree;
             let part = evaluate(&tree, &EvaluationOptions::default())?;
             let known = volume(thickness);
             let off = (part.mass().volume / known - 1.0).abs();

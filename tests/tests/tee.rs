@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
 
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::tree::Tree;
 use premio_tests::parts::tee;
 use premio_verify::checks::Checker;
@@ -37,9 +37,14 @@ fn crossing(k: usize) -> Value {
 
 fn part(json: &Value) -> (Tree, Evaluation) {
     let text = json.to_string();
-    let tree = read("tee", text.as_bytes(), Format::Json, &Options::default())
-        .unwrap()
-        .tree;
+    let tree = read(
+        "tee",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap()
+    .tree;
     let evaluation = evaluate(&tree, &EvaluationOptions::default()).unwrap();
     (tree, evaluation)
 }

@@ -1,8 +1,8 @@
 //! Triangles follow the boundary of every named case, and rays on them see what is hidden.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_kernel::tessellation::{Accuracy, tessellate};
 use premio_tests::cast::Cast;
 use premio_tests::random::tree;
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 
 fn part(text: &str, format: Format) -> Option<Evaluation> {
-    let description = read("part", text.as_bytes(), format, &Options::default()).ok()?;
+    let description = read("part", text.as_bytes(), format, &ReadOptions::default()).ok()?;
     evaluate(&description.tree, &EvaluationOptions::default()).ok()
 }
 

@@ -4,11 +4,11 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
 
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_visibility::contour::{Contours, JunctionKind, Kind};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_visibility::contour::{ContourKind, Contours, JunctionKind};
 use premio_visibility::invisibility::Method;
-use premio_visibility::projection::{Projection, Sight};
+use premio_visibility::projection::{Projection, ViewRay};
 use premio_visibility::view::contours_by;
 use premio_visibility::{Camera, contours};
 use std::f64::consts::TAU;
@@ -31,7 +31,13 @@ fn torus(t: Torus) -> Evaluation {
 }
 
 fn part(json: &str) -> Evaluation {
-    let tree = read("part", json.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let tree = read(
+        "part",
+        json.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 
@@ -150,14 +156,14 @@ fn invisibility(t: &Torus, projection: &Projection, p: &Point3<f64>) -> Option<u
 }
 
 /// The limb's points by the closed form (two angles of the tube for each about the axis).
-fn limb_points(t: &Torus, sight: &Sight) -> Vec<Point3<f64>> {
+fn limb_points(t: &Torus, sight: &ViewRay) -> Vec<Point3<f64>> {
     let mut found = Vec::new();
     for k in 0..360 {
         let theta = TAU * (f64::from(k) + 0.37) / 360.0;
         let (sin, cos) = theta.sin_cos();
         let (a, b, c) = match sight {
-            Sight::Eye(e) => (t.major - e.x * cos - e.y * sin, -e.z, t.minor),
-            Sight::Direction(d) => (-d.x * cos - d.y * sin, -d.z, 0.0),
+            ViewRay::Eye(e) => (t.major - e.x * cos - e.y * sin, -e.z, t.minor),
+            ViewRay::Direction(d) => (-d.x * cos - d.y * sin, -d.z, 0.0),
         };
         let size = a.hypot(b);
         if c.abs() < size {
@@ -347,7 +353,10 @@ fn limbs_are_cut_next_to_their_nodes() {
         let seen = contours(&part.brep, &camera, part.resolution).unwrap();
         let of_tube = |c: &&premio_visibility::contour::Contour| {
             let [p, q] = [0.0, 1.0].map(|t| c.curve3.point(t));
-            c.kind == Kind::Limb && p.y.hypot(q.y) < 1e-12 && p.x > 0.0 && (p.x - q.x).abs() > 1e-6
+            c.kind == ContourKind::Limb
+                && p.y.hypot(q.y) < 1e-12
+                && p.x > 0.0
+                && (p.x - q.x).abs() > 1e-6
         };
         let arcs = seen.contours.iter().filter(of_tube);
         let pieces: Vec<[f64; 2]> = arcs.flat_map(|c| &c.pieces).map(|p| p.t).collect();
@@ -367,7 +376,13 @@ fn limbs_are_cut_next_to_their_nodes() {
 #[test]
 fn a_cusp_on_an_edge_is_no_fold() {
     let text = "PART = TOR(RMAJ=0.75, RMIN=0.25) AT (ROTY=90) UN BLO(X=0.5, Y=0.5, Z=0.5)";
-    let tree = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     let part = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
     let centre = Point3::new(0.125, 0.0, 0.0);
     let eye = centre + Vector3::new(-1.0, 1.0, -1.0);

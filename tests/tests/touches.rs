@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -95,7 +95,12 @@ fn part(solid: &Value, at: [f64; 3], out: [f64; 3], gap: f64, turn: f64) -> Eval
     let both = json!({"op": "union", "children": [solid, ball],
         "transform": [{"rotate": [[1, 2, 3], turn]}]});
     let text = both.to_string();
-    let read = read("part", text.as_bytes(), Format::Json, &Options::default());
+    let read = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    );
     evaluate(&read.unwrap().tree, &EvaluationOptions::default()).unwrap()
 }
 
@@ -145,7 +150,12 @@ fn what_lies_next_to_a_touch_is_no_other() {
         "transform": [{"translate": [3.4, 0.4, 7e-10]}]});
     let all = json!({"op": "union", "children": [torus(0.0), torus(6.0), cylinder]});
     let text = all.to_string();
-    let read = read("part", text.as_bytes(), Format::Json, &Options::default());
+    let read = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    );
     let part = evaluate(&read.unwrap().tree, &EvaluationOptions::default()).unwrap();
     let places = &part.brep.geometry.touches;
     let [place] = places.as_slice() else {

@@ -2,13 +2,19 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use nalgebra::Point3;
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
-use premio_kernel::brep::inside::holds;
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
+use premio_kernel::brep::point_in_solid::holds;
 use premio_kernel::geometry::surface::Surface;
 
 fn evaluated(text: &str) -> Evaluation {
-    let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+    let part = read(
+        "part",
+        text.as_bytes(),
+        Format::Padl,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&part.tree, &EvaluationOptions::default()).unwrap()
 }
 

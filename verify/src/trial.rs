@@ -5,7 +5,7 @@
 use crate::checks::{Check, Checker, Finding, Report, Subject, ViewChecks, views};
 use crate::generator::model::{Kind, Model, Operation};
 use crate::generator::write::{Format, read, write};
-use premio_csg::boundary::{Digits, Evaluation, EvaluationOptions, evaluate};
+use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
 use premio_csg::tree::Tree;
 use premio_kernel::brep::signature::Signature;
@@ -299,7 +299,7 @@ fn measures(evaluation: &Evaluation) -> Measures {
 /// Where the boundary is another with no decision made in doubles.
 fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &Terms) -> Option<Fault> {
     let unfiltered = EvaluationOptions {
-        digits: Digits::Many,
+        digits: Arithmetic::Many,
         ..options(terms)
     };
     let fault = |text| Fault {
@@ -383,7 +383,7 @@ fn size(models: &[&Model]) -> f64 {
     let boxes = models.iter().filter_map(|model| {
         let text = write(model, Format::Json);
         let tree = read(&text, Format::Json).ok()?.tree;
-        let material = premio_csg::rays::Material::of(&tree);
+        let material = premio_csg::ray_casting::RayOracle::of(&tree);
         Some(*material.bounds())
     });
     let all = boxes.reduce(|a, b| a.hull(&b)).map(|b| b.diagonal());

@@ -4,7 +4,7 @@
 //! image = K (R x + t), in pixels, y down.
 
 use nalgebra::{Matrix3, Point3, Vector3};
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
 use premio_text::{Document, TextError};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -51,14 +51,14 @@ impl CameraError {
 #[serde(try_from = "Raw", into = "Raw")]
 pub struct Camera {
     /// How it projects.
-    pub model: Model,
+    pub model: CameraModel,
     /// What lies nearer than this along the optical axis is cut away.
     pub near: Option<f64>,
 }
 
 /// How a camera projects.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Model {
+pub enum CameraModel {
     /// Central projection on a plane at the focal length: x right, y up, unit that of `focal`.
     Perspective {
         /// The centre of projection.
@@ -148,7 +148,7 @@ impl TryFrom<Raw> for Camera {
 }
 
 impl Raw {
-    fn matrices(self) -> Result<Model, CameraError> {
+    fn matrices(self) -> Result<CameraModel, CameraError> {
         if self.k.is_none() && self.r.is_none() && self.t.is_none() {
             return Err(CameraError::Missing("projection"));
         }
@@ -165,7 +165,7 @@ impl Raw {
             (None, _) => return Err(CameraError::Missing("width")),
             (_, None) => return Err(CameraError::Missing("height")),
         };
-        Ok(Model::Matrices {
+        Ok(CameraModel::Matrices {
             k: matrix(self.k.ok_or(CameraError::Missing("K"))?),
             r: matrix(self.r.ok_or(CameraError::Missing("R"))?),
             t: vector(self.t.ok_or(CameraError::Missing("t"))?),
@@ -173,7 +173,7 @@ impl Raw {
         })
     }
 
-    fn looking(self, projection: &str) -> Result<Model, CameraError> {
+    fn looking(self, projection: &str) -> Result<CameraModel, CameraError> {
         let strangers = [
             ("K", self.k.is_some()),
             ("R", self.r.is_some()),
@@ -186,7 +186,7 @@ impl Raw {
         let target = Point3::from(self.target.ok_or(CameraError::Missing("target"))?);
         let up = vector(self.up.ok_or(CameraError::Missing("up"))?);
         match projection {
-            "perspective" => Ok(Model::Perspective {
+            "perspective" => Ok(CameraModel::Perspective {
                 eye,
                 target,
                 up,
@@ -194,7 +194,7 @@ impl Raw {
             }),
             "orthographic" => {
                 refuse(&[("focal", self.focal.is_some())])?;
-                Ok(Model::Orthographic { eye, target, up })
+                Ok(CameraModel::Orthographic { eye, target, up })
             }
             other => Err(CameraError::Projection(other.to_owned())),
         }
@@ -215,7 +215,7 @@ impl From<Camera> for Raw {
             ..Self::default()
         };
         match camera.model {
-            Model::Perspective {
+            CameraModel::Perspective {
                 eye,
                 target,
                 up,
@@ -224,8 +224,10 @@ impl From<Camera> for Raw {
                 raw.look("perspective", eye, target, up);
                 raw.focal = Some(focal);
             }
-            Model::Orthographic { eye, target, up } => raw.look("orthographic", eye, target, up),
-            Model::Matrices { k, r, t, size } => {
+            CameraModel::Orthographic { eye, target, up } => {
+                raw.look("orthographic", eye, target, up)
+            }
+            CameraModel::Matrices { k, r, t, size } => {
                 raw.k = Some(rows(&k));
                 raw.r = Some(rows(&r));
                 raw.t = Some(t.into());
@@ -254,7 +256,7 @@ impl Camera {
         up: Vector3<f64>,
         focal: f64,
     ) -> Result<Self, CameraError> {
-        Self::of(Model::Perspective {
+        Self::of(CameraModel::Perspective {
             eye,
             target,
             up,
@@ -268,11 +270,11 @@ impl Camera {
         target: Point3<f64>,
         up: Vector3<f64>,
     ) -> Result<Self, CameraError> {
-        Self::of(Model::Orthographic { eye, target, up })
+        Self::of(CameraModel::Orthographic { eye, target, up })
     }
 
     /// A camera of a model, with the default near plane.
-    pub fn of(model: Model) -> Result<Self, CameraError> {
+    pub fn of(model: CameraModel) -> Result<Self, CameraError> {
         let camera = Self { model, near: None };
         camera.validate()?;
         Ok(camera)
@@ -293,7 +295,7 @@ impl Camera {
             finite("near", near.is_finite())?;
         }
         match &self.model {
-            Model::Perspective {
+            CameraModel::Perspective {
                 eye,
                 target,
                 up,
@@ -307,8 +309,8 @@ impl Camera {
                 }
                 validate_sight(eye, target, up)
             }
-            Model::Orthographic { eye, target, up } => validate_sight(eye, target, up),
-            Model::Matrices { k, r, t, size } => {
+            CameraModel::Orthographic { eye, target, up } => validate_sight(eye, target, up),
+            CameraModel::Matrices { k, r, t, size } => {
                 if self.near.is_some_and(|near| near.is_at_most(0.0)) {
                     return Err(CameraError::Value("near", "is not positive"));
                 }

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::geometry::serial;
+use premio_kernel::geometry::json;
 use serde::Serialize;
 
 /// The name of the format.
@@ -12,7 +12,7 @@ pub const SCHEMA: &str = "premio.contours/1";
 /// What a contour is the projection of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum ContourKind {
     /// An edge of the part (definition 4.1 of the paper).
     Boundary,
     /// A curve along which the line of sight touches the part (definition 4.2): inside a face, or
@@ -80,7 +80,7 @@ pub enum ImageCurve {
 
 /// A piece of a contour between two junctions: one visibility.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Piece {
+pub struct ContourPiece {
     /// The range of the curve's parameter, increasing; it may pass the end of a period.
     pub t: [f64; 2],
     /// Whether nothing lies before it.
@@ -104,7 +104,7 @@ pub struct Contour {
     /// Its place in the list.
     pub id: u32,
     /// What it is the projection of.
-    pub kind: Kind,
+    pub kind: ContourKind,
     /// Whether it is a boundary along which the normal does not jump.
     pub smooth: bool,
     /// The faces along it; of a limb inside a face that face, for both of its sheets.
@@ -112,17 +112,17 @@ pub struct Contour {
     /// The edge, of a boundary and of a limb along a smooth edge.
     pub edge: Option<EdgeId>,
     /// The curve in space.
-    #[serde(serialize_with = "serial::curve")]
+    #[serde(serialize_with = "json::curve")]
     pub curve3: Curve,
     /// The curve in the image.
     pub curve2: ImageCurve,
     /// Its pieces, in order; none where all of it lies behind the near plane.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<ContourPiece>,
 }
 
 /// How long the steps took, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Seconds {
+pub struct ContourSeconds {
     /// Limbs and cusps.
     pub limbs: f64,
     /// Projection and junctions.
@@ -145,7 +145,7 @@ pub struct Contours {
     /// The junctions.
     pub junctions: Vec<Junction>,
     /// How long it took.
-    pub seconds: Seconds,
+    pub seconds: ContourSeconds,
 }
 
 impl Contours {

@@ -8,12 +8,12 @@
 //! plain; elsewhere the faces are counted anew.
 
 use crate::contour::JunctionKind;
-use crate::sight::Scene;
-use crate::strand::{Junctions, Site, Strand};
+use crate::contour_arc::{ContourArc, JunctionSupport, Junctions};
+use crate::ray_casting::Scene;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub struct End<'s, 'a> {
     /// The strand.
-    pub strand: &'s Strand<'a>,
+    pub strand: &'s ContourArc<'a>,
     /// The parameter at the junction.
     pub t: f64,
     /// A parameter in the middle of the piece.
@@ -129,11 +129,11 @@ impl<'s, 'a> Corrections<'s, 'a> {
         end: &End<'_, '_>,
     ) -> Option<Vec<FaceId>> {
         match (junctions.site(junction), junctions.kind(junction)) {
-            (Site::Vertex(vertex), _) => self.at_vertex(vertex, end),
-            (Site::Edge(edge), _) => self.on_edge(edge, end),
-            (Site::Alone, JunctionKind::Cusp) => self.at_cusp(end),
+            (JunctionSupport::Vertex(vertex), _) => self.at_vertex(vertex, end),
+            (JunctionSupport::Edge(edge), _) => self.on_edge(edge, end),
+            (JunctionSupport::Alone, JunctionKind::Cusp) => self.at_cusp(end),
             // The limbs of a cone at its apex touch it along the whole line of sight.
-            (Site::Alone, JunctionKind::Vertex) => Some(Vec::new()),
+            (JunctionSupport::Alone, JunctionKind::Vertex) => Some(Vec::new()),
             _ => None,
         }
     }

@@ -5,18 +5,18 @@
 //! Two such curves on one surface overlap; every other curve crosses them where it passes the
 //! surface. So nothing of the image has to be searched in two parameters.
 
-use crate::projection::{Projection, Sight};
+use crate::projection::{Projection, ViewRay};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::geometry::cut::cut;
+use premio_kernel::geometry::curve_plane::{line_meets, plane_roots};
+use premio_kernel::geometry::curve_surface::cut;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::section::{line_meets, plane_roots};
 use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
+use premio_kernel::number::analytic::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::roots::{Zeros, isolate};
-use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::Sign;
+use premio_kernel::number::predicates::Compare;
+use premio_kernel::number::roots::{Roots, isolate};
 
 /// The cylinder that an image lies on, and where it turns back on itself.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ impl Edgewise {
         projection: &Projection,
         [band, tilt]: [f64; 2],
     ) -> Option<Self> {
-        let Sight::Direction(sight) = projection.sight else {
+        let ViewRay::Direction(sight) = projection.sight else {
             return None;
         };
         let carrier = surfaces.into_iter().find_map(|surface| match surface {
@@ -58,8 +58,8 @@ impl Edgewise {
             }
         };
         let turns = match isolate(&f, &curve.breaks(range[0], range[1]), band) {
-            Zeros::Everywhere => Vec::new(),
-            Zeros::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
+            Roots::Everywhere => Vec::new(),
+            Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
         };
         Some(Self { carrier, turns })
     }
@@ -74,8 +74,8 @@ impl Edgewise {
     /// Where another curve passes the carrier.
     pub fn passed_by(&self, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
         match cut(curve, range, &Surface::Cylinder(self.carrier), band) {
-            Zeros::Everywhere => Vec::new(),
-            Zeros::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
+            Roots::Everywhere => Vec::new(),
+            Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
         }
     }
 

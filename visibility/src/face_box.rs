@@ -1,13 +1,13 @@
 //! Boxes around faces, and those that a line of sight meets.
 
-use crate::sight::Ray;
+use crate::ray_casting::SightLine;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::locate::{Locator, Place};
+use premio_kernel::brep::locate::{Locator, PointLocation};
 use premio_kernel::brep::topology::FaceId;
-use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::Sign;
+use premio_kernel::number::predicates::Compare;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTreeObject, SelectionFunction};
 
@@ -23,7 +23,7 @@ pub struct Pierced {
 
 impl Pierced {
     /// The boxes that this line of sight meets.
-    pub fn of(ray: &Ray) -> Self {
+    pub fn of(ray: &SightLine) -> Self {
         Self {
             origin: ray.origin.into(),
             // Finite, so that zero times it is zero: a line in the plane of a side is inside.
@@ -58,10 +58,10 @@ impl SelectionFunction<FaceBox> for Pierced {
 }
 
 /// A box around a face, grown by a few resolutions.
-pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f64) -> Box3 {
+pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f64) -> Aabb {
     let whole = |o: &Point3<f64>, z: &Vector3<f64>, tube: f64, spine: f64| {
         let reach = |i: usize| tube + spine * (1.0 - z[i] * z[i]).max(0.0).sqrt();
-        Box3 {
+        Aabb {
             min: std::array::from_fn(|i| o[i] - reach(i)),
             max: std::array::from_fn(|i| o[i] + reach(i)),
         }
@@ -73,10 +73,10 @@ pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f6
         // holds its apex perhaps one of them is that.
         surface => {
             let own = locator.face(face);
-            let hull = own.boxes().iter().fold(Box3::EMPTY, |a, b| a.hull(b));
+            let hull = own.boxes().iter().fold(Aabb::EMPTY, |a, b| a.hull(b));
             match surface {
-                Surface::Cone(s) if own.place(&s.frame.origin) != Place::Outside => {
-                    hull.hull(&Box3::of(&s.frame.origin))
+                Surface::Cone(s) if own.place(&s.frame.origin) != PointLocation::Outside => {
+                    hull.hull(&Aabb::of(&s.frame.origin))
                 }
                 _ => hull,
             }

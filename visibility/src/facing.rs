@@ -9,12 +9,12 @@
 //! towards the eye and one away, or one of them edge-on. There the edge is the limb (definition
 //! 4.2 of the paper), and the image of the part ends on it.
 
-use crate::projection::Sight;
-use crate::sight::Scene;
+use crate::projection::ViewRay;
+use crate::ray_casting::Scene;
 use nalgebra::Vector3;
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, Sense};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
 
 /// Which way a face is turned next to a point of its boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ pub fn facing(scene: &Scene<'_>, coedge: CoedgeId, t: f64) -> Facing {
 pub fn is_edge_on(scene: &Scene<'_>, surface: &Surface) -> bool {
     match (surface, scene.projection.sight) {
         (Surface::Plane(s), _) => scene.edge_on(&s.frame.origin, &s.frame.z),
-        (Surface::Cylinder(s), Sight::Direction(d)) => {
+        (Surface::Cylinder(s), ViewRay::Direction(d)) => {
             s.frame.z.cross(&d).norm().is_within(scene.tilt)
         }
         _ => false,

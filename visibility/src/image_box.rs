@@ -1,6 +1,6 @@
 //! Boxes in the image, at depth one.
 
-use premio_kernel::number::sign::Sign;
+use premio_kernel::number::predicates::Compare;
 
 /// An axis-parallel box: its least and its greatest corner.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,15 +1,15 @@
 //! Quantitative invisibility of the pieces of contours (Appel 1967, Loutrel 1970; section 4.1.2
 //! of the paper).
 
-use crate::contour::Piece;
+use crate::contour::ContourPiece;
+use crate::contour_arc::{Change, ContourArc, Junctions, Passing, Split};
 use crate::correction::{Corrections, End};
-use crate::image::Image;
-use crate::sight::{Count, Own, Scene};
-use crate::strand::{Change, Junctions, Passing, Split, Strand};
+use crate::image_curve::Image;
+use crate::ray_casting::{Occluders, OriginIncidence, Scene};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
 
 /// How the quantitative invisibility of the pieces is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -29,7 +29,7 @@ const LOOSE: f64 = 16.0;
 const PLACES: [f64; 5] = [0.47, 0.31, 0.73, 0.07, 0.93];
 
 /// The count for a piece of a strand over [lo, hi].
-pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Count {
+pub fn count(scene: &Scene<'_>, strand: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occluders {
     let at = |part: f64| count_at(scene, strand, lo + (hi - lo) * part);
     let mut unplain = Vec::with_capacity(PLACES.len());
     for place in PLACES {
@@ -44,12 +44,12 @@ pub fn count(scene: &Scene<'_>, strand: &Strand<'_>, [lo, hi]: [f64; 2]) -> Coun
     unplain.swap_remove(PLACES.len() / 2)
 }
 
-fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
+fn count_at(scene: &Scene<'_>, strand: &ContourArc<'_>, t: f64) -> Occluders {
     let p = &strand.curve.point(t);
     let (v, _) = scene.projection.towards_eye(p);
     let own = |face: FaceId| {
         if !strand.faces.iter().any(|f| f.0 == face) {
-            return Own::No;
+            return OriginIncidence::No;
         }
         let surface = scene.brep.surface(face);
         // A limb that runs along the edge is no farther away than points found on two ways are:
@@ -58,9 +58,9 @@ fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
         let turned = LOOSE * (scene.band * bend + ROUNDING);
         let grazing = surface.normal(p).dot(&v).is_within(turned);
         if strand.limb || grazing {
-            Own::Tangent
+            OriginIncidence::Tangent
         } else {
-            Own::Through
+            OriginIncidence::Through
         }
     };
     if matches!(strand.image, Image::Point) {
@@ -73,7 +73,7 @@ fn count_at(scene: &Scene<'_>, strand: &Strand<'_>, t: f64) -> Count {
 /// each two of its faces.
 fn inward(
     scene: &Scene<'_>,
-    strand: &Strand<'_>,
+    strand: &ContourArc<'_>,
     p: &Point3<f64>,
     v: &Vector3<f64>,
 ) -> Vec<Vector3<f64>> {
@@ -101,7 +101,7 @@ struct Chain {
 
 impl Chain {
     /// Cuts a strand at its splits; those at one point are taken together, and crowd each other.
-    fn of(strand: &mut Strand<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
+    fn of(strand: &mut ContourArc<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
         strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
         let strand = &*strand;
         let [lo, hi] = strand.range;
@@ -172,10 +172,10 @@ impl Chain {
 /// contours, carried on from there where what hides changes plainly.
 pub fn pieces(
     scene: &Scene<'_>,
-    strands: &mut [Strand<'_>],
+    strands: &mut [ContourArc<'_>],
     junctions: &mut Junctions<'_>,
     method: Method,
-) -> Vec<Vec<Piece>> {
+) -> Vec<Vec<ContourPiece>> {
     let near = LOOSE * scene.band;
     let cut = strands.iter_mut();
     let chains: Vec<Chain> = cut.map(|s| Chain::of(s, junctions, near)).collect();
@@ -192,7 +192,7 @@ pub fn pieces(
         };
         all.map(of).collect()
     };
-    let counts: Vec<Vec<Count>> = carried.unwrap_or_else(counted);
+    let counts: Vec<Vec<Occluders>> = carried.unwrap_or_else(counted);
     let pieces = chains.iter().zip(counts).map(|(chain, counts)| {
         let spans = chain.spans.iter().zip(counts);
         spans.map(|(span, count)| piece(span, &count)).collect()
@@ -200,8 +200,8 @@ pub fn pieces(
     pieces.collect()
 }
 
-fn piece(span: &Span, count: &Count) -> Piece {
-    Piece {
+fn piece(span: &Span, count: &Occluders) -> ContourPiece {
+    ContourPiece {
         t: span.range,
         visible: count.qi == 0,
         qi: count.qi,
@@ -215,16 +215,16 @@ fn piece(span: &Span, count: &Count) -> Piece {
 /// Quantitative invisibility on its way through the connected parts of the contours.
 struct Carrying<'s, 'a> {
     scene: &'s Scene<'a>,
-    strands: &'s [Strand<'s>],
+    strands: &'s [ContourArc<'s>],
     chains: &'s [Chain],
     junctions: &'s Junctions<'s>,
     corrections: Corrections<'s, 'a>,
     /// By junction: what hides all contours there, less the faces through the junction.
-    beyond: Vec<Option<Count>>,
+    beyond: Vec<Option<Occluders>>,
     /// The strands through the junctions: junction and strand, in order.
     through: Vec<(u32, u32)>,
     /// By strand: what hides each span.
-    counts: Vec<Vec<Option<Count>>>,
+    counts: Vec<Vec<Option<Occluders>>>,
     /// The strands that are connected to what is known.
     next: Vec<u32>,
     /// Whether what was carried to a junction on two ways agreed.
@@ -234,7 +234,7 @@ struct Carrying<'s, 'a> {
 impl<'s, 'a> Carrying<'s, 'a> {
     fn new(
         scene: &'s Scene<'a>,
-        strands: &'s [Strand<'s>],
+        strands: &'s [ContourArc<'s>],
         chains: &'s [Chain],
         junctions: &'s Junctions<'s>,
     ) -> Self {
@@ -261,7 +261,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
 
     /// What hides every span; none where the ways to a junction contradict each other, so that a
     /// change must have been missed.
-    fn counts(mut self) -> Option<Vec<Vec<Count>>> {
+    fn counts(mut self) -> Option<Vec<Vec<Occluders>>> {
         for i in 0..self.strands.len() as u32 {
             self.next.push(i);
             while let Some(i) = self.next.pop() {
@@ -273,7 +273,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
                 }
             }
         }
-        let whole = |counts: Vec<Option<Count>>| counts.into_iter().collect();
+        let whole = |counts: Vec<Option<Occluders>>| counts.into_iter().collect();
         self.counts.into_iter().map(whole).collect()
     }
 
@@ -336,7 +336,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
     }
 
     /// What hides a span next to one of its ends, by what is known at the junction there.
-    fn enter(&self, i: usize, k: usize, which: usize) -> Option<Count> {
+    fn enter(&self, i: usize, k: usize, which: usize) -> Option<Occluders> {
         let junction = self.chains[i].spans[k].ends[which]?;
         let beyond = self.beyond[junction as usize].as_ref()?;
         let (_, hiding) = self.local(i, k, which)?;
@@ -344,7 +344,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
     }
 
     /// Notes what hides a span for the others at the junction at one of its ends.
-    fn leave(&mut self, i: usize, k: usize, which: usize, count: &Count) {
+    fn leave(&mut self, i: usize, k: usize, which: usize, count: &Occluders) {
         if !count.plain {
             return;
         }
@@ -372,12 +372,17 @@ impl<'s, 'a> Carrying<'s, 'a> {
 /// before.
 ///
 /// Faces meet along edges only, so between passages those that hide keep their order.
-fn carry(scene: &Scene<'_>, p: &Point3<f64>, before: Count, passing: &Passing) -> Option<Count> {
+fn carry(
+    scene: &Scene<'_>,
+    p: &Point3<f64>,
+    before: Occluders,
+    passing: &Passing,
+) -> Option<Occluders> {
     let qi = before.qi.checked_add_signed(passing.by)?;
     let order = order_after(scene, p, before, passing)?;
     let known = order.len() as u32;
     let sound = known <= qi && (known > 0 || qi == 0);
-    sound.then_some(Count {
+    sound.then_some(Occluders {
         qi,
         order,
         plain: true,
@@ -388,7 +393,7 @@ fn carry(scene: &Scene<'_>, p: &Point3<f64>, before: Count, passing: &Passing) -
 fn order_after(
     scene: &Scene<'_>,
     p: &Point3<f64>,
-    before: Count,
+    before: Occluders,
     passing: &Passing,
 ) -> Option<Vec<FaceId>> {
     let whole = before.is_whole();

@@ -7,24 +7,24 @@
 //! The folded sheet of a limb lies towards -N, or towards N where the surface is hollow along the
 //! line of sight.
 
-use crate::candidates::candidates;
+use crate::broad_phase::candidates;
 use crate::contour::JunctionKind;
-use crate::crossing::{Overlap, cross, parameters_at};
-use crate::image::{Image, flat_of};
-use crate::sight::Scene;
-use crate::strand::{Change, Junctions, Passing, Site, Split, Strand};
-use crate::touches::{Settled, nearest_turn, settle, split_at_touches};
+use crate::contour_arc::{Change, ContourArc, JunctionSupport, Junctions, Passing, Split};
+use crate::image_curve::{Image, flat_of};
+use crate::intersect::{Overlap, cross, parameters_at};
+use crate::ray_casting::Scene;
+use crate::snap::{Settled, nearest_turn, settle, split_at_touches};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
 
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 8.0;
 
 /// Whether a strand passes a junction in the image at that junction and nowhere else: one of its own,
 /// and it is straight.
-fn passes_once(strand: &Strand<'_>, id: u32) -> bool {
+fn passes_once(strand: &ContourArc<'_>, id: u32) -> bool {
     matches!(strand.image, Image::Line { .. }) && strand.junctions().any(|(own, _)| own == id)
 }
 
@@ -61,7 +61,7 @@ struct Behind {
 }
 
 /// Finds all T-junctions and notes them as splits of the farther strands.
-pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
     split_at_touches(strands, scene, junctions);
     let pairs = candidates(strands, scene.projection, LOOSE * scene.band);
     let mut search = Search {
@@ -111,7 +111,7 @@ pub fn find(strands: &mut [Strand<'_>], scene: &Scene<'_>, junctions: &mut Junct
 impl Behind {
     /// Cuts the farther strand, where it is not cut yet; what a contour does that crosses it there is
     /// not all that changes.
-    fn cut(self, strand: &mut Strand<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    fn cut(self, strand: &mut ContourArc<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
         let near = 2.0 * LOOSE * scene.band;
         let curve = strand.curve;
         let p = curve.point(self.t);
@@ -123,7 +123,7 @@ impl Behind {
         if is_cut {
             return;
         }
-        let junction = junctions.add(JunctionKind::T, Site::Alone, &p);
+        let junction = junctions.add(JunctionKind::T, JunctionSupport::Alone, &p);
         junctions.list[junction as usize].contours = self.contours.to_vec();
         strand.splits.push(Split {
             t: self.t,
@@ -133,11 +133,11 @@ impl Behind {
     }
 }
 
-type At<'x, 'a> = (u32, &'x Strand<'a>, f64);
+type At<'x, 'a> = (u32, &'x ContourArc<'a>, f64);
 
 impl Search<'_, '_, '_, '_> {
     /// The parameter on its strand; where the image turns back on itself counts as an end.
-    fn settle(&self, strand: &Strand<'_>, t: f64) -> Option<Settled> {
+    fn settle(&self, strand: &ContourArc<'_>, t: f64) -> Option<Settled> {
         let near = LOOSE * self.scene.band;
         let settled = settle(strand, t, near)?;
         if !strand.turns.is_empty() {
@@ -152,7 +152,13 @@ impl Search<'_, '_, '_, '_> {
 
     /// The turn or end of a strand that is straight on from `t` and in the image no farther than
     /// `near` from `q`.
-    fn stop_next_to(&self, strand: &Strand<'_>, t: f64, q: &Point3<f64>, near: f64) -> Option<f64> {
+    fn stop_next_to(
+        &self,
+        strand: &ContourArc<'_>,
+        t: f64,
+        q: &Point3<f64>,
+        near: f64,
+    ) -> Option<f64> {
         let ends = (!strand.closed).then_some(strand.range);
         let mut stops = strand
             .turns
@@ -173,7 +179,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Whether the image between two parameters is straight to within the resolution.
-    fn straight(&self, strand: &Strand<'_>, from: f64, to: f64) -> bool {
+    fn straight(&self, strand: &ContourArc<'_>, from: f64, to: f64) -> bool {
         if let Image::Line { .. } = strand.image {
             return true;
         }
@@ -186,7 +192,7 @@ impl Search<'_, '_, '_, '_> {
     /// a limb's and an edge's do where the limb ends on the edge, and rounding moves such a root a
     /// long way. Up to the junction both images are straight to within the resolution, so nothing
     /// tells them from each other.
-    fn at_shared(&self, a: &Strand<'_>, t: f64, b: &Strand<'_>, s: f64) -> bool {
+    fn at_shared(&self, a: &ContourArc<'_>, t: f64, b: &ContourArc<'_>, s: f64) -> bool {
         a.junctions().any(|(id, from)| {
             b.junctions()
                 .filter(|other| other.0 == id)
@@ -230,7 +236,9 @@ impl Search<'_, '_, '_, '_> {
     /// Contours of faces that touch meet in space: which is in front may change, and what hides
     /// them is told by neither.
     fn meeting(&mut self, both: [At<'_, '_>; 2], p: &Point3<f64>) {
-        let junction = self.junctions.add(JunctionKind::T, Site::Alone, p);
+        let junction = self
+            .junctions
+            .add(JunctionKind::T, JunctionSupport::Alone, p);
         self.junctions.list[junction as usize].contours =
             both.iter().map(|(_, strand, _)| strand.contour).collect();
         self.junctions.crowd(junction);
@@ -246,7 +254,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// The turns of a strand's image that touch another contour, where their images do not cross.
-    fn turns(&mut self, (i, a): (u32, &Strand<'_>), (j, b): (u32, &Strand<'_>)) {
+    fn turns(&mut self, (i, a): (u32, &ContourArc<'_>), (j, b): (u32, &ContourArc<'_>)) {
         let near = LOOSE * self.scene.band;
         for &t in &a.turns {
             let p = a.curve.point(t);
@@ -261,7 +269,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Another contour passes the end of a strand that is at a parameter.
-    fn crowd(&mut self, strand: &Strand<'_>, at: Settled) {
+    fn crowd(&mut self, strand: &ContourArc<'_>, at: Settled) {
         if !at.at_end {
             return;
         }
@@ -279,7 +287,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// Notes the junctions of `far` that `near` passes before in the image, be it by a touch that is
     /// no crossing.
-    fn crowd_passed(&mut self, far: &Strand<'_>, near: &Strand<'_>) {
+    fn crowd_passed(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
         let margin = 2.0 * LOOSE * self.scene.band;
         for (id, t) in far.junctions() {
             let known = passes_once(near, id) || self.junctions.is_crowded(id);
@@ -302,7 +310,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// Notes where `far` passes behind the junctions of `near` in the image: contours that only
     /// touch it there end there, or begin to be hidden, so that it may enter what lies between them.
-    fn pass_behind(&mut self, near: &Strand<'_>, (strand, far): (u32, &Strand<'_>)) {
+    fn pass_behind(&mut self, near: &ContourArc<'_>, (strand, far): (u32, &ContourArc<'_>)) {
         for (id, s) in near.junctions() {
             if !far.hull.holds(self.junctions.image(id)) || passes_once(far, id) {
                 continue;
@@ -319,7 +327,7 @@ impl Search<'_, '_, '_, '_> {
     /// The same for one junction at a point of `near`, and one parameter of `far` there.
     fn behind_at(
         &self,
-        near: &Strand<'_>,
+        near: &ContourArc<'_>,
         (id, q): (u32, &Point3<f64>),
         (strand, far, t): At<'_, '_>,
     ) -> Option<Behind> {
@@ -349,7 +357,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// Whether all faces along a strand are turned away at a point of it, or seen edge-on, so that
     /// they hide nothing.
-    fn is_turned_away(&self, strand: &Strand<'_>, q: &Point3<f64>, v: &Vector3<f64>) -> bool {
+    fn is_turned_away(&self, strand: &ContourArc<'_>, q: &Point3<f64>, v: &Vector3<f64>) -> bool {
         let t = strand.curve.tangent(strand.curve.parameter(q));
         let hides = |&(face, sense): &(FaceId, Sense)| {
             let side = self.image_side(strand, face, sense, &t, q, v);
@@ -359,7 +367,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Another contour falls on a strand.
-    fn crowd_all(&mut self, strand: &Strand<'_>) {
+    fn crowd_all(&mut self, strand: &ContourArc<'_>) {
         for (id, _) in strand.junctions() {
             self.junctions.crowd(id);
         }
@@ -368,8 +376,8 @@ impl Search<'_, '_, '_, '_> {
     /// The nearer strand splits the farther.
     fn junction(
         &mut self,
-        (_, near, s, q): (u32, &Strand<'_>, Settled, Point3<f64>),
-        (i, far, t, p): (u32, &Strand<'_>, Settled, Point3<f64>),
+        (_, near, s, q): (u32, &ContourArc<'_>, Settled, Point3<f64>),
+        (i, far, t, p): (u32, &ContourArc<'_>, Settled, Point3<f64>),
         v: &Vector3<f64>,
     ) {
         if t.at_end {
@@ -400,7 +408,9 @@ impl Search<'_, '_, '_, '_> {
                 None => Change::Correct,
             }
         };
-        let id = self.junctions.add(JunctionKind::T, Site::Alone, &p);
+        let id = self
+            .junctions
+            .add(JunctionKind::T, JunctionSupport::Alone, &p);
         self.junctions.list[id as usize].contours = vec![near.contour, far.contour];
         let split = Split {
             t: t.t,
@@ -414,7 +424,7 @@ impl Search<'_, '_, '_, '_> {
     /// direction `u`; none where that is not clear, or more than one face does.
     fn hidden_by(
         &self,
-        near: &Strand<'_>,
+        near: &ContourArc<'_>,
         s: f64,
         q: &Point3<f64>,
         u: &Vector3<f64>,
@@ -450,7 +460,7 @@ impl Search<'_, '_, '_, '_> {
     /// zero for a face turned away, none where it is not clear.
     fn image_side(
         &self,
-        near: &Strand<'_>,
+        near: &ContourArc<'_>,
         face: FaceId,
         sense: Sense,
         t: &Vector3<f64>,
@@ -484,7 +494,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Splits `a` where `b`, which falls on it in the image, begins and ends.
-    fn overlap(&mut self, (i, a): (u32, &Strand<'_>), (_, b): (u32, &Strand<'_>)) {
+    fn overlap(&mut self, (i, a): (u32, &ContourArc<'_>), (_, b): (u32, &ContourArc<'_>)) {
         if b.closed && b.turns.is_empty() {
             return;
         }
@@ -517,7 +527,9 @@ impl Search<'_, '_, '_, '_> {
                 if self.stop_next_to(a, t.t, &q, nearest).is_some() {
                     continue;
                 }
-                let id = self.junctions.add(JunctionKind::T, Site::Alone, &p);
+                let id = self
+                    .junctions
+                    .add(JunctionKind::T, JunctionSupport::Alone, &p);
                 self.junctions.list[id as usize].contours = vec![b.contour, a.contour];
                 let split = Split {
                     t: t.t,

@@ -1,29 +1,29 @@
 //! What a camera sees of a part: limbs, cusps, contours, junctions, quantitative invisibility and
 //! drawings.
 
+pub mod broad_phase;
 pub mod camera;
-pub mod candidates;
 pub mod contour;
+pub mod contour_arc;
 pub mod correction;
-pub mod crossing;
 pub mod edgewise;
 mod face_box;
 mod facing;
-pub mod graphs;
-pub mod image;
+mod first_hit;
 pub mod image_box;
+pub mod image_curve;
+pub mod intersect;
+pub mod intersect_general;
+mod intersections;
 pub mod invisibility;
 pub mod junction;
 pub mod limb;
-mod meeting;
+pub mod monotone_arc;
+mod overlap;
 pub mod polynomial;
 pub mod projection;
-mod seen;
-mod shared;
-pub mod sight;
-pub mod strand;
-pub mod stretch;
-mod touches;
+pub mod ray_casting;
+mod snap;
 pub mod view;
 
 pub use camera::Camera;

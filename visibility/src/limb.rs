@@ -7,18 +7,18 @@
 //! R cos φ + r - (e_x cos θ + e_y sin θ) cos φ - e_z sin φ = 0. At a cusp the line of sight runs
 //! along the limb: the normal curvature of the surface vanishes along it.
 
-use crate::projection::Sight;
+use crate::projection::ViewRay;
 use nalgebra::{Point3, Vector3};
-use premio_kernel::geometry::bitrig::BiTrig;
+use premio_kernel::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use premio_kernel::geometry::curve::{Circle, Curve, Line};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::geometry::trace::{Unresolved, trace};
+use premio_kernel::number::analytic::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
-use premio_kernel::number::roots::{Zeros, isolate};
-use premio_kernel::number::scalar::Scalar;
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
+use premio_kernel::number::roots::{Roots, isolate};
 use std::f64::consts::TAU;
 
 /// A limb of a whole surface, not yet cut by a face's boundary.
@@ -49,10 +49,10 @@ enum LocalSight {
     Direction(Vector3<f64>),
 }
 
-fn local(frame: &Frame, sight: &Sight) -> LocalSight {
+fn local(frame: &Frame, sight: &ViewRay) -> LocalSight {
     match sight {
-        Sight::Eye(e) => LocalSight::Eye(frame.coordinates(e)),
-        Sight::Direction(d) => LocalSight::Direction(frame.components(d)),
+        ViewRay::Eye(e) => LocalSight::Eye(frame.coordinates(e)),
+        ViewRay::Direction(d) => LocalSight::Direction(frame.components(d)),
     }
 }
 
@@ -60,7 +60,7 @@ fn local(frame: &Frame, sight: &Sight) -> LocalSight {
 /// that nothing of the part comes to as much as that by.
 pub fn limbs(
     surface: &Surface,
-    sight: &Sight,
+    sight: &ViewRay,
     band: f64,
     tilt: f64,
 ) -> Result<Vec<Limb>, Unresolved> {
@@ -79,7 +79,7 @@ fn half_angle(a: f64, c: f64) -> Option<f64> {
     exists.then(|| ((a - c) * (a + c)).sqrt().atan2(c))
 }
 
-fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64, tilt: f64) -> Vec<Limb> {
+fn cylinder_limbs(s: &Cylinder, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Limb> {
     let (across, level, least) = match local(&s.frame, sight) {
         LocalSight::Eye(e) => (e, s.radius, band),
         // Seen along its axis a cylinder is edge-on.
@@ -104,7 +104,7 @@ fn cylinder_limbs(s: &Cylinder, sight: &Sight, band: f64, tilt: f64) -> Vec<Limb
         .to_vec()
 }
 
-fn cone_limbs(s: &Cone, sight: &Sight, band: f64, tilt: f64) -> Vec<Limb> {
+fn cone_limbs(s: &Cone, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Limb> {
     // N·r = -N·E on every ruling: cos (e_x cos u + e_y sin u) = sin e_z.
     let (e, least) = match local(&s.frame, sight) {
         LocalSight::Eye(e) => (e, band),
@@ -133,7 +133,7 @@ fn cone_limbs(s: &Cone, sight: &Sight, band: f64, tilt: f64) -> Vec<Limb> {
         .to_vec()
 }
 
-fn sphere_limb(s: &Sphere, sight: &Sight, band: f64) -> Option<Limb> {
+fn sphere_limb(s: &Sphere, sight: &ViewRay, band: f64) -> Option<Limb> {
     let circle = |centre: Point3<f64>, z: Vector3<f64>, radius: f64| {
         Limb::of(Curve::Circle(Circle {
             frame: Frame::about(centre, z),
@@ -141,8 +141,8 @@ fn sphere_limb(s: &Sphere, sight: &Sight, band: f64) -> Option<Limb> {
         }))
     };
     match sight {
-        Sight::Direction(d) => Some(circle(s.frame.origin, -d, s.radius)),
-        Sight::Eye(e) => {
+        ViewRay::Direction(d) => Some(circle(s.frame.origin, -d, s.radius)),
+        ViewRay::Eye(e) => {
             let arm = e - s.frame.origin;
             let away = arm.norm();
             if (away - s.radius).is_at_most(band) {
@@ -156,7 +156,7 @@ fn sphere_limb(s: &Sphere, sight: &Sight, band: f64) -> Option<Limb> {
     }
 }
 
-fn torus_limbs(s: &Torus, sight: &Sight, band: f64) -> Result<Vec<Limb>, Unresolved> {
+fn torus_limbs(s: &Torus, sight: &ViewRay, band: f64) -> Result<Vec<Limb>, Unresolved> {
     let local = local(&s.frame, sight);
     if let Some(circles) = axial_limbs(s, &local, band).or_else(|| side_limbs(s, &local)) {
         return Ok(circles);
@@ -239,11 +239,11 @@ fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
 }
 
 /// N·(P - E), or N·d, over the angles, scaled to a distance to first order.
-fn torus_form(s: &Torus, sight: &LocalSight) -> BiTrig {
+fn torus_form(s: &Torus, sight: &LocalSight) -> BivariateTrigPoly {
     const ONE: usize = 0;
     const COS: usize = 1;
     const SIN: usize = 2;
-    let mut k = BiTrig::zero();
+    let mut k = BivariateTrigPoly::zero();
     let e = match sight {
         LocalSight::Eye(e) => {
             k.0[ONE][COS] = s.major;
@@ -275,7 +275,7 @@ fn slope(s: &Torus, sight: &LocalSight) -> f64 {
 /// tube and the cylinder through those at the top and at the bottom: each by itself tells where a
 /// curve crosses a limb however near to another, which their product does not. None where the
 /// whole surface is seen edge-on or from inside, and where no such surface is known.
-pub fn cutters(surface: &Surface, sight: &Sight) -> Vec<Surface> {
+pub fn cutters(surface: &Surface, sight: &ViewRay) -> Vec<Surface> {
     match surface {
         Surface::Torus(s) => side_cutters(s, sight),
         quadric => polar_plane(quadric, sight)
@@ -285,7 +285,7 @@ pub fn cutters(surface: &Surface, sight: &Sight) -> Vec<Surface> {
     }
 }
 
-fn side_cutters(s: &Torus, sight: &Sight) -> Vec<Surface> {
+fn side_cutters(s: &Torus, sight: &ViewRay) -> Vec<Surface> {
     let LocalSight::Direction(d) = local(&s.frame, sight) else {
         return Vec::new();
     };
@@ -310,7 +310,7 @@ fn is_across(direction: &Vector3<f64>) -> bool {
 
 /// The polar plane of the eye with respect to a quadric: it cuts the limb out of the surface.
 /// None for planes and tori, and where the whole surface is seen edge-on or from inside.
-fn polar_plane(surface: &Surface, sight: &Sight) -> Option<Plane> {
+fn polar_plane(surface: &Surface, sight: &ViewRay) -> Option<Plane> {
     let f = surface.frame();
     let plane = |normal: Vector3<f64>, level: f64| {
         let size = normal.norm();
@@ -338,7 +338,13 @@ fn polar_plane(surface: &Surface, sight: &Sight) -> Option<Plane> {
 
 /// Where a curve on a torus crosses the torus's limb: the parameters over `range`, and whether
 /// the curve runs along it.
-pub fn torus_limb_on(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], band: f64) -> Zeros {
+pub fn torus_limb_on(
+    s: &Torus,
+    sight: &ViewRay,
+    curve: &Curve,
+    range: [f64; 2],
+    band: f64,
+) -> Roots {
     let local = local(&s.frame, sight);
     let scale = 1.0 / slope(s, &local);
     let f = |t: Interval| {
@@ -358,7 +364,7 @@ pub fn torus_limb_on(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], b
 }
 
 /// The cusps of a limb on a torus: where the line of sight is along it, |r|² = R (r·e_θ)²/ρ.
-pub fn cusps(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
+pub fn cusps(s: &Torus, sight: &ViewRay, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
     let local = local(&s.frame, sight);
     let scale = s.minor / slope(s, &local).powi(2);
     let f = |t: Interval| {
@@ -376,8 +382,8 @@ pub fn cusps(s: &Torus, sight: &Sight, curve: &Curve, range: [f64; 2], band: f64
         (r2 - along.square().scale(s.major).over(rho3)).scale(scale)
     };
     match isolate(&f, &curve.breaks(range[0], range[1]), band) {
-        Zeros::Everywhere => Vec::new(),
-        Zeros::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
+        Roots::Everywhere => Vec::new(),
+        Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
     }
 }
 
@@ -411,8 +417,8 @@ mod tests {
     #[test]
     fn the_line_of_sight_touches_the_surface_along_its_limbs() {
         let sights = [
-            Sight::Eye(Point3::new(7.0, 5.0, 3.0)),
-            Sight::Direction(Vector3::new(0.5, -0.7, 0.2).normalize()),
+            ViewRay::Eye(Point3::new(7.0, 5.0, 3.0)),
+            ViewRay::Direction(Vector3::new(0.5, -0.7, 0.2).normalize()),
         ];
         for surface in surfaces() {
             for sight in &sights {
@@ -423,8 +429,8 @@ mod tests {
                         let t = 0.05 + 0.1 * f64::from(k);
                         let p = limb.curve.point(t);
                         let r = match sight {
-                            Sight::Eye(e) => (p - e).normalize(),
-                            Sight::Direction(d) => *d,
+                            ViewRay::Eye(e) => (p - e).normalize(),
+                            ViewRay::Direction(d) => *d,
                         };
                         assert!(surface.distance(&p).abs() < 1e-12);
                         assert!(surface.normal(&p).dot(&r).abs() < 1e-12);
@@ -439,12 +445,12 @@ mod tests {
 
     #[test]
     fn from_inside_there_is_no_limb() {
-        let eye = Sight::Eye(tilted().point(0.1, 0.1, 1.0));
+        let eye = ViewRay::Eye(tilted().point(0.1, 0.1, 1.0));
         for surface in &surfaces()[..3] {
             assert!(limbs(surface, &eye, 1e-10, 1e-10).unwrap().is_empty());
         }
         // The other nappe's solid angle gives none either.
-        let eye = Sight::Eye(tilted().point(0.1, 0.1, -1.0));
+        let eye = ViewRay::Eye(tilted().point(0.1, 0.1, -1.0));
         assert!(
             limbs(&surfaces()[1], &eye, 1e-10, 1e-10)
                 .unwrap()
@@ -459,12 +465,12 @@ mod tests {
             unreachable!()
         };
         let f = torus.frame;
-        let sight = Sight::Direction(f.vector(&Vector3::new(1.0, 0.0, -0.35)).normalize());
+        let sight = ViewRay::Direction(f.vector(&Vector3::new(1.0, 0.0, -0.35)).normalize());
         let mut count = 0;
         for limb in limbs(&surface, &sight, 1e-10, 1e-10).unwrap() {
             let end = limb.curve.period().unwrap();
             for t in cusps(&torus, &sight, &limb.curve, [0.0, end], 1e-10) {
-                let Sight::Direction(d) = sight else {
+                let ViewRay::Direction(d) = sight else {
                     unreachable!()
                 };
                 assert!(limb.curve.tangent(t).cross(&d).norm() < 1e-6);

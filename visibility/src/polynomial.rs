@@ -5,12 +5,12 @@
 //! root, however rounding would split it.
 
 use premio_kernel::number::bisection::bisect_newton;
-use premio_kernel::number::sign::Sign;
+use premio_kernel::number::predicates::Compare;
 
 /// A polynomial, `k[i]` the coefficient of the i-th power.
-pub type Quartic = [f64; 5];
+pub type QuarticPolynomial = [f64; 5];
 
-fn value(k: &Quartic, degree: usize, x: f64) -> (f64, f64) {
+fn value(k: &QuarticPolynomial, degree: usize, x: f64) -> (f64, f64) {
     let (mut v, mut d) = (0.0, 0.0);
     for &c in k[..=degree].iter().rev() {
         d = d * x + v;
@@ -38,7 +38,7 @@ impl Few {
 /// The roots of the polynomial in [lo, hi] at which it changes its sign; `touches` tells, from a
 /// parameter and the value there, whether the value is as good as zero.
 pub fn crossings(
-    k: &Quartic,
+    k: &QuarticPolynomial,
     [lo, hi]: [f64; 2],
     touches: &impl Fn(f64, f64) -> bool,
     found: &mut impl FnMut(f64),
@@ -87,7 +87,7 @@ pub fn crossings(
 }
 
 /// The sign changes of a polynomial between the roots of its derivative.
-fn simple_roots(k: &Quartic, degree: usize, lo: f64, hi: f64, splits: &Few) -> Few {
+fn simple_roots(k: &QuarticPolynomial, degree: usize, lo: f64, hi: f64, splits: &Few) -> Few {
     let mut roots = Few::default();
     let mut a = (lo, value(k, degree, lo).0);
     for &x in splits.at[..splits.count].iter().chain([&hi]) {
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn product(roots: &[f64]) -> Quartic {
+    fn product(roots: &[f64]) -> QuarticPolynomial {
         let mut k = [1.0, 0.0, 0.0, 0.0, 0.0];
         for (n, r) in roots.iter().enumerate() {
             for i in (0..=n + 1).rev() {
@@ -116,7 +116,7 @@ mod tests {
         k
     }
 
-    fn solve(k: &Quartic) -> Vec<f64> {
+    fn solve(k: &QuarticPolynomial) -> Vec<f64> {
         let mut found = Vec::new();
         let small = |_: f64, v: f64| v.abs() < 1e-13;
         crossings(k, [-1.0, 1.0], &small, &mut |t| found.push(t));

@@ -5,15 +5,15 @@
 //! as large has twice the coordinates; the image point is A (h/h_z) with A affine. The camera's
 //! frame is x right, y up (or down, for pixels), z into the scene.
 
-use crate::camera::{Camera, Model};
+use crate::camera::{Camera, CameraModel};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use premio_kernel::geometry::frame::perpendicular;
-use premio_kernel::number::scalar::{Scalar, dot};
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::analytic::{Analytic, dot};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
 
 /// Where the lines of sight come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sight {
+pub enum ViewRay {
     /// From one point.
     Eye(Point3<f64>),
     /// From infinity, along this unit direction into the scene.
@@ -24,7 +24,7 @@ pub enum Sight {
 #[derive(Clone, Debug)]
 pub struct Projection {
     /// Where the lines of sight come from.
-    pub sight: Sight,
+    pub sight: ViewRay,
     /// The least depth that is seen.
     pub near: f64,
     origin: Point3<f64>,
@@ -75,13 +75,13 @@ impl Projection {
         let least = size * ROUNDING.sqrt();
         let unit = unit_of(size);
         match &camera.model {
-            Model::Perspective {
+            CameraModel::Perspective {
                 eye,
                 target,
                 up,
                 focal,
             } => Self {
-                sight: Sight::Eye(*eye),
+                sight: ViewRay::Eye(*eye),
                 near: camera.near.unwrap_or(least),
                 origin: *eye,
                 axes: look(eye, target, up),
@@ -91,10 +91,10 @@ impl Projection {
                 y_down: false,
                 size: None,
             },
-            Model::Orthographic { eye, target, up } => {
+            CameraModel::Orthographic { eye, target, up } => {
                 let axes = look(eye, target, up);
                 Self {
-                    sight: Sight::Direction(axes[2]),
+                    sight: ViewRay::Direction(axes[2]),
                     near: camera.near.unwrap_or(f64::NEG_INFINITY),
                     origin: *eye,
                     axes,
@@ -105,12 +105,12 @@ impl Projection {
                     size: None,
                 }
             }
-            Model::Matrices { k, r, t, size } => {
+            CameraModel::Matrices { k, r, t, size } => {
                 let axis = |i: usize| Vector3::new(r[(i, 0)], r[(i, 1)], r[(i, 2)]);
                 let inverse = r.try_inverse().unwrap_or_else(|| r.transpose());
                 let eye = Point3::from(-(inverse * t));
                 Self {
-                    sight: Sight::Eye(eye),
+                    sight: ViewRay::Eye(eye),
                     near: camera.near.unwrap_or(least),
                     origin: eye,
                     axes: [axis(0), axis(1), axis(2)],
@@ -131,8 +131,8 @@ impl Projection {
             self.axes[0].dot(&d),
             self.axes[1].dot(&d),
             match self.sight {
-                Sight::Eye(_) => self.axes[2].dot(&d),
-                Sight::Direction(_) => self.unit,
+                ViewRay::Eye(_) => self.axes[2].dot(&d),
+                ViewRay::Direction(_) => self.unit,
             },
         )
     }
@@ -143,21 +143,21 @@ impl Projection {
             self.axes[0].dot(d),
             self.axes[1].dot(d),
             match self.sight {
-                Sight::Eye(_) => self.axes[2].dot(d),
-                Sight::Direction(_) => 0.0,
+                ViewRay::Eye(_) => self.axes[2].dot(d),
+                ViewRay::Direction(_) => 0.0,
             },
         )
     }
 
     /// The homogeneous image of a point over any scalar.
-    pub fn homogeneous_over<S: Scalar<Number = f64>>(&self, p: [S; 3]) -> [S; 3] {
+    pub fn homogeneous_over<S: Analytic<Float = f64>>(&self, p: [S; 3]) -> [S; 3] {
         let d: [S; 3] = std::array::from_fn(|i| p[i] - S::constant(self.origin[i]));
         [
             dot(&self.axes[0], d),
             dot(&self.axes[1], d),
             match self.sight {
-                Sight::Eye(_) => dot(&self.axes[2], d),
-                Sight::Direction(_) => S::constant(self.unit),
+                ViewRay::Eye(_) => dot(&self.axes[2], d),
+                ViewRay::Direction(_) => S::constant(self.unit),
             },
         ]
     }
@@ -170,8 +170,8 @@ impl Projection {
     /// What turns a distance in the image at depth one into a distance in space next to a point.
     pub fn scale(&self, p: &Point3<f64>) -> f64 {
         match self.sight {
-            Sight::Eye(_) => self.depth(p),
-            Sight::Direction(_) => self.unit,
+            ViewRay::Eye(_) => self.depth(p),
+            ViewRay::Direction(_) => self.unit,
         }
     }
 
@@ -220,13 +220,13 @@ impl Projection {
         let [x, y, z] = &self.axes;
         let across = |i: usize| x[i] * h[0] + y[i] * h[1];
         match self.sight {
-            Sight::Eye(eye) => {
+            ViewRay::Eye(eye) => {
                 let into = [0, 1, 2].map(|i| across(i) + z[i]);
                 let [a, b, c] = into;
                 let length = (a * a + b * b + c * c).sqrt();
                 (eye, Vector3::new(a / length, b / length, c / length))
             }
-            Sight::Direction(d) => {
+            ViewRay::Direction(d) => {
                 let aside = Vector3::new(across(0), across(1), across(2));
                 (self.origin + aside * self.unit, d)
             }
@@ -236,12 +236,12 @@ impl Projection {
     /// The unit vector from a point towards the eye, with the distance to it.
     pub fn towards_eye(&self, p: &Point3<f64>) -> (Vector3<f64>, f64) {
         match self.sight {
-            Sight::Eye(e) => {
+            ViewRay::Eye(e) => {
                 let d = e - p;
                 let length = d.norm();
                 (d / length, length)
             }
-            Sight::Direction(d) => (-d, f64::INFINITY),
+            ViewRay::Direction(d) => (-d, f64::INFINITY),
         }
     }
 

@@ -1,27 +1,31 @@
 //! The contours of a part for a viewpoint.
 
 use crate::camera::Camera;
-use crate::contour::{Contour, Contours, ImageCurve, JunctionKind, Kind, Piece, SCHEMA, Seconds};
+use crate::contour::{
+    Contour, ContourKind, ContourPiece, ContourSeconds, Contours, ImageCurve, JunctionKind, SCHEMA,
+};
+use crate::contour_arc::{
+    Change, ContourArc, JunctionSupport, Junctions, LimbArcs, Split, limb_arcs,
+};
 use crate::edgewise::Edgewise;
 use crate::facing::is_limb;
-use crate::image::{Image, image};
 use crate::image_box::ImageBox;
+use crate::image_curve::{Image, image};
 use crate::invisibility::{Method, pieces};
 use crate::junction;
+use crate::monotone_arc::{self, stretches};
 use crate::projection::Projection;
-use crate::sight::Scene;
-use crate::strand::{Change, Junctions, LimbArcs, Site, Split, Strand, limb_arcs};
-use crate::stretch::{self, stretches};
+use crate::ray_casting::Scene;
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};
-use premio_kernel::geometry::bounds::{Box3, bounds};
+use premio_kernel::geometry::bounds::{Aabb, bounds};
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::curve_plane::plane_roots;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::section::plane_roots;
 use premio_kernel::geometry::surface::Plane;
 use premio_kernel::geometry::trace::Unresolved;
-use premio_kernel::number::sign::{ROUNDING, Sign};
+use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::time::Instant;
 
 /// Distances between points found on two ways, in multiples of the resolution.
@@ -76,13 +80,13 @@ pub fn contours_by(
     }
     let mut junctions = Junctions::new(&projection, brep.topology.vertices as usize);
     let limbs = limb_arcs(&scene, &mut junctions)?;
-    let mut seconds = Seconds {
+    let mut seconds = ContourSeconds {
         limbs: started.elapsed().as_secs_f64(),
-        ..Seconds::default()
+        ..ContourSeconds::default()
     };
     let started = Instant::now();
     let all = brep.topology.edges.len() + limbs.arcs.len();
-    let mut weave = Weave {
+    let mut weave = ContourBuilder {
         scene: &scene,
         junctions: &mut junctions,
         contours: Vec::with_capacity(all),
@@ -122,19 +126,19 @@ pub fn contours_by(
     })
 }
 
-fn ends(piece: &Piece) -> [Option<u32>; 2] {
+fn ends(piece: &ContourPiece) -> [Option<u32>; 2] {
     [piece.start, piece.end]
 }
 
 /// The size of a part: the diagonal of the box of its edges and closed surfaces.
 pub fn part_size(brep: &Brep) -> f64 {
     use premio_kernel::geometry::surface::Surface;
-    let mut hull = Box3::EMPTY;
+    let mut hull = Aabb::EMPTY;
     for edge in brep.topology.edge_ids() {
         hull = hull.hull(&bounds(brep.curve(edge), brep.range(edge)));
     }
     for face in brep.topology.face_ids() {
-        let around = |f: &Frame, r: f64| Box3::of(&f.origin).grown(r);
+        let around = |f: &Frame, r: f64| Aabb::of(&f.origin).grown(r);
         match brep.surface(face) {
             Surface::Sphere(s) => hull = hull.hull(&around(&s.frame, s.radius)),
             Surface::Torus(s) => hull = hull.hull(&around(&s.frame, s.major + s.minor)),
@@ -181,14 +185,14 @@ impl Source<'_> {
     }
 }
 
-struct Weave<'s, 'a, 'j, 'p> {
+struct ContourBuilder<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
     contours: Vec<Contour>,
-    strands: Vec<Strand<'a>>,
+    strands: Vec<ContourArc<'a>>,
 }
 
-impl<'a> Weave<'_, 'a, '_, '_> {
+impl<'a> ContourBuilder<'_, 'a, '_, '_> {
     fn edges(&mut self, limbs: &LimbArcs) {
         let brep = self.scene.brep;
         let topology = &brep.topology;
@@ -212,17 +216,17 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 marks: limbs.on_edges[edge.index()].clone(),
             };
             if !entity.smooth {
-                self.edge(whole, Kind::Boundary, false);
+                self.edge(whole, ContourKind::Boundary, false);
                 continue;
             }
             for (part, kind) in self.smooth_parts(whole, edge) {
-                self.edge(part, kind, kind == Kind::Boundary);
+                self.edge(part, kind, kind == ContourKind::Boundary);
             }
         }
     }
 
     /// Makes a contour of an edge, or of a part of it.
-    fn edge(&mut self, mut source: Source<'a>, kind: Kind, smooth: bool) {
+    fn edge(&mut self, mut source: Source<'a>, kind: ContourKind, smooth: bool) {
         source.contour = self.contours.len() as u32;
         let seen = self.image(&source);
         let contour = self.contour(&source, &seen, kind);
@@ -231,10 +235,10 @@ impl<'a> Weave<'_, 'a, '_, '_> {
     }
 
     /// A smooth edge, cut where it begins or ceases to be the limb.
-    fn smooth_parts(&self, whole: Source<'a>, edge: EdgeId) -> Vec<(Source<'a>, Kind)> {
+    fn smooth_parts(&self, whole: Source<'a>, edge: EdgeId) -> Vec<(Source<'a>, ContourKind)> {
         let kind = |range: [f64; 2]| match is_limb(self.scene, edge, range) {
-            true => Kind::Limb,
-            false => Kind::Boundary,
+            true => ContourKind::Limb,
+            false => ContourKind::Boundary,
         };
         let mut stops: Vec<(f64, Option<u32>)> = Vec::new();
         let [lo, hi] = whole.range;
@@ -246,7 +250,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         }
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
         let parts = whole.cut(stops);
-        let kinds: Vec<Kind> = parts.iter().map(|part| kind(part.range)).collect();
+        let kinds: Vec<ContourKind> = parts.iter().map(|part| kind(part.range)).collect();
         match kinds.windows(2).all(|pair| pair[0] == pair[1]) {
             true => vec![(whole, kinds.first().copied().unwrap_or(kind([lo, hi])))],
             false => parts.into_iter().zip(kinds).collect(),
@@ -267,7 +271,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 marks: arc.marks.clone(),
             };
             let seen = self.image(&source);
-            let contour = self.contour(&source, &seen, Kind::Limb);
+            let contour = self.contour(&source, &seen, ContourKind::Limb);
             self.contours.push(contour);
             self.strand(source, seen);
         }
@@ -280,7 +284,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         image(source.curve, source.range, projection, band)
     }
 
-    fn contour(&self, source: &Source<'_>, seen: &Image, kind: Kind) -> Contour {
+    fn contour(&self, source: &Source<'_>, seen: &Image, kind: ContourKind) -> Contour {
         let mut faces: Vec<FaceId> = source.faces.iter().map(|f| f.0).collect();
         if source.limb {
             faces.push(source.faces[0].0);
@@ -337,7 +341,10 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         let junctions = &mut *self.junctions;
         let stops = cuts.into_iter().map(|t| {
             let p = source.curve.point(t);
-            (t, Some(junctions.add(JunctionKind::Cut, Site::Alone, &p)))
+            (
+                t,
+                Some(junctions.add(JunctionKind::Cut, JunctionSupport::Alone, &p)),
+            )
         });
         for part in source.cut(stops.collect()) {
             let middle = source.curve.point(0.5 * (part.range[0] + part.range[1]));
@@ -372,7 +379,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         // Of a limb they are its cusps, which are known.
         let turns = match seen {
             Image::General if source.limb => Vec::new(),
-            Image::General => stretch::turns(source.curve, &straight, projection),
+            Image::General => monotone_arc::turns(source.curve, &straight, projection),
             _ => seen.turns(range),
         };
         let within = |t: f64| match source.curve.period() {
@@ -400,7 +407,9 @@ impl<'a> Weave<'_, 'a, '_, '_> {
         for &t in &turns {
             if t.lies_between(range) && !at_end(t) || closed {
                 let p = source.curve.point(t);
-                let junction = self.junctions.add(JunctionKind::Turn, Site::Alone, &p);
+                let junction = self
+                    .junctions
+                    .add(JunctionKind::Turn, JunctionSupport::Alone, &p);
                 splits.push(Split {
                     t,
                     junction,
@@ -408,7 +417,7 @@ impl<'a> Weave<'_, 'a, '_, '_> {
                 });
             }
         }
-        self.strands.push(Strand {
+        self.strands.push(ContourArc {
             curve: source.curve,
             range,
             closed,

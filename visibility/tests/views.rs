@@ -9,10 +9,10 @@ use parts::{BAND, Builder, block, tilted};
 use premio_kernel::brep::Brep;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Surface, Torus};
-use premio_visibility::contour::{Contours, JunctionKind, Kind};
+use premio_visibility::contour::{ContourKind, Contours, JunctionKind};
 use premio_visibility::invisibility::Method;
 use premio_visibility::projection::Projection;
-use premio_visibility::sight::{Own, Scene};
+use premio_visibility::ray_casting::{OriginIncidence, Scene};
 use premio_visibility::view::{ViewError, contours, contours_by};
 use premio_visibility::{Camera, camera::CameraError};
 use proptest::prelude::*;
@@ -81,7 +81,7 @@ fn a_sphere_has_one_visible_limb() {
     ] {
         let c = see(&b.brep, &camera);
         assert_eq!(c.contours.len(), 1);
-        assert_eq!(c.contours[0].kind, Kind::Limb);
+        assert_eq!(c.contours[0].kind, ContourKind::Limb);
         assert_eq!(c.contours[0].pieces.len(), 1);
         assert!(c.contours[0].pieces[0].visible);
     }
@@ -265,9 +265,9 @@ fn constant(brep: &Brep, camera: &Camera, c: &Contours) {
             for part in [0.04, 0.27, 0.5, 0.71, 0.96] {
                 let p = contour.curve3.point(lo + (hi - lo) * part);
                 let own = |f| match contour.faces.contains(&f) {
-                    false => Own::No,
-                    true if contour.kind == Kind::Limb => Own::Tangent,
-                    true => Own::Through,
+                    false => OriginIncidence::No,
+                    true if contour.kind == ContourKind::Limb => OriginIncidence::Tangent,
+                    true => OriginIncidence::Through,
                 };
                 let along = contour.curve3.tangent(lo + (hi - lo) * part);
                 let count = scene.count(&p, &along, &own);

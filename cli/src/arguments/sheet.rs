@@ -2,7 +2,7 @@
 
 use super::{LengthUnit, positive};
 use clap::{Args, ValueEnum};
-use premio_drawing::sheet::{Angle, Paper, Scale, View};
+use premio_drawing::sheet::{Angle, Paper, Scale, StandardView};
 
 /// A sheet of paper with a frame and a title block; any of these asks for it.
 #[derive(Debug, Args)]
@@ -84,7 +84,7 @@ pub enum ProjectionAngle {
     Third,
 }
 
-impl From<ViewName> for View {
+impl From<ViewName> for StandardView {
     fn from(name: ViewName) -> Self {
         match name {
             ViewName::Front => Self::Front,

@@ -7,7 +7,7 @@ use crate::output::Outputs;
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input};
-use premio_detect::Domain;
+use premio_detect::PixelMask;
 use premio_predict::agreement::{Agreement, Match, SCHEMA, matches};
 use premio_predict::outline::Source;
 use premio_predict::prediction::prediction;
@@ -54,7 +54,7 @@ pub fn run(options: &CompareOptions, session: Session) -> Result<(), Failure> {
         let predicted = prediction(draft, setup);
         let seed = setup.conditions.seed ^ OTHER;
         let image = taken.unwrap_or_else(|| rendered(draft, seed, voice));
-        let (_, found) = draft.evidence_in(&image, &Domain::full(width, height));
+        let (_, found) = draft.evidence_in(&image, &PixelMask::full(width, height));
         let features = matches(&predicted.arcs, &found, setup.conditions.detector.shortest);
         let outline = |m: &&Match| matches!(m.source, Source::Edge { .. } | Source::Limb { .. });
         let comparison = Comparison {

@@ -6,7 +6,7 @@ use crate::input::Part;
 use crate::session::Session;
 use crate::{input, output};
 use nalgebra::Point3;
-use premio_drawing::sheet::{self, Angle, Paper, Sheet, View};
+use premio_drawing::sheet::{self, Angle, Paper, Sheet, StandardView};
 use premio_drawing::{Drawing, dxf, svg};
 use premio_kernel::unit::Unit;
 use premio_visibility::camera::CameraError;
@@ -56,10 +56,10 @@ fn seen(part: &Part, camera: &Camera, given: Option<&Given<'_>>) -> Result<Conto
 }
 
 fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
-    let how = premio_drawing::Options {
+    let how = premio_drawing::DrawingOptions {
         hidden: options.hidden,
         smooth: options.smooth_edges,
-        ..premio_drawing::Options::default()
+        ..premio_drawing::DrawingOptions::default()
     };
     Drawing::new(seen, &how)
 }
@@ -104,7 +104,7 @@ fn on_sheet(
     }
     bar.finish_and_clear();
     let title = asked.title.clone();
-    let how = sheet::Options {
+    let how = sheet::SheetOptions {
         title: title.unwrap_or_else(|| options.description.stem()),
         unit: asked.unit.map(Unit::from).unwrap_or_default(),
         paper: asked.paper.map(Paper::from).unwrap_or_default(),
@@ -150,7 +150,9 @@ impl<'a> Given<'a> {
             }
             Self::Choice(CameraChoice::Named(name)) => {
                 let Extent { middle, size } = Extent::of(part);
-                View::from(*name).camera(middle, size).map_err(failed)
+                StandardView::from(*name)
+                    .camera(middle, size)
+                    .map_err(failed)
             }
             Self::Choice(CameraChoice::Eye {
                 eye,
@@ -190,11 +192,14 @@ impl<'a> Given<'a> {
 }
 
 /// The cameras of views of a part about its middle, each once.
-fn cameras(part: &Part, names: &[ViewName]) -> Result<Vec<(Option<View>, Camera)>, Failure> {
+fn cameras(
+    part: &Part,
+    names: &[ViewName],
+) -> Result<Vec<(Option<StandardView>, Camera)>, Failure> {
     let Extent { middle, size } = Extent::of(part);
-    let mut cameras: Vec<(Option<View>, Camera)> = Vec::new();
+    let mut cameras: Vec<(Option<StandardView>, Camera)> = Vec::new();
     for &name in names {
-        let view = View::from(name);
+        let view = StandardView::from(name);
         if !cameras.iter().any(|(known, _)| *known == Some(view)) {
             let camera = view.camera(middle, size);
             let camera = camera.map_err(|e| Failure::limit(e.to_string()))?;

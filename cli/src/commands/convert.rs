@@ -4,7 +4,7 @@ use crate::arguments::ConvertOptions;
 use crate::diagnostics::{Failure, counted};
 use crate::session::Session;
 use crate::{input, output};
-use premio_csg::reader::{self, Format, Options, Source};
+use premio_csg::reader::{self, Format, Program, ReadOptions};
 use premio_csg::tree::Tree;
 use premio_csg::writer;
 
@@ -27,7 +27,7 @@ pub fn run(options: &ConvertOptions, session: Session) -> Result<(), Failure> {
         written => written.map_err(|e| failed(&e))?,
     };
     // What was written is read again: only that tells what the language could not hold.
-    let read = reader::read(&name, text.as_bytes(), target, &Options::default());
+    let read = reader::read(&name, text.as_bytes(), target, &ReadOptions::default());
     let again = read.map_err(|e| Failure::limit(format!("what was written is not read: {e}")))?;
     let digits = source.digits.filter(|_| again.digits.is_none());
     let lost = [lost(&tree, &again.tree, target), digits.map(coarse)];
@@ -40,7 +40,7 @@ pub fn run(options: &ConvertOptions, session: Session) -> Result<(), Failure> {
     output::write(&text, Some(&options.output))
 }
 
-fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Source, Failure> {
+fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Program, Failure> {
     let format = input::format(&options.file)?;
     let text = session.limits.read(&options.file)?;
     let how = options.reading.options();

@@ -5,7 +5,7 @@ use crate::diagnostics::{Failure, Voice, counted};
 use crate::input::Part;
 use crate::session::Session;
 use crate::{input, output};
-use premio_csg::model::Model;
+use premio_csg::object_model::ObjectModel;
 use premio_exchange::mesh::{self, Facets, MeshError, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
 use premio_kernel::geometry::surface::Surface;
@@ -25,7 +25,7 @@ pub fn run(options: &ExportOptions, session: Session) -> Result<(), Failure> {
     let to = options.output.path();
     let working = voice.working("making the file");
     let bytes = match format {
-        ExportFormat::Json => return output::json(&Model::of(&part.evaluation.brep), to),
+        ExportFormat::Json => return output::json(&ObjectModel::of(&part.evaluation.brep), to),
         ExportFormat::Step => as_step(&part, options)?.into_bytes(),
         ExportFormat::Stl | ExportFormat::Obj | ExportFormat::Glb | ExportFormat::ThreeMf => {
             check_fineness(&part, options)?;
@@ -67,7 +67,7 @@ fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Re
 fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
     let evaluation = &part.evaluation;
     let size = evaluation.tight_bounds().diagonal();
-    let how = step::Options {
+    let how = step::StepOptions {
         name: name(options),
         protocol: match options.protocol {
             None | Some(StepProtocol::Ap242) => Protocol::Ap242,

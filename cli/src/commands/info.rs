@@ -5,7 +5,7 @@ use crate::diagnostics::Failure;
 use crate::input::{self, Part};
 use crate::output;
 use crate::session::Session;
-use premio_kernel::number::sign::{CloseCall, Decisions};
+use premio_kernel::number::predicates::{CloseCall, DecisionStats};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -135,7 +135,7 @@ impl Bounds {
 }
 
 impl Counts {
-    fn of(decisions: &Decisions) -> Self {
+    fn of(decisions: &DecisionStats) -> Self {
         Self {
             filtered: decisions.filtered,
             refined: decisions.refined,

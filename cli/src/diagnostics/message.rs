@@ -3,7 +3,7 @@
 use super::excerpt::Excerpt;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 use premio_csg::reader::ReadError;
-use premio_kernel::number::sign::CloseCall;
+use premio_kernel::number::predicates::CloseCall;
 use premio_text::{LineColumn, escape};
 use serde::Serialize;
 use std::fmt;
@@ -193,10 +193,10 @@ impl Diagnostic for Message {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use premio_csg::reader::{Format, Options, read};
+    use premio_csg::reader::{Format, ReadOptions, read};
 
     fn message(text: &[u8]) -> Message {
-        let error = read("part.padl", text, Format::Padl, &Options::default()).unwrap_err();
+        let error = read("part.padl", text, Format::Padl, &ReadOptions::default()).unwrap_err();
         Message::of_reader(&error, text)
     }
 

@@ -5,9 +5,9 @@ mod message;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use message::{Level, Message};
-use premio_csg::boundary::EvaluationError;
+use premio_csg::evaluate::EvaluationError;
 use premio_csg::reader::{ErrorKind, Note, ReadError};
-use premio_kernel::number::sign::CloseCall;
+use premio_kernel::number::predicates::CloseCall;
 use premio_predict::outline::stage::StageError;
 use premio_predict::setup::SetupError;
 use premio_text::{LineColumn, escape};

@@ -59,7 +59,7 @@ impl std::error::Error for ReadError {}
 
 /// An error before its line is known.
 #[derive(Debug, Clone)]
-pub(super) struct Fault {
+pub(super) struct SpannedError {
     kind: ErrorKind,
     span: Range<usize>,
     found: String,
@@ -67,7 +67,7 @@ pub(super) struct Fault {
     help: Option<String>,
 }
 
-impl Fault {
+impl SpannedError {
     /// The text is wrong here.
     pub(super) fn input(
         span: Range<usize>,

@@ -6,8 +6,8 @@
 use premio_kernel::motion::{Motion, RationalMatrix};
 use premio_kernel::number::rational::{Rational, exact_sqrt, from_f64, to_f64};
 
-use super::placement::placement;
-use crate::moves::{Moves, Step};
+use super::rigid_fit::placement;
+use crate::transform::{Transform, TransformStep};
 
 /// A vector in space.
 pub(super) type Vector = [Rational; 3];
@@ -46,7 +46,7 @@ pub(super) fn length(vector: &Vector) -> Option<Rational> {
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     /// The turn that takes z to it.
-    pub(super) turn: Moves,
+    pub(super) turn: Transform,
     pub(super) length: Rational,
 }
 
@@ -60,15 +60,15 @@ impl Axis {
 }
 
 /// The turn by quarters that takes z to a vector along a coordinate axis.
-fn quarter([x, y, z]: &Vector) -> Option<Moves> {
+fn quarter([x, y, z]: &Vector) -> Option<Transform> {
     let negative = |value: &Rational| *value < Rational::ZERO;
     let turn = |axis: [i32; 3], degrees: i32| {
         let (axis, degrees) = (axis.map(Rational::from), degrees.into());
-        moves(Step::Turn { axis, degrees })
+        moves(TransformStep::Turn { axis, degrees })
     };
     match (x.is_zero(), y.is_zero(), z.is_zero()) {
         (true, true, false) if negative(z) => turn([1, 0, 0], 180),
-        (true, true, false) => Some(Moves::new()),
+        (true, true, false) => Some(Transform::new()),
         (false, true, true) => turn([0, 1, 0], if negative(x) { -90 } else { 90 }),
         (true, false, true) => turn([1, 0, 0], if negative(y) { 90 } else { -90 }),
         _ => None,
@@ -77,21 +77,21 @@ fn quarter([x, y, z]: &Vector) -> Option<Moves> {
 
 /// The shortest turn that takes z, or first -z, to a vector: about the cross product of the two,
 /// which with the scalar product is the quaternion of half the angle.
-fn oblique([x, y, z]: &Vector, length: &Rational) -> Option<Moves> {
+fn oblique([x, y, z]: &Vector, length: &Rational) -> Option<Transform> {
     let zero = Rational::ZERO;
     if *z >= zero {
-        return moves(Step::Quaternion([length + z, -y, x.clone(), zero]));
+        return moves(TransformStep::Quaternion([length + z, -y, x.clone(), zero]));
     }
-    let over = moves(Step::Turn {
+    let over = moves(TransformStep::Turn {
         axis: [1, 0, 0].map(Rational::from),
         degrees: 180.into(),
     })?;
-    let back = moves(Step::Quaternion([length - z, y.clone(), -x, zero]))?;
+    let back = moves(TransformStep::Quaternion([length - z, y.clone(), -x, zero]))?;
     Some(over.then(back))
 }
 
-fn moves(step: Step) -> Option<Moves> {
-    let mut moves = Moves::new();
+fn moves(step: TransformStep) -> Option<Transform> {
+    let mut moves = Transform::new();
     moves.push(step).ok()?;
     Some(moves)
 }
@@ -100,7 +100,7 @@ fn moves(step: Step) -> Option<Moves> {
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     /// The turn that takes x, y and z to them.
-    pub(super) turn: Moves,
+    pub(super) turn: Transform,
     pub(super) lengths: [Rational; 3],
     /// How far unit vectors along them are from those written.
     pub(super) residual: f64,
@@ -132,12 +132,12 @@ impl Frame {
 }
 
 /// The turn of a matrix that is exactly orthogonal.
-fn exact(matrix: &RationalMatrix) -> Option<Moves> {
-    Moves::quarter_turns(matrix).or_else(|| {
+fn exact(matrix: &RationalMatrix) -> Option<Transform> {
+    Transform::quarter_turns(matrix).or_else(|| {
         Motion::from_matrix(matrix.clone(), [0, 0, 0].map(Rational::from))?;
         quaternions(matrix)
             .into_iter()
-            .filter_map(|quaternion| moves(Step::Quaternion(quaternion)))
+            .filter_map(|quaternion| moves(TransformStep::Quaternion(quaternion)))
             .find(|moves| moves.motion().rotation_matrix() == *matrix)
     })
 }

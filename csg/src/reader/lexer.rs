@@ -8,7 +8,7 @@ use winnow::error::ContextError;
 use winnow::prelude::*;
 use winnow::token::{any, none_of, one_of, take_till, take_until, take_while};
 
-use super::error::Fault;
+use super::error::SpannedError;
 use premio_text::escape::quote;
 
 /// What sets the languages apart before grammar.
@@ -151,7 +151,7 @@ fn word(dialect: Dialect, input: &mut &str) -> Plain<Token> {
 }
 
 /// All words of a text, the last of them [`Token::End`].
-fn lex(source: &str, dialect: Dialect) -> Result<Vec<Lexeme>, Fault> {
+fn lex(source: &str, dialect: Dialect) -> Result<Vec<Lexeme>, SpannedError> {
     let mut rest = source.strip_prefix('\u{feff}').unwrap_or(source);
     let mut lexemes = Vec::new();
     loop {
@@ -181,13 +181,13 @@ fn lex(source: &str, dialect: Dialect) -> Result<Vec<Lexeme>, Fault> {
     }
 }
 
-fn unreadable(source: &str, start: usize) -> Fault {
+fn unreadable(source: &str, start: usize) -> SpannedError {
     let rest = &source[start..];
     if rest.starts_with('"') {
-        return Fault::input(start..start + 1, "a text without an end", "a closing `\"`");
+        return SpannedError::input(start..start + 1, "a text without an end", "a closing `\"`");
     }
     if rest.starts_with("/*") {
-        return Fault::input(
+        return SpannedError::input(
             start..start + 2,
             "a comment without an end",
             "a closing `*/`",
@@ -195,7 +195,7 @@ fn unreadable(source: &str, start: usize) -> Fault {
     }
     let first: String = rest.chars().take(1).collect();
     let span = start..start + first.len();
-    Fault::input(
+    SpannedError::input(
         span,
         quote(&first),
         "a name, a number or a symbol of the language",
@@ -210,7 +210,7 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    pub(super) fn new(source: &'a str, dialect: Dialect) -> Result<Self, Fault> {
+    pub(super) fn new(source: &'a str, dialect: Dialect) -> Result<Self, SpannedError> {
         Ok(Self {
             source,
             lexemes: lex(source, dialect)?,
@@ -253,17 +253,17 @@ impl<'a> Cursor<'a> {
     }
 
     /// The error that something else should stand in a word's place.
-    pub(super) fn unexpected(&self, lexeme: Lexeme, expected: impl Into<String>) -> Fault {
+    pub(super) fn unexpected(&self, lexeme: Lexeme, expected: impl Into<String>) -> SpannedError {
         let found = match lexeme.token {
             Token::End => "the end of the file".to_owned(),
             Token::Newline => "the end of the line".to_owned(),
             _ => quote(self.text(lexeme)),
         };
-        Fault::input(lexeme.span(), found, expected)
+        SpannedError::input(lexeme.span(), found, expected)
     }
 
     /// Takes a symbol, or says what it was expected for.
-    pub(super) fn expect(&mut self, symbol: char, what_for: &str) -> Result<Lexeme, Fault> {
+    pub(super) fn expect(&mut self, symbol: char, what_for: &str) -> Result<Lexeme, SpannedError> {
         let lexeme = self.next();
         if lexeme.is(symbol) {
             Ok(lexeme)

@@ -11,8 +11,8 @@ mod lexer;
 mod notes;
 mod number;
 mod padl;
-mod placement;
 mod pov;
+mod rigid_fit;
 mod scad;
 #[cfg(test)]
 mod tests;
@@ -20,10 +20,10 @@ mod tests;
 use std::ops::Range;
 use std::path::Path;
 
-use error::Fault;
+use error::SpannedError;
 pub use error::{ErrorKind, ReadError};
 
-use crate::builder::{Builder, Part};
+use crate::builder::{Builder, SolidId};
 use crate::tree::Tree;
 
 /// A description language.
@@ -72,7 +72,7 @@ impl Format {
 
 /// How to read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Options {
+pub struct ReadOptions {
     /// Reads a `.csg` primitive with a small `$fn` as the smooth one.
     pub smooth: bool,
     /// The part to read from a text in which parts have names; if absent, of `.padl` the last
@@ -103,11 +103,11 @@ pub struct Description {
 
 /// A part as it was written: by its operations and motions, with nothing copied.
 #[derive(Debug)]
-pub struct Source {
+pub struct Program {
     /// The parts of the text.
     pub builder: Builder,
     /// The one that was asked for.
-    pub part: Part,
+    pub part: SolidId,
     /// The noise of the coordinates; see [`Description::digits`].
     pub digits: Option<f64>,
     /// What the author may want to know.
@@ -116,12 +116,12 @@ pub struct Source {
     span: Range<usize>,
 }
 
-impl Source {
+impl Program {
     /// The tree of the part; a tree beyond its limits is pointed at as a whole.
-    fn description(self) -> Result<Description, Fault> {
+    fn description(self) -> Result<Description, SpannedError> {
         let tree = self.builder.finish(self.part).map_err(|error| {
             let expected = "a description within the limits";
-            Fault::limit(self.span, error.to_string(), expected)
+            SpannedError::limit(self.span, error.to_string(), expected)
         })?;
         Ok(Description {
             tree,
@@ -136,10 +136,10 @@ pub fn read(
     name: &str,
     bytes: &[u8],
     format: Format,
-    options: &Options,
+    options: &ReadOptions,
 ) -> Result<Description, ReadError> {
     parse_bytes(bytes, format, options)
-        .and_then(Source::description)
+        .and_then(Program::description)
         .map_err(|fault| fault.locate(name, bytes))
 }
 
@@ -148,16 +148,20 @@ pub fn parse(
     name: &str,
     bytes: &[u8],
     format: Format,
-    options: &Options,
-) -> Result<Source, ReadError> {
+    options: &ReadOptions,
+) -> Result<Program, ReadError> {
     parse_bytes(bytes, format, options).map_err(|fault| fault.locate(name, bytes))
 }
 
-fn parse_bytes(bytes: &[u8], format: Format, options: &Options) -> Result<Source, Fault> {
+fn parse_bytes(
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+) -> Result<Program, SpannedError> {
     let source = std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         let byte = bytes.get(at).copied().unwrap_or_default();
-        Fault::input(
+        SpannedError::input(
             at..at + 1,
             format!("the byte {byte:#04x}"),
             "a text in UTF-8",
@@ -166,7 +170,7 @@ fn parse_bytes(bytes: &[u8], format: Format, options: &Options) -> Result<Source
     if options.part.is_some() && matches!(format, Format::Csg | Format::Json) {
         let found = "a part asked for by name";
         let expected = "a `.padl`, `.asc` or `.pov` file, in which parts have names";
-        return Err(Fault::input(0..0, found, expected));
+        return Err(SpannedError::input(0..0, found, expected));
     }
     match format {
         Format::Padl => padl::read(source, options),

@@ -6,7 +6,7 @@ use premio_kernel::number::rational::{
     DecimalError, MAX_DIGITS, MAX_EXPONENT, Rational, bits, from_decimal, to_f64,
 };
 
-use super::error::Fault;
+use super::error::SpannedError;
 use crate::primitive::PrimitiveError;
 use premio_text::escape::quote;
 
@@ -14,25 +14,25 @@ use premio_text::escape::quote;
 pub(super) const MAX_BITS: usize = 1 << 13;
 
 /// The exact value of a decimal literal.
-pub(super) fn literal(text: &str, span: Range<usize>) -> Result<Rational, Fault> {
+pub(super) fn literal(text: &str, span: Range<usize>) -> Result<Rational, SpannedError> {
     from_decimal(text).map_err(|error| match error {
-        DecimalError::Malformed => Fault::input(span, quote(text), "a number"),
+        DecimalError::Malformed => SpannedError::input(span, quote(text), "a number"),
         DecimalError::ExponentTooLarge => {
             let limit = format!("an exponent from -{MAX_EXPONENT} to {MAX_EXPONENT}");
-            Fault::limit(span, quote(text), limit)
+            SpannedError::limit(span, quote(text), limit)
         }
         DecimalError::TooManyDigits => {
-            Fault::limit(span, quote(text), format!("at most {MAX_DIGITS} digits"))
+            SpannedError::limit(span, quote(text), format!("at most {MAX_DIGITS} digits"))
         }
     })
 }
 
 /// Refuses a number that has grown too long.
-pub(super) fn check_length(value: Rational, span: Range<usize>) -> Result<Rational, Fault> {
+pub(super) fn check_length(value: Rational, span: Range<usize>) -> Result<Rational, SpannedError> {
     let length = bits(&value);
     if length > MAX_BITS {
         let found = format!("a number of {length} bits");
-        return Err(Fault::limit(
+        return Err(SpannedError::limit(
             span,
             found,
             format!("at most {MAX_BITS} bits"),
@@ -55,7 +55,7 @@ pub(super) fn bad_length(
     error: PrimitiveError,
     value: Option<&Rational>,
     span: Range<usize>,
-) -> Fault {
+) -> SpannedError {
     let found = value.map_or_else(|| "a wrong length".to_owned(), show);
     let expected = match error {
         PrimitiveError::NotPositive(what) => format!("a {what} greater than zero"),
@@ -63,5 +63,5 @@ pub(super) fn bad_length(
         PrimitiveError::NoRadius => "one radius greater than zero".to_owned(),
         PrimitiveError::NotARing => "a minor radius less than the major radius".to_owned(),
     };
-    Fault::input(span, found, expected)
+    SpannedError::input(span, found, expected)
 }

@@ -5,8 +5,8 @@ use premio_kernel::number::rational::{Rational, whole};
 use super::number::decimal;
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::Builder;
-use crate::moves::Step;
 use crate::primitive::Primitive;
+use crate::transform::TransformStep;
 use crate::tree::Operation;
 
 pub(super) fn write(builder: &Builder, top: Option<Use>) -> Result<String, WriteError> {
@@ -30,13 +30,13 @@ fn list(values: &[Rational]) -> String {
     format!("[{}]", all.join(","))
 }
 
-fn step(step: &Step) -> String {
+fn step(step: &TransformStep) -> String {
     match step {
-        Step::Shift(offset) => format!(r#"{{"translate":{}}}"#, list(offset)),
-        Step::Turn { axis, degrees } => {
+        TransformStep::Shift(offset) => format!(r#"{{"translate":{}}}"#, list(offset)),
+        TransformStep::Turn { axis, degrees } => {
             format!(r#"{{"rotate":[{},{}]}}"#, list(axis), decimal(degrees))
         }
-        Step::Quaternion(quaternion) => {
+        TransformStep::Quaternion(quaternion) => {
             format!(r#"{{"quaternion":{}}}"#, list(&whole(quaternion)))
         }
     }
@@ -44,7 +44,7 @@ fn step(step: &Step) -> String {
 
 impl Json {
     /// The transform, where there is one, and the end of the object.
-    fn place(&mut self, steps: &[Step]) {
+    fn place(&mut self, steps: &[TransformStep]) {
         if !steps.is_empty() {
             let all: Vec<String> = steps.iter().map(step).collect();
             push(
@@ -57,7 +57,7 @@ impl Json {
 }
 
 impl Language for Json {
-    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]) {
+    fn leaf(&mut self, primitive: &Primitive, steps: &[TransformStep]) {
         push(
             &mut self.text,
             format_args!(r#"{{"prim":{}"#, members(primitive)),
@@ -66,9 +66,9 @@ impl Language for Json {
     }
 
     /// Nothing has a name here.
-    fn name(&mut self, _: usize, _: &[Step]) {}
+    fn name(&mut self, _: usize, _: &[TransformStep]) {}
 
-    fn open(&mut self, op: Operation, _: &[Step]) {
+    fn open(&mut self, op: Operation, _: &[TransformStep]) {
         let name = match op {
             Operation::Union => "union",
             Operation::Intersection => "intersection",
@@ -86,7 +86,7 @@ impl Language for Json {
         push(&mut self.text, format_args!(",\n{}", indent(self.depth)));
     }
 
-    fn close(&mut self, steps: &[Step]) {
+    fn close(&mut self, steps: &[TransformStep]) {
         self.depth -= 1;
         push(&mut self.text, format_args!("\n{}]", indent(self.depth)));
         self.place(steps);

@@ -14,10 +14,10 @@ mod turns;
 
 use premio_kernel::number::rational::Rational;
 
-use crate::builder::{Builder, Draft, MAX_LEAVES, Part, Placing};
-use crate::moves::{Moves, Step};
+use crate::builder::{Builder, BuilderNode, MAX_LEAVES, Placing, SolidId};
 use crate::primitive::Primitive;
 use crate::reader::Format;
+use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 
 /// The longest text that is written, in bytes.
@@ -49,7 +49,7 @@ pub enum WriteError {
 /// doubles are: in `.padl` turns about another than a coordinate axis, in `.csg` turns by other
 /// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers that are no
 /// decimals.
-pub fn write(builder: &Builder, part: Part, format: Format) -> Result<String, WriteError> {
+pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String, WriteError> {
     let leaves = builder.leaves(part);
     if leaves > MAX_LEAVES {
         return Err(WriteError::TooManyLeaves { leaves });
@@ -91,7 +91,7 @@ impl Use {
         }
     }
 
-    fn step(&self, step: &Step) -> Step {
+    fn step(&self, step: &TransformStep) -> TransformStep {
         let step = match &self.factor {
             Some(factor) => step.scaled(factor),
             None => step.clone(),
@@ -104,9 +104,9 @@ impl Use {
     }
 
     /// What is moved, as it is used inside the motion, and the steps that move it.
-    fn resolved(mut self, builder: &Builder) -> (Self, Vec<Step>) {
+    fn resolved(mut self, builder: &Builder) -> (Self, Vec<TransformStep>) {
         let mut steps = Vec::new();
-        if let Draft::Moved { child, entry, .. } = builder.draft(self.draft) {
+        if let BuilderNode::Moved { child, entry, .. } = builder.draft(self.draft) {
             // From the last placing to the first: those outside act on the steps inside.
             let mut next = Some(*entry);
             while let Some(entry) = next.map(|index| builder.entry(index)) {
@@ -127,18 +127,18 @@ impl Use {
             steps.reverse();
             self.draft = *child;
         }
-        (self, Moves::tidied(steps))
+        (self, Transform::tidied(steps))
     }
 
     /// A primitive as it is used, and the shift that a mirror makes of it.
-    fn primitive(&self, primitive: &Primitive) -> (Primitive, Option<Step>) {
+    fn primitive(&self, primitive: &Primitive) -> (Primitive, Option<TransformStep>) {
         let primitive = match &self.factor {
             Some(factor) => primitive.scaled(factor),
             None => primitive.clone(),
         };
         let shift = self.mirrored.then(|| primitive.mirror_y());
         let shift = shift.filter(|motion| !motion.is_identity());
-        let shift = shift.map(|motion| Step::Shift(motion.offset().clone()));
+        let shift = shift.map(|motion| TransformStep::Shift(motion.offset().clone()));
         (primitive, shift)
     }
 }
@@ -146,15 +146,15 @@ impl Use {
 /// How a language is written.
 trait Language {
     /// A primitive, moved.
-    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]);
+    fn leaf(&mut self, primitive: &Primitive, steps: &[TransformStep]);
     /// A part with a name, moved.
-    fn name(&mut self, name: usize, steps: &[Step]);
+    fn name(&mut self, name: usize, steps: &[TransformStep]);
     /// The beginning of an operation.
-    fn open(&mut self, op: Operation, steps: &[Step]);
+    fn open(&mut self, op: Operation, steps: &[TransformStep]);
     /// What stands between two operands.
     fn between(&mut self, op: Operation);
     /// The end of an operation, moved.
-    fn close(&mut self, steps: &[Step]);
+    fn close(&mut self, steps: &[TransformStep]);
     /// How long the text is.
     fn length(&self) -> usize;
 }
@@ -163,7 +163,7 @@ trait Language {
 enum Task {
     Enter(Use),
     Between(Operation),
-    Close(Vec<Step>),
+    Close(Vec<TransformStep>),
 }
 
 /// Writes a part; what `name` gives a name to is written by it.
@@ -200,13 +200,13 @@ fn enter(
         return;
     }
     match builder.draft(part.draft) {
-        Draft::Leaf(primitive) => {
+        BuilderNode::Leaf(primitive) => {
             let (primitive, shift) = part.primitive(primitive);
             steps.splice(0..0, shift);
-            let steps = Moves::tidied(steps);
+            let steps = Transform::tidied(steps);
             language.leaf(&primitive, &steps);
         }
-        Draft::Operation { op, children } => {
+        BuilderNode::Operation { op, children } => {
             language.open(*op, &steps);
             tasks.push(Task::Close(steps));
             let operands = operands(builder, &part, *op, children, name);
@@ -218,7 +218,7 @@ fn enter(
             }
         }
         // Placements in a row are one.
-        Draft::Moved { .. } => {}
+        BuilderNode::Moved { .. } => {}
     }
 }
 
@@ -241,7 +241,7 @@ fn operands(
         // (A - B) - C is A - B - C, while A - (B - C) stays.
         if op != Operation::Difference || operands.is_empty() {
             let (inner, steps) = operand.clone().resolved(builder);
-            if let Draft::Operation { op: same, children } = builder.draft(inner.draft)
+            if let BuilderNode::Operation { op: same, children } = builder.draft(inner.draft)
                 && *same == op
                 && steps.is_empty()
                 && name(&inner).is_none()

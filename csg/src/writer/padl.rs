@@ -7,9 +7,9 @@ use premio_kernel::number::rational::Rational;
 use super::number::quotient;
 use super::turns::about_axes;
 use super::{Language, Use, WriteError, indent, push, walk};
-use crate::builder::{Builder, Draft};
-use crate::moves::Step;
+use crate::builder::{Builder, BuilderNode};
 use crate::primitive::Primitive;
+use crate::transform::TransformStep;
 use crate::tree::Operation;
 
 pub(super) fn write(builder: &Builder, top: Use) -> Result<String, WriteError> {
@@ -35,7 +35,7 @@ fn named(builder: &Builder, top: &Use) -> BTreeMap<Use, usize> {
     let mut ahead = vec![top.clone()];
     while let Some(part) = ahead.pop() {
         let (part, _) = part.resolved(builder);
-        let Draft::Operation { children, .. } = builder.draft(part.draft) else {
+        let BuilderNode::Operation { children, .. } = builder.draft(part.draft) else {
             continue;
         };
         if met.contains(&part) {
@@ -55,16 +55,16 @@ struct Padl {
 }
 
 impl Padl {
-    fn place(&mut self, steps: &[Step]) {
+    fn place(&mut self, steps: &[TransformStep]) {
         let mut words = Vec::new();
         for step in steps {
             match step {
-                Step::Shift(offset) => {
+                TransformStep::Shift(offset) => {
                     let moved = offset.iter().zip(["MOVX", "MOVY", "MOVZ"]);
                     let moved = moved.filter(|(by, _)| !by.is_zero());
                     words.extend(moved.map(|(by, word)| format!("{word}={}", quotient(by))));
                 }
-                Step::Turn { .. } | Step::Quaternion(_) => {
+                TransformStep::Turn { .. } | TransformStep::Quaternion(_) => {
                     let turns = about_axes(step).into_iter();
                     words.extend(turns.map(|(axis, degrees)| {
                         format!("{}={}", ["ROTX", "ROTY", "ROTZ"][axis], quotient(&degrees))
@@ -79,17 +79,17 @@ impl Padl {
 }
 
 impl Language for Padl {
-    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]) {
+    fn leaf(&mut self, primitive: &Primitive, steps: &[TransformStep]) {
         self.text.push_str(&call(primitive));
         self.place(steps);
     }
 
-    fn name(&mut self, name: usize, steps: &[Step]) {
+    fn name(&mut self, name: usize, steps: &[TransformStep]) {
         push(&mut self.text, format_args!("P{name}"));
         self.place(steps);
     }
 
-    fn open(&mut self, _: Operation, _: &[Step]) {
+    fn open(&mut self, _: Operation, _: &[TransformStep]) {
         self.depth += 1;
         push(&mut self.text, format_args!("(\n{}", indent(self.depth)));
     }
@@ -106,7 +106,7 @@ impl Language for Padl {
         );
     }
 
-    fn close(&mut self, steps: &[Step]) {
+    fn close(&mut self, steps: &[TransformStep]) {
         self.depth -= 1;
         push(&mut self.text, format_args!("\n{})", indent(self.depth)));
         self.place(steps);

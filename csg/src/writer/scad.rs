@@ -6,8 +6,8 @@ use premio_kernel::number::rational::to_f64;
 use super::number::decimal;
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::Builder;
-use crate::moves::Step;
 use crate::primitive::Primitive;
+use crate::transform::TransformStep;
 use crate::tree::Operation;
 
 pub(super) fn write(builder: &Builder, top: Option<Use>) -> Result<String, WriteError> {
@@ -32,7 +32,7 @@ const SMOOTH: &str = "$fn = 0, $fa = 12, $fs = 2";
 impl Scad {
     /// Opens a matrix for each motion, the last of them outermost: a matrix of one turn is known by
     /// its angle.
-    fn begin(&mut self, steps: &[Step]) {
+    fn begin(&mut self, steps: &[TransformStep]) {
         for motion in motions(steps).iter().rev() {
             push(
                 &mut self.text,
@@ -41,19 +41,19 @@ impl Scad {
         }
     }
 
-    fn end(&mut self, steps: &[Step]) {
+    fn end(&mut self, steps: &[TransformStep]) {
         self.text.push_str(&" }".repeat(motions(steps).len()));
     }
 }
 
 /// The motions that are written as a matrix each, in the order in which they are made: a turn with
 /// the shifts after it, quarter turns and shifts together.
-fn motions(steps: &[Step]) -> Vec<Motion> {
+fn motions(steps: &[TransformStep]) -> Vec<Motion> {
     let mut motions: Vec<(Motion, bool)> = Vec::new();
     for step in steps {
         // A step was made when it was read, so that it has a motion.
         let motion = step.motion().unwrap_or_default();
-        let is_shift = matches!(step, Step::Shift(_));
+        let is_shift = matches!(step, TransformStep::Shift(_));
         match motions.last_mut() {
             Some((last, is_plain)) if is_shift || (*is_plain && step.is_plain()) => {
                 *last = last.then(&motion);
@@ -75,16 +75,16 @@ fn matrix(motion: &Motion) -> String {
 }
 
 impl Language for Scad {
-    fn leaf(&mut self, primitive: &Primitive, steps: &[Step]) {
+    fn leaf(&mut self, primitive: &Primitive, steps: &[TransformStep]) {
         self.begin(steps);
         self.text.push_str(&node(primitive));
         self.end(steps);
     }
 
     /// Nothing has a name here.
-    fn name(&mut self, _: usize, _: &[Step]) {}
+    fn name(&mut self, _: usize, _: &[TransformStep]) {}
 
-    fn open(&mut self, op: Operation, steps: &[Step]) {
+    fn open(&mut self, op: Operation, steps: &[TransformStep]) {
         self.begin(steps);
         let name = match op {
             Operation::Union => "union",
@@ -102,7 +102,7 @@ impl Language for Scad {
         push(&mut self.text, format_args!("\n{}", indent(self.depth)));
     }
 
-    fn close(&mut self, steps: &[Step]) {
+    fn close(&mut self, steps: &[TransformStep]) {
         self.depth -= 1;
         push(&mut self.text, format_args!("\n{}}}", indent(self.depth)));
         self.end(steps);

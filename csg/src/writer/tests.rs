@@ -1,12 +1,12 @@
 //! Tests of the writers: what is written is read as the same tree.
 
 use super::*;
-use crate::reader::{Options, Source, parse, read};
+use crate::reader::{Program, ReadOptions, parse, read};
 use crate::tree::Tree;
 use insta::assert_snapshot;
 
-fn parsed(text: &str, format: Format) -> Source {
-    parse("part", text.as_bytes(), format, &Options::default()).unwrap()
+fn parsed(text: &str, format: Format) -> Program {
+    parse("part", text.as_bytes(), format, &ReadOptions::default()).unwrap()
 }
 
 fn written(text: &str, from: Format, to: Format) -> String {
@@ -15,7 +15,7 @@ fn written(text: &str, from: Format, to: Format) -> String {
 }
 
 fn tree(text: &str, format: Format) -> Tree {
-    match read("part", text.as_bytes(), format, &Options::default()) {
+    match read("part", text.as_bytes(), format, &ReadOptions::default()) {
         Ok(description) => description.tree,
         Err(error) => panic!("{error}\n{text}"),
     }
@@ -112,8 +112,8 @@ fn languages() {
 fn mirrors_and_scales_are_written_at_the_primitives() {
     let mut b = Builder::new();
     let block = Primitive::block([2, 3, 4].map(Rational::from)).unwrap();
-    let mut moves = crate::moves::Moves::shift([1, 10, 1].map(Rational::from));
-    let turn = Step::Turn {
+    let mut moves = crate::transform::Transform::shift([1, 10, 1].map(Rational::from));
+    let turn = TransformStep::Turn {
         axis: [1, 0, 0].map(Rational::from),
         degrees: 30.into(),
     };
@@ -124,7 +124,7 @@ fn mirrors_and_scales_are_written_at_the_primitives() {
     let part = b.mirrored_y(part);
     let part = b.moved(
         part,
-        crate::moves::Moves::shift([0, 0, 7].map(Rational::from)),
+        crate::transform::Transform::shift([0, 0, 7].map(Rational::from)),
     );
     let both = b.operation(Operation::Union, &[part, part]);
     let expected = b.finish(both).unwrap();

@@ -3,13 +3,13 @@
 use nalgebra::Matrix3;
 use premio_kernel::number::rational::{Rational, from_f64};
 
-use crate::moves::{Moves, Step};
+use crate::transform::{Transform, TransformStep};
 
 /// Turns about coordinate axes, by degrees, that come to a step: the same turn where it is one, or
 /// where whole decimals of a degree about x, y and z in this order give it exactly; else the
 /// nearest that doubles tell. Nothing of a shift.
-pub(super) fn about_axes(step: &Step) -> Vec<(usize, Rational)> {
-    if let Step::Turn { axis, degrees } = step {
+pub(super) fn about_axes(step: &TransformStep) -> Vec<(usize, Rational)> {
+    if let TransformStep::Turn { axis, degrees } = step {
         let others = |k: usize| (0..3).all(|i| i == k || axis[i].is_zero());
         if let Some(k) = (0..3).find(|&k| others(k)) {
             let backwards = axis[k] < Rational::ZERO;
@@ -24,9 +24,9 @@ pub(super) fn about_axes(step: &Step) -> Vec<(usize, Rational)> {
     let exact = (0..=9)
         .map(|digits| rounded(&angles, digits))
         .find(|turns| {
-            let mut turned = Moves::new();
+            let mut turned = Transform::new();
             let steps = turns.iter().cloned();
-            let mut steps = steps.map(|(axis, degrees)| Step::about(axis, degrees));
+            let mut steps = steps.map(|(axis, degrees)| TransformStep::about(axis, degrees));
             let all = steps.all(|step| turned.push(step).is_ok());
             all && *turned.motion() == motion
         });

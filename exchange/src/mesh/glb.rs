@@ -3,7 +3,7 @@
 //! Single precision, about the middle of the part; the node above it takes that to its place, to
 //! metres and to y up, as the format has it.
 
-use super::single::{Single, rounded};
+use super::f32_points::{F32Points, rounded};
 use super::{Facets, MeshError};
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
@@ -27,7 +27,7 @@ const ROUGH: f32 = 0.6;
 /// The bytes of a file.
 pub fn write(facets: &Facets, name: &str, unit: Unit) -> Result<Vec<u8>, MeshError> {
     let centre = centre(&facets.points);
-    let single = Single::of(facets, &centre)?;
+    let single = F32Points::of(facets, &centre)?;
     let mut file = File::default();
     let faces = file.faces(&single);
     let mut primitives = vec![faces];
@@ -95,7 +95,7 @@ struct File {
 
 impl File {
     /// The triangles: a corner is there once for each of its normals.
-    fn faces(&mut self, single: &Single) -> Primitive {
+    fn faces(&mut self, single: &F32Points) -> Primitive {
         let mut place: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
         let (mut points, mut normals, mut indices) = (Vec::new(), Vec::new(), Vec::new());
         for facet in &single.facets {

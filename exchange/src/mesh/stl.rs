@@ -2,14 +2,14 @@
 //!
 //! It has no unit, and what touches in a point or along an edge is one again for its readers.
 
-use super::single::Single;
+use super::f32_points::F32Points;
 use super::{Facets, MeshError};
 use nalgebra::{Point3, Vector3};
 use stl_io::{Normal, Triangle, Vertex, write_stl};
 
 /// The bytes of a file.
 pub fn write(facets: &Facets) -> Result<Vec<u8>, MeshError> {
-    let single = Single::of(facets, &Point3::origin())?;
+    let single = F32Points::of(facets, &Point3::origin())?;
     if let Some(corner) = single.closed_gap(&facets.points) {
         return Err(facets.coarse(corner));
     }

@@ -1,7 +1,7 @@
 use super::*;
 use nalgebra::Vector3;
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_kernel::geometry::curve::Circle;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Sphere;
@@ -28,8 +28,8 @@ fn point<const D: usize>(spline: &Spline<D>, s: f64) -> [f64; D] {
     d[DEGREE]
 }
 
-fn window(surface: Surface) -> Window {
-    Window {
+fn window(surface: Surface) -> ParameterWindow {
+    ParameterWindow {
         surface,
         starts: [0.0; 2],
         reach: 10.0,
@@ -38,7 +38,7 @@ fn window(surface: Surface) -> Window {
 
 /// Both splines are within the accuracy of the surfaces, and of each other, all along.
 fn holds(curve: &Curve, range: [f64; 2], surfaces: &[Surface], pace: Pace, accuracy: f64) -> usize {
-    let windows: Vec<Window> = surfaces.iter().map(|s| window(*s)).collect();
+    let windows: Vec<ParameterWindow> = surfaces.iter().map(|s| window(*s)).collect();
     let follow = Follow {
         pace,
         curve,
@@ -46,7 +46,7 @@ fn holds(curve: &Curve, range: [f64; 2], surfaces: &[Surface], pace: Pace, accur
         windows: &windows,
         accuracy,
     };
-    let Course { space, on } = follow.course().unwrap();
+    let BezierSegments { space, on } = follow.course().unwrap();
     let (first, last) = (space.knots[0], space.knots[space.knots.len() - 1]);
     for k in 0..=1000 {
         let s = first + (last - first) * f64::from(k) / 1000.0;
@@ -89,7 +89,13 @@ fn edges_are_followed_on_the_faces_beside_them() {
         "A = TOR(RMAJ=3, RMIN=1) UN TOR(RMAJ=3, RMIN=0.8) AT (ROTX=70, MOVX=1)",
     ];
     for text in parts {
-        let part = read("part", text.as_bytes(), Format::Padl, &Options::default()).unwrap();
+        let part = read(
+            "part",
+            text.as_bytes(),
+            Format::Padl,
+            &ReadOptions::default(),
+        )
+        .unwrap();
         let brep = evaluate(&part.tree, &EvaluationOptions::default())
             .unwrap()
             .brep;

@@ -1,7 +1,7 @@
 //! The distances between edges of one face that share no vertex: where they are smaller than the points of
 //! other kernels are apart, these take the loops for crossing.
 
-use crate::seamed::{Edge, Seamed};
+use crate::two_manifold::{SeamedEdge, TwoManifold};
 use nalgebra::Point3;
 
 /// Into so many steps an edge is divided; between these the least distance is refined.
@@ -20,13 +20,13 @@ pub(super) struct NearEdges {
 
 /// An edge with a box around it.
 struct Boxed<'s> {
-    edge: &'s Edge<'s>,
+    edge: &'s SeamedEdge<'s>,
     min: Point3<f64>,
     max: Point3<f64>,
 }
 
 impl<'s> Boxed<'s> {
-    fn new(edge: &'s Edge<'s>, margin: f64) -> Self {
+    fn new(edge: &'s SeamedEdge<'s>, margin: f64) -> Self {
         let points: Vec<Point3<f64>> = (0..=STEPS).map(|k| at(edge, f64::from(k))).collect();
         let (mut min, mut max, mut step) = (points[0], points[0], 0.0f64);
         for pair in points.windows(2) {
@@ -55,7 +55,11 @@ impl<'s> Boxed<'s> {
 
 /// The first two edges of a face that share no vertex and are between `resolution` and `least` apart: what
 /// is nearer touches.
-pub(super) fn near_edges(seamed: &Seamed<'_>, resolution: f64, least: f64) -> Option<NearEdges> {
+pub(super) fn near_edges(
+    seamed: &TwoManifold<'_>,
+    resolution: f64,
+    least: f64,
+) -> Option<NearEdges> {
     seamed.faces.iter().find_map(|face| {
         let halves = face.loops.iter().flatten();
         let edges = halves.map(|half| &seamed.edges[half.0]);
@@ -75,13 +79,13 @@ pub(super) fn near_edges(seamed: &Seamed<'_>, resolution: f64, least: f64) -> Op
 }
 
 /// The point of an edge at a step, which may lie between two.
-fn at(edge: &Edge<'_>, step: f64) -> Point3<f64> {
+fn at(edge: &SeamedEdge<'_>, step: f64) -> Point3<f64> {
     let [lo, hi] = edge.range;
     edge.curve.point(lo + (hi - lo) * step / f64::from(STEPS))
 }
 
 /// How far a point is from an edge.
-fn distance(edge: &Edge<'_>, p: &Point3<f64>) -> f64 {
+fn distance(edge: &SeamedEdge<'_>, p: &Point3<f64>) -> f64 {
     let [lo, hi] = edge.range;
     let t = edge.curve.in_cycle(edge.curve.parameter(p), lo);
     let away = |t: f64| (edge.curve.point(t) - p).norm();
@@ -92,7 +96,7 @@ fn distance(edge: &Edge<'_>, p: &Point3<f64>) -> f64 {
 }
 
 /// Where one edge is nearest to another.
-fn nearest(a: &Edge<'_>, b: &Edge<'_>) -> NearEdges {
+fn nearest(a: &SeamedEdge<'_>, b: &SeamedEdge<'_>) -> NearEdges {
     let away = |step: f64| distance(b, &at(a, step));
     let steps: Vec<f64> = (0..=STEPS).map(|k| away(f64::from(k))).collect();
     let last = steps.len() - 1;

@@ -1,6 +1,6 @@
 //! The clear text of ISO 10303-21: numbered instances of entities.
 
-use super::{Options, Protocol};
+use super::{Protocol, StepOptions};
 use premio_text::escape;
 use std::fmt::Write as _;
 
@@ -31,7 +31,7 @@ impl Exchange {
     }
 
     /// The whole file.
-    pub fn finish(self, options: &Options) -> String {
+    pub fn finish(self, options: &StepOptions) -> String {
         let schema = match options.protocol {
             Protocol::Ap242 => {
                 "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"

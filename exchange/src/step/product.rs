@@ -1,7 +1,7 @@
 //! The product that the solids are the shape of, and the units.
 
 use super::part21::{Exchange, Id, List, Real};
-use super::{Options, Protocol};
+use super::{Protocol, StepOptions};
 use premio_kernel::unit::Unit;
 use premio_text::escape;
 
@@ -10,7 +10,7 @@ use premio_text::escape;
 const FINER: f64 = 1024.0;
 
 /// The context of the shape: three dimensions, its units, and how near points are that are one.
-pub(super) fn context(exchange: &mut Exchange, options: &Options) -> Id {
+pub(super) fn context(exchange: &mut Exchange, options: &StepOptions) -> Id {
     let length = length_unit(exchange, options.unit);
     let radian = exchange.add(format_args!(
         "(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))"
@@ -53,7 +53,7 @@ fn length_unit(exchange: &mut Exchange, unit: Unit) -> Id {
 }
 
 /// The product, with its solids as its shape.
-pub(super) fn product(exchange: &mut Exchange, options: &Options, context: Id, solids: &[Id]) {
+pub(super) fn product(exchange: &mut Exchange, options: &StepOptions, context: Id, solids: &[Id]) {
     let name = escape::step(&options.name);
     let (application, protocol, year) = match options.protocol {
         Protocol::Ap242 => (

@@ -2,9 +2,9 @@
 
 use super::StepError;
 use super::part21::{Exchange, Id, List, Real, Reals, Truth};
-use crate::parameters::Window;
-use crate::seamed::{Edge, Face, Seamed};
-use crate::spline::{Course, DEGREE, Follow, Pace, Spline};
+use crate::parameters::ParameterWindow;
+use crate::spline::{BezierSegments, DEGREE, Follow, Pace, Spline};
+use crate::two_manifold::{SeamedEdge, SeamedFace, TwoManifold};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::curve::Curve;
@@ -15,7 +15,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Writes the shape of a part.
 pub(super) struct Shape<'s, 'e> {
     exchange: &'e mut Exchange,
-    seamed: &'s Seamed<'s>,
+    seamed: &'s TwoManifold<'s>,
     accuracy: f64,
     /// Of the curves in the parameters of surfaces.
     parametric: Option<Id>,
@@ -35,7 +35,7 @@ struct Placed {
 }
 
 impl<'s, 'e> Shape<'s, 'e> {
-    pub fn new(exchange: &'e mut Exchange, seamed: &'s Seamed<'s>, accuracy: f64) -> Self {
+    pub fn new(exchange: &'e mut Exchange, seamed: &'s TwoManifold<'s>, accuracy: f64) -> Self {
         let mut sides = vec![Vec::new(); seamed.edges.len()];
         for (f, face) in seamed.faces.iter().enumerate() {
             for (edge, _) in face.loops.iter().flatten() {
@@ -162,7 +162,7 @@ impl<'s, 'e> Shape<'s, 'e> {
             .add(format_args!("AXIS2_PLACEMENT_3D('',{origin},{z},{x})"))
     }
 
-    fn surface(&mut self, face: &Face) -> Placed {
+    fn surface(&mut self, face: &SeamedFace) -> Placed {
         let mut level = 0.0;
         let surface = &face.window.surface;
         let mut frame = *surface.frame();
@@ -197,7 +197,7 @@ impl<'s, 'e> Shape<'s, 'e> {
     }
 
     /// The height of the highest vertex of a face above its cone's apex.
-    fn top(&self, face: &Face) -> f64 {
+    fn top(&self, face: &SeamedFace) -> f64 {
         let edges = face.loops.iter().flatten();
         let vertices = edges.flat_map(|(edge, _)| self.seamed.edges[*edge].ends);
         let frame = face.window.surface.frame();
@@ -205,7 +205,7 @@ impl<'s, 'e> Shape<'s, 'e> {
         heights.fold(0.0, f64::max)
     }
 
-    fn curve(&mut self, index: usize, edge: &Edge<'_>) -> Result<Id, StepError> {
+    fn curve(&mut self, index: usize, edge: &SeamedEdge<'_>) -> Result<Id, StepError> {
         let edge = &started_far_from_zero(edge);
         let bent = |&f: &usize| bends(edge, &self.seamed.faces[f].window);
         let is_bent = self.sides[index].iter().any(bent);
@@ -230,7 +230,7 @@ impl<'s, 'e> Shape<'s, 'e> {
             }
             Curve::Hyperbola(_) | Curve::Conic(_) | Curve::Quartic(_) | Curve::Toric(_) => {
                 let sides = self.sides[index].clone();
-                let Course { space, on } = self.course(edge, &sides, Pace::Length)?;
+                let BezierSegments { space, on } = self.course(edge, &sides, Pace::Length)?;
                 let space = self.spline(&space);
                 return Ok(self.surface_curve(space, &sides, on));
             }
@@ -240,7 +240,7 @@ impl<'s, 'e> Shape<'s, 'e> {
         if sides.is_empty() {
             return Ok(id);
         }
-        let Course { on, .. } = self.course(edge, &sides, Pace::Parameter)?;
+        let BezierSegments { on, .. } = self.course(edge, &sides, Pace::Parameter)?;
         Ok(self.surface_curve(id, &sides, on))
     }
 
@@ -255,8 +255,14 @@ impl<'s, 'e> Shape<'s, 'e> {
     }
 
     /// The splines that follow an edge, in space and on some of the faces beside it.
-    fn course(&self, edge: &Edge<'_>, sides: &[usize], pace: Pace) -> Result<Course, StepError> {
-        let windows: Vec<Window> = sides.iter().map(|&f| self.seamed.faces[f].window).collect();
+    fn course(
+        &self,
+        edge: &SeamedEdge<'_>,
+        sides: &[usize],
+        pace: Pace,
+    ) -> Result<BezierSegments, StepError> {
+        let windows: Vec<ParameterWindow> =
+            sides.iter().map(|&f| self.seamed.faces[f].window).collect();
         let follow = Follow {
             pace,
             curve: &edge.curve,
@@ -320,7 +326,7 @@ impl<'s, 'e> Shape<'s, 'e> {
 /// The same edge; on a circle or an ellipse, with the parameter at its start in the half of the
 /// period about its middle. Readers find the parameters of an edge's ends from its vertices, and
 /// rounding makes a whole period of zero.
-fn started_far_from_zero<'a>(edge: &Edge<'a>) -> Edge<'a> {
+fn started_far_from_zero<'a>(edge: &SeamedEdge<'a>) -> SeamedEdge<'a> {
     let mut edge = edge.clone();
     let frame = match edge.curve.to_mut() {
         Curve::Circle(c) => &mut c.frame,
@@ -344,7 +350,7 @@ fn half_angle(cone: &Cone) -> f64 {
 
 /// Whether an edge is more than a straight line, or a conic, in the parameters of a surface: whether
 /// both of them change, and one is an angle. A seam never is, whatever an angle does at a pole.
-fn bends(edge: &Edge<'_>, window: &Window) -> bool {
+fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
     if edge.source.is_none() || matches!(window.surface, Surface::Plane(_)) {
         return false;
     }
@@ -367,7 +373,7 @@ fn bends(edge: &Edge<'_>, window: &Window) -> bool {
 
 /// Whether an edge turns in much less than its length, about a semi-axis: its parameter says little
 /// of where on it a point is.
-fn is_sharp(edge: &Edge<'_>, semi_axis: f64) -> bool {
+fn is_sharp(edge: &SeamedEdge<'_>, semi_axis: f64) -> bool {
     let [from, to] = edge.range.map(|t| edge.curve.point(t));
     semi_axis < SHARP * (to - from).norm()
 }

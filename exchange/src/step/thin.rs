@@ -1,10 +1,10 @@
 //! Edges, faces and walls that are too thin for other kernels, whose vertices and edges have a width.
 
 use super::{StepError, clearance};
-use crate::seamed::{Edge, Seamed, short};
+use crate::two_manifold::{SeamedEdge, TwoManifold, short};
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::mass::Measures;
+use premio_kernel::brep::face_integrals::FaceIntegrals;
 use premio_kernel::brep::topology::ShellId;
 use premio_kernel::unit::Unit;
 use std::fmt;
@@ -49,7 +49,7 @@ pub(super) fn apart(unit: Unit) -> f64 {
 /// That every edge is longer than that, every face wider, and that edges of a face touch or are well apart.
 pub(super) fn check(
     brep: &Brep,
-    seamed: &Seamed<'_>,
+    seamed: &TwoManifold<'_>,
     resolution: f64,
     least: f64,
 ) -> Result<(), StepError> {
@@ -57,8 +57,8 @@ pub(super) fn check(
     if let Some(near) = clearance::near_edges(seamed, resolution, crossing) {
         return Err(thin(Thin::Gap, near.place, near.distance, crossing));
     }
-    let areas = Measures::of(brep).areas(brep);
-    let length = |edge: &Edge<'_>| short::length(&edge.curve, edge.range);
+    let areas = FaceIntegrals::of(brep).areas(brep);
+    let length = |edge: &SeamedEdge<'_>| short::length(&edge.curve, edge.range);
     let lengths: Vec<f64> = seamed.edges.iter().map(length).collect();
     let start = |edge: usize| seamed.points[seamed.edges[edge].ends[0]];
     for face in &seamed.faces {
@@ -91,7 +91,7 @@ fn thin(what: Thin, place: Point3<f64>, size: f64, least: f64) -> StepError {
 /// That no shell has its two sides as near.
 pub(super) fn check_shells(brep: &Brep, least: f64) -> Result<(), StepError> {
     let topology = &brep.topology;
-    let measures = Measures::of(brep);
+    let measures = FaceIntegrals::of(brep);
     let areas = measures.areas(brep);
     for (shell, id) in topology.shells.iter().zip(0..) {
         let area: f64 = shell.faces.iter().map(|f| areas[f.index()].area).sum();

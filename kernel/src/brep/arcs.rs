@@ -1,11 +1,11 @@
 //! The arcs that bound faces of one surface, with their boxes, to be asked which a walk may meet.
 
-use super::walk::{DirectedArc, Walk};
-use crate::geometry::bounds::{Box3, bounds, pieces};
+use super::surface_path::{DirectedArc, SurfacePath};
+use crate::geometry::bounds::{Aabb, bounds, pieces};
 use crate::geometry::curve::Curve;
 use crate::geometry::vector::{Length, rounded};
-use crate::number::precision::Number;
-use crate::number::sign::Sign;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
 use nalgebra::Point3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
@@ -17,28 +17,28 @@ const FEW: usize = 12;
 
 /// A smooth piece of an arc without a closed form.
 #[derive(Clone, Copy, Debug)]
-struct Part<N: Number = f64> {
+struct Part<N: Float = f64> {
     range: [N; 2],
-    bounds: Box3,
+    bounds: Aabb,
 }
 
 /// Directed arcs with their boxes.
 #[derive(Debug)]
-pub(super) struct Arcs<'a, N: Number = f64> {
+pub(super) struct Arcs<'a, N: Float = f64> {
     /// The arcs.
     pub all: Vec<DirectedArc<'a, N>>,
     /// Their boxes, in the same order, grown by the resolution.
-    pub boxes: Vec<Box3>,
+    pub boxes: Vec<Aabb>,
     parts: Vec<Vec<Part<N>>>,
     tree: Option<RTree<ArcBox>>,
 }
 
-struct Along<'w, N: Number = f64> {
-    walk: &'w Walk<N>,
+struct Along<'w, N: Float = f64> {
+    walk: &'w SurfacePath<N>,
     band: N,
 }
 
-impl<N: Number> SelectionFunction<ArcBox> for Along<'_, N> {
+impl<N: Float> SelectionFunction<ArcBox> for Along<'_, N> {
     fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
         self.walk.may_meet(&e.lower(), &e.upper(), self.band)
     }
@@ -50,11 +50,11 @@ impl<N: Number> SelectionFunction<ArcBox> for Along<'_, N> {
 
 /// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
 /// closed form.
-fn parts<N: Number>(arc: &DirectedArc<'_, N>, band: N) -> Vec<Part<N>> {
+fn parts<N: Float>(arc: &DirectedArc<'_, N>, band: N) -> Vec<Part<N>> {
     let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
         return Vec::new();
     };
-    let grown = |(range, b): ([N; 2], Box3)| Part {
+    let grown = |(range, b): ([N; 2], Aabb)| Part {
         range,
         bounds: b.grown(band),
     };
@@ -62,17 +62,17 @@ fn parts<N: Number>(arc: &DirectedArc<'_, N>, band: N) -> Vec<Part<N>> {
     all.into_iter().map(grown).collect()
 }
 
-impl<'a, N: Number> Arcs<'a, N> {
+impl<'a, N: Float> Arcs<'a, N> {
     /// The arcs with their boxes; `band` is the resolution.
     pub fn new(all: Vec<DirectedArc<'a, N>>, band: N) -> Self {
         let parts: Vec<Vec<Part<N>>> = all.iter().map(|a| parts(a, band)).collect();
         let hull = |(a, parts): (&DirectedArc<'_, N>, &Vec<Part<N>>)| match parts.as_slice() {
             [] => bounds(a.curve, a.range).grown(band),
-            parts => parts.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.bounds)),
+            parts => parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds)),
         };
-        let boxes: Vec<Box3> = all.iter().zip(&parts).map(hull).collect();
+        let boxes: Vec<Aabb> = all.iter().zip(&parts).map(hull).collect();
         let tree = (all.len() > FEW).then(|| {
-            let leaf = |(i, b): (usize, &Box3)| {
+            let leaf = |(i, b): (usize, &Aabb)| {
                 GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
             };
             RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect())
@@ -118,7 +118,7 @@ impl<'a, N: Number> Arcs<'a, N> {
     }
 
     /// Calls `meet` for every arc that a walk may meet, with the ranges of it in which it may.
-    pub fn met_by(&self, walk: &Walk<N>, band: N, meet: &mut impl FnMut(usize, &[[N; 2]])) {
+    pub fn met_by(&self, walk: &SurfacePath<N>, band: N, meet: &mut impl FnMut(usize, &[[N; 2]])) {
         let mut ask = |i: usize| meet(i, &self.ranges(walk, i, band));
         match &self.tree {
             Some(tree) => tree
@@ -131,7 +131,7 @@ impl<'a, N: Number> Arcs<'a, N> {
     }
 
     /// The ranges of an arc that a walk may meet: all of it where a plane meets it in a closed form.
-    pub fn ranges(&self, walk: &Walk<N>, i: usize, band: N) -> Vec<[N; 2]> {
+    pub fn ranges(&self, walk: &SurfacePath<N>, i: usize, band: N) -> Vec<[N; 2]> {
         let parts = &self.parts[i];
         if parts.is_empty() {
             return vec![self.all[i].range];

@@ -4,27 +4,27 @@
 //! the face stays to the left. Faces: loops of one surface that bound one region (`region`).
 //! Shells and solids: `shells`. Where all these touch: `touches`.
 
+use super::non_manifold_points::touches;
 use super::region::{RegionError, regions};
 use super::shells::{bind_shells, fans};
+use super::surface_path::DirectedArc;
 use super::topology::{
     Coedge, CoedgeId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Sense, ShellId, Topology, VertexId,
 };
-use super::touches::touches;
-use super::walk::DirectedArc;
-use super::{Arc, Brep, Geometry, Patch};
+use super::{Brep, BrepGeometry, EdgeGeometry, FaceGeometry};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::{Length, rounded};
 use crate::number::bisection::bisect;
-use crate::number::precision::Number;
-use crate::number::sign::{Judge, Sign};
+use crate::number::float::Float;
+use crate::number::predicates::{Compare, Predicates};
 use nalgebra::Point3;
 use std::collections::{BTreeMap, HashMap};
 
 /// A face at an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wing {
+pub struct FaceUse {
     /// The index of the surface.
     pub surface: usize,
     /// Whether the outward normal is the surface's own.
@@ -35,7 +35,7 @@ pub struct Wing {
 
 /// An edge with the faces around it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RawEdge<N: Number = f64> {
+pub struct EdgeInput<N: Float = f64> {
     /// The index of the curve.
     pub curve: usize,
     /// The range of the parameter, increasing.
@@ -43,7 +43,7 @@ pub struct RawEdge<N: Number = f64> {
     /// The points (by index) at both ends; none for a closed edge.
     pub ends: Option<[usize; 2]>,
     /// Counterclockwise about the curve's direction; pairs enclose material.
-    pub wings: Vec<Wing>,
+    pub wings: Vec<FaceUse>,
     /// Whether two faces meet smoothly.
     pub smooth: bool,
     /// The points (by index) that it runs through.
@@ -52,7 +52,7 @@ pub struct RawEdge<N: Number = f64> {
 
 /// A point where curves end, cross or touch a surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RawPoint<N: Number = f64> {
+pub struct VertexInput<N: Float = f64> {
     /// The place.
     pub place: Point3<N>,
     /// The indices of all surfaces through it.
@@ -64,15 +64,15 @@ pub struct RawPoint<N: Number = f64> {
 
 /// All edges of a boundary, and the closed surfaces that are faces without an edge.
 #[derive(Clone, Debug, Default)]
-pub struct RawBoundary<N: Number = f64> {
+pub struct BoundaryInput<N: Float = f64> {
     /// The surfaces.
     pub surfaces: Vec<Surface<N>>,
     /// The curves.
     pub curves: Vec<Curve<N>>,
     /// The points.
-    pub points: Vec<RawPoint<N>>,
+    pub points: Vec<VertexInput<N>>,
     /// The edges.
-    pub edges: Vec<RawEdge<N>>,
+    pub edges: Vec<EdgeInput<N>>,
     /// Whole surfaces, with the sense of their outward normal.
     pub whole: Vec<(usize, Sense)>,
 }
@@ -140,7 +140,7 @@ const SPHERES: [Around; 7] = {
 #[derive(Clone, Copy, Debug)]
 struct Half {
     edge: usize,
-    wing: Wing,
+    wing: FaceUse,
 }
 
 type Group = (usize, Sense);
@@ -148,9 +148,9 @@ type Group = (usize, Sense);
 /// An edge, and whether it is its first end that is meant.
 type End = (usize, bool);
 
-struct Assembler<'a, N: Number = f64> {
-    raw: &'a RawBoundary<N>,
-    judge: &'a Judge,
+struct Assembler<'a, N: Float = f64> {
+    raw: &'a BoundaryInput<N>,
+    judge: &'a Predicates,
     halves: Vec<Half>,
     /// Where the halves of each edge begin.
     first: Vec<usize>,
@@ -158,7 +158,10 @@ struct Assembler<'a, N: Number = f64> {
 }
 
 /// The boundary representation with the given edges.
-pub fn assemble<N: Number>(raw: RawBoundary<N>, judge: &Judge) -> Result<Brep<N>, AssemblyError> {
+pub fn assemble<N: Float>(
+    raw: BoundaryInput<N>,
+    judge: &Predicates,
+) -> Result<Brep<N>, AssemblyError> {
     let mut assembler = Assembler::new(&raw, judge);
     assembler.link()?;
     let rings = assembler.rings();
@@ -190,8 +193,8 @@ struct Region {
     euler: i32,
 }
 
-impl<'a, N: Number> Assembler<'a, N> {
-    fn new(raw: &'a RawBoundary<N>, judge: &'a Judge) -> Self {
+impl<'a, N: Float> Assembler<'a, N> {
+    fn new(raw: &'a BoundaryInput<N>, judge: &'a Predicates) -> Self {
         let mut halves = Vec::new();
         let mut first = Vec::new();
         for (edge, e) in raw.edges.iter().enumerate() {
@@ -441,7 +444,7 @@ impl<'a, N: Number> Assembler<'a, N> {
     fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep<N>, Names) {
         let raw = self.raw;
         let mut topology = Topology::default();
-        let mut geometry = Geometry::default();
+        let mut geometry = BrepGeometry::default();
         let mut vertex_of: HashMap<usize, VertexId> = HashMap::new();
         let mut curve_of: HashMap<usize, usize> = HashMap::new();
         let mut surface_of: HashMap<usize, usize> = HashMap::new();
@@ -457,7 +460,7 @@ impl<'a, N: Number> Assembler<'a, N> {
                 geometry.curves.push(raw.curves[e.curve].clone());
                 geometry.curves.len() - 1
             });
-            geometry.arcs.push(Arc {
+            geometry.arcs.push(EdgeGeometry {
                 curve,
                 range: e.range,
             });
@@ -483,7 +486,7 @@ impl<'a, N: Number> Assembler<'a, N> {
                 geometry.surfaces.push(raw.surfaces[region.group.0]);
                 geometry.surfaces.len() - 1
             });
-            geometry.patches.push(Patch {
+            geometry.patches.push(FaceGeometry {
                 surface,
                 sense: region.group.1,
             });
@@ -520,7 +523,7 @@ impl<'a, N: Number> Assembler<'a, N> {
 
 /// Ends by their angles, in order from the widest gap on, in bundles that are parted by more than
 /// `least`.
-fn bundled<N: Number>(mut angles: Vec<(N, End)>, least: N) -> Vec<Vec<End>> {
+fn bundled<N: Float>(mut angles: Vec<(N, End)>, least: N) -> Vec<Vec<End>> {
     angles.sort_by(|a, b| a.0.total_cmp(&b.0));
     let n = angles.len();
     let gap = |i: usize| match i {

@@ -1,12 +1,12 @@
 //! The checker: one named violation for each rule that a boundary must keep.
 
 use super::Brep;
-use super::mass::{Covered, Measures};
+use super::cycle_basis;
+use super::face_integrals::{FaceArea, FaceIntegrals};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
-use super::welch;
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::sign::Sign;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
 use nalgebra::Point3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -93,7 +93,7 @@ const PLAY: f64 = 8.0;
 
 /// The farthest that an edge lies from a vertex at its end or from a face, where that is more than
 /// the resolution `band` accounts for: the place on the edge, and the distance.
-pub fn worst_gap<N: Number>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
+pub fn worst_gap<N: Float>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
     let t = &brep.topology;
     let gaps = t.edge_ids().flat_map(|id| {
         let ends = gaps_at_ends(brep, id).map(|(_, place, distance)| (place, distance));
@@ -105,12 +105,12 @@ pub fn worst_gap<N: Number>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
 }
 
 /// Whether a distance is what making one of what coincides may leave.
-fn is_accounted<N: Number>(distance: N, band: N) -> bool {
+fn is_accounted<N: Float>(distance: N, band: N) -> bool {
     distance.is_within(N::of(PLAY) * band)
 }
 
 /// The ends of an edge: the vertex, the place on the edge, and how far they are apart.
-pub(super) fn gaps_at_ends<N: Number>(
+pub(super) fn gaps_at_ends<N: Float>(
     brep: &Brep<N>,
     id: EdgeId,
 ) -> impl Iterator<Item = (VertexId, Point3<N>, N)> {
@@ -123,7 +123,7 @@ pub(super) fn gaps_at_ends<N: Number>(
 }
 
 /// Where an edge lies farthest off a face's surface, and how far.
-fn gap_from_face<N: Number>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3<N>, N) {
+fn gap_from_face<N: Float>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3<N>, N) {
     let ([lo, hi], curve) = (brep.range(id), brep.curve(id));
     let gaps = (0..=PLACES).map(|k| {
         let p = curve.point(lo + (hi - lo) * N::whole(k) / N::whole(PLACES));
@@ -137,7 +137,7 @@ fn gap_from_face<N: Number>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3
 const PLACES: u32 = 8;
 
 /// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
-pub fn check<N: Number>(brep: &Brep<N>, measures: &Measures<N>, band: N) -> Vec<Violation> {
+pub fn check<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>, band: N) -> Vec<Violation> {
     let mut found = Vec::new();
     check_loops(brep, &mut found);
     check_edges(brep, band, &mut found);
@@ -149,8 +149,8 @@ pub fn check<N: Number>(brep: &Brep<N>, measures: &Measures<N>, band: N) -> Vec<
 }
 
 /// A face that is less than nothing has a loop that is taken for what it is not.
-fn check_areas<N: Number>(brep: &Brep<N>, measures: &Measures<N>, found: &mut Vec<Violation>) {
-    for (i, Covered { area, noise }) in measures.areas(brep).into_iter().enumerate() {
+fn check_areas<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>, found: &mut Vec<Violation>) {
+    for (i, FaceArea { area, noise }) in measures.areas(brep).into_iter().enumerate() {
         // A sliver's may be rounding.
         if area.is_nan() || area.is_at_most(-noise) {
             found.push(Violation::Area {
@@ -161,7 +161,7 @@ fn check_areas<N: Number>(brep: &Brep<N>, measures: &Measures<N>, found: &mut Ve
     }
 }
 
-fn check_loops<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
+fn check_loops<N: Float>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     let t = &brep.topology;
     for (i, ring) in t.loops.iter().enumerate() {
         let id = LoopId(i as u32);
@@ -183,7 +183,7 @@ fn check_loops<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
 }
 
 /// The loops of a face against the cycles of its boundary.
-fn check_cycles<N: Number>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Violation>) {
+fn check_cycles<N: Float>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Violation>) {
     let t = &brep.topology;
     let mut number: BTreeMap<EdgeId, usize> = BTreeMap::new();
     let mut links = Vec::new();
@@ -209,13 +209,13 @@ fn check_cycles<N: Number>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Vio
                 edges.insert(n);
             }
         }
-        if !welch::is_sum_of_cycles(&links, &edges) {
+        if !cycle_basis::is_sum_of_cycles(&links, &edges) {
             found.push(Violation::LoopNoCycle { ring: l });
         }
     }
 }
 
-fn check_edges<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
+fn check_edges<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
     let t = &brep.topology;
     for id in t.edge_ids() {
         let edge = t.edge(id);
@@ -250,7 +250,7 @@ fn check_edges<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
     }
 }
 
-fn check_touches<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
+fn check_touches<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
     let touches = brep.topology.touches.iter().zip(&brep.geometry.touches);
     for (i, (touch, place)) in touches.enumerate() {
         let vertices = touch.vertex.iter().map(|&v| brep.point(v));
@@ -273,7 +273,7 @@ fn check_touches<N: Number>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>)
     }
 }
 
-fn check_genera<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
+fn check_genera<N: Float>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     for (i, shell) in brep.topology.shells.iter().enumerate() {
         if shell.genus < 0 || shell.odd {
             let euler = 2 - 2 * shell.genus - i32::from(shell.odd);
@@ -283,7 +283,7 @@ fn check_genera<N: Number>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     }
 }
 
-fn check_shells<N: Number>(brep: &Brep<N>, measures: &Measures<N>, found: &mut Vec<Violation>) {
+fn check_shells<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>, found: &mut Vec<Violation>) {
     for (i, shell) in brep.topology.shells.iter().enumerate() {
         let id = ShellId(i as u32);
         let enclosed = measures.enclosed(brep, id);

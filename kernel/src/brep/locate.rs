@@ -9,21 +9,21 @@ mod interior;
 use super::Brep;
 use super::arcs::Arcs;
 use super::check::gaps_at_ends;
+use super::surface_path::{CrossingSense, DirectedArc, SurfacePath};
 use super::topology::{FaceId, Sense};
-use super::walk::{DirectedArc, Passage, Walk};
-use crate::geometry::bounds::Box3;
+use crate::geometry::bounds::Aabb;
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Sphere, Surface, Torus};
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::sign::Sign;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
 use nalgebra::Point3;
 use std::sync::OnceLock;
 
 /// Where a point of a surface lies with respect to a face of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum PointLocation {
     /// Within the face.
     Inside,
     /// On the face's boundary, within the resolution.
@@ -39,7 +39,7 @@ const SPREAD: f64 = 0.618_033_988_749_894_9;
 
 /// Answers for one face where points lie.
 #[derive(Debug)]
-pub struct FaceLocator<'a, N: Number = f64> {
+pub struct FaceLocator<'a, N: Float = f64> {
     surface: &'a Surface<N>,
     side: Sense,
     arcs: Arcs<'a, N>,
@@ -53,12 +53,12 @@ const OFF: f64 = 4096.0;
 
 /// The outcome of one walk.
 enum Outcome {
-    Found(Place),
+    Found(PointLocation),
     Nothing,
     Unclear,
 }
 
-impl<'a, N: Number> FaceLocator<'a, N> {
+impl<'a, N: Float> FaceLocator<'a, N> {
     /// A locator for the region of `surface` that `arcs` bound; `side` tells whether the outward
     /// normal of the face is the surface's own, `band` is the resolution.
     pub fn new(
@@ -68,7 +68,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
         band: N,
     ) -> Self {
         let arcs = Arcs::new(arcs, band);
-        let hull = arcs.boxes.iter().fold(Box3::EMPTY, |a, b| a.hull(b));
+        let hull = arcs.boxes.iter().fold(Aabb::EMPTY, |a, b| a.hull(b));
         let spacing = N::of(2.0 * hull.diagonal()) / (N::of(arcs.all.len() as f64)).sqrt();
         Self {
             surface,
@@ -102,35 +102,35 @@ impl<'a, N: Number> FaceLocator<'a, N> {
     }
 
     /// The boxes of the arcs, in the same order, grown by the resolution.
-    pub fn boxes(&self) -> &[Box3] {
+    pub fn boxes(&self) -> &[Aabb] {
         &self.arcs.boxes
     }
 
     /// Where `p`, a point of the surface, lies.
-    pub fn place(&self, p: &Point3<N>) -> Place {
+    pub fn place(&self, p: &Point3<N>) -> PointLocation {
         if self.arcs.all.is_empty() {
-            return Place::Inside;
+            return PointLocation::Inside;
         }
         if self.on_boundary(p) {
-            return Place::On;
+            return PointLocation::On;
         }
         self.place_off_boundary(p)
     }
 
     /// Where `p` lies, which is known not to be on the boundary.
-    pub fn place_off_boundary(&self, p: &Point3<N>) -> Place {
+    pub fn place_off_boundary(&self, p: &Point3<N>) -> PointLocation {
         if self.arcs.all.is_empty() {
-            return Place::Inside;
+            return PointLocation::Inside;
         }
         for k in 0..WALKS {
             match self.attempt(p, k) {
                 Outcome::Found(place) => return place,
                 // Only walks without end, and closed ones through an arc, end up here.
-                Outcome::Nothing => return Place::Outside,
+                Outcome::Nothing => return PointLocation::Outside,
                 Outcome::Unclear => {}
             }
         }
-        Place::On
+        PointLocation::On
     }
 
     /// Whether `p`, a point of the surface, is on the boundary of the face, within the resolution.
@@ -164,7 +164,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
             Surface::Plane(s) => {
                 let (sin, cos) = turn.sin_cos();
                 let direction = s.frame.x * cos + s.frame.y * sin;
-                self.reach(&Walk::straight(s, p, direction))
+                self.reach(&SurfacePath::straight(s, p, direction))
             }
             Surface::Cylinder(_) | Surface::Cone(_) => self.ruled(p, k, turn),
             Surface::Sphere(s) => self.spherical(s, p, k, turn),
@@ -177,7 +177,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
     fn spherical(&self, sphere: &Sphere<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         let (centre, target) = (&sphere.frame.origin, self.target(k / 2));
         if k.is_multiple_of(2) {
-            return match Walk::great_circle(centre, p, &target) {
+            return match SurfacePath::great_circle(centre, p, &target) {
                 Some(walk) => self.take(&walk),
                 None => Outcome::Unclear,
             };
@@ -185,7 +185,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
         let tangent = Frame::about(*p, (p - centre).unit());
         let (sin, cos) = turn.sin_cos();
         let beside = tangent.point(sphere.radius * cos, sphere.radius * sin, N::ZERO);
-        let Some(aside) = Walk::great_circle(centre, p, &beside) else {
+        let Some(aside) = SurfacePath::great_circle(centre, p, &beside) else {
             return Outcome::Unclear;
         };
         let leg = aside.upto(sphere.radius);
@@ -194,7 +194,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
             decided => return decided,
         }
         let corner = leg.point(sphere.radius);
-        match Walk::great_circle(centre, &corner, &target).map(|walk| self.take(&walk)) {
+        match SurfacePath::great_circle(centre, &corner, &target).map(|walk| self.take(&walk)) {
             // It passes the target: nothing there means that it was not seen.
             None | Some(Outcome::Nothing) => Outcome::Unclear,
             Some(decided) => decided,
@@ -208,23 +208,23 @@ impl<'a, N: Number> FaceLocator<'a, N> {
         } else {
             Sense::Against
         };
-        let direct = |walk: Option<Walk<N>>| match walk {
+        let direct = |walk: Option<SurfacePath<N>>| match walk {
             Some(walk) => self.take(&walk),
             None => Outcome::Unclear,
         };
         if k < 2 {
-            return direct(Walk::ruling_through(self.surface, p, sense));
+            return direct(SurfacePath::ruling_through(self.surface, p, sense));
         }
         // At the apex the parallel is a point and any ruling starts there.
-        let Some(walk) = Walk::parallel(self.surface, p, sense, self.band) else {
-            return direct(Walk::ruling(self.surface, p, turn, sense));
+        let Some(walk) = SurfacePath::parallel(self.surface, p, sense, self.band) else {
+            return direct(SurfacePath::ruling(self.surface, p, turn, sense));
         };
         let radius = self.surface.frame().coordinates(p).xy().length();
         let leg = walk.upto(turn * radius);
         match self.take(&leg) {
             Outcome::Nothing => {
                 let corner = leg.point(turn * radius);
-                direct(Walk::ruling_through(self.surface, &corner, sense))
+                direct(SurfacePath::ruling_through(self.surface, &corner, sense))
             }
             decided => decided,
         }
@@ -233,7 +233,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
     /// Around the tube, or along both circles of a torus to a point of the boundary.
     fn toric(&self, torus: &Torus<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         if k == 0 {
-            match self.take(&Walk::tube(torus, p, Sense::Along)) {
+            match self.take(&SurfacePath::tube(torus, p, Sense::Along)) {
                 Outcome::Nothing => {}
                 decided => return decided,
             }
@@ -260,10 +260,11 @@ impl<'a, N: Number> FaceLocator<'a, N> {
         p: &Point3<N>,
         k: usize,
         turn: N,
-    ) -> Option<Vec<Walk<N>>> {
+    ) -> Option<Vec<SurfacePath<N>>> {
         let target = self.target(k / 2);
-        let tube = |from: &Point3<N>| Some(Walk::tube(torus, from, Sense::Along));
-        let round = |from: &Point3<N>| Walk::parallel(self.surface, from, Sense::Along, self.band);
+        let tube = |from: &Point3<N>| Some(SurfacePath::tube(torus, from, Sense::Along));
+        let round =
+            |from: &Point3<N>| SurfacePath::parallel(self.surface, from, Sense::Along, self.band);
         let tube_last = k.is_multiple_of(2);
         let mut way = Vec::with_capacity(3);
         let mut from = *p;
@@ -305,7 +306,7 @@ impl<'a, N: Number> FaceLocator<'a, N> {
 
     /// A walk without end, in growing lengths where there are many arcs: mostly the nearest
     /// crossing is near.
-    fn reach(&self, walk: &Walk<N>) -> Outcome {
+    fn reach(&self, walk: &SurfacePath<N>) -> Outcome {
         let mut length = self.spacing;
         if self.arcs.are_many() {
             for _ in 0..3 {
@@ -318,11 +319,11 @@ impl<'a, N: Number> FaceLocator<'a, N> {
         self.take(walk)
     }
 
-    fn take(&self, walk: &Walk<N>) -> Outcome {
+    fn take(&self, walk: &SurfacePath<N>) -> Outcome {
         let mut first = First::default();
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
-            let mut note = |at: N, _: N, passage: Passage| {
+            let mut note = |at: N, _: N, passage: CrossingSense| {
                 first.note(Met {
                     at,
                     passage,
@@ -338,19 +339,19 @@ impl<'a, N: Number> FaceLocator<'a, N> {
 
 /// Where a walk meets an arc.
 #[derive(Clone, Copy, Debug)]
-struct Met<N: Number = f64> {
+struct Met<N: Float = f64> {
     at: N,
-    passage: Passage,
+    passage: CrossingSense,
     arc: usize,
 }
 
 /// The first three meetings of a walk, in order.
 #[derive(Clone, Copy, Debug, Default)]
-struct First<N: Number = f64> {
+struct First<N: Float = f64> {
     met: [Option<Met<N>>; 3],
 }
 
-impl<N: Number> First<N> {
+impl<N: Float> First<N> {
     fn note(&mut self, mut met: Met<N>) {
         for slot in &mut self.met {
             match slot {
@@ -372,15 +373,17 @@ impl<N: Number> First<N> {
             |other: Option<Met<N>>| other.filter(|m| (m.at - first.at).is_at_most(band));
         match (with_first(second), with_first(third)) {
             (None, _) => match first.passage {
-                Passage::Entering => Outcome::Found(Place::Outside),
-                Passage::Leaving => Outcome::Found(Place::Inside),
-                Passage::Unclear => Outcome::Unclear,
+                CrossingSense::Entering => Outcome::Found(PointLocation::Outside),
+                CrossingSense::Leaving => Outcome::Found(PointLocation::Inside),
+                CrossingSense::Unclear => Outcome::Unclear,
             },
             // An edge with the face on both of its sides.
             (Some(second), None) if one_edge(first.arc, second.arc) => {
                 match (first.passage, second.passage) {
-                    (Passage::Entering, Passage::Leaving)
-                    | (Passage::Leaving, Passage::Entering) => Outcome::Found(Place::Inside),
+                    (CrossingSense::Entering, CrossingSense::Leaving)
+                    | (CrossingSense::Leaving, CrossingSense::Entering) => {
+                        Outcome::Found(PointLocation::Inside)
+                    }
                     _ => Outcome::Unclear,
                 }
             }
@@ -392,13 +395,13 @@ impl<N: Number> First<N> {
 /// Answers for all faces of a boundary representation; each face's index is built when it is first
 /// asked for.
 #[derive(Debug)]
-pub struct Locator<'a, N: Number = f64> {
+pub struct Locator<'a, N: Float = f64> {
     brep: &'a Brep<N>,
     faces: Vec<OnceLock<FaceLocator<'a, N>>>,
     band: N,
 }
 
-impl<'a, N: Number> Locator<'a, N> {
+impl<'a, N: Float> Locator<'a, N> {
     /// A locator for all faces of `brep`; `band` is the resolution.
     pub fn new(brep: &'a Brep<N>, band: N) -> Self {
         let faces = brep.topology.faces.iter().map(|_| OnceLock::new());
@@ -415,7 +418,7 @@ impl<'a, N: Number> Locator<'a, N> {
     }
 
     /// Where `p`, a point of the face's surface, lies with respect to the face.
-    pub fn place(&self, face: FaceId, p: &Point3<N>) -> Place {
+    pub fn place(&self, face: FaceId, p: &Point3<N>) -> PointLocation {
         self.face(face).place(p)
     }
 }

@@ -7,28 +7,28 @@
 
 mod arcs;
 pub mod assemble;
+pub mod bounding_box;
 pub mod check;
-pub mod extent;
-pub mod inside;
+pub mod cycle_basis;
+pub mod face_integrals;
 pub mod locate;
-pub mod mass;
+mod non_manifold_points;
+pub mod point_in_solid;
 mod region;
 mod shells;
 pub mod signature;
+pub mod surface_path;
 pub mod topology;
-mod touches;
-pub mod walk;
-pub mod welch;
 
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;
-use crate::number::precision::Number;
+use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 use topology::{EdgeId, FaceId, Sense, Topology, VertexId};
 
 /// The geometry that hangs on the entities: indexed by their ids.
 #[derive(Clone, Debug, Default)]
-pub struct Geometry<N: Number = f64> {
+pub struct BrepGeometry<N: Float = f64> {
     /// The distinct carriers that have a face.
     pub surfaces: Vec<Surface<N>>,
     /// The distinct curves that have an edge.
@@ -37,17 +37,17 @@ pub struct Geometry<N: Number = f64> {
     pub points: Vec<Point3<N>>,
     /// Each edge's curve (an index into `curves`) and range of its parameter, by [`EdgeId`]; a
     /// closed edge runs over one period, and a range may pass the end of a period.
-    pub arcs: Vec<Arc<N>>,
+    pub arcs: Vec<EdgeGeometry<N>>,
     /// Each face's surface (an index into `surfaces`) and whether the face's outward normal is the
     /// surface's own, by [`FaceId`].
-    pub patches: Vec<Patch>,
+    pub patches: Vec<FaceGeometry>,
     /// The place of each touch, by [`TouchId`](topology::TouchId).
     pub touches: Vec<Point3<N>>,
 }
 
 /// The geometry of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc<N: Number = f64> {
+pub struct EdgeGeometry<N: Float = f64> {
     /// The index of the curve.
     pub curve: usize,
     /// The parameter from the edge's first end to its last, increasing.
@@ -56,7 +56,7 @@ pub struct Arc<N: Number = f64> {
 
 /// The geometry of a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patch {
+pub struct FaceGeometry {
     /// The index of the surface.
     pub surface: usize,
     /// `Along` where the outward normal of the solid is the surface's normal.
@@ -65,14 +65,14 @@ pub struct Patch {
 
 /// A boundary representation.
 #[derive(Clone, Debug, Default)]
-pub struct Brep<N: Number = f64> {
+pub struct Brep<N: Float = f64> {
     /// Who meets whom.
     pub topology: Topology,
     /// Where.
-    pub geometry: Geometry<N>,
+    pub geometry: BrepGeometry<N>,
 }
 
-impl<N: Number> Brep<N> {
+impl<N: Float> Brep<N> {
     /// The curve of an edge.
     pub fn curve(&self, edge: EdgeId) -> &Curve<N> {
         &self.geometry.curves[self.geometry.arcs[edge.0 as usize].curve]
@@ -110,13 +110,13 @@ impl<N: Number> Brep<N> {
     /// The same in doubles: what lies closer together than these tell has one place.
     pub fn in_doubles(&self) -> Brep {
         let g = &self.geometry;
-        let arc = |a: &Arc<N>| Arc {
+        let arc = |a: &EdgeGeometry<N>| EdgeGeometry {
             curve: a.curve,
             range: a.range.map(N::rounded),
         };
         Brep {
             topology: self.topology.clone(),
-            geometry: Geometry {
+            geometry: BrepGeometry {
                 surfaces: g.surfaces.iter().map(Surface::in_doubles).collect(),
                 curves: g.curves.iter().map(Curve::in_doubles).collect(),
                 points: g.points.iter().map(|p| p.map(N::rounded)).collect(),

@@ -10,13 +10,13 @@
 mod torus;
 
 use super::arcs::Arcs;
+use super::surface_path::{CrossingSense, DirectedArc, PathCrossing, SurfacePath};
 use super::topology::Sense;
-use super::walk::{Crossing, DirectedArc, Passage, Walk};
 use crate::geometry::frame::perpendicular;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::{Length, rounded};
-use crate::number::precision::Number;
-use crate::number::sign::Sign;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use torus::Turns;
 
@@ -47,14 +47,14 @@ const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
 const ATTEMPTS: usize = 4;
 
 /// A point of a loop from which walks start.
-struct Start<N: Number = f64> {
+struct Start<N: Float = f64> {
     arc: usize,
     point: Point3<N>,
     /// The direction into the face.
     left: Vector3<N>,
 }
 
-struct Sorter<'a, N: Number = f64> {
+struct Sorter<'a, N: Float = f64> {
     surface: &'a Surface<N>,
     outward: Sense,
     arcs: Arcs<'a, N>,
@@ -69,7 +69,7 @@ struct Sorter<'a, N: Number = f64> {
 }
 
 /// The regions of `surface` bounded by `loops`, the region to the left of each, seen from outside.
-pub(super) fn regions<'a, N: Number>(
+pub(super) fn regions<'a, N: Float>(
     surface: &'a Surface<N>,
     outward: Sense,
     loops: &[Vec<DirectedArc<'a, N>>],
@@ -119,7 +119,7 @@ pub(super) fn regions<'a, N: Number>(
     Ok(regions)
 }
 
-impl<N: Number> Sorter<'_, N> {
+impl<N: Float> Sorter<'_, N> {
     fn find(&mut self, mut i: usize) -> usize {
         while self.parent[i] != i {
             self.parent[i] = self.parent[self.parent[i]];
@@ -213,9 +213,9 @@ impl<N: Number> Sorter<'_, N> {
     }
 
     /// The walk down the ruling through a point, without end.
-    fn down(&self, p: &Point3<N>) -> Option<Walk<N>> {
+    fn down(&self, p: &Point3<N>) -> Option<SurfacePath<N>> {
         let [u, _] = self.surface.parameters(p);
-        Some(Walk::ruling(self.surface, p, u, Sense::Along)?.reversed())
+        Some(SurfacePath::ruling(self.surface, p, u, Sense::Along)?.reversed())
     }
 
     /// Follows legs of which the last goes down. Where loops pass through a cone's apex it goes
@@ -225,7 +225,7 @@ impl<N: Number> Sorter<'_, N> {
         &mut self,
         ring: usize,
         start: &Start<N>,
-        mut legs: Vec<Walk<N>>,
+        mut legs: Vec<SurfacePath<N>>,
         attempt: usize,
     ) -> bool {
         let mut goal = None;
@@ -242,7 +242,7 @@ impl<N: Number> Sorter<'_, N> {
                 let near = (self.band / height).rough_root(2 + attempt as u32);
                 let height = height * (N::ONE - near);
                 let corner = down.point(height);
-                let round = Walk::parallel(self.surface, &corner, Sense::Along, self.band);
+                let round = SurfacePath::parallel(self.surface, &corner, Sense::Along, self.band);
                 legs.push(down.upto(height));
                 legs.extend(round);
             } else {
@@ -256,7 +256,7 @@ impl<N: Number> Sorter<'_, N> {
     /// A turn along the parallel into the face, then down.
     fn turn_down(&mut self, ring: usize, start: &Start<N>, turn: N, attempt: usize) -> bool {
         let p = &start.point;
-        let Some(round) = Walk::parallel(self.surface, p, Sense::Along, self.band) else {
+        let Some(round) = SurfacePath::parallel(self.surface, p, Sense::Along, self.band) else {
             return false;
         };
         let round = round.toward(p, &start.left);
@@ -278,7 +278,7 @@ impl<N: Number> Sorter<'_, N> {
             Surface::Sphere(s) => {
                 let goal = self.parent.len() - ATTEMPTS + attempt;
                 let target = pole(s.frame.origin, s.radius, attempt);
-                let Some(walk) = Walk::great_circle(&s.frame.origin, point, &target) else {
+                let Some(walk) = SurfacePath::great_circle(&s.frame.origin, point, &target) else {
                     return false;
                 };
                 let walk = walk.toward(point, left);
@@ -289,7 +289,7 @@ impl<N: Number> Sorter<'_, N> {
                 let f = &plane.frame;
                 let angle = N::of(0.7) + N::of(1.9) * N::of(attempt as f64);
                 let d = f.x * angle.cos() + f.y * angle.sin();
-                let walk = Walk::straight(plane, point, d).toward(point, left);
+                let walk = SurfacePath::straight(plane, point, d).toward(point, left);
                 self.follow(ring, *arc, point, left, &[walk], None)
             }
             Surface::Cylinder(_) | Surface::Cone(_) => false,
@@ -305,7 +305,7 @@ impl<N: Number> Sorter<'_, N> {
         arc: usize,
         p: &Point3<N>,
         left: &Vector3<N>,
-        legs: &[Walk<N>],
+        legs: &[SurfacePath<N>],
         goal: Option<usize>,
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
@@ -332,11 +332,11 @@ impl<N: Number> Sorter<'_, N> {
             for c in crossings {
                 let passed = self.owner[c.arc];
                 match (inside, c.passage) {
-                    (Some(from), Passage::Leaving) => {
+                    (Some(from), CrossingSense::Leaving) => {
                         pairs.push((from, passed));
                         inside = None;
                     }
-                    (None, Passage::Entering) => inside = Some(passed),
+                    (None, CrossingSense::Entering) => inside = Some(passed),
                     _ => return false,
                 }
             }
@@ -384,8 +384,12 @@ impl<N: Number> Sorter<'_, N> {
     }
 
     /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.
-    fn crossings(&self, walk: &Walk<N>, start: Option<usize>) -> Option<Vec<Crossing<N>>> {
-        let mut found: Vec<Crossing<N>> = Vec::new();
+    fn crossings(
+        &self,
+        walk: &SurfacePath<N>,
+        start: Option<usize>,
+    ) -> Option<Vec<PathCrossing<N>>> {
+        let mut found: Vec<PathCrossing<N>> = Vec::new();
         let mut clear = true;
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
             // The rest is of no use to anyone.
@@ -395,11 +399,11 @@ impl<N: Number> Sorter<'_, N> {
             let arc = &self.arcs.all[i];
             // Arcs of both senses run over the starting edge where a face bounds itself.
             let own = start.is_some_and(|start| arc.shares_edge(&self.arcs.all[start]));
-            let mut note = |at: N, t: N, passage: Passage| {
+            let mut note = |at: N, t: N, passage: CrossingSense| {
                 let here = own && (at.is_at_most(self.start()) || self.is_full_turn(walk, at));
                 if !here {
-                    clear &= passage != Passage::Unclear;
-                    found.push(Crossing {
+                    clear &= passage != CrossingSense::Unclear;
+                    found.push(PathCrossing {
                         at,
                         arc: i,
                         t,
@@ -424,8 +428,8 @@ impl<N: Number> Sorter<'_, N> {
         for k in 1..found.len() {
             let together = (found[k].at - found[k - 1].at).is_at_most(self.band);
             if together
-                && found[k - 1].passage == Passage::Entering
-                && found[k].passage == Passage::Leaving
+                && found[k - 1].passage == CrossingSense::Entering
+                && found[k].passage == CrossingSense::Leaving
             {
                 found.swap(k - 1, k);
             }
@@ -434,7 +438,7 @@ impl<N: Number> Sorter<'_, N> {
     }
 
     /// Whether a closed walk is back at its start.
-    fn is_full_turn(&self, walk: &Walk<N>, at: N) -> bool {
+    fn is_full_turn(&self, walk: &SurfacePath<N>, at: N) -> bool {
         let away = (walk.point(at) - walk.point(N::ZERO)).length();
         away.is_within(self.start())
     }
@@ -454,7 +458,7 @@ impl<N: Number> Sorter<'_, N> {
 }
 
 /// A point of a sphere where nothing is likely to be: another for each attempt.
-fn pole<N: Number>(centre: Point3<N>, radius: N, attempt: usize) -> Point3<N> {
+fn pole<N: Float>(centre: Point3<N>, radius: N, attempt: usize) -> Point3<N> {
     let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).unit();
     let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);
     let d = Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d;

@@ -3,12 +3,12 @@
 
 use super::Brep;
 use super::assemble::AssemblyError;
-use super::inside::Closed;
-use super::mass::{shell_volume, size};
+use super::face_integrals::{shell_volume, size};
+use super::point_in_solid::Closed;
 use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
 use crate::geometry::vector::rounded;
-use crate::number::precision::Number;
-use crate::number::sign::{Judge, Sign};
+use crate::number::float::Float;
+use crate::number::predicates::{Compare, Predicates};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 
@@ -99,10 +99,10 @@ pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
 }
 
 /// Names the shells, tells voids from outer shells, and gives every void to its solid.
-pub(super) fn bind_shells<N: Number>(
+pub(super) fn bind_shells<N: Float>(
     brep: &mut Brep<N>,
     fans: &Fans,
-    judge: &Judge,
+    judge: &Predicates,
 ) -> Result<(), AssemblyError> {
     for (f, &s) in fans.shell_of.iter().enumerate() {
         brep.topology.faces[f].shell = ShellId(s as u32);
@@ -138,7 +138,7 @@ pub(super) fn bind_shells<N: Number>(
 }
 
 /// Enters the shells, by which side of them is material, and gives the volumes they enclose.
-fn name_shells<N: Number>(
+fn name_shells<N: Float>(
     brep: &mut Brep<N>,
     fans: &Fans,
     members: &[Vec<FaceId>],
@@ -169,11 +169,11 @@ fn name_shells<N: Number>(
 }
 
 /// The outer shell of each void: the smallest that holds it, `outer` being in order of volume.
-fn homes<N: Number>(
+fn homes<N: Float>(
     brep: &Brep<N>,
     voids: &[usize],
     outer: &[usize],
-    judge: &Judge,
+    judge: &Predicates,
 ) -> Result<Vec<(usize, usize)>, AssemblyError> {
     if let [only] = outer {
         return Ok(voids.iter().map(|&void| (void, *only)).collect());
@@ -210,7 +210,7 @@ fn homes<N: Number>(
 }
 
 /// A point of a face's boundary, or of the face where it has none.
-pub(super) fn point_of<N: Number>(brep: &Brep<N>, face: FaceId) -> Point3<N> {
+pub(super) fn point_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Point3<N> {
     let topology = &brep.topology;
     match topology.face(face).loops.first() {
         Some(&l) => {

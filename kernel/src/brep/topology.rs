@@ -1,6 +1,6 @@
 //! Who meets whom: no coordinates here.
 
-use crate::number::precision::Number;
+use crate::number::float::Float;
 
 /// Along or against the direction that geometry gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -21,7 +21,7 @@ impl Sense {
     }
 
     /// +1 or -1.
-    pub fn sign<N: Number>(self) -> N {
+    pub fn sign<N: Float>(self) -> N {
         match self {
             Self::Along => N::ONE,
             Self::Against => -N::ONE,
@@ -131,7 +131,7 @@ pub struct Solid {
 /// A point at which the boundary touches itself: the faces around it make no disc. What meets there
 /// is two or more of: a fan of faces around a vertex, the inside of an edge, the inside of a face.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Touch {
+pub struct NonManifoldPoint {
     /// The vertex there, where edges end.
     pub vertex: Option<VertexId>,
     /// How many fans of faces meet in the vertex; none without one.
@@ -160,12 +160,12 @@ pub struct Topology {
     /// The solids, by id.
     pub solids: Vec<Solid>,
     /// The points at which the boundary touches itself, by id.
-    pub touches: Vec<Touch>,
+    pub touches: Vec<NonManifoldPoint>,
 }
 
 /// How many there are of each entity: what boundaries of one kind share.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Census {
+pub struct EntityCounts {
     /// Vertices, edges, loops and faces.
     pub cells: [usize; 4],
     /// Of every shell the genus, in ascending order.
@@ -178,11 +178,11 @@ pub struct Census {
 
 impl Topology {
     /// How many there are of each entity.
-    pub fn census(&self) -> Census {
+    pub fn census(&self) -> EntityCounts {
         let mut genus: Vec<i32> = self.shells.iter().map(|s| s.genus).collect();
         genus.sort_unstable();
         let vertices = self.vertices as usize;
-        Census {
+        EntityCounts {
             cells: [
                 vertices,
                 self.edges.len(),

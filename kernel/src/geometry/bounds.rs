@@ -2,23 +2,23 @@
 
 use super::curve::{Curve, Line};
 use super::frame::Frame;
+use crate::number::analytic::Analytic;
 use crate::number::bisection::bisect;
+use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::precision::Number;
-use crate::number::scalar::Scalar;
 use nalgebra::Point3;
 
 /// An axis-parallel box: its least and its greatest corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Box3 {
+pub struct Aabb {
     /// The least coordinates.
     pub min: [f64; 3],
     /// The greatest coordinates.
     pub max: [f64; 3],
 }
 
-impl Box3 {
+impl Aabb {
     /// The box that holds nothing.
     pub const EMPTY: Self = Self {
         min: [f64::INFINITY; 3],
@@ -32,7 +32,7 @@ impl Box3 {
     };
 
     /// The box around one point.
-    pub fn of<N: Number>(p: &Point3<N>) -> Self {
+    pub fn of<N: Float>(p: &Point3<N>) -> Self {
         let c = [p.x, p.y, p.z];
         Self {
             min: c.map(N::below),
@@ -49,7 +49,7 @@ impl Box3 {
     }
 
     /// The box grown by `by` on all sides, if by less than doubles tell, then by what they do.
-    pub fn grown<N: Number>(&self, by: N) -> Self {
+    pub fn grown<N: Float>(&self, by: N) -> Self {
         let by = by.above();
         if by == 0.0 {
             return *self;
@@ -61,7 +61,7 @@ impl Box3 {
     }
 
     /// Whether a point lies in it.
-    pub fn holds<N: Number>(&self, p: &Point3<N>) -> bool {
+    pub fn holds<N: Float>(&self, p: &Point3<N>) -> bool {
         (0..3).all(|i| N::of(self.min[i]) <= p[i] && p[i] <= N::of(self.max[i]))
     }
 
@@ -71,7 +71,7 @@ impl Box3 {
     }
 
     /// The part of a line over `range` that runs in it.
-    pub fn along<N: Number>(&self, line: &Line<N>, range: [N; 2]) -> Option<[N; 2]> {
+    pub fn along<N: Float>(&self, line: &Line<N>, range: [N; 2]) -> Option<[N; 2]> {
         let [mut lo, mut hi] = range;
         for i in 0..3 {
             let (o, d) = (line.origin[i], line.direction[i]);
@@ -106,7 +106,7 @@ impl Box3 {
 
 /// The box of the arc of a curve over `range`: tight for lines and conics with an angle, an
 /// enclosure for the rest.
-pub fn bounds<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
+pub fn bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     match curve {
         Curve::Line(_) => ends(curve, range),
         Curve::Circle(c) => turn_bounds(&c.frame, c.radius, c.radius, range, ends(curve, range)),
@@ -116,7 +116,7 @@ pub fn bounds<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
 }
 
 /// Consecutive pieces of a curve over `range`, each smooth and with a box that holds it.
-pub fn pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Box3)> {
+pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
     if !N::IS_DOUBLE && !has_exact_bounds(curve) {
         return rounded_pieces(curve, [lo, hi]);
     }
@@ -134,9 +134,9 @@ pub fn pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Box
 
 /// The same of a curve of more digits: of the curve rounded to doubles, and grown by more than that
 /// moves it, next to a node by the root of rounding.
-fn rounded_pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Box3)> {
+fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
     let mut rounded = pieces(&curve.in_doubles(), [lo, hi].map(N::rounded));
-    let whole = rounded.iter().fold(Box3::EMPTY, |b, p| b.hull(&p.1));
+    let whole = rounded.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
     let far = whole.min.iter().chain(&whole.max);
     let far = far.fold(0.0_f64, |far, x| far.max(x.abs()));
     let growth = f64::ROUNDING.sqrt() * (whole.diagonal() + far);
@@ -151,16 +151,16 @@ fn rounded_pieces<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2],
 }
 
 /// Whether the box of every arc is known in closed form.
-fn has_exact_bounds<N: Number>(curve: &Curve<N>) -> bool {
+fn has_exact_bounds<N: Float>(curve: &Curve<N>) -> bool {
     matches!(curve, Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_))
 }
 
-fn ends<N: Number>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Box3 {
-    Box3::of(&curve.point(lo)).hull(&Box3::of(&curve.point(hi)))
+fn ends<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Aabb {
+    Aabb::of(&curve.point(lo)).hull(&Aabb::of(&curve.point(hi)))
 }
 
 /// Grows the box of the ends by the extrema a x cos t + b y sin t that the range passes.
-fn turn_bounds<N: Number>(f: &Frame<N>, a: N, b: N, [lo, hi]: [N; 2], mut hull: Box3) -> Box3 {
+fn turn_bounds<N: Float>(f: &Frame<N>, a: N, b: N, [lo, hi]: [N; 2], mut hull: Aabb) -> Aabb {
     for i in 0..3 {
         let (c, s) = (a * f.x[i], b * f.y[i]);
         let (size, at) = (c.hypot(s), s.atan2(c));
@@ -183,7 +183,7 @@ const SAMPLES: u32 = 16;
 const PIECES: usize = 2048;
 
 /// The box of the arc of a curve, to rounding.
-pub fn tight_bounds<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
+pub fn tight_bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     if has_exact_bounds(curve) {
         bounds(curve, range)
     } else {
@@ -193,7 +193,7 @@ pub fn tight_bounds<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
 
 /// The box of the ends and of the points at which a coordinate turns back: between samples of its
 /// derivative, found by halving.
-fn extremes<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
+fn extremes<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     let mut hull = ends(curve, range);
     for pair in curve.breaks(range[0], range[1]).windows(2) {
         let step = (pair[1] - pair[0]) / N::whole(SAMPLES);
@@ -202,12 +202,12 @@ fn extremes<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
             let t = pair[0] + step * N::whole(k);
             let after = (t, curve.derivative(t));
             // A sample may be an extreme itself.
-            hull = hull.hull(&Box3::of(&curve.point(t)));
+            hull = hull.hull(&Aabb::of(&curve.point(t)));
             for i in 0..3 {
                 if before.1[i] * after.1[i] < N::ZERO {
                     let turn = |t: N| curve.derivative(t)[i];
                     let t = bisect(before.0, after.0, before.1[i], turn);
-                    hull = hull.hull(&Box3::of(&curve.point(t)));
+                    hull = hull.hull(&Aabb::of(&curve.point(t)));
                 }
             }
             before = after;
@@ -216,8 +216,8 @@ fn extremes<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
     hull
 }
 
-fn enclosure<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
-    let mut all = Box3::EMPTY;
+fn enclosure<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
+    let mut all = Aabb::EMPTY;
     if !N::IS_DOUBLE {
         let parts = rounded_pieces(curve, range);
         return parts.iter().fold(all, |b, p| b.hull(&p.1));
@@ -230,12 +230,12 @@ fn enclosure<N: Number>(curve: &Curve<N>, range: [N; 2]) -> Box3 {
 
 /// Branch and bound: pieces are halved until none reaches beyond the points seen by more than a
 /// part of their size; each is handed over with its box, in order.
-fn enclosed<N: Number>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 2], Box3)) {
-    let mut seen = Box3::EMPTY;
+fn enclosed<N: Float>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 2], Aabb)) {
+    let mut seen = Aabb::EMPTY;
     for pair in breaks.windows(2) {
         for k in 0..=4 {
             let t = pair[0] + (pair[1] - pair[0]) * N::whole(k) / N::of(4.0);
-            seen = seen.hull(&Box3::of(&curve.point(t)));
+            seen = seen.hull(&Aabb::of(&curve.point(t)));
         }
     }
     let mut stack: Vec<(N, N)> = breaks.windows(2).rev().map(|p| (p[0], p[1])).collect();
@@ -250,7 +250,7 @@ fn enclosed<N: Number>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 
             continue;
         }
         let m = N::HALF * (a + b);
-        seen = seen.hull(&Box3::of(&curve.point(m)));
+        seen = seen.hull(&Aabb::of(&curve.point(m)));
         stack.push((m, b));
         stack.push((a, m));
     }
@@ -258,7 +258,7 @@ fn enclosed<N: Number>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 
 
 /// A box that holds the piece [a, b], to rounding: of its ends where a coordinate only rises or
 /// falls.
-fn piece_box<N: Number>(curve: &Curve<N>, a: N, b: N) -> Box3 {
+fn piece_box<N: Float>(curve: &Curve<N>, a: N, b: N) -> Aabb {
     let t = Interval { lo: a, hi: b };
     let wide = curve.jet_over(t);
     let mid = curve.jet(t.mid());
@@ -276,7 +276,7 @@ fn piece_box<N: Number>(curve: &Curve<N>, a: N, b: N) -> Box3 {
         }
     };
     let r = [0, 1, 2].map(range);
-    Box3 {
+    Aabb {
         min: r.map(|x| x.lo),
         max: r.map(|x| x.hi),
     }

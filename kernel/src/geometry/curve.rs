@@ -1,19 +1,19 @@
 //! Curves in space, each with its parameter.
 
 use super::frame::Frame;
-use super::quartic::{Quartic, Ruled};
+use super::quadric_curve::{QuadricCurve, Ruled};
 use super::surface::{Surface, turn};
-use super::toric::Toric;
+use super::torus_curve::TorusCurve;
 use crate::geometry::vector::{Length, direction};
+use crate::number::analytic::Analytic;
+use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::precision::Number;
-use crate::number::scalar::Scalar;
 use nalgebra::{Point3, Vector3};
 
 /// A straight line; the parameter is the length from the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line<N: Number = f64> {
+pub struct Line<N: Float = f64> {
     /// A point on it.
     pub origin: Point3<N>,
     /// The unit direction.
@@ -22,14 +22,14 @@ pub struct Line<N: Number = f64> {
 
 /// A circle in its frame's xy plane; the parameter is the angle from x.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle<N: Number = f64> {
+pub struct Circle<N: Float = f64> {
     /// Origin at the centre.
     pub frame: Frame<N>,
     /// The radius.
     pub radius: N,
 }
 
-impl<N: Number> Circle<N> {
+impl<N: Float> Circle<N> {
     /// The circle through three points; none where they are on a line.
     pub fn through(a: &Point3<N>, b: &Point3<N>, c: &Point3<N>) -> Option<Self> {
         let (u, v) = (b - a, c - a);
@@ -47,7 +47,7 @@ impl<N: Number> Circle<N> {
 
 /// An ellipse, (a cos t, b sin t) in its frame, a >= b.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ellipse<N: Number = f64> {
+pub struct Ellipse<N: Float = f64> {
     /// Origin at the centre, x along the major axis.
     pub frame: Frame<N>,
     /// The semi-major axis.
@@ -58,7 +58,7 @@ pub struct Ellipse<N: Number = f64> {
 
 /// One branch of a hyperbola, (a cosh t, b sinh t) in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hyperbola<N: Number = f64> {
+pub struct Hyperbola<N: Float = f64> {
     /// Origin at the centre, x towards the branch.
     pub frame: Frame<N>,
     /// The semi-axis along x.
@@ -71,7 +71,7 @@ pub struct Hyperbola<N: Number = f64> {
 /// and the parameter is y. For a parabola, and what is so long that the way to its centre would take
 /// its digits; meant is the part on which x is single.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conic<N: Number = f64> {
+pub struct Conic<N: Float = f64> {
     /// Origin at the point, x along the inner normal.
     pub frame: Frame<N>,
     /// κ: the curvature at the point.
@@ -82,7 +82,7 @@ pub struct Conic<N: Number = f64> {
     pub flatness: N,
 }
 
-impl<N: Number> Conic<N> {
+impl<N: Float> Conic<N> {
     /// A conic about its vertex, by its semi-latus rectum p and k: y² = 2 p x - k x².
     pub fn about_vertex(frame: Frame<N>, rectum: N, k: N) -> Self {
         Self {
@@ -94,14 +94,14 @@ impl<N: Number> Conic<N> {
     }
 
     /// r + √(r² - κ α y²) with r = 1 - β y.
-    fn depth<S: Scalar<Number = N>>(&self, y: S) -> S {
+    fn depth<S: Analytic<Float = N>>(&self, y: S) -> S {
         let rest = S::plain(1.0) - y.scale(self.shear);
         let bend = y.square().scale(self.curvature * self.flatness);
         rest + (rest.square() - bend).root()
     }
 
     /// x over y: κ y²/(r + √(r² - κ α y²)).
-    pub fn height<S: Scalar<Number = N>>(&self, y: S) -> S {
+    pub fn height<S: Analytic<Float = N>>(&self, y: S) -> S {
         y.square().scale(self.curvature).over(self.depth(y))
     }
 
@@ -126,7 +126,7 @@ impl<N: Number> Conic<N> {
 
 /// A curve in space.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Curve<N: Number = f64> {
+pub enum Curve<N: Float = f64> {
     /// A straight line.
     Line(Line<N>),
     /// A circle.
@@ -138,20 +138,20 @@ pub enum Curve<N: Number = f64> {
     /// A conic about one of its points.
     Conic(Conic<N>),
     /// A branch of the intersection of two quadrics.
-    Quartic(Box<Quartic<N>>),
+    Quartic(Box<QuadricCurve<N>>),
     /// A curve on a torus.
-    Toric(Box<Toric<N>>),
+    Toric(Box<TorusCurve<N>>),
 }
 
-impl<N: Number> Line<N> {
+impl<N: Float> Line<N> {
     /// The point at t.
-    pub fn at<S: Scalar<Number = N>>(&self, t: S) -> [S; 3] {
+    pub fn at<S: Analytic<Float = N>>(&self, t: S) -> [S; 3] {
         let d = &self.direction;
         [0, 1, 2].map(|i| S::constant(self.origin[i]) + t.scale(d[i]))
     }
 }
 
-impl<N: Number> Curve<N> {
+impl<N: Float> Curve<N> {
     /// The name used in outputs.
     pub fn name(&self) -> &'static str {
         match self {
@@ -192,7 +192,7 @@ impl<N: Number> Curve<N> {
     }
 
     /// The point at t, over any scalar; a toric curve has its own ways.
-    fn closed_form<S: Scalar<Number = N>>(&self, t: S) -> Option<[S; 3]> {
+    fn closed_form<S: Analytic<Float = N>>(&self, t: S) -> Option<[S; 3]> {
         Some(match self {
             Self::Line(c) => c.at(t),
             Self::Circle(c) => {
@@ -348,7 +348,7 @@ impl<N: Number> Curve<N> {
         }
     }
 
-    fn quartic_parameter(&self, q: &Quartic<N>, p: &Point3<N>) -> N {
+    fn quartic_parameter(&self, q: &QuadricCurve<N>, p: &Point3<N>) -> N {
         let frame = match &q.base {
             Ruled::Cylinder(s) => s.frame,
             Ruled::Cone(s) => s.frame,

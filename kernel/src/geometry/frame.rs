@@ -1,13 +1,13 @@
 //! Right-handed orthonormal frames.
 
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::scalar::{Scalar, dot};
+use crate::number::analytic::{Analytic, dot};
+use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 
 /// A right-handed orthonormal frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame<N: Number = f64> {
+pub struct Frame<N: Float = f64> {
     /// Where the frame stands.
     pub origin: Point3<N>,
     /// Its first axis.
@@ -18,7 +18,7 @@ pub struct Frame<N: Number = f64> {
     pub z: Vector3<N>,
 }
 
-impl<N: Number> Frame<N> {
+impl<N: Float> Frame<N> {
     /// The frame of the world.
     pub fn world() -> Self {
         Self {
@@ -49,7 +49,7 @@ impl<N: Number> Frame<N> {
     }
 
     /// The coordinates of a point in this frame.
-    pub fn local<S: Scalar<Number = N>>(&self, p: [S; 3]) -> [S; 3] {
+    pub fn local<S: Analytic<Float = N>>(&self, p: [S; 3]) -> [S; 3] {
         let d = [
             p[0] - S::constant(self.origin.x),
             p[1] - S::constant(self.origin.y),
@@ -59,7 +59,7 @@ impl<N: Number> Frame<N> {
     }
 
     /// The point with the given coordinates in this frame.
-    pub fn world_of<S: Scalar<Number = N>>(&self, q: [S; 3]) -> [S; 3] {
+    pub fn world_of<S: Analytic<Float = N>>(&self, q: [S; 3]) -> [S; 3] {
         let along = |i: usize| {
             S::constant(self.origin[i])
                 + (q[0].scale(self.x[i]) + q[1].scale(self.y[i]) + q[2].scale(self.z[i]))
@@ -95,7 +95,7 @@ impl<N: Number> Frame<N> {
 }
 
 /// A unit vector perpendicular to `v`, which is not zero.
-pub fn perpendicular<N: Number>(v: &Vector3<N>) -> Vector3<N> {
+pub fn perpendicular<N: Float>(v: &Vector3<N>) -> Vector3<N> {
     let a = v.map(N::abs);
     let axis = if a.x <= a.y && a.x <= a.z {
         Vector3::x()

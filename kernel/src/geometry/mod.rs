@@ -1,21 +1,21 @@
 //! Surfaces and curves: what hangs on the entities of a boundary.
 
-pub mod bitrig;
+pub mod bivariate_trig_poly;
+pub mod blow_up;
 pub mod bounds;
-pub mod chart;
 pub mod curve;
-pub mod cut;
-mod doubles;
+pub mod curve_plane;
+pub mod curve_surface;
+mod float_intersections;
 pub mod frame;
+mod implicit_on_curve;
 pub mod intersect;
-pub mod quartic;
-pub mod relation;
-mod restriction;
-pub mod section;
-pub mod serial;
+pub mod json;
+pub mod quadric_curve;
 mod singular;
 pub mod surface;
-pub mod toric;
+pub mod surface_pair;
+pub mod torus_curve;
 pub mod trace;
 pub mod trigonometric;
 pub mod vector;

@@ -3,18 +3,18 @@
 //! Where F and its gradient vanish within the band, the Hessian tells: indefinite, two branches
 //! cross; definite, the point stands alone. Where it is degenerate, the `leading` terms tell.
 
-mod leading;
+mod leading_form;
 
-use super::bitrig::Partials;
-use super::chart::Chart;
+use super::bivariate_trig_poly::Partials;
+use super::blow_up::Chart;
 use super::trace::grid::{Cell, plain_grid};
 use super::trace::{Tracer, Unresolved, deepest, near};
-use crate::number::precision::Number;
-use crate::number::sign::CLOSE;
+use crate::number::float::Float;
+use crate::number::predicates::CLOSE;
 
 /// A branch through a singular point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pass<N: Number = f64> {
+pub(super) struct BranchTangent<N: Float = f64> {
     /// The coordinates in which it is smooth.
     pub chart: Chart<N>,
     /// κ at the point.
@@ -23,18 +23,18 @@ pub(super) struct Pass<N: Number = f64> {
 
 /// A singular point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct SingularPoint<N: Number = f64> {
+pub(super) struct SingularPoint<N: Float = f64> {
     /// (θ, φ).
     pub angles: [N; 2],
     /// The branches through it; none where it stands alone.
-    pub passes: Vec<Pass<N>>,
+    pub passes: Vec<BranchTangent<N>>,
     /// How far from it the curve is known to be no more than these branches.
     pub zone: N,
 }
 
 /// The critical points of F at which F is small.
 #[derive(Debug, Default)]
-pub(super) struct Critical<N: Number = f64> {
+pub(super) struct Critical<N: Float = f64> {
     /// Those at which F is within the band, in the order of their angles.
     pub singular: Vec<SingularPoint<N>>,
     /// The angles of these and of those at which it is nearly so.
@@ -47,9 +47,7 @@ const ZONE: f64 = 0.05;
 const DEEP: u32 = 10;
 
 /// The critical points of F at which F is within the band, or so near to it that it is to be told.
-pub(super) fn singular_points<N: Number>(
-    tracer: &Tracer<'_, N>,
-) -> Result<Critical<N>, Unresolved> {
+pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critical<N>, Unresolved> {
     let reach = N::of(CLOSE) * tracer.band;
     let mut misses: Vec<[N; 2]> = Vec::new();
     let mut found: Vec<SingularPoint<N>> = Vec::new();
@@ -90,7 +88,7 @@ pub(super) fn singular_points<N: Number>(
                     misses.push(point);
                 }
             } else if !found.iter().any(same) {
-                let plain = leading::plain(tracer, point);
+                let plain = leading_form::plain(tracer, point);
                 found.push(plain.ok_or(Unresolved::at(point))?);
             }
             continue;
@@ -102,7 +100,7 @@ pub(super) fn singular_points<N: Number>(
             continue;
         }
         if is_milestone(depth)
-            && let Some((point, reach)) = leading::degenerate(tracer, cell.centre())
+            && let Some((point, reach)) = leading_form::degenerate(tracer, cell.centre())
         {
             let known = |q: &(SingularPoint<N>, N)| near(&q.0.angles, &point.angles, reach);
             if !degenerate.iter().any(known) {
@@ -145,7 +143,7 @@ fn is_milestone(depth: u32) -> bool {
 
 /// What a cell shows of critical points at which F is small.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Look<N: Number = f64> {
+enum Look<N: Float = f64> {
     /// It has none.
     Bare,
     /// The Hessian is regular over the cell's surroundings: there is one at most.
@@ -155,7 +153,7 @@ enum Look<N: Number = f64> {
     Unclear { least: N, value: N, wide: usize },
 }
 
-impl<N: Number> Look<N> {
+impl<N: Float> Look<N> {
     fn at(tracer: &Tracer<'_, N>, cell: &Cell<N>, reach: N) -> Self {
         let b = tracer.bounds(cell);
         if b.least > reach || b.x[0] > N::ZERO || b.y[0] > N::ZERO {
@@ -173,7 +171,7 @@ impl<N: Number> Look<N> {
 }
 
 impl Look {
-    fn of_more<N: Number>(self) -> Look<N> {
+    fn of_more<N: Float>(self) -> Look<N> {
         match self {
             Self::Bare => Look::Bare,
             Self::Regular => Look::Regular,
@@ -187,7 +185,7 @@ impl Look {
 }
 
 /// Whether the Hessian is regular over a cell's surroundings; `at` is what F is at the centre.
-fn is_regular<N: Number>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>) -> bool {
+fn is_regular<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>) -> bool {
     let half = cell.half();
     let around = half.map(|h| N::TWO * h);
     let (_, thirds) = (tracer.form).partials_about(cell.centre(), around, &tracer.reaches);
@@ -206,7 +204,7 @@ fn is_regular<N: Number>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N
 }
 
 /// The one critical point of a cell over whose surroundings the Hessian is regular, if it lies in it.
-fn only_critical<N: Number>(tracer: &Tracer<'_, N>, cell: &Cell<N>) -> Option<[N; 2]> {
+fn only_critical<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>) -> Option<[N; 2]> {
     let [hx, hy] = cell.half();
     let mut p = cell.centre();
     for _ in 0..30 {

@@ -5,20 +5,20 @@
 
 use super::frame::Frame;
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::scalar::{Scalar, dot};
+use crate::number::analytic::{Analytic, dot};
+use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 
 /// A plane: its frame's z axis is the normal, pointing to the outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane<N: Number = f64> {
+pub struct Plane<N: Float = f64> {
     /// Origin in the plane, z the unit normal.
     pub frame: Frame<N>,
 }
 
 /// A circular cylinder about its frame's z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cylinder<N: Number = f64> {
+pub struct Cylinder<N: Float = f64> {
     /// z along the axis.
     pub frame: Frame<N>,
     /// The radius.
@@ -27,7 +27,7 @@ pub struct Cylinder<N: Number = f64> {
 
 /// One nappe of a circular cone: apex at the frame's origin, opening along +z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone<N: Number = f64> {
+pub struct Cone<N: Float = f64> {
     /// Origin at the apex, z along the axis into the nappe.
     pub frame: Frame<N>,
     /// The sine of the half angle.
@@ -38,7 +38,7 @@ pub struct Cone<N: Number = f64> {
 
 /// A sphere about its frame's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sphere<N: Number = f64> {
+pub struct Sphere<N: Float = f64> {
     /// Origin at the centre; the axes only serve the parameters.
     pub frame: Frame<N>,
     /// The radius.
@@ -47,7 +47,7 @@ pub struct Sphere<N: Number = f64> {
 
 /// A ring torus about its frame's z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Torus<N: Number = f64> {
+pub struct Torus<N: Float = f64> {
     /// Origin at the centre, z along the axis.
     pub frame: Frame<N>,
     /// The radius of the spine circle.
@@ -58,7 +58,7 @@ pub struct Torus<N: Number = f64> {
 
 /// A surface that can bound a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Surface<N: Number = f64> {
+pub enum Surface<N: Float = f64> {
     /// A plane.
     Plane(Plane<N>),
     /// A circular cylinder.
@@ -99,7 +99,7 @@ impl SurfaceKind {
     }
 }
 
-impl<N: Number> Surface<N> {
+impl<N: Float> Surface<N> {
     /// The kind of surface.
     pub fn kind(&self) -> SurfaceKind {
         match self {
@@ -124,7 +124,7 @@ impl<N: Number> Surface<N> {
 
     /// A smooth function that is zero on the surface, negative inside, with a gradient of length
     /// one on the surface: the signed distance to first order.
-    pub fn level<S: Scalar<Number = N>>(&self, p: [S; 3]) -> S {
+    pub fn level<S: Analytic<Float = N>>(&self, p: [S; 3]) -> S {
         match self {
             Self::Plane(s) => {
                 let o = &s.frame.origin;
@@ -302,14 +302,14 @@ impl<N: Number> Surface<N> {
 
 /// How far (x, y) lies outside the circle of radius r about the origin: (x² + y² - r²)/(ρ + r), with
 /// the differences taken so that next to an axis, where planes are tangent, no digits cancel.
-fn beyond_circle<N: Number>(x: N, y: N, r: N) -> N {
+fn beyond_circle<N: Float>(x: N, y: N, r: N) -> N {
     let (x, y) = (x.abs(), y.abs());
     let (least, most) = if x < y { (x, y) } else { (y, x) };
     (least * least + (most - r) * (most + r)) / ((x * x + y * y).sqrt() + r)
 }
 
 /// The angle brought into [0, 2 pi).
-pub fn turn<N: Number>(angle: N) -> N {
+pub fn turn<N: Float>(angle: N) -> N {
     let a = angle.rem_euclid(N::TAU);
     if a >= N::TAU { N::ZERO } else { a }
 }

@@ -1,12 +1,12 @@
 //! Trigonometric polynomials of degree one and two: products, quotients, zeros.
 
 use crate::geometry::vector::solution;
+use crate::number::analytic::{Analytic, harmonic, harmonic_slope};
+use crate::number::f64_filter::F64Filter;
+use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::precision::Number;
-use crate::number::roots::{Contact, Function, Zeros, isolate};
-use crate::number::rough::Rough;
-use crate::number::scalar::{Scalar, harmonic, harmonic_slope};
+use crate::number::roots::{Function, RootKind, Roots, isolate};
 use nalgebra::{SMatrix, SVector};
 
 /// A trigonometric polynomial of degree one: constant, cosine, sine.
@@ -16,12 +16,12 @@ pub type Trig1<N> = [N; 3];
 pub type Trig2<N> = [N; 5];
 
 /// The value of a trigonometric polynomial of degree one.
-pub fn trig1<N: Number, S: Scalar<Number = N>>(k: &Trig1<N>, (sin, cos): (S, S)) -> S {
+pub fn trig1<N: Float, S: Analytic<Float = N>>(k: &Trig1<N>, (sin, cos): (S, S)) -> S {
     S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2])
 }
 
 /// The product of two trigonometric polynomials of degree one.
-pub(crate) fn product<N: Number>(m: &Trig1<N>, q: &Trig1<N>) -> Trig2<N> {
+pub(crate) fn product<N: Float>(m: &Trig1<N>, q: &Trig1<N>) -> Trig2<N> {
     [
         m[0] * q[0] + N::HALF * (m[1] * q[1] + m[2] * q[2]),
         m[0] * q[1] + m[1] * q[0],
@@ -32,7 +32,7 @@ pub(crate) fn product<N: Number>(m: &Trig1<N>, q: &Trig1<N>) -> Trig2<N> {
 }
 
 /// The q of degree one with m q nearest to `whole`.
-pub(super) fn divide<N: Number>(whole: &Trig2<N>, m: &Trig1<N>) -> Trig1<N> {
+pub(super) fn divide<N: Float>(whole: &Trig2<N>, m: &Trig1<N>) -> Trig1<N> {
     let columns: [Trig2<N>; 3] = [
         [N::ONE, N::ZERO, N::ZERO],
         [N::ZERO, N::ONE, N::ZERO],
@@ -46,7 +46,7 @@ pub(super) fn divide<N: Number>(whole: &Trig2<N>, m: &Trig1<N>) -> Trig1<N> {
 }
 
 /// sin((u-a)/2) sin((b-u)/2) as a trigonometric polynomial.
-pub(super) fn between<N: Number>(a: N, b: N) -> Trig1<N> {
+pub(super) fn between<N: Float>(a: N, b: N) -> Trig1<N> {
     let (sin, cos) = (N::HALF * (a + b)).sin_cos();
     [
         -N::HALF * (N::HALF * (b - a)).cos(),
@@ -56,7 +56,7 @@ pub(super) fn between<N: Number>(a: N, b: N) -> Trig1<N> {
 }
 
 /// A trigonometric polynomial of degree two with its derivatives, which are such, too.
-pub(super) struct Trigonometric<N: Number = f64> {
+pub(super) struct Trigonometric<N: Float = f64> {
     derivatives: [Trig2<N>; 4],
     /// No value of the fourth derivative is greater.
     most: N,
@@ -64,7 +64,7 @@ pub(super) struct Trigonometric<N: Number = f64> {
     doubles: Option<Box<Trigonometric>>,
 }
 
-impl<N: Number> Trigonometric<N> {
+impl<N: Float> Trigonometric<N> {
     pub(super) fn new(k: &Trig2<N>) -> Self {
         let slope = harmonic_slope(k);
         let bend = harmonic_slope(&slope);
@@ -78,7 +78,7 @@ impl<N: Number> Trigonometric<N> {
         }
     }
 
-    fn jet<S: Scalar<Number = N>>(&self, u: S) -> Jet<S> {
+    fn jet<S: Analytic<Float = N>>(&self, u: S) -> Jet<S> {
         let at = u.sin_cos();
         let [v, d, dd] = [0, 1, 2].map(|i| harmonic(&self.derivatives[i], at));
         Jet { v, d, dd }
@@ -88,7 +88,7 @@ impl<N: Number> Trigonometric<N> {
 /// Taylor's sum is tried on what is shorter than this, in radians.
 const SHORT: f64 = 0.5;
 
-impl<N: Number> Function<N> for Trigonometric<N> {
+impl<N: Float> Function<N> for Trigonometric<N> {
     /// By Taylor's sum about the middle: next to a zero of order four the terms of the polynomial
     /// cancel, and their own ranges tell nothing before they are as short as its square.
     fn over(&self, u: Interval<N>) -> Jet<Interval<N>> {
@@ -113,10 +113,10 @@ impl<N: Number> Function<N> for Trigonometric<N> {
         }
     }
 
-    fn roughly(&self, piece: [N; 2]) -> Option<Rough<'_>> {
+    fn roughly(&self, piece: [N; 2]) -> Option<F64Filter<'_>> {
         let doubles = self.doubles.as_deref()?;
         let size: f64 = doubles.derivatives[0].iter().map(|c| c.abs()).sum();
-        Some(Rough::of(self, doubles, piece, f64::ROUNDING * size))
+        Some(F64Filter::of(self, doubles, piece, f64::ROUNDING * size))
     }
 
     fn at(&self, u: N) -> Jet<N> {
@@ -129,41 +129,41 @@ impl<N: Number> Function<N> for Trigonometric<N> {
 }
 
 /// The least interval about zero that holds another.
-fn about_zero<N: Number>(x: Interval<N>) -> Interval<N> {
+fn about_zero<N: Float>(x: Interval<N>) -> Interval<N> {
     let most = x.magnitude();
     Interval::new(-most, most)
 }
 
 /// The zeros of a trigonometric polynomial in [0, 2π), in order, and whether it changes sign there.
-pub(super) fn zeros_of<N: Number>(k: &Trig2<N>) -> Vec<(N, bool)> {
+pub(super) fn zeros_of<N: Float>(k: &Trig2<N>) -> Vec<(N, bool)> {
     let scale: N = k.iter().map(|c| c.abs()).sum();
     let zeros = zeros_once(k, N::ROUNDING * scale).unwrap_or_default();
-    let changes = |contact: Contact| contact != Contact::Touching;
+    let changes = |contact: RootKind| contact != RootKind::Touching;
     zeros.into_iter().map(|(u, c)| (u, changes(c))).collect()
 }
 
 /// The same where all are simple, of a polynomial that is off by `band`, each with how far it is off
 /// itself; else none.
-pub(super) fn simple_zeros<N: Number>(k: &Trig2<N>, band: N) -> Option<Vec<(N, N)>> {
+pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, band: N) -> Option<Vec<(N, N)>> {
     let slope = harmonic_slope(k);
     let off = |u: N| band / harmonic(&slope, u.sin_cos()).abs();
     let zeros = zeros_once(k, band)?.into_iter();
     zeros
-        .map(|(u, contact)| (contact == Contact::Simple).then(|| (u, off(u))))
+        .map(|(u, contact)| (contact == RootKind::Simple).then(|| (u, off(u))))
         .collect()
 }
 
 /// The zeros over one turn; none of what vanishes everywhere.
-fn zeros_once<N: Number>(k: &Trig2<N>, band: N) -> Option<Vec<(N, Contact)>> {
+fn zeros_once<N: Float>(k: &Trig2<N>, band: N) -> Option<Vec<(N, RootKind)>> {
     // Started off the axes, where symmetric polynomials have their zeros.
     let start = N::of(0.1);
     let breaks: Vec<N> = (0..=8)
         .map(|i| start + N::TAU * N::whole(i) / N::of(8.0))
         .collect();
-    let Zeros::At { roots, .. } = isolate(&Trigonometric::new(k), &breaks, band) else {
+    let Roots::At { roots, .. } = isolate(&Trigonometric::new(k), &breaks, band) else {
         return None;
     };
-    let mut zeros: Vec<(N, Contact)> = roots
+    let mut zeros: Vec<(N, RootKind)> = roots
         .iter()
         .map(|r| (r.t.rem_euclid(N::TAU), r.contact))
         .collect();
@@ -173,7 +173,7 @@ fn zeros_once<N: Number>(k: &Trig2<N>, band: N) -> Option<Vec<(N, Contact)>> {
 }
 
 /// B and C divided by sin((u - u0)/2), a zero of both, in half angles.
-pub(super) fn divide_half<N: Number>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 2], [N; 4]) {
+pub(super) fn divide_half<N: Float>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 2], [N; 4]) {
     // Sampled away from the zero, and solved for: both are exact up to rounding.
     let samples: Vec<N> = (0..8)
         .map(|i| u0 + N::TAU * (N::whole(i) + N::HALF) / N::of(8.0))
@@ -200,19 +200,19 @@ pub(super) fn divide_half<N: Number>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::wide::Wide;
+    use crate::number::extended::F237;
 
     /// (cos u + 4/3 sin u - 5/3)², which touches zero to the fourth order, but for rounding.
     #[test]
     fn a_fourfold_zero_is_one() {
-        let third = Wide::ONE / Wide::of(3.0);
-        let m = [Wide::of(-5.0) * third, Wide::ONE, Wide::of(4.0) * third];
+        let third = F237::ONE / F237::of(3.0);
+        let m = [F237::of(-5.0) * third, F237::ONE, F237::of(4.0) * third];
         let k = product(&m, &m);
-        let size: Wide = k.iter().map(|c| c.abs()).sum();
+        let size: F237 = k.iter().map(|c| c.abs()).sum();
         for by in [1.0, 16.0, 256.0, 4096.0] {
-            let zeros = zeros_once(&k, Wide::ROUNDING * size * Wide::of(by)).unwrap();
+            let zeros = zeros_once(&k, F237::ROUNDING * size * F237::of(by)).unwrap();
             assert_eq!(zeros.len(), 1, "{zeros:?}");
-            assert_eq!(zeros[0].1, Contact::Touching);
+            assert_eq!(zeros[0].1, RootKind::Touching);
         }
     }
 }

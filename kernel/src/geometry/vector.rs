@@ -1,6 +1,6 @@
 //! Lengths of vectors of any precision.
 
-use crate::number::precision::Number;
+use crate::number::float::Float;
 use nalgebra::{Point3, SVector, Vector3};
 
 /// What a vector's length is asked for.
@@ -14,7 +14,7 @@ pub trait Length<N> {
     fn unit(&self) -> Self;
 }
 
-impl<N: Number, const D: usize> Length<N> for SVector<N, D> {
+impl<N: Float, const D: usize> Length<N> for SVector<N, D> {
     fn length(&self) -> N {
         self.length_squared().sqrt()
     }
@@ -28,10 +28,7 @@ impl<N: Number, const D: usize> Length<N> for SVector<N, D> {
 
 /// The solution of m x = right by Gauss's elimination, the greatest pivot first; none where m has no
 /// inverse.
-pub fn solution<N: Number, const D: usize>(
-    mut m: [[N; D]; D],
-    mut right: [N; D],
-) -> Option<[N; D]> {
+pub fn solution<N: Float, const D: usize>(mut m: [[N; D]; D], mut right: [N; D]) -> Option<[N; D]> {
     for k in 0..D {
         let pivot = (k..D).max_by(|&i, &j| m[i][k].abs().total_cmp(&m[j][k].abs()))?;
         m.swap(k, pivot);
@@ -57,12 +54,12 @@ pub fn solution<N: Number, const D: usize>(
 }
 
 /// The direction of a vector; none where its length is zero.
-pub fn direction<N: Number>(v: &Vector3<N>) -> Option<Vector3<N>> {
+pub fn direction<N: Float>(v: &Vector3<N>) -> Option<Vector3<N>> {
     let length = v.length();
     (length > N::ZERO).then(|| v / length)
 }
 
 /// A point in doubles.
-pub fn rounded<N: Number>(p: &Point3<N>) -> [f64; 3] {
+pub fn rounded<N: Float>(p: &Point3<N>) -> [f64; 3] {
     [p.x, p.y, p.z].map(N::rounded)
 }

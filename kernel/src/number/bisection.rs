@@ -1,9 +1,9 @@
 //! The zero of a function between two points at which it has opposite signs, to the last digit.
 
-use super::precision::Number;
+use super::float::Float;
 
 /// More halvings than a bracket has digits.
-fn halvings<N: Number>() -> u32 {
+fn halvings<N: Float>() -> u32 {
     match N::IS_DOUBLE {
         true => 200,
         false => 512,
@@ -11,7 +11,7 @@ fn halvings<N: Number>() -> u32 {
 }
 
 /// The zero of `g` in [a, b] with opposite signs at the ends, to the last digit.
-pub fn bisect<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
+pub fn bisect<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
     if ga == N::ZERO {
         return a;
     }
@@ -37,7 +37,7 @@ pub fn bisect<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
 /// and the derivative. It ends where the next step would be less than rounding: a step of length s
 /// leaves |g''/2g'| s^2, with the second derivative from the last two points. Next to zero, where
 /// rounding is not relative, it ends where that would be so and steps are no longer shorter.
-pub fn bisect_newton<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N)) -> N {
+pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N)) -> N {
     if ga == N::ZERO {
         return a;
     }
@@ -89,12 +89,12 @@ pub fn bisect_newton<N: Number>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::wide::Wide;
+    use crate::number::extended::F237;
     use std::cell::Cell;
 
     /// The zeros of cos t - cos z for many z, found from a bracket that is not symmetric: the last
     /// step may end on either side of the zero, or on it but for rounding.
-    fn zeros_to_the_last_digit<N: Number + std::fmt::Debug>() {
+    fn zeros_to_the_last_digit<N: Float + std::fmt::Debug>() {
         let [a, b] = [0.9, 2.2].map(N::of);
         for k in 1..400 {
             let z = a + (b - a) * N::whole(k) / N::whole(400);
@@ -117,6 +117,6 @@ mod tests {
     #[test]
     fn zeros_are_found_to_the_last_digit() {
         zeros_to_the_last_digit::<f64>();
-        zeros_to_the_last_digit::<Wide>();
+        zeros_to_the_last_digit::<F237>();
     }
 }

@@ -1,7 +1,7 @@
 //! Closed intervals of doubles, rounded outwards: the first filter of every sign.
 
-use super::precision::Number;
-use super::scalar::{Scalar, harmonic, harmonic_slope, sinc_jet};
+use super::analytic::{Analytic, harmonic, harmonic_slope, sinc_jet};
+use super::float::Float;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A closed interval that holds the exact value.
@@ -15,7 +15,7 @@ pub struct Interval<N = f64> {
 
 /// A double below what was rounded to `x`: by one or two units in the last place, which costs less
 /// than the next one. A sum that is rounded to zero is zero; products see to it themselves.
-fn down<N: Number>(x: N) -> N {
+fn down<N: Float>(x: N) -> N {
     if x == N::ZERO {
         return N::ZERO;
     }
@@ -24,21 +24,21 @@ fn down<N: Number>(x: N) -> N {
 }
 
 /// A double above what was rounded to `x`.
-fn up<N: Number>(x: N) -> N {
+fn up<N: Float>(x: N) -> N {
     -down(-x)
 }
 
 /// The lesser of two numbers.
-fn least<N: Number>(a: N, b: N) -> N {
+fn least<N: Float>(a: N, b: N) -> N {
     if a < b { a } else { b }
 }
 
 /// The greater of two numbers.
-fn greatest<N: Number>(a: N, b: N) -> N {
+fn greatest<N: Float>(a: N, b: N) -> N {
     if a > b { a } else { b }
 }
 
-impl<N: Number> Interval<N> {
+impl<N: Float> Interval<N> {
     /// The whole line.
     pub const ENTIRE: Self = Self {
         lo: N::NEG_INFINITY,
@@ -197,7 +197,7 @@ impl<N: Number> Interval<N> {
     }
 }
 
-impl<N: Number> Add for Interval<N> {
+impl<N: Float> Add for Interval<N> {
     type Output = Self;
     fn add(self, o: Self) -> Self {
         if let Some(sum) = self.coarse_sum(o, |x, y| x + y) {
@@ -210,7 +210,7 @@ impl<N: Number> Add for Interval<N> {
     }
 }
 
-impl<N: Number> Sub for Interval<N> {
+impl<N: Float> Sub for Interval<N> {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
         if let Some(difference) = self.coarse_sum(o, |x, y| x - y) {
@@ -223,7 +223,7 @@ impl<N: Number> Sub for Interval<N> {
     }
 }
 
-impl<N: Number> Neg for Interval<N> {
+impl<N: Float> Neg for Interval<N> {
     type Output = Self;
     fn neg(self) -> Self {
         Self {
@@ -234,7 +234,7 @@ impl<N: Number> Neg for Interval<N> {
 }
 
 /// A product of ends; zero times infinity counts as zero.
-fn times<N: Number>(a: N, b: N) -> N {
+fn times<N: Float>(a: N, b: N) -> N {
     if a == N::ZERO || b == N::ZERO {
         N::ZERO
     } else {
@@ -242,7 +242,7 @@ fn times<N: Number>(a: N, b: N) -> N {
     }
 }
 
-impl<N: Number> Mul for Interval<N> {
+impl<N: Float> Mul for Interval<N> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
         if let Some(product) = self.coarse_product(o, |x, y| x * y) {
@@ -262,8 +262,8 @@ impl<N: Number> Mul for Interval<N> {
     }
 }
 
-impl<N: Number> Scalar for Interval<N> {
-    type Number = N;
+impl<N: Float> Analytic for Interval<N> {
+    type Float = N;
     fn constant(x: N) -> Self {
         Self::point(x)
     }

@@ -1,8 +1,8 @@
 //! A value with its first two derivatives along a curve's parameter.
 
+use super::analytic::{Analytic, harmonic_slope, sinc_jet};
+use super::float::Float;
 use super::interval::Interval;
-use super::precision::Number;
-use super::scalar::{Scalar, harmonic_slope, sinc_jet};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A value, its first and its second derivative.
@@ -16,7 +16,7 @@ pub struct Jet<S> {
     pub dd: S,
 }
 
-impl<S: Scalar> Jet<S> {
+impl<S: Analytic> Jet<S> {
     /// The parameter itself at `t`.
     pub fn variable(t: S) -> Self {
         Self {
@@ -36,7 +36,7 @@ impl<S: Scalar> Jet<S> {
     }
 }
 
-impl<S: Scalar> Add for Jet<S> {
+impl<S: Analytic> Add for Jet<S> {
     type Output = Self;
     fn add(self, o: Self) -> Self {
         Self {
@@ -47,7 +47,7 @@ impl<S: Scalar> Add for Jet<S> {
     }
 }
 
-impl<S: Scalar> Sub for Jet<S> {
+impl<S: Analytic> Sub for Jet<S> {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
         Self {
@@ -58,7 +58,7 @@ impl<S: Scalar> Sub for Jet<S> {
     }
 }
 
-impl<S: Scalar> Neg for Jet<S> {
+impl<S: Analytic> Neg for Jet<S> {
     type Output = Self;
     fn neg(self) -> Self {
         Self {
@@ -69,7 +69,7 @@ impl<S: Scalar> Neg for Jet<S> {
     }
 }
 
-impl<S: Scalar> Mul for Jet<S> {
+impl<S: Analytic> Mul for Jet<S> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
         Self {
@@ -81,33 +81,33 @@ impl<S: Scalar> Mul for Jet<S> {
 }
 
 /// The scalars that jets are taken over.
-pub trait Base: Scalar {
+pub trait JetScalar: Analytic {
     /// sin x / x with two derivatives, for 0 <= x <= pi.
     fn sinc_with_derivatives(self) -> [Self; 3];
 }
 
-impl<N: Number> Base for N {
+impl<N: Float> JetScalar for N {
     fn sinc_with_derivatives(self) -> [Self; 3] {
         sinc_jet(self)
     }
 }
 
-impl<N: Number> Base for Interval<N> {
+impl<N: Float> JetScalar for Interval<N> {
     fn sinc_with_derivatives(self) -> [Self; 3] {
         self.sinc_jet()
     }
 }
 
-impl<S: Base> Scalar for Jet<S> {
-    type Number = S::Number;
-    fn constant(x: S::Number) -> Self {
+impl<S: JetScalar> Analytic for Jet<S> {
+    type Float = S::Float;
+    fn constant(x: S::Float) -> Self {
         Self {
             v: S::constant(x),
             d: S::plain(0.0),
             dd: S::plain(0.0),
         }
     }
-    fn scale(self, k: S::Number) -> Self {
+    fn scale(self, k: S::Float) -> Self {
         Self {
             v: self.v.scale(k),
             d: self.d.scale(k),
@@ -145,7 +145,7 @@ impl<S: Base> Scalar for Jet<S> {
         let [h, dh, ddh] = self.v.sinc_with_derivatives();
         self.chain(h, dh, ddh)
     }
-    fn harmonic(self, k: &[S::Number; 5], at: (Self, Self)) -> Self {
+    fn harmonic(self, k: &[S::Float; 5], at: (Self, Self)) -> Self {
         let at = (at.0.v, at.1.v);
         let slope = harmonic_slope(k);
         let [h, dh, ddh] = [*k, slope, harmonic_slope(&slope)].map(|k| self.v.harmonic(&k, at));

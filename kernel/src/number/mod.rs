@@ -1,20 +1,20 @@
 //! Numbers: exact rationals, enclosures, intervals, jets, isolated roots, and the one place that
 //! decides signs.
 
+pub mod analytic;
 pub mod bisection;
-mod coarse;
-pub mod enclosure;
-mod interpolant;
+mod chebyshev_model;
+pub mod enclosable;
+pub mod extended;
+pub mod f64_filter;
+pub mod float;
 pub mod interval;
+mod interval_fallback;
 pub mod jet;
-pub mod precision;
-mod profile;
+mod monotone_samples;
+pub mod predicates;
 pub mod quadrature;
 pub mod rational;
-pub mod real;
+pub mod rational_interval;
 pub mod roots;
-pub mod rough;
-pub mod scalar;
-pub mod separation;
-pub mod sign;
-pub mod wide;
+pub mod separation_bound;

@@ -1,26 +1,26 @@
 //! Gauss-Legendre quadrature, adaptive for analytic integrands; of numbers of more digits by doubles
 //! where these are good enough.
 
-use super::precision::Number;
+use super::float::Float;
 use super::roots::probes;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// The nodes in (-1, 1) and the weights of a rule.
-pub type Rule<N = f64> = Vec<(N, N)>;
+pub type GaussRule<N = f64> = Vec<(N, N)>;
 
 /// The rules that integrals are taken by.
 #[derive(Debug)]
-pub struct Rules<N = f64> {
+pub struct GaussRules<N = f64> {
     /// For smooth functions over a quarter turn or so.
-    pub smooth: Rule<N>,
+    pub smooth: GaussRule<N>,
     /// Two for functions that are nearly polynomials: where they agree, the second is good.
-    pub short: [Rule<N>; 2],
+    pub short: [GaussRule<N>; 2],
     /// What two sums may differ by, relative to their size, to be settled.
     pub settled: N,
 }
 
-impl<N: Number> Rules<N> {
+impl<N: Float> GaussRules<N> {
     /// A rule with so many nodes.
     pub(super) fn new(smooth: usize, settled: N) -> Self {
         Self {
@@ -33,7 +33,7 @@ impl<N: Number> Rules<N> {
 
 /// The rule with `n` nodes, exact for polynomials up to degree 2n - 1: the roots of the Legendre
 /// polynomial by Newton's steps.
-fn gauss<N: Number>(n: usize) -> Rule<N> {
+fn gauss<N: Float>(n: usize) -> GaussRule<N> {
     let size = N::of(n as f64);
     let legendre = |x: N| {
         let (mut a, mut b) = (N::ONE, x);
@@ -57,8 +57,8 @@ fn gauss<N: Number>(n: usize) -> Rule<N> {
 }
 
 /// The integral of a vector of functions over [a, b] by one rule.
-pub fn integral<N: Number, const D: usize>(
-    rule: &Rule<N>,
+pub fn integral<N: Float, const D: usize>(
+    rule: &GaussRule<N>,
     a: N,
     b: N,
     mut f: impl FnMut(N) -> [N; D],
@@ -75,7 +75,7 @@ pub fn integral<N: Number, const D: usize>(
 }
 
 /// A vector of functions of one number.
-pub trait Integrand<N: Number, const D: usize> {
+pub trait Integrand<N: Float, const D: usize> {
     /// The values.
     fn at(&self, t: N) -> [N; D];
 
@@ -85,14 +85,14 @@ pub trait Integrand<N: Number, const D: usize> {
     }
 }
 
-impl<N: Number, const D: usize, F: Fn(N) -> [N; D]> Integrand<N, D> for F {
+impl<N: Float, const D: usize, F: Fn(N) -> [N; D]> Integrand<N, D> for F {
     fn at(&self, t: N) -> [N; D] {
         self(t)
     }
 }
 
 /// A part of the range that an integral is taken over.
-struct Part<N: Number, const D: usize> {
+struct Part<N: Float, const D: usize> {
     range: [N; 2],
     sum: [N; D],
     /// How far it may be off, in terms of what does not matter; nothing where all is settled.
@@ -101,25 +101,25 @@ struct Part<N: Number, const D: usize> {
     halves: [Option<[N; D]>; 2],
 }
 
-impl<N: Number, const D: usize> Ord for Part<N, D> {
+impl<N: Float, const D: usize> Ord for Part<N, D> {
     fn cmp(&self, other: &Self) -> Ordering {
         self.off.total_cmp(&other.off)
     }
 }
 
-impl<N: Number, const D: usize> PartialOrd for Part<N, D> {
+impl<N: Float, const D: usize> PartialOrd for Part<N, D> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl<N: Number, const D: usize> PartialEq for Part<N, D> {
+impl<N: Float, const D: usize> PartialEq for Part<N, D> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl<N: Number, const D: usize> Eq for Part<N, D> {}
+impl<N: Float, const D: usize> Eq for Part<N, D> {}
 
 /// How many parts are halved: each power of two towards a singular place takes one or two. More is
 /// asked for by rounding alone, which no halving takes away.
@@ -127,7 +127,7 @@ const MOST: usize = 192;
 
 /// The integral over [a, b], halved where both halves are farthest off the whole until they agree to
 /// within rounding or to within `floor`, an absolute error that does not matter.
-pub fn adaptive<N: Number, const D: usize>(
+pub fn adaptive<N: Float, const D: usize>(
     a: N,
     b: N,
     floor: &[N; D],
@@ -147,11 +147,11 @@ pub fn adaptive<N: Number, const D: usize>(
         .fold([N::ZERO; D], |sum, part| added(sum, part.sum))
 }
 
-fn added<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
+fn added<N: Float, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-fn halved<N: Number>([a, b]: [N; 2]) -> [[N; 2]; 2] {
+fn halved<N: Float>([a, b]: [N; 2]) -> [[N; 2]; 2] {
     let m = N::HALF * (a + b);
     [[a, m], [m, b]]
 }
@@ -159,7 +159,7 @@ fn halved<N: Number>([a, b]: [N; 2]) -> [[N; 2]; 2] {
 /// At how many places doubles are held to the function itself.
 const PLACES: usize = 5;
 
-impl<N: Number, const D: usize> Part<N, D> {
+impl<N: Float, const D: usize> Part<N, D> {
     /// A part, whose integral by one rule may be known.
     fn of(range: [N; 2], whole: Option<[N; D]>, floor: &[N; D], f: &impl Integrand<N, D>) -> Self {
         let told = Self::in_doubles(range, floor, f).or_else(|| Self::in_short(range, floor, f));
@@ -225,7 +225,7 @@ impl<N: Number, const D: usize> Part<N, D> {
 }
 
 /// The errors of the integrals over two halves that do not matter.
-fn matters<N: Number, const D: usize>(halves: [[N; D]; 2], floor: &[N; D]) -> [N; D] {
+fn matters<N: Float, const D: usize>(halves: [[N; D]; 2], floor: &[N; D]) -> [N; D] {
     std::array::from_fn(|i| {
         let scale = halves[0][i].abs() + halves[1][i].abs();
         (N::rules().settled * scale).max(floor[i])
@@ -233,7 +233,7 @@ fn matters<N: Number, const D: usize>(halves: [[N; D]; 2], floor: &[N; D]) -> [N
 }
 
 /// How far two integrals are apart, in terms of what does not matter; nothing where it is less.
-fn off<N: Number, const D: usize>(whole: [N; D], sum: [N; D], matters: &[N; D]) -> f64 {
+fn off<N: Float, const D: usize>(whole: [N; D], sum: [N; D], matters: &[N; D]) -> f64 {
     let off = |i: usize| {
         let off = (sum[i] - whole[i]).abs();
         match off <= matters[i] {

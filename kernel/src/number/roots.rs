@@ -6,19 +6,19 @@
 //! certified sign, within it a tangency. Everything else is halved. The values are distances, so
 //! the band is the part's resolution.
 
+use super::analytic::Analytic;
 use super::bisection::{bisect, bisect_newton};
-use super::interpolant::Interpolant;
+use super::chebyshev_model::ChebyshevModel;
+use super::f64_filter::F64Filter;
+use super::float::Float;
 use super::interval::Interval;
 use super::jet::Jet;
-use super::precision::Number;
-use super::profile::Profile;
-use super::rough::Rough;
-use super::scalar::Scalar;
-use super::sign::CLOSE;
+use super::monotone_samples::MonotoneSamples;
+use super::predicates::CLOSE;
 
 /// How a function meets zero at a root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Contact {
+pub enum RootKind {
     /// A simple root.
     Simple,
     /// An even number of roots within the band: the function touches zero.
@@ -29,7 +29,7 @@ pub enum Contact {
 
 /// An isolated root, or a cluster of roots within the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Root<N: Number = f64> {
+pub struct Root<N: Float = f64> {
     /// The best parameter.
     pub t: N,
     /// Where the cluster begins.
@@ -37,14 +37,14 @@ pub struct Root<N: Number = f64> {
     /// Where the cluster ends.
     pub hi: N,
     /// How zero is met.
-    pub contact: Contact,
+    pub contact: RootKind,
     /// The least absolute value met next to the root where the answer was not plain.
     pub margin: Option<N>,
 }
 
 /// The zeros of a function on an interval.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Zeros<N: Number = f64> {
+pub enum Roots<N: Float = f64> {
     /// The function is within the band throughout.
     Everywhere,
     /// The roots, and what was found to be apart from zero by little.
@@ -58,7 +58,7 @@ pub enum Zeros<N: Number = f64> {
 }
 
 #[derive(Clone, Copy)]
-struct Cluster<N: Number = f64> {
+struct Cluster<N: Float = f64> {
     lo: N,
     hi: N,
     t: N,
@@ -87,7 +87,7 @@ const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 const FRINGE: f64 = 1.0 + 1.0 / 64.0;
 
 /// A function whose roots are sought.
-pub trait Function<N: Number = f64> {
+pub trait Function<N: Float = f64> {
     /// The certified ranges of the value and of two derivatives over an interval.
     fn over(&self, t: Interval<N>) -> Jet<Interval<N>>;
 
@@ -97,7 +97,7 @@ pub trait Function<N: Number = f64> {
     }
 
     /// The same in doubles over a piece, where it is one of more digits that doubles follow.
-    fn roughly(&self, _piece: [N; 2]) -> Option<Rough<'_>> {
+    fn roughly(&self, _piece: [N; 2]) -> Option<F64Filter<'_>> {
         None
     }
 
@@ -117,7 +117,7 @@ pub trait Function<N: Number = f64> {
     }
 }
 
-impl<N: Number, F: Fn(Interval<N>) -> Jet<Interval<N>>> Function<N> for F {
+impl<N: Float, F: Fn(Interval<N>) -> Jet<Interval<N>>> Function<N> for F {
     fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
         self(t)
     }
@@ -132,7 +132,7 @@ const SMALL: f64 = 1.0 / 16.0;
 const PROBES: u32 = 67;
 
 /// Fractions of a range: the first few already lie far apart, by steps of the golden section.
-pub fn probes<N: Number>() -> impl Iterator<Item = N> {
+pub fn probes<N: Float>() -> impl Iterator<Item = N> {
     (1..=PROBES).map(|k| (N::whole(k) * N::of(0.618_033_988_749_895)).fract())
 }
 
@@ -147,31 +147,31 @@ const MANY: u32 = 64;
 /// something is always told of what is level.
 const FINE: f64 = 1.0 / 256.0;
 
-struct Search<'a, F, N: Number> {
+struct Search<'a, F, N: Float> {
     f: &'a F,
     band: N,
     /// What is no further from zero than this is told.
     reach: N,
     floor: N,
     clusters: Vec<Cluster<N>>,
-    profile: Profile<N>,
+    profile: MonotoneSamples<N>,
 }
 
 /// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
 /// resolution. A closed curve passes its whole period and is wrapped by the caller. No misses are
 /// sought.
-pub fn isolate<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Zeros<N> {
+pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Roots<N> {
     search(f, breaks, band, band)
 }
 
 /// The same, and all misses that are close calls.
-pub fn isolate_closely<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Zeros<N> {
+pub fn isolate_closely<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Roots<N> {
     search(f, breaks, band, N::of(CLOSE) * band)
 }
 
-fn search<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> Zeros<N> {
+fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> Roots<N> {
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
-        return Zeros::At {
+        return Roots::At {
             roots: Vec::new(),
             misses: Vec::new(),
         };
@@ -183,7 +183,7 @@ fn search<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> 
         reach,
         floor,
         clusters: Vec::new(),
-        profile: Profile::default(),
+        profile: MonotoneSamples::default(),
     };
     for pair in breaks.windows(2) {
         search.piece(pair[0], pair[1]);
@@ -191,7 +191,7 @@ fn search<N: Number, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> 
     search.finish(first, last)
 }
 
-impl<N: Number, F: Function<N>> Search<'_, F, N> {
+impl<N: Float, F: Function<N>> Search<'_, F, N> {
     fn value(&self, t: N) -> N {
         self.f.value(t)
     }
@@ -282,7 +282,7 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
     /// The same of a function that is a polynomial there within a small part of the band; false where
     /// it is none.
     fn interpolated(&mut self, a: N, b: N) -> bool {
-        let Some(polynomial) = Interpolant::of(self.f, [a, b], N::of(FINE) * self.band) else {
+        let Some(polynomial) = ChebyshevModel::of(self.f, [a, b], N::of(FINE) * self.band) else {
             return false;
         };
         let mut stack = vec![(a, b)];
@@ -437,7 +437,7 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
             || self.value(N::HALF * (before.hi + after.lo)).abs() <= N::of(FRINGE) * self.band
     }
 
-    fn finish(self, first: N, last: N) -> Zeros<N> {
+    fn finish(self, first: N, last: N) -> Roots<N> {
         let mut merged: Vec<Vec<Cluster<N>>> = Vec::new();
         for c in &self.clusters {
             match merged.last_mut() {
@@ -450,7 +450,7 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
             && only[only.len() - 1].hi >= last
             && last > first
         {
-            return Zeros::Everywhere;
+            return Roots::Everywhere;
         }
         let ends: Vec<(N, N)> = merged
             .iter()
@@ -478,7 +478,7 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
         let roots = roots.collect();
         let mut misses = self.profile.turns(|t| self.value(t));
         misses.retain(|m| m.1.abs() > self.band && m.1.abs() < self.reach);
-        Zeros::At { roots, misses }
+        Roots::At { roots, misses }
     }
 
     /// One root from the clusters that touch one another.
@@ -495,14 +495,14 @@ impl<N: Number, F: Function<N>> Search<'_, F, N> {
         if crosses {
             let mut simple = group.iter().filter(|c| c.kind == Kind::Simple);
             return match (simple.next(), simple.next()) {
-                (Some(c), None) => found(c.t, Contact::Simple),
-                _ if self.is_monotone(group) => found(self.crossing(lo, hi), Contact::Simple),
-                _ => found(self.inflection(lo, hi), Contact::Inflected),
+                (Some(c), None) => found(c.t, RootKind::Simple),
+                _ if self.is_monotone(group) => found(self.crossing(lo, hi), RootKind::Simple),
+                _ => found(self.inflection(lo, hi), RootKind::Inflected),
             };
         }
         let extremum = group.iter().find(|c| c.kind == Kind::Extremum);
         let t = extremum.map_or_else(|| self.balance(lo, hi, |j| j.d), |c| c.t);
-        found(t, Contact::Touching)
+        found(t, RootKind::Touching)
     }
 
     /// Whether the function is monotone over clusters that touch one another.

@@ -4,7 +4,7 @@
 use super::fixed::Place;
 use super::point::{FIRST, Form};
 use super::polynomial::Polynomial;
-use crate::number::precision::Number;
+use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 
 /// Of how many polynomials, the simplest ones, gradients are compared.
@@ -19,7 +19,7 @@ const ONE: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// The polynomials that vanish at a point with the given ones because the gradients of these depend
 /// on one another there.
-pub fn deflated<N: Number>(polynomials: &[Polynomial], p: &Point3<N>) -> Vec<Polynomial> {
+pub fn deflated<N: Float>(polynomials: &[Polynomial], p: &Point3<N>) -> Vec<Polynomial> {
     let Some(place) = Place::of(p, FIRST) else {
         return Vec::new();
     };

@@ -1,7 +1,7 @@
 //! Proofs that surfaces have a point in common.
 //!
 //! Numbers of many digits propose: a point, and the surfaces that seem to pass through it. A
-//! [`Polynomial`] is a surface without rounding, a [`Point`] the exact common zero of three of them
+//! [`Polynomial`] is a surface without rounding, a [`AlgebraicPoint`] the exact common zero of three of them
 //! next to a proposed place, known to as many bits as are asked for. Of any further polynomial it is
 //! then told whether it is zero there: a value that is smaller than the separation bound allows
 //! without being zero is zero.
@@ -12,7 +12,7 @@ mod point;
 mod polynomial;
 
 pub use deflation::deflated;
-pub use point::{Answer, Point};
+pub use point::{AlgebraicPoint, ZeroTest};
 pub use polynomial::Polynomial;
 
 #[cfg(test)]

@@ -10,7 +10,7 @@
 
 use super::fixed::Place;
 use super::polynomial::Polynomial;
-use crate::number::precision::Number;
+use crate::number::float::Float;
 use crate::number::rational::{Rational, to_f64};
 use dashu::base::{Abs, BitTest};
 use dashu::integer::IBig;
@@ -18,7 +18,7 @@ use nalgebra::{Point3, Vector3};
 
 /// Whether a polynomial is zero at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum ZeroTest {
     /// It is, which is proven.
     Zero,
     /// It is not, which is proven.
@@ -29,7 +29,7 @@ pub enum Answer {
 
 /// An exact point: the zero of three polynomials next to a place.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct AlgebraicPoint {
     base: [Form; 3],
     place: Place,
     /// log₂ of a bound of how far the place is off.
@@ -98,10 +98,10 @@ impl Form {
     }
 }
 
-impl Point {
+impl AlgebraicPoint {
     /// The point next to a place that is the zero of three of some polynomials, the first ones whose
     /// gradients are independent; none where it is not proven that there is one, and one only.
-    pub fn next_to<'p, N: Number>(
+    pub fn next_to<'p, N: Float>(
         polynomials: impl IntoIterator<Item = &'p Polynomial>,
         p: &Point3<N>,
     ) -> Option<Self> {
@@ -130,7 +130,7 @@ impl Point {
     }
 
     /// The way to it from another point, as far as numbers of a kind tell.
-    pub fn from<N: Number>(&self, p: &Point3<N>) -> Vector3<N> {
+    pub fn from<N: Float>(&self, p: &Point3<N>) -> Vector3<N> {
         let one = Rational::from(IBig::ONE << self.place.bits);
         let at = |i: usize| N::nearest(&(Rational::from(self.place.at[i].clone()) / &one));
         Vector3::new(at(0), at(1), at(2)) - p.coords
@@ -186,14 +186,14 @@ impl Point {
     }
 
     /// Whether a polynomial is zero there.
-    pub fn is_zero_of(&mut self, h: &Polynomial) -> Answer {
+    pub fn is_zero_of(&mut self, h: &Polynomial) -> ZeroTest {
         if self.is_defined_by(h) {
-            return Answer::Zero;
+            return ZeroTest::Zero;
         }
         if h.degree() == 0 {
             return match h.height() {
-                0 => Answer::Zero,
-                _ => Answer::Apart,
+                0 => ZeroTest::Zero,
+                _ => ZeroTest::Apart,
             };
         }
         let slopes = h.gradient();
@@ -207,15 +207,15 @@ impl Point {
             let value = self.place.value(h);
             // Of a number of n bits the least is two to the power of n - 1.
             if !value.is_zero() && log2(&value) - 1.0 - bits > off {
-                return Answer::Apart;
+                return ZeroTest::Apart;
             }
             if off.max(log2(&value) - bits) + 1.0 < -bound {
-                return Answer::Zero;
+                return ZeroTest::Zero;
             }
             let wanted = bound + steep + self.place.rounding(h) as f64;
             let wanted = wanted as usize + SPARE;
             if wanted > MOST || self.place.bits >= 2 * wanted || self.refine(wanted).is_none() {
-                return Answer::Open;
+                return ZeroTest::Open;
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Polynomials in x, y and z with whole coefficients: surfaces without rounding.
 
-use crate::geometry::relation::Coefficients;
 use crate::geometry::surface::Surface;
-use crate::number::precision::Number;
+use crate::geometry::surface_pair::Coefficients;
+use crate::number::float::Float;
 use crate::number::rational::Rational;
 use dashu::base::{BitTest, Gcd};
 use dashu::integer::{IBig, UBig};
@@ -140,7 +140,7 @@ impl Polynomial {
     }
 
     /// A surface, both nappes of a cone.
-    pub fn of<N: Number>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
+    pub fn of<N: Float>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
         let (v, q) = away(&exact.point);
         let d = whole_vector(&exact.direction);
         let square = |p: &Self| p.times(p);

@@ -1,10 +1,10 @@
 //! Planted points: what passes through them is proven to, what misses them by little is not.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use super::{Answer, Point, Polynomial};
+use super::{AlgebraicPoint, Polynomial, ZeroTest};
 use crate::geometry::frame::Frame;
-use crate::geometry::relation::Coefficients;
 use crate::geometry::surface::of_every_kind;
+use crate::geometry::surface_pair::Coefficients;
 use crate::number::rational::Rational;
 use nalgebra::Point3;
 use proptest::prelude::*;
@@ -47,7 +47,7 @@ fn a_rational_point_of_planes() {
         surface(PLANE, whole([0; 3]), [1, 1, 2], ratio(0, 1)),
     ];
     let near = Point3::new(3.0, 4.0, -3.5);
-    let mut point = Point::next_to(&planes, &near).unwrap();
+    let mut point = AlgebraicPoint::next_to(&planes, &near).unwrap();
     let through = |kind, direction, size| surface(kind, origin(), direction, size);
     let along = [
         (CYLINDER, [0, 0, 1], ratio(5, 1)),
@@ -56,12 +56,12 @@ fn a_rational_point_of_planes() {
     for (kind, direction, size) in along {
         assert_eq!(
             point.is_zero_of(&through(kind, direction, size)),
-            Answer::Zero
+            ZeroTest::Zero
         );
     }
     let little = Rational::from_parts(1.into(), dashu::integer::UBig::ONE << 400);
     let missed = through(CYLINDER, [0, 0, 1], ratio(5, 1) + little);
-    assert_eq!(point.is_zero_of(&missed), Answer::Apart);
+    assert_eq!(point.is_zero_of(&missed), ZeroTest::Apart);
 }
 
 #[test]
@@ -73,11 +73,11 @@ fn an_irrational_point() {
         surface(PLANE, origin(), [0, 0, 1], ratio(0, 1)),
     ];
     let half = 0.5_f64.sqrt();
-    let mut point = Point::next_to(&base, &Point3::new(half, half, 0.0)).unwrap();
+    let mut point = AlgebraicPoint::next_to(&base, &Point3::new(half, half, 0.0)).unwrap();
     let sphere = surface(SPHERE, origin(), [0, 0, 1], ratio(1, 1));
     let torus = surface(TORUS, origin(), [1, -1, 0], ratio(2, 1));
-    assert_eq!(point.is_zero_of(&sphere), Answer::Zero);
-    assert_eq!(point.is_zero_of(&torus), Answer::Zero);
+    assert_eq!(point.is_zero_of(&sphere), ZeroTest::Zero);
+    assert_eq!(point.is_zero_of(&torus), ZeroTest::Zero);
     let tiny = ratio(1, 1 << 62);
     let tiny = &tiny * &tiny * &tiny;
     let aside = surface(
@@ -86,7 +86,7 @@ fn an_irrational_point() {
         [0, 0, 1],
         ratio(1, 1),
     );
-    assert_eq!(point.is_zero_of(&aside), Answer::Apart);
+    assert_eq!(point.is_zero_of(&aside), ZeroTest::Apart);
 }
 
 #[test]
@@ -95,14 +95,14 @@ fn a_touch_and_an_apex() {
     let ball = surface(SPHERE, origin(), [0, 0, 1], ratio(1, 1));
     let touching = plane.touching(&ball);
     let all = std::iter::once(&plane).chain(&touching);
-    let mut point = Point::next_to(all, &Point3::new(0.0, 0.0, 1.0)).unwrap();
-    assert_eq!(point.is_zero_of(&ball), Answer::Zero);
+    let mut point = AlgebraicPoint::next_to(all, &Point3::new(0.0, 0.0, 1.0)).unwrap();
+    assert_eq!(point.is_zero_of(&ball), ZeroTest::Zero);
     // The gradient of a cone vanishes at its apex.
     let cone = surface(CONE, whole([1, 2, 3]), [1, 2, 2], ratio(3, 4));
     let gradient = cone.gradient();
-    let mut apex = Point::next_to(&gradient, &Point3::new(1.0, 2.0, 3.0)).unwrap();
-    assert_eq!(apex.is_zero_of(&cone), Answer::Zero);
-    assert_eq!(apex.is_zero_of(&ball), Answer::Apart);
+    let mut apex = AlgebraicPoint::next_to(&gradient, &Point3::new(1.0, 2.0, 3.0)).unwrap();
+    assert_eq!(apex.is_zero_of(&cone), ZeroTest::Zero);
+    assert_eq!(apex.is_zero_of(&ball), ZeroTest::Apart);
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn dependent_surfaces_have_no_point_of_their_own() {
     let plane = |z| surface(PLANE, whole([0, 0, z]), [0, 0, 1], ratio(0, 1));
     let side = surface(PLANE, origin(), [1, 0, 0], ratio(0, 1));
     let middle = Point3::new(0.0, 0.0, 0.0);
-    assert!(Point::next_to(&[plane(0), plane(0), side], &middle).is_none());
+    assert!(AlgebraicPoint::next_to(&[plane(0), plane(0), side], &middle).is_none());
 }
 
 proptest! {
@@ -133,12 +133,12 @@ proptest! {
         let [a, b, c, d] = spheres.clone().map(|(o, r)| surface(SPHERE, o, [0, 0, 1], r));
         let near = Point3::from(p.each_ref().map(crate::number::rational::to_f64));
         let base = [a, b, c];
-        if let Some(mut point) = Point::next_to(&base, &near) {
-            prop_assert_eq!(point.is_zero_of(&d), Answer::Zero);
+        if let Some(mut point) = AlgebraicPoint::next_to(&base, &near) {
+            prop_assert_eq!(point.is_zero_of(&d), ZeroTest::Zero);
             let little = Rational::from_parts(1.into(), dashu::integer::UBig::ONE << power);
             let (o, r) = spheres[3].clone();
             let missed = surface(SPHERE, o, [0, 0, 1], r + little);
-            prop_assert_eq!(point.is_zero_of(&missed), Answer::Apart);
+            prop_assert_eq!(point.is_zero_of(&missed), ZeroTest::Apart);
         }
     }
 }

@@ -8,7 +8,7 @@
 use super::Accuracy;
 use super::edges::{Polylines, STEEPEST, off_chord};
 use crate::brep::Brep;
-use crate::brep::locate::{FaceLocator, Place};
+use crate::brep::locate::{FaceLocator, PointLocation};
 use crate::brep::topology::{FaceId, Sense};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Sphere, Surface, Torus, turn};
@@ -196,8 +196,9 @@ impl<'a> Around<'a> {
         }
         let Sphere { frame, radius } = self.sphere;
         let locator = FaceLocator::of(self.brep, self.face, band);
-        let outside =
-            |d: &Vector3<f64>| locator.place(&(frame.origin + d * *radius)) == Place::Outside;
+        let outside = |d: &Vector3<f64>| {
+            locator.place(&(frame.origin + d * *radius)) == PointLocation::Outside
+        };
         // Next to the boundary, to the right of it, for faces that cover all but a little.
         let beside = locator.arcs().iter().flat_map(|a| {
             let t = 0.5 * (a.range[0] + a.range[1]);

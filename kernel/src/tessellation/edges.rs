@@ -1,7 +1,7 @@
 //! Edges divided into chords, once for all faces.
 
 use super::Accuracy;
-use super::domain::Division;
+use super::face_triangulation::Division;
 use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId};
 use nalgebra::{Point3, Vector3};

@@ -8,19 +8,19 @@
 //! A mesh is made for looking, for other programs and for checks. No result of ours rests on it.
 
 mod charts;
-mod domain;
+mod chord_test;
 mod edges;
-mod fit;
+mod face_triangulation;
 mod refine;
 
 use crate::brep::Brep;
 use crate::brep::topology::FaceId;
 use crate::geometry::surface::Surface;
 use charts::Chart;
-use domain::{Division, Domain};
 use edges::Polylines;
+use face_triangulation::{Division, FaceTriangulation};
 use nalgebra::{Point3, Vector3};
-use refine::Growth;
+use refine::Refiner;
 use std::collections::HashMap;
 
 /// How near a mesh comes to the boundary.
@@ -104,7 +104,7 @@ pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, T
         .face_ids()
         .map(|face| Chart::of(brep, face, &lines, accuracy, band))
         .collect();
-    let mut domains: Vec<Option<Domain>> = charts.iter().map(|_| None).collect();
+    let mut domains: Vec<Option<FaceTriangulation>> = charts.iter().map(|_| None).collect();
     for round in 0.. {
         let mut divisions: Vec<Division> = Vec::new();
         let mut settled = true;
@@ -120,7 +120,7 @@ pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, T
                 return Err(TessellationError::TooMany { face, limit: LIMIT });
             }
             settled = false;
-            match Domain::of(brep, face, chart, accuracy, &mut lines) {
+            match FaceTriangulation::of(brep, face, chart, accuracy, &mut lines) {
                 Ok(found) => *domain = Some(found),
                 Err(found) => divisions.extend(found),
             }
@@ -130,7 +130,7 @@ pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, T
         }
         lines.divide(brep, divisions);
     }
-    let mut growth = Growth::new(brep, accuracy, lines);
+    let mut growth = Refiner::new(brep, accuracy, lines);
     for (face, domain) in brep.topology.face_ids().zip(domains.into_iter().flatten()) {
         growth.add(face, &charts[face.index()], domain)?;
     }
@@ -169,7 +169,7 @@ impl Mesh {
             let on = match brep.surface(triangle.face) {
                 Surface::Cone(cone) => {
                     let from = |p: &Point3<f64>| (p - cone.frame.origin).norm();
-                    let is_apex = from(&corners[k]) <= from(&across) * fit::APEX;
+                    let is_apex = from(&corners[k]) <= from(&across) * chord_test::APEX;
                     if is_apex { across } else { corners[k] }
                 }
                 _ => corners[k],

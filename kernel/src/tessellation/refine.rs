@@ -1,9 +1,9 @@
 //! The triangles of a face: points are added inside until they follow the surface.
 
 use super::charts::Chart;
-use super::domain::{Corner, Domain, Side};
+use super::chord_test::ChordTest;
 use super::edges::Polylines;
-use super::fit::Fit;
+use super::face_triangulation::{Corner, FaceTriangulation, Side};
 use super::{Accuracy, LIMIT, Mesh, TessellationError, Triangle};
 use crate::brep::Brep;
 use crate::brep::topology::FaceId;
@@ -14,7 +14,7 @@ use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use std::collections::HashSet;
 
 /// A mesh as its faces are added.
-pub(super) struct Growth<'a> {
+pub(super) struct Refiner<'a> {
     brep: &'a Brep,
     accuracy: &'a Accuracy,
     /// What is there of it.
@@ -25,7 +25,7 @@ pub(super) struct Growth<'a> {
     taken: HashSet<[u32; 2]>,
 }
 
-impl<'a> Growth<'a> {
+impl<'a> Refiner<'a> {
     /// The points of the divided edges, and no triangle.
     pub fn new(brep: &'a Brep, accuracy: &'a Accuracy, lines: Polylines) -> Self {
         let along = |edge| lines.nodes(edge).iter().map(|n| n.point).collect();
@@ -49,7 +49,7 @@ impl<'a> Growth<'a> {
         &mut self,
         face: FaceId,
         chart: &Chart,
-        mut domain: Domain,
+        mut domain: FaceTriangulation,
     ) -> Result<(), TessellationError> {
         let mirrored = chart.is_mirrored(self.brep.sense(face));
         loop {
@@ -74,7 +74,7 @@ impl<'a> Growth<'a> {
         &mut self,
         face: FaceId,
         chart: &Chart,
-        domain: &mut Domain,
+        domain: &mut FaceTriangulation,
         missing: Vec<Point2<f64>>,
     ) -> Result<(), TessellationError> {
         let before = domain.net.num_vertices();
@@ -99,7 +99,7 @@ impl<'a> Growth<'a> {
     /// Points in the middle of the sides that are there already, of an edge, of another face or on
     /// the other side of a seam: four triangles would have one side, as they do at the tip of a wedge
     /// of two faces.
-    fn doubled(&self, domain: &Domain, inside: &[Inner]) -> Vec<Point2<f64>> {
+    fn doubled(&self, domain: &FaceTriangulation, inside: &[Inner]) -> Vec<Point2<f64>> {
         // Without seams a point of the face has one place in its chart.
         let mut own: HashSet<[u32; 2]> = on_seams(domain).collect();
         let has_seams = !domain.glued.is_empty();
@@ -111,7 +111,7 @@ impl<'a> Growth<'a> {
     }
 
     /// Notes the sides between points that other faces may have, too.
-    fn take(&mut self, domain: &Domain, inside: &[Inner]) {
+    fn take(&mut self, domain: &FaceTriangulation, inside: &[Inner]) {
         let free = free_sides(domain, inside).into_iter().map(|(side, _)| side);
         let all = free.chain(on_seams(domain));
         let shared = self.shared;
@@ -119,7 +119,13 @@ impl<'a> Growth<'a> {
     }
 
     /// Adds triangles that follow a face.
-    fn finish(&mut self, face: FaceId, domain: &Domain, inside: Vec<Inner>, mirrored: bool) {
+    fn finish(
+        &mut self,
+        face: FaceId,
+        domain: &FaceTriangulation,
+        inside: Vec<Inner>,
+        mirrored: bool,
+    ) {
         let inside = inside.into_iter().map(|triangle| {
             let corners = domain.net.face(triangle).vertices();
             corners.map(|v| v.data().point)
@@ -139,7 +145,7 @@ fn unordered([a, b]: [u32; 2]) -> [u32; 2] {
 }
 
 /// The sides inside a face that may be divided, with the places of their ends.
-fn free_sides(domain: &Domain, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])> {
+fn free_sides(domain: &FaceTriangulation, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])> {
     let free = inside.iter().flat_map(|&triangle| {
         let edges = domain.net.face(triangle).adjacent_edges();
         edges.into_iter().filter(|edge| {
@@ -155,7 +161,7 @@ fn free_sides(domain: &Domain, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])>
 }
 
 /// The sides of a face's seams.
-fn on_seams(domain: &Domain) -> impl Iterator<Item = [u32; 2]> {
+fn on_seams(domain: &FaceTriangulation) -> impl Iterator<Item = [u32; 2]> {
     let point = |i: usize| {
         let vertex = domain.net.vertex(FixedVertexHandle::from_index(i));
         vertex.data().point
@@ -168,7 +174,7 @@ type Inner = FixedFaceHandle<InnerTag>;
 
 /// The triangles inside a face, in order; none where its edges contradict one another. A region
 /// that no edge bounds is inside.
-fn inside(domain: &Domain, mirrored: bool) -> Option<Vec<Inner>> {
+fn inside(domain: &FaceTriangulation, mirrored: bool) -> Option<Vec<Inner>> {
     let net = &domain.net;
     let count = net.num_all_faces();
     let mut region = vec![usize::MAX; count];
@@ -227,7 +233,7 @@ const OF_SIDES: f64 = 0.75;
 fn missing(
     surface: &Surface,
     chart: &Chart,
-    domain: &Domain,
+    domain: &FaceTriangulation,
     inside: &[Inner],
     accuracy: &Accuracy,
     points: &[Point3<f64>],
@@ -235,7 +241,7 @@ fn missing(
     if matches!(surface, Surface::Plane(_)) {
         return Vec::new();
     }
-    let fit = |accuracy| Fit {
+    let fit = |accuracy| ChordTest {
         surface,
         chart,
         accuracy,

@@ -12,7 +12,7 @@ use crate::learned::Learned;
 use crate::pose::chain::PartChain;
 use nalgebra::{Isometry3, Point3, Vector3};
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::extent;
+use premio_kernel::brep::bounding_box;
 use premio_kernel::brep::topology::{EdgeId, FaceId, VertexId};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
@@ -60,7 +60,7 @@ impl<'a> Part<'a> {
     /// A part with a boundary and a resolution, of whose features something is learned.
     pub fn new(brep: &'a Brep, band: f64, learned: &Learned) -> Self {
         let states = |edge: EdgeId| learned.states(&Source::Edge { edge: edge.0 });
-        let hull = extent::bounds(brep);
+        let hull = bounding_box::bounds(brep);
         let (centre, radius) = (hull.centre(), 0.5 * hull.diagonal());
         let (strokes, marks) = marks::marks(brep, radius, states);
         let all = chains(brep, &strokes);

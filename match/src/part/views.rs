@@ -6,9 +6,9 @@ use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_predict::sphere::{Lattice, Sampling, points};
 use premio_visibility::camera::Camera;
+use premio_visibility::contour_arc::{Junctions, LimbArc, limb_arcs};
 use premio_visibility::projection::Projection;
-use premio_visibility::sight::{Own, Scene};
-use premio_visibility::strand::{Junctions, LimbArc, limb_arcs};
+use premio_visibility::ray_casting::{OriginIncidence, Scene};
 use premio_visibility::view::part_size;
 use std::sync::OnceLock;
 
@@ -86,13 +86,15 @@ fn view(part: &Part<'_>, direction: &Vector3<f64>, stride: usize) -> View {
     let asked = view.hidden.iter_mut().zip(&part.marks).step_by(stride);
     for (hidden, mark) in asked {
         // What the own faces hide is asked where the eye really is.
-        *hidden = mark.faces(&eye) && is_hidden(&scene, mark, part.faces(mark), Own::Through);
+        *hidden =
+            mark.faces(&eye) && is_hidden(&scene, mark, part.faces(mark), OriginIncidence::Through);
     }
     let mut junctions = Junctions::new(&projection, part.brep.topology.vertices as usize);
     if let Ok(limbs) = limb_arcs(&scene, &mut junctions) {
         for (number, arc) in limbs.arcs.iter().enumerate() {
             let stroke = part.strokes.len() + number;
-            let visible = |mark: &Mark| !is_hidden(&scene, mark, [arc.face; 2], Own::Tangent);
+            let visible =
+                |mark: &Mark| !is_hidden(&scene, mark, [arc.face; 2], OriginIncidence::Tangent);
             let marks = limb(arc, stroke).skip(stride / 2).step_by(stride);
             view.limbs.extend(marks.filter(visible));
         }
@@ -101,12 +103,12 @@ fn view(part: &Part<'_>, direction: &Vector3<f64>, stride: usize) -> View {
 }
 
 /// Whether anything lies before a mark on faces that a line of sight leaves so.
-fn is_hidden(scene: &Scene<'_>, mark: &Mark, faces: [FaceId; 2], leaves: Own) -> bool {
+fn is_hidden(scene: &Scene<'_>, mark: &Mark, faces: [FaceId; 2], leaves: OriginIncidence) -> bool {
     let own = |face| {
         if faces.contains(&face) {
             leaves
         } else {
-            Own::No
+            OriginIncidence::No
         }
     };
     scene.is_hidden(&mark.point, &own)
@@ -134,9 +136,9 @@ mod tests {
 
     use super::*;
     use crate::learned::Learned;
-    use premio_csg::boundary::{EvaluationOptions, evaluate};
-    use premio_csg::reader::{Format, Options, read};
-    use premio_visibility::contour::{Contour, Kind, Piece};
+    use premio_csg::evaluate::{EvaluationOptions, evaluate};
+    use premio_csg::reader::{Format, ReadOptions, read};
+    use premio_visibility::contour::{Contour, ContourKind, ContourPiece};
     use premio_visibility::view::contours;
 
     /// A plate with a hole, a boss and a ball: edges and limbs that hide one another.
@@ -150,7 +152,7 @@ mod tests {
     ]}"#;
 
     fn is_visible(contour: &Contour, t: f64) -> bool {
-        let within = |piece: &&Piece| {
+        let within = |piece: &&ContourPiece| {
             let [from, to] = piece.t;
             let t = contour.curve3.in_cycle(t, from);
             t >= from && t <= to
@@ -164,7 +166,13 @@ mod tests {
 
     #[test]
     fn marks_are_hidden_where_contours_are() {
-        let tree = read("part", PART.as_bytes(), Format::Json, &Options::default()).unwrap();
+        let tree = read(
+            "part",
+            PART.as_bytes(),
+            Format::Json,
+            &ReadOptions::default(),
+        )
+        .unwrap();
         let evaluation = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
         let part = Part::new(&evaluation.brep, evaluation.resolution, &Learned::nothing());
         let (mut hidden, mut limbs) = (0, 0);
@@ -185,8 +193,8 @@ mod tests {
                 hidden += usize::from(known);
             }
             // So much of every limb's length is visible, within a mark at each end of a piece.
-            for contour in all.iter().filter(|c| c.kind == Kind::Limb) {
-                let length = |p: &Piece| p.t[1] - p.t[0];
+            for contour in all.iter().filter(|c| c.kind == ContourKind::Limb) {
+                let length = |p: &ContourPiece| p.t[1] - p.t[0];
                 let shown = contour.pieces.iter().filter(|p| p.visible).map(length);
                 let share = shown.sum::<f64>() / contour.pieces.iter().map(length).sum::<f64>();
                 let own = |m: &&Mark| {

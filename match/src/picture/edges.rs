@@ -1,7 +1,7 @@
 //! Edge pixels by place and orientation.
 
 use nalgebra::{Point2, Vector2};
-use premio_detect::{Detection, Shape};
+use premio_detect::{Detection, SegmentShape};
 use std::f64::consts::PI;
 
 /// How many classes of orientation there are.
@@ -63,7 +63,7 @@ fn segment_normals(detection: &Detection) -> Vec<Option<(Vector2<f64>, f64, u32)
         for &pixel in pixels {
             let gradient = Vector2::from(detection.pixels[pixel as usize].gradient);
             let normal = match segment.shape {
-                Shape::Line { ends: [a, b] } => Vector2::new(a[1] - b[1], b[0] - a[0]),
+                SegmentShape::Line { ends: [a, b] } => Vector2::new(a[1] - b[1], b[0] - a[0]),
                 _ => gradient,
             };
             all[pixel as usize] = normal

@@ -1,7 +1,7 @@
 //! Lines of a picture: straight segments, and those that become one where an edge is broken.
 
 use nalgebra::{Point2, Vector2};
-use premio_detect::{Detection, Shape};
+use premio_detect::{Detection, SegmentShape};
 
 /// How far, in pixels, pieces of one line may lie off it.
 const OFF: f64 = 1.5;
@@ -54,7 +54,7 @@ impl Line {
 pub fn lines(detection: &Detection) -> Vec<Line> {
     let mut all: Vec<Line> = Vec::new();
     for (i, segment) in (0..).zip(&detection.segments) {
-        if let Shape::Line { ends } = segment.shape {
+        if let SegmentShape::Line { ends } = segment.shape {
             let ends = ends.map(Point2::from);
             let length = (ends[1] - ends[0]).norm();
             all.extend(Line::new(ends, length, vec![i]));

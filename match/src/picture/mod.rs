@@ -10,7 +10,7 @@ pub use edges::{Edges, Hit, PIECE, Reach, bin};
 pub use lines::{Line, lines};
 pub use reduced::reduced;
 
-use premio_detect::{Detection, Detector, Domain, Grey, Mask, Shape};
+use premio_detect::{Detection, Detector, Grey, Mask, PixelMask, SegmentShape};
 
 /// A picture with its features.
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ pub struct Picture {
 impl Picture {
     /// The features that a detector finds in an image.
     pub fn new(grey: &Grey, detector: &Detector) -> Self {
-        let domain = Domain::full(grey.width, grey.height);
+        let domain = PixelMask::full(grey.width, grey.height);
         let detection = detector.detect(grey, &domain);
         let size = [grey.width, grey.height];
         Self {
@@ -46,8 +46,8 @@ impl Picture {
     /// The ends of a segment; of a whole ellipse those of its longer axis.
     pub fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
         match self.detection.segments[segment as usize].shape {
-            Shape::Line { ends } | Shape::Arc { ends, .. } => ends,
-            Shape::Ellipse { centre, axes, .. } => {
+            SegmentShape::Line { ends } | SegmentShape::Arc { ends, .. } => ends,
+            SegmentShape::Ellipse { centre, axes, .. } => {
                 [1.0, -1.0].map(|s| [0, 1].map(|i| centre[i] + s * axes[0][i]))
             }
         }
@@ -57,7 +57,9 @@ impl Picture {
 /// See [`Picture::straightness`].
 fn straightness(detection: &Detection) -> f64 {
     let straight = detection.segments.iter().filter_map(|s| match s.shape {
-        Shape::Line { ends: [a, b] } => ((b[0] - a[0]).hypot(b[1] - a[1]) >= LONG).then_some(s.rms),
+        SegmentShape::Line { ends: [a, b] } => {
+            ((b[0] - a[0]).hypot(b[1] - a[1]) >= LONG).then_some(s.rms)
+        }
         _ => None,
     });
     let mut all: Vec<f64> = straight.collect();

@@ -135,24 +135,24 @@ mod tests {
     use super::super::refine::moved;
     use super::super::tests::{CAMERA, direction, pose};
     use super::*;
-    use premio_csg::boundary::{EvaluationOptions, evaluate};
-    use premio_csg::reader::{Format, Options, read};
+    use premio_csg::evaluate::{EvaluationOptions, evaluate};
+    use premio_csg::reader::{Format, ReadOptions, read};
     use premio_kernel::geometry::frame::Frame;
     use premio_kernel::geometry::surface::{Cone, Cylinder, Sphere, Torus};
-    use premio_visibility::contour::Kind;
+    use premio_visibility::contour::ContourKind;
     use premio_visibility::view::contours;
     use proptest::prelude::*;
 
     /// Limbs of a part that `visibility` finds at a pose, each held against the plane of every tangent.
     fn hold(description: &str, planted: &Isometry3<f64>, limbs: usize) {
-        let (format, options) = (Format::Json, Options::default());
+        let (format, options) = (Format::Json, ReadOptions::default());
         let tree = read("limb", description.as_bytes(), format, &options)
             .unwrap()
             .tree;
         let evaluation = evaluate(&tree, &EvaluationOptions::default()).unwrap();
         let (brep, band) = (&evaluation.brep, evaluation.resolution_of_doubles());
         let seen = contours(brep, &CAMERA.at(planted, [1280, 960]), band).unwrap();
-        let of_limbs = seen.contours.iter().filter(|c| c.kind == Kind::Limb);
+        let of_limbs = seen.contours.iter().filter(|c| c.kind == ContourKind::Limb);
         let mut count = 0;
         for contour in of_limbs {
             count += 1;

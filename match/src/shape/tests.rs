@@ -7,8 +7,8 @@ use crate::learned::Learned;
 use crate::pose::refine::refine;
 use crate::predicted::arcs;
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 
 const CAMERA: Pinhole = Pinhole {
     focal: [2000.0, 2000.0],
@@ -20,7 +20,13 @@ const SIZE: [usize; 2] = [2048, 2048];
 const NUMBER: f64 = 3.912;
 
 fn evaluated(text: &str) -> Evaluation {
-    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! Sets of pixels, a bit for each.
 
-use premio_detect::Domain;
+use premio_detect::PixelMask;
 use std::ops::Range;
 
 /// A set of pixels of an image.
@@ -93,8 +93,8 @@ impl Bitmap {
     }
 
     /// The same as a domain.
-    pub fn domain(&self) -> Domain {
-        Domain::of_rows(self.width, (0..self.height).map(|y| self.runs(y)))
+    pub fn domain(&self) -> PixelMask {
+        PixelMask::of_rows(self.width, (0..self.height).map(|y| self.runs(y)))
     }
 }
 

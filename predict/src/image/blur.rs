@@ -1,6 +1,6 @@
 //! The point spread of the optics: a Gaussian, on the pixels that are known.
 
-use premio_detect::{Domain, Grey};
+use premio_detect::{Grey, PixelMask};
 use std::ops::Range;
 
 /// How many standard deviations of the point spread count.
@@ -21,12 +21,12 @@ fn weights(sigma: f64) -> Vec<f32> {
 
 /// Blurs the known pixels of an image. What is blurred right is the domain less [`reach`], and what is
 /// beyond the image is taken to be as its nearest pixel.
-pub fn blur(image: &mut Grey, domain: &Domain, sigma: f64) {
+pub fn blur(image: &mut Grey, domain: &PixelMask, sigma: f64) {
     blur_by(image, domain, sigma, &mut Vec::new());
 }
 
 /// The same with memory that is used again.
-pub fn blur_by(image: &mut Grey, domain: &Domain, sigma: f64, across: &mut Vec<f32>) {
+pub fn blur_by(image: &mut Grey, domain: &PixelMask, sigma: f64, across: &mut Vec<f32>) {
     if reach(sigma) == 0 {
         return;
     }
@@ -95,12 +95,12 @@ fn add(out: &mut [f32], a: &[f32], b: &[f32], weight: f32) {
 }
 
 /// By row: the columns that the domain has within so many rows.
-fn grown_rows(domain: &Domain, by: usize) -> Vec<Vec<Range<u32>>> {
+fn grown_rows(domain: &PixelMask, by: usize) -> Vec<Vec<Range<u32>>> {
     let height = domain.height();
     let near = |y: usize| y.saturating_sub(by)..(y + by + 1).min(height);
     let row = |y: usize| {
         let runs = near(y).flat_map(|v| domain.spans(v).iter().cloned());
-        let one = Domain::of_rows(domain.width(), std::iter::once(runs.collect()));
+        let one = PixelMask::of_rows(domain.width(), std::iter::once(runs.collect()));
         one.spans(0).to_vec()
     };
     (0..height).map(row).collect()
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_flat_image_stays_and_a_point_spreads() {
         let size = 21;
-        let domain = Domain::full(size, size);
+        let domain = PixelMask::full(size, size);
         let mut flat = Grey {
             width: size,
             height: size,

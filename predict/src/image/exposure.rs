@@ -5,7 +5,7 @@ use super::field::Field;
 use super::shading::Shading;
 use crate::outline::scanline::{LINES, line_y};
 use crate::outline::{Region, Regions};
-use premio_detect::{Domain, Grey};
+use premio_detect::{Grey, PixelMask};
 use std::ops::Range;
 
 /// How many pixels apart the light of one region is reckoned, where it runs straight in between.
@@ -26,7 +26,7 @@ struct Share {
 }
 
 /// The levels of the pixels of a domain, before the point spread, noise and steps.
-pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &Domain, image: &mut Grey) {
+pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, image: &mut Grey) {
     let mut light = Light::of(shading, regions);
     let mut shares: Vec<Share> = Vec::new();
     let mut row = Row::default();

@@ -9,9 +9,9 @@ use crate::subject::{Subject, SubjectError};
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_visibility::camera::{Camera, CameraError};
-use premio_visibility::contour::{Contour, Contours, ImageCurve, JunctionKind, Piece};
+use premio_visibility::contour::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
 use premio_visibility::projection::Projection;
-use premio_visibility::sight::{Own, Scene};
+use premio_visibility::ray_casting::{OriginIncidence, Scene};
 use premio_visibility::{ViewError, contours};
 use std::collections::HashMap;
 
@@ -224,7 +224,13 @@ impl<'a> Stage<'a> {
     pub fn is_lit(&self, light: usize, p: &Point3<f64>, face: FaceId) -> bool {
         let (_, views) = &self.lights[light];
         let before = |v: &&Sightings<'_>| views.len() == 1 || v.scene.projection.depth(p) > 0.0;
-        let own = |other| if other == face { Own::Through } else { Own::No };
+        let own = |other| {
+            if other == face {
+                OriginIncidence::Through
+            } else {
+                OriginIncidence::No
+            }
+        };
         views
             .iter()
             .find(before)
@@ -313,7 +319,7 @@ fn source(contour: &Contour, ordinal: u32) -> Source {
     }
 }
 
-fn pin(line: &mut super::flatten::Polyline, contours: &Contours, piece: &Piece) {
+fn pin(line: &mut super::flatten::Polyline, contours: &Contours, piece: &ContourPiece) {
     let last = line.points.len() - 1;
     for (end, at) in [(piece.start, 0), (piece.end, last)] {
         if let Some(id) = end {

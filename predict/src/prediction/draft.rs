@@ -16,7 +16,7 @@ use crate::outline::{Arc, Regions, Stage};
 use crate::setup::{Conditions, Setup};
 use crate::statistics::hash;
 use crate::subject::Subject;
-use premio_detect::{Detection, Domain, Grey, Workspace};
+use premio_detect::{Detection, Grey, PixelMask, Workspace};
 use std::cell::RefCell;
 
 /// What a prediction is made of.
@@ -35,7 +35,7 @@ pub struct Draft<'s> {
     /// Their pixels.
     pub ink: Ink,
     /// The pixels that are predicted.
-    pub domain: Domain,
+    pub domain: PixelMask,
     /// Their levels before noise and steps.
     pub image: Grey,
     memory: RefCell<Memory>,
@@ -201,7 +201,7 @@ impl<'s> Draft<'s> {
 
     /// What the detector finds of each arc in an image of the same setup: predicted, rendered or
     /// taken.
-    pub fn evidence_in(&self, image: &Grey, domain: &Domain) -> (Detection, Vec<Evidence>) {
+    pub fn evidence_in(&self, image: &Grey, domain: &PixelMask) -> (Detection, Vec<Evidence>) {
         let detector = &self.conditions.detector;
         let work = &mut self.memory.borrow_mut().detector;
         let detection = detector.detect_with(work, image, domain);
@@ -271,7 +271,7 @@ fn step_response(conditions: &Conditions) -> f64 {
         height: size,
         levels: (0..size).flat_map(|_| row.iter().copied()).collect(),
     };
-    let all = Domain::full(size, size);
+    let all = PixelMask::full(size, size);
     blur(&mut step, &all, conditions.sensor.blur);
     let detector = premio_detect::Detector {
         threshold: 1.0,

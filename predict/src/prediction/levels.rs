@@ -8,7 +8,7 @@ use crate::feature::junction::{Junction, Nodes, junctions};
 use crate::feature::reason::Reason;
 use crate::outline::{Arc, Source};
 use crate::setup::Setup;
-use premio_detect::Shape;
+use premio_detect::SegmentShape;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -189,7 +189,7 @@ pub struct Segment {
     /// Its place in the list.
     pub id: u32,
     /// Its form, in pixels.
-    pub shape: Shape,
+    pub shape: SegmentShape,
     /// The root mean square distance of the edge pixels from it.
     pub rms: f64,
     /// The arcs.

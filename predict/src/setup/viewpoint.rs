@@ -3,7 +3,7 @@
 use super::SetupError;
 use super::sensor::Sensor;
 use nalgebra::{Matrix3, Point3, Vector3};
-use premio_visibility::camera::{Camera, CameraError, Model};
+use premio_visibility::camera::{Camera, CameraError, CameraModel};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -132,7 +132,7 @@ impl Matrices {
     /// The camera of the matrices.
     pub fn camera(&self) -> Result<Camera, SetupError> {
         let Self { k, r, t } = *self;
-        Camera::of(Model::Matrices {
+        Camera::of(CameraModel::Matrices {
             k,
             r,
             t,

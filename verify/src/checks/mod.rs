@@ -19,12 +19,12 @@ pub use recount::{Recount, WrongPiece};
 pub use shadow::ShadowOutline;
 pub use sheets::{SheetFault, SheetReport};
 
-use premio_csg::boundary::Evaluation;
-use premio_csg::rays::{Clearance, Estimate, Material};
+use premio_csg::evaluate::Evaluation;
+use premio_csg::ray_casting::{Clearance, Estimate, RayOracle};
 use premio_csg::tree::Tree;
 use premio_drawing::Drawing;
-use premio_kernel::geometry::bounds::Box3;
-use premio_kernel::number::sign::ROUNDING;
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::projection::Projection;
 use premio_visibility::{Camera, Contours, contours};
 use std::fmt;
@@ -115,10 +115,10 @@ impl ViewChecks {
 /// A part to be checked.
 #[derive(Debug)]
 pub struct Checker<'a> {
-    material: Material,
+    material: RayOracle,
     evaluation: &'a Evaluation,
     /// The box of the boundary, as it is told.
-    told: Box3,
+    told: Aabb,
 }
 
 impl Report {
@@ -159,7 +159,7 @@ impl<'a> Checker<'a> {
     /// Prepares the checks of a tree and its boundary.
     pub fn new(tree: &Tree, evaluation: &'a Evaluation) -> Self {
         Self {
-            material: Material::of(tree),
+            material: RayOracle::of(tree),
             evaluation,
             told: evaluation.tight_bounds(),
         }
@@ -228,8 +228,8 @@ impl<'a> Checker<'a> {
         let off = (0..3).map(beyond).fold(f64::NEG_INFINITY, f64::max);
         Check {
             subject: Subject::Bounds,
-            finding: Finding::of(off <= slack || met == Box3::EMPTY),
-            detail: if off <= slack || met == Box3::EMPTY {
+            finding: Finding::of(off <= slack || met == Aabb::EMPTY),
+            detail: if off <= slack || met == Aabb::EMPTY {
                 format!("{AROUND} rays meet nothing outside the box")
             } else {
                 format!("rays meet material {off:e} outside the box")
@@ -301,7 +301,7 @@ impl<'a> Checker<'a> {
     fn drawing(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
         let projection = Projection::new(&seen.camera, clearance.size);
-        let drawing = Drawing::new(seen, &premio_drawing::Options::default());
+        let drawing = Drawing::new(seen, &premio_drawing::DrawingOptions::default());
         let size = (drawing.extent[1] - drawing.extent[0]).norm();
         // In the image lengths are as many times greater as the part is.
         let near = clearance.shift * size / clearance.size;

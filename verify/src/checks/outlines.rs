@@ -7,8 +7,8 @@
 
 use super::images::{Images, Passing};
 use super::window::Window;
-use premio_csg::rays::{Clearance, Crossing, Material, Surfaces};
-use premio_kernel::number::sign::ROUNDING;
+use premio_csg::ray_casting::{Clearance, RayOracle, SurfaceCrossing, Surfaces};
+use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
 use premio_visibility::projection::Projection;
 use std::f64::consts::PI;
@@ -63,7 +63,7 @@ pub struct Outlines {
 }
 
 /// What a line of sight meets; none next to where surfaces touch.
-type Met = Option<Vec<Crossing>>;
+type Met = Option<Vec<SurfaceCrossing>>;
 
 struct Search<'a> {
     surfaces: Surfaces<'a>,
@@ -74,12 +74,12 @@ struct Search<'a> {
 /// Two neighbouring lines of sight that meet different surfaces.
 struct Change {
     at: [[f64; 2]; 2],
-    met: [Vec<Crossing>; 2],
+    met: [Vec<SurfaceCrossing>; 2],
 }
 
 impl Outlines {
     /// Looks for the contours of a view.
-    pub fn of(material: &Material, seen: &Contours, clearance: &Clearance) -> Self {
+    pub fn of(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let window = Window::around(&projection, material.bounds());
         let images = Images::of(seen, &window);
@@ -108,7 +108,7 @@ impl Outlines {
         search: &Search<'_>,
         images: &Images<'_>,
         at: [[f64; 2]; 2],
-        met: [&[Crossing]; 2],
+        met: [&[SurfaceCrossing]; 2],
     ) {
         let mut from = at[0];
         let mut met_from = met[0].to_vec();
@@ -139,8 +139,10 @@ impl Outlines {
 }
 
 /// Whether two lines of sight meet the same surfaces from the same sides.
-fn same(a: &[Crossing], b: &[Crossing]) -> bool {
-    let one = |(a, b): (&Crossing, &Crossing)| a.surface == b.surface && a.outwards == b.outwards;
+fn same(a: &[SurfaceCrossing], b: &[SurfaceCrossing]) -> bool {
+    let one = |(a, b): (&SurfaceCrossing, &SurfaceCrossing)| {
+        a.surface == b.surface && a.outwards == b.outwards
+    };
     a.len() == b.len() && a.iter().zip(b).all(one)
 }
 
@@ -173,7 +175,7 @@ impl Search<'_> {
             return None;
         }
         met.drain(..nearer);
-        let short = |w: &[Crossing]| (w[1].at - w[0].at) * length <= self.clearance.sliver;
+        let short = |w: &[SurfaceCrossing]| (w[1].at - w[0].at) * length <= self.clearance.sliver;
         (!met.windows(2).any(short)).then_some(met)
     }
 
@@ -204,7 +206,7 @@ impl Search<'_> {
     fn steep_until(&self, change: &Change, index: usize, deep: f64) -> Option<f64> {
         let [first, second] = &change.met;
         let [a, b] = change.at;
-        let at = |met: &[Crossing]| met.get(index).map_or(f64::INFINITY, |c| c.at);
+        let at = |met: &[SurfaceCrossing]| met.get(index).map_or(f64::INFINITY, |c| c.at);
         let ((own, from), (instead, other)) = match at(first) <= at(second) {
             true => ((first, a), (second, b)),
             false => ((second, b), (first, a)),
@@ -224,14 +226,14 @@ impl Search<'_> {
 
     /// How much deeper a surface is met by the second of two lines of sight than by the first, as far
     /// as its slope there tells.
-    fn slope(&self, [from, other]: [[f64; 2]; 2], near: &Crossing) -> f64 {
+    fn slope(&self, [from, other]: [[f64; 2]; 2], near: &SurfaceCrossing) -> f64 {
         let (ray, beside) = (self.window.ray(from), self.window.ray(other));
         let step = beside.origin - ray.origin + (beside.direction - ray.direction) * near.at;
         self.surfaces.slope(&ray, near, &step)
     }
 
     /// Whether two lines of sight meet one surface at depths that a fall of it does not explain.
-    fn leaps(&self, between: [[f64; 2]; 2], [a, b]: [&Crossing; 2], deep: f64) -> bool {
+    fn leaps(&self, between: [[f64; 2]; 2], [a, b]: [&SurfaceCrossing; 2], deep: f64) -> bool {
         let fall = (a.at - b.at).abs();
         let slope = || self.slope(between, a).abs();
         fall > deep && fall > NEAR * slope()
@@ -247,7 +249,7 @@ impl Search<'_> {
             DEEP * (beside * self.clearance.size).sqrt()
         };
         let [first, second] = &change.met;
-        let unlike = |(a, b): (&Crossing, &Crossing)| {
+        let unlike = |(a, b): (&SurfaceCrossing, &SurfaceCrossing)| {
             !same(std::slice::from_ref(a), std::slice::from_ref(b))
                 || self.leaps(change.at, [a, b], deep(a.at))
         };

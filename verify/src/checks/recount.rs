@@ -2,11 +2,11 @@
 
 use super::Finding;
 use nalgebra::{Point3, Vector3};
-use premio_csg::rays::{Clearance, Evidence, Material};
-use premio_kernel::number::sign::ROUNDING;
+use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence};
+use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
-use premio_visibility::contour::{ImageCurve, Kind};
-use premio_visibility::projection::{Projection, Sight};
+use premio_visibility::contour::{ContourKind, ImageCurve};
+use premio_visibility::projection::{Projection, ViewRay};
 use std::fmt;
 
 /// Where in a piece samples are taken, as parts of its range: not in the middle, where a contour of
@@ -31,7 +31,7 @@ pub struct WrongPiece {
     /// The contour.
     pub contour: u32,
     /// What kind it is of.
-    pub kind: Kind,
+    pub kind: ContourKind,
     /// The place of the piece in the contour.
     pub piece: usize,
     /// The sample.
@@ -78,7 +78,7 @@ impl Recount {
 
     /// Counts every piece again, by lines of sight that run closer where too few tell something: in
     /// the image of a part that nearly falls on itself contours lie next to one another everywhere.
-    pub fn telling(material: &Material, seen: &Contours, clearance: &Clearance) -> Self {
+    pub fn telling(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let first = Self::of(material, seen, clearance);
         let tells = |recount: &Self| recount.suffices() || !recount.wrong.is_empty();
         if tells(&first) {
@@ -90,7 +90,7 @@ impl Recount {
     }
 
     /// Counts every piece again.
-    fn of(material: &Material, seen: &Contours, clearance: &Clearance) -> Self {
+    fn of(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let sight = |p: &_| line_of_sight(&projection, p);
         let closer = closer(clearance);
@@ -99,9 +99,9 @@ impl Recount {
             closer
                 .iter()
                 .all(|c| match material.invisibility(p, sight, c) {
-                    Evidence::Count(again) | Evidence::Fold(again) => again == counted,
-                    Evidence::Thin => true,
-                    Evidence::Mixed | Evidence::Close => false,
+                    SightEvidence::Count(again) | SightEvidence::Fold(again) => again == counted,
+                    SightEvidence::Thin => true,
+                    SightEvidence::Mixed | SightEvidence::Close => false,
                 })
         };
         let mut recount = Self::default();
@@ -122,10 +122,10 @@ impl Recount {
                     let unclear = end_on || (open && short.contains(&true));
                     let counted = material.invisibility(&place, sight, clearance);
                     let (counted, folds) = match counted {
-                        Evidence::Count(counted) if !unclear => (counted, false),
+                        SightEvidence::Count(counted) if !unclear => (counted, false),
                         // A limb is on its own fold.
-                        Evidence::Fold(counted) if !unclear => {
-                            (counted, contour.kind != Kind::Limb)
+                        SightEvidence::Fold(counted) if !unclear => {
+                            (counted, contour.kind != ContourKind::Limb)
                         }
                         _ => {
                             recount.ambiguous += 1;
@@ -177,8 +177,8 @@ fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64
     let depth = projection.depth(p);
     let seen = depth - projection.near;
     let reach = match projection.sight {
-        Sight::Eye(_) => length * (seen / depth),
-        Sight::Direction(_) => seen,
+        ViewRay::Eye(_) => length * (seen / depth),
+        ViewRay::Direction(_) => seen,
     };
     (towards, reach)
 }

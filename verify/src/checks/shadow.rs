@@ -7,9 +7,9 @@
 use super::Finding;
 use super::strokes::{Strokes, is_outline, point};
 use nalgebra::{Point2, Vector2};
-use premio_csg::rays::{Material, Ray};
+use premio_csg::ray_casting::{Ray, RayOracle};
 use premio_drawing::Drawing;
-use premio_visibility::projection::{Projection, Sight};
+use premio_visibility::projection::{Projection, ViewRay};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -41,7 +41,7 @@ pub struct ShadowOutline {
 
 /// The shadow of a part, by lines of sight.
 struct Shadow<'a> {
-    material: &'a Material,
+    material: &'a RayOracle,
     projection: &'a Projection,
     sliver: f64,
 }
@@ -69,8 +69,8 @@ impl Shadow<'_> {
         let (origin, direction) = self.projection.line_of_sight_y_up(p);
         let ray = Ray { origin, direction };
         let near = match self.projection.sight {
-            Sight::Eye(_) => self.projection.near / direction.dot(&self.projection.axis()),
-            Sight::Direction(_) => f64::NEG_INFINITY,
+            ViewRay::Eye(_) => self.projection.near / direction.dot(&self.projection.axis()),
+            ViewRay::Direction(_) => f64::NEG_INFINITY,
         };
         let met = self.material.intervals(&ray, least);
         met.iter().any(|[_, hi]| *hi > near)
@@ -89,7 +89,7 @@ impl ShadowOutline {
 
     /// Follows the boundary of the shadow of a drawing's part.
     pub fn new(
-        material: &Material,
+        material: &RayOracle,
         projection: &Projection,
         drawing: &Drawing,
         tolerance: Tolerance,
@@ -224,7 +224,7 @@ mod tests {
             image: 2.0 * drawing.distance,
             sliver: 0.0,
         };
-        ShadowOutline::new(&Material::of(&tree), &projection, &drawing, tolerance)
+        ShadowOutline::new(&RayOracle::of(&tree), &projection, &drawing, tolerance)
     }
 
     #[test]

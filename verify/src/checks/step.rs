@@ -10,7 +10,7 @@ mod shape;
 mod surface;
 
 use super::{Check, Checker, Finding, Subject};
-use premio_exchange::step::{self, Options, Protocol};
+use premio_exchange::step::{self, Protocol, StepOptions};
 use premio_kernel::unit::Unit;
 use rules::{Known, Measured};
 use shape::Shape;
@@ -31,7 +31,7 @@ impl Checker<'_> {
         if evaluation.brep.topology.solids.is_empty() {
             return told(Finding::Holds, "nothing to write".to_owned());
         }
-        let options = Options {
+        let options = StepOptions {
             name: "part".to_owned(),
             protocol: Protocol::default(),
             unit: Unit::default(),
@@ -98,8 +98,8 @@ fn told_of(measured: &Measured, (solids, known): (usize, usize), volume: f64) ->
 mod tests {
     use super::*;
     use nalgebra::Point3;
-    use premio_csg::boundary::{EvaluationOptions, evaluate};
-    use premio_csg::reader::{Format, Options as Reading, read};
+    use premio_csg::evaluate::{EvaluationOptions, evaluate};
+    use premio_csg::reader::{Format, ReadOptions as Reading, read};
     use rules::Rule;
 
     const ACCURACY: f64 = 1e-4;
@@ -108,7 +108,7 @@ mod tests {
     fn written(text: &str) -> (String, Known) {
         let part = read("part", text.as_bytes(), Format::Padl, &Reading::default()).unwrap();
         let evaluation = evaluate(&part.tree, &EvaluationOptions::default()).unwrap();
-        let options = Options {
+        let options = StepOptions {
             name: "part".to_owned(),
             protocol: Protocol::default(),
             unit: Unit::default(),

@@ -1,7 +1,7 @@
 //! The strokes of a drawing, found by place.
 
 use nalgebra::{Point2, Vector2};
-use premio_drawing::{Layer, Shape, Stroke};
+use premio_drawing::{Layer, Stroke, StrokeShape};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::f64::consts::TAU;
@@ -42,10 +42,10 @@ pub(super) fn is_outline(stroke: &Stroke) -> bool {
 }
 
 /// The point of a shape at a part of its course, from 0 to 1.
-pub(super) fn point(shape: &Shape, part: f64) -> Point2<f64> {
+pub(super) fn point(shape: &StrokeShape, part: f64) -> Point2<f64> {
     match shape {
-        Shape::Line([a, b]) => a + (b - a) * part,
-        Shape::Path(points) => {
+        StrokeShape::Line([a, b]) => a + (b - a) * part,
+        StrokeShape::Path(points) => {
             let steps = points.windows(2).map(|p| (p[1] - p[0]).norm());
             let mut left = part * steps.clone().sum::<f64>();
             for (pair, step) in points.windows(2).zip(steps) {
@@ -56,7 +56,7 @@ pub(super) fn point(shape: &Shape, part: f64) -> Point2<f64> {
             }
             points.last().copied().unwrap_or_default()
         }
-        Shape::Ellipse { from, sweep, .. } => on_ellipse(shape, from + sweep * part),
+        StrokeShape::Ellipse { from, sweep, .. } => on_ellipse(shape, from + sweep * part),
     }
 }
 
@@ -64,29 +64,29 @@ fn minor(major: &Vector2<f64>, ratio: f64) -> Vector2<f64> {
     Vector2::new(-major.y, major.x) * ratio
 }
 
-fn on_ellipse(shape: &Shape, s: f64) -> Point2<f64> {
+fn on_ellipse(shape: &StrokeShape, s: f64) -> Point2<f64> {
     match shape {
-        Shape::Ellipse {
+        StrokeShape::Ellipse {
             centre,
             major,
             ratio,
             ..
         } => centre + major * s.cos() + minor(major, *ratio) * s.sin(),
-        Shape::Line(_) | Shape::Path(_) => Point2::origin(),
+        StrokeShape::Line(_) | StrokeShape::Path(_) => Point2::origin(),
     }
 }
 
 /// The corners of a box that holds a shape.
-fn bounds(shape: &Shape) -> [Point2<f64>; 2] {
+fn bounds(shape: &StrokeShape) -> [Point2<f64>; 2] {
     match shape {
-        Shape::Line([a, b]) => [a.inf(b), a.sup(b)],
-        Shape::Path(points) => {
+        StrokeShape::Line([a, b]) => [a.inf(b), a.sup(b)],
+        StrokeShape::Path(points) => {
             let first = points.first().copied().unwrap_or_default();
             points
                 .iter()
                 .fold([first, first], |[lo, hi], p| [lo.inf(p), hi.sup(p)])
         }
-        Shape::Ellipse {
+        StrokeShape::Ellipse {
             centre,
             major,
             ratio,
@@ -110,14 +110,14 @@ fn from_segment(p: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
 }
 
 /// How far a point is from a shape; from an ellipse to first order.
-pub(super) fn distance(shape: &Shape, p: &Point2<f64>) -> f64 {
+pub(super) fn distance(shape: &StrokeShape, p: &Point2<f64>) -> f64 {
     match shape {
-        Shape::Line([a, b]) => from_segment(p, a, b),
-        Shape::Path(points) => {
+        StrokeShape::Line([a, b]) => from_segment(p, a, b),
+        StrokeShape::Path(points) => {
             let steps = points.windows(2).map(|s| from_segment(p, &s[0], &s[1]));
             steps.fold(f64::INFINITY, f64::min)
         }
-        Shape::Ellipse {
+        StrokeShape::Ellipse {
             centre,
             major,
             ratio,

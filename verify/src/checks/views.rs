@@ -1,7 +1,7 @@
 //! Cameras around a part.
 
 use nalgebra::{Point3, Vector3};
-use premio_kernel::geometry::bounds::Box3;
+use premio_kernel::geometry::bounds::Aabb;
 use premio_visibility::Camera;
 use std::f64::consts::{PI, SQRT_2};
 
@@ -22,7 +22,7 @@ const ORTHOGRAPHIC: usize = 2;
 
 /// Eight perspective and two orthographic views in general position, and one along each axis.
 /// None of an empty box.
-pub fn around(bounds: &Box3) -> Vec<View> {
+pub fn around(bounds: &Aabb) -> Vec<View> {
     let size = bounds.diagonal();
     if !size.is_finite() || size <= 0.0 {
         return Vec::new();
@@ -71,11 +71,11 @@ mod tests {
 
     #[test]
     fn there_are_views_of_every_box_with_a_size() {
-        let unit = Box3 {
+        let unit = Aabb {
             min: [0.0; 3],
             max: [1.0, 2.0, 3.0],
         };
         assert_eq!(around(&unit).len(), 13);
-        assert!(around(&Box3::EMPTY).is_empty());
+        assert!(around(&Aabb::EMPTY).is_empty());
     }
 }

@@ -4,10 +4,10 @@
 //! camera), in any turn about the optical axis: enough to tell what is near what.
 
 use nalgebra::{Point2, Point3};
-use premio_csg::rays::Ray;
-use premio_kernel::geometry::bounds::Box3;
+use premio_csg::ray_casting::Ray;
+use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::frame::Frame;
-use premio_visibility::projection::{Projection, Sight};
+use premio_visibility::projection::{Projection, ViewRay};
 
 /// How far from the optical axis, in multiples of the depth, a perspective image reaches at most.
 const WIDEST: f64 = 2.0;
@@ -36,10 +36,10 @@ pub(super) struct Window {
 
 impl Window {
     /// The window that shows a box.
-    pub fn around(projection: &Projection, bounds: &Box3) -> Self {
+    pub fn around(projection: &Projection, bounds: &Aabb) -> Self {
         let mut window = Self {
             frame: Frame::about(projection.origin(), projection.axis().normalize()),
-            central: matches!(projection.sight, Sight::Eye(_)),
+            central: matches!(projection.sight, ViewRay::Eye(_)),
             near: projection.near,
             depth: bounds.diagonal(),
             centre: [0.0; 2],

@@ -1,10 +1,10 @@
 //! Models as text: padl, csg (as OpenSCAD flattens) and json.
 
 use super::model::{Axis, Kind, Model, Notation, Operation, Primitive, Step};
-use premio_csg::builder::{Builder, Part};
-use premio_csg::moves::{self, Moves};
+use premio_csg::builder::{Builder, SolidId};
 use premio_csg::primitive::{self, PrimitiveError};
-use premio_csg::reader::{self, Description, Options, ReadError};
+use premio_csg::reader::{self, Description, ReadError, ReadOptions};
+use premio_csg::transform::{self, Transform};
 use premio_csg::tree;
 use premio_csg::writer;
 use premio_kernel::number::rational::{Rational, from_decimal, from_f64};
@@ -24,28 +24,28 @@ pub fn write(model: &Model, format: Format) -> String {
 
 /// Reads a text that [`write()`] made.
 pub fn read(text: &str, format: Format) -> Result<Description, ReadError> {
-    reader::read("model", text.as_bytes(), format, &Options::default())
+    reader::read("model", text.as_bytes(), format, &ReadOptions::default())
 }
 
-fn built(model: &Model) -> (Builder, Part) {
+fn built(model: &Model) -> (Builder, SolidId) {
     let mut builder = Builder::new();
-    let mut parts: Vec<Part> = Vec::with_capacity(model.nodes().len());
+    let mut parts: Vec<SolidId> = Vec::with_capacity(model.nodes().len());
     let exact = |value: f64| number(value, model.notation);
     for node in model.nodes() {
         let part = match &node.kind {
             // A length that makes no solid makes nothing.
             Kind::Leaf(primitive) => match solid(primitive, &exact) {
                 Ok(primitive) => builder.primitive(primitive),
-                Err(_) => Part::EMPTY,
+                Err(_) => SolidId::EMPTY,
             },
             Kind::Operation(op, children) => {
-                let children: Vec<Part> = children.iter().map(|&child| parts[child]).collect();
+                let children: Vec<SolidId> = children.iter().map(|&child| parts[child]).collect();
                 builder.operation(operation(*op), &children)
             }
         };
         parts.push(builder.moved(part, placed(&node.steps, &exact)));
     }
-    (builder, parts.last().copied().unwrap_or(Part::EMPTY))
+    (builder, parts.last().copied().unwrap_or(SolidId::EMPTY))
 }
 
 /// The exact number that an f64 of a model stands for, which is finite.
@@ -80,12 +80,12 @@ fn operation(op: Operation) -> tree::Operation {
     }
 }
 
-fn placed(steps: &[Step], number: &impl Fn(f64) -> Rational) -> Moves {
-    let mut moves = Moves::new();
+fn placed(steps: &[Step], number: &impl Fn(f64) -> Rational) -> Transform {
+    let mut moves = Transform::new();
     for step in steps {
         let step = match *step {
-            Step::Shift(by) => moves::Step::Shift(by.map(number)),
-            Step::Turn(axis, degrees) => moves::Step::Turn {
+            Step::Shift(by) => transform::TransformStep::Shift(by.map(number)),
+            Step::Turn(axis, degrees) => transform::TransformStep::Turn {
                 axis: Axis::vector(axis, 1.0).map(number),
                 degrees: number(degrees),
             },
@@ -100,7 +100,7 @@ fn placed(steps: &[Step], number: &impl Fn(f64) -> Rational) -> Moves {
 mod tests {
     use super::*;
     use crate::generator::profile::Profile;
-    use premio_csg::boundary::evaluate;
+    use premio_csg::evaluate::evaluate;
 
     fn volume(description: &Description) -> f64 {
         let part = evaluate(&description.tree, &Default::default()).unwrap();

@@ -3,7 +3,7 @@
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::*;
-use premio_kernel::brep::{Arc, Brep, Patch};
+use premio_kernel::brep::{Brep, EdgeGeometry, FaceGeometry};
 use premio_kernel::geometry::curve::{Circle, Curve, Line};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
@@ -29,7 +29,7 @@ impl Builder {
     pub fn edge(&mut self, curve: Curve, range: [f64; 2], ends: Option<[VertexId; 2]>) -> EdgeId {
         self.brep.geometry.curves.push(curve);
         let curve = self.brep.geometry.curves.len() - 1;
-        self.brep.geometry.arcs.push(Arc { curve, range });
+        self.brep.geometry.arcs.push(EdgeGeometry { curve, range });
         self.brep.topology.edges.push(Edge {
             ends,
             coedges: Vec::new(),
@@ -66,7 +66,7 @@ impl Builder {
     ) -> FaceId {
         let t = &mut self.brep.topology;
         self.brep.geometry.surfaces.push(surface);
-        self.brep.geometry.patches.push(Patch {
+        self.brep.geometry.patches.push(FaceGeometry {
             surface: self.brep.geometry.surfaces.len() - 1,
             sense,
         });

@@ -1,8 +1,8 @@
 //! The tree of a combination: a list `{op left right}` or `{l name}` or `{l name matrix}`.
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::Object;
-use super::words::{Mark, Marks, Word};
+use super::keywords::{Mark, Marks, Word};
 
 /// An operator of a tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ const EXPECTED: &str = "a member `l NAME` or an operation: `u`, `n`, `-` or `^` 
 
 impl<'a> Combination<'a> {
     /// The tree of an object; without one it holds nothing.
-    pub(super) fn of(object: &Object<'a>) -> Result<Self, Fault> {
+    pub(super) fn of(object: &Object<'a>) -> Result<Self, SpannedError> {
         let mut combination = Self::default();
         let Some(tree) = object.attribute("tree") else {
             return Ok(combination);
@@ -81,7 +81,7 @@ impl<'a> Combination<'a> {
         list: &Open<'a>,
         end: usize,
         around: Option<&mut Open<'a>>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), SpannedError> {
         let whole = tree.part(list.start..end);
         if let Some(outer) = around {
             if outer.words.first().is_some_and(|word| word.text == "l") {
@@ -105,7 +105,7 @@ impl<'a> Combination<'a> {
         Ok(())
     }
 
-    fn leaf(&mut self, whole: &Word<'a>, list: &Open<'a>) -> Result<(), Fault> {
+    fn leaf(&mut self, whole: &Word<'a>, list: &Open<'a>) -> Result<(), SpannedError> {
         let (name, matrix) = match list.words.as_slice() {
             [_, name] => (name, None),
             [_, name, matrix] => (name, Some(matrix.clone())),

@@ -3,17 +3,17 @@
 use premio_kernel::motion::RationalMatrix;
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::frame::length;
-use super::super::placement::{NotRigid, placement};
+use super::super::rigid_fit::{NotRigid, placement};
+use super::keywords::Word;
 use super::number;
-use super::words::Word;
-use crate::moves::Moves;
+use crate::transform::Transform;
 
 /// `p -> M S k p`, with `M` the moves, `S` the mirror `y -> -y` or the identity, `k` the factor.
 #[derive(Debug)]
 pub(super) struct Placed {
-    pub(super) moves: Moves,
+    pub(super) moves: Transform,
     pub(super) mirrored: bool,
     pub(super) factor: Rational,
     /// How far entries are from those written.
@@ -22,15 +22,16 @@ pub(super) struct Placed {
 
 impl Placed {
     /// The placement of sixteen numbers by rows; the last divides all others.
-    pub(super) fn of(word: &Word<'_>) -> Result<Self, Fault> {
-        let numbers: Result<Vec<Rational>, Fault> = word.list()?.iter().map(number).collect();
+    pub(super) fn of(word: &Word<'_>) -> Result<Self, SpannedError> {
+        let numbers: Result<Vec<Rational>, SpannedError> =
+            word.list()?.iter().map(number).collect();
         let wrong = |_| word.unexpected("a matrix of sixteen numbers");
         let m: [Rational; 16] = numbers?.try_into().map_err(wrong)?;
         let last = m[12..15].iter().all(Rational::is_zero) && m[15] > Rational::ZERO;
         if !last {
             let expected = "a last row of three zeros and a number greater than zero";
             let found = "a matrix that is no motion";
-            return Err(Fault::input(word.span.clone(), found, expected));
+            return Err(SpannedError::input(word.span.clone(), found, expected));
         }
         let matrix: RationalMatrix = [0, 4, 8].map(|row| [0, 1, 2].map(|j| m[row + j].clone()));
         let offset = [3, 7, 11].map(|at| &m[at] / &m[15]);
@@ -42,7 +43,7 @@ impl Placed {
             let found = "a matrix that changes proportions or angles";
             let expected =
                 "a rigid motion, perhaps mirrored, perhaps the same scale in all directions";
-            Fault::input(word.span.clone(), found, expected)
+            SpannedError::input(word.span.clone(), found, expected)
         })?;
         Ok(Self {
             moves: found.moves,
@@ -59,7 +60,7 @@ fn scaled(
     offset: [Rational; 3],
 ) -> (
     Rational,
-    Result<super::super::placement::Placement, NotRigid>,
+    Result<super::super::rigid_fit::Placement, NotRigid>,
 ) {
     let column = [0, 1, 2].map(|i| matrix[i][0].clone());
     let Some(factor) = length(&column) else {

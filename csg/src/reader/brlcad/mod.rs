@@ -4,9 +4,9 @@
 //! What the part is not made of is not looked at, but for its name.
 
 mod combination;
+mod keywords;
 mod matrix;
 mod solids;
-mod words;
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -14,23 +14,23 @@ use std::ops::Range;
 use premio_kernel::number::rational::Rational;
 
 use self::combination::{Combination, Item};
-use self::solids::{NotOurs, Solid};
-use self::words::{Word, commands};
-use super::error::Fault;
+use self::keywords::{Word, commands};
+use self::solids::{Solid, Unsupported};
+use super::error::SpannedError;
 use super::frame::Vector;
 use super::notes::Notes;
 use super::number::literal;
-use super::placement::DOUBLES;
-use super::{Options, Source};
-use crate::builder::{Builder, Part};
+use super::rigid_fit::DOUBLES;
+use super::{Program, ReadOptions};
+use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 use premio_text::LineColumn;
 use premio_text::escape::quote;
 
-pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
+pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, SpannedError> {
     if source.starts_with("I ") {
         let found = "a database of BRL-CAD's version 4";
-        return Err(Fault::input(0..1, found, "one of version 5")
+        return Err(SpannedError::input(0..1, found, "one of version 5")
             .help("`asc2g` and then `g2asc` of a newer BRL-CAD make one of the other"));
     }
     let database = Database::of(source)?;
@@ -47,7 +47,7 @@ pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
     };
     let part = reader.part(top)?;
     let (digits, notes) = reader.notes.finish();
-    Ok(Source {
+    Ok(Program {
         builder: reader.builder,
         part,
         digits,
@@ -75,21 +75,21 @@ impl<'a> Object<'a> {
         pairs.find(|pair| pair[0].text == name).map(|pair| &pair[1])
     }
 
-    fn require(&self, name: &str) -> Result<&Word<'a>, Fault> {
+    fn require(&self, name: &str) -> Result<&Word<'a>, SpannedError> {
         self.attribute(name).ok_or_else(|| {
             let kind = self.kind.text;
             let found = format!("the {kind} {} without `{name}`", quote(self.name.text));
             let expected = format!("the attribute `{name}`");
-            Fault::input(self.name.span.clone(), found, expected)
+            SpannedError::input(self.name.span.clone(), found, expected)
         })
     }
 
-    fn number(&self, name: &str) -> Result<Rational, Fault> {
+    fn number(&self, name: &str) -> Result<Rational, SpannedError> {
         number(self.require(name)?)
     }
 
-    fn vectors<const N: usize>(&self, names: [&str; N]) -> Result<[Vector; N], Fault> {
-        let all: Result<Vec<Vector>, Fault> = names
+    fn vectors<const N: usize>(&self, names: [&str; N]) -> Result<[Vector; N], SpannedError> {
+        let all: Result<Vec<Vector>, SpannedError> = names
             .iter()
             .map(|name| vector(self.require(name)?))
             .collect();
@@ -100,12 +100,12 @@ impl<'a> Object<'a> {
     }
 }
 
-fn number(word: &Word<'_>) -> Result<Rational, Fault> {
+fn number(word: &Word<'_>) -> Result<Rational, SpannedError> {
     literal(word.text, word.span.clone())
 }
 
-fn vector(word: &Word<'_>) -> Result<Vector, Fault> {
-    let numbers: Result<Vec<Rational>, Fault> = word.list()?.iter().map(number).collect();
+fn vector(word: &Word<'_>) -> Result<Vector, SpannedError> {
+    let numbers: Result<Vec<Rational>, SpannedError> = word.list()?.iter().map(number).collect();
     let wrong = |_| word.unexpected("three numbers");
     numbers?.try_into().map_err(wrong)
 }
@@ -118,7 +118,7 @@ struct Database<'a> {
 }
 
 impl<'a> Database<'a> {
-    fn of(source: &'a str) -> Result<Self, Fault> {
+    fn of(source: &'a str) -> Result<Self, SpannedError> {
         let mut database = Self {
             objects: Vec::new(),
             names: HashMap::new(),
@@ -132,7 +132,7 @@ impl<'a> Database<'a> {
                     let found = format!("the unknown command {}", quote(word));
                     let known = ["put", "title", "units", "attr", "color"];
                     let expected = format!("one of `{}`", known.join("`, `"));
-                    let fault = Fault::input(command[0].span.clone(), found, expected);
+                    let fault = SpannedError::input(command[0].span.clone(), found, expected);
                     return Err(fault.suggest(word, known));
                 }
             }
@@ -140,7 +140,7 @@ impl<'a> Database<'a> {
         Ok(database)
     }
 
-    fn put(&mut self, source: &str, command: &[Word<'a>]) -> Result<(), Fault> {
+    fn put(&mut self, source: &str, command: &[Word<'a>]) -> Result<(), SpannedError> {
         let [_, name, kind, attributes @ ..] = command else {
             let last = &command[command.len() - 1];
             let expected = "`put NAME TYPE`, and the attributes of the object";
@@ -154,7 +154,7 @@ impl<'a> Database<'a> {
             let start = self.objects[earlier].name.span.start;
             let line = LineColumn::of(source.as_bytes(), start).line;
             let found = format!("{}, which is put already", quote(name.text));
-            return Err(Fault::input(name.span.clone(), found, "a new name")
+            return Err(SpannedError::input(name.span.clone(), found, "a new name")
                 .help(format!("it was put on line {line}")));
         }
         self.names.insert(name.text, self.objects.len());
@@ -166,10 +166,10 @@ impl<'a> Database<'a> {
         Ok(())
     }
 
-    fn find(&self, name: &str, end: usize) -> Result<usize, Fault> {
+    fn find(&self, name: &str, end: usize) -> Result<usize, SpannedError> {
         self.names.get(name).copied().ok_or_else(|| {
             let found = format!("no object called {}", quote(name));
-            let fault = Fault::input(end..end, found, "the name of an object in the file");
+            let fault = SpannedError::input(end..end, found, "the name of an object in the file");
             fault.suggest(name, self.sorted())
         })
     }
@@ -182,7 +182,7 @@ impl<'a> Database<'a> {
     }
 
     /// The one object that no other holds: a combination, if there are any at the top.
-    fn top(&self, source: &str, notes: &mut Notes) -> Result<usize, Fault> {
+    fn top(&self, source: &str, notes: &mut Notes) -> Result<usize, SpannedError> {
         let mut held = vec![false; self.objects.len()];
         for object in self.objects.iter().filter(|object| object.is_combination()) {
             for leaf in Combination::of(object)?.leaves() {
@@ -212,19 +212,19 @@ impl<'a> Database<'a> {
                 );
                 let span = self.objects[*second].name.span.clone();
                 let expected = "one, or `--part` and the name of the one to read";
-                Err(Fault::input(span, found, expected))
+                Err(SpannedError::input(span, found, expected))
             }
         }
     }
 
-    fn no_top(&self, source: &str) -> Fault {
+    fn no_top(&self, source: &str) -> SpannedError {
         let end = source.len();
         match self.objects.first() {
-            None => Fault::input(end..end, "no object in the file", "a `put` of a solid"),
+            None => SpannedError::input(end..end, "no object in the file", "a `put` of a solid"),
             Some(first) => {
                 let found = "combinations that hold one another";
                 let expected = "an object that no other holds";
-                Fault::input(first.name.span.clone(), found, expected)
+                SpannedError::input(first.name.span.clone(), found, expected)
             }
         }
     }
@@ -250,7 +250,7 @@ struct Reader<'a> {
     builder: Builder,
     notes: Notes,
     /// The parts made, and none for a combination whose members are being made.
-    parts: HashMap<usize, Option<Part>>,
+    parts: HashMap<usize, Option<SolidId>>,
 }
 
 /// What is left to do.
@@ -262,7 +262,7 @@ enum Task<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn part(&mut self, top: usize) -> Result<Part, Fault> {
+    fn part(&mut self, top: usize) -> Result<SolidId, SpannedError> {
         let mut tasks = vec![Task::Enter(top)];
         while let Some(task) = tasks.pop() {
             match task {
@@ -279,10 +279,10 @@ impl<'a> Reader<'a> {
             .get(&top)
             .copied()
             .flatten()
-            .unwrap_or(Part::EMPTY))
+            .unwrap_or(SolidId::EMPTY))
     }
 
-    fn enter(&mut self, index: usize, tasks: &mut Vec<Task<'a>>) -> Result<(), Fault> {
+    fn enter(&mut self, index: usize, tasks: &mut Vec<Task<'a>>) -> Result<(), SpannedError> {
         let object = &self.database.objects[index];
         if !object.is_combination() {
             let part = self.solid(object)?;
@@ -296,7 +296,7 @@ impl<'a> Reader<'a> {
             let member = self.member(leaf)?;
             if self.parts.get(&member) == Some(&None) {
                 let found = format!("{}, which holds what it is in", quote(leaf.text));
-                return Err(Fault::input(
+                return Err(SpannedError::input(
                     leaf.span.clone(),
                     found,
                     "no ring of combinations",
@@ -309,10 +309,10 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn member(&self, leaf: &Word<'_>) -> Result<usize, Fault> {
+    fn member(&self, leaf: &Word<'_>) -> Result<usize, SpannedError> {
         self.database.names.get(leaf.text).copied().ok_or_else(|| {
             let found = format!("the unknown name {}", quote(leaf.text));
-            let fault = Fault::input(
+            let fault = SpannedError::input(
                 leaf.span.clone(),
                 found,
                 "the name of an object in the file",
@@ -321,14 +321,14 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn combine(&mut self, combination: &Combination<'a>) -> Result<Part, Fault> {
-        let mut parts: Vec<Part> = Vec::new();
+    fn combine(&mut self, combination: &Combination<'a>) -> Result<SolidId, SpannedError> {
+        let mut parts: Vec<SolidId> = Vec::new();
         for item in &combination.items {
             match item {
                 Item::Leaf { name, matrix } => {
                     let part = self.parts.get(&self.member(name)?).copied().flatten();
                     // Members are made before what they are in.
-                    let part = part.unwrap_or(Part::EMPTY);
+                    let part = part.unwrap_or(SolidId::EMPTY);
                     parts.push(match matrix {
                         Some(word) => self.placed(part, word)?,
                         None => part,
@@ -336,15 +336,15 @@ impl<'a> Reader<'a> {
                 }
                 Item::Operator(operator) => {
                     let (right, left) = (parts.pop(), parts.pop());
-                    let pair = [left, right].map(|part| part.unwrap_or(Part::EMPTY));
+                    let pair = [left, right].map(|part| part.unwrap_or(SolidId::EMPTY));
                     parts.push(operator.apply(&mut self.builder, pair));
                 }
             }
         }
-        Ok(parts.pop().unwrap_or(Part::EMPTY))
+        Ok(parts.pop().unwrap_or(SolidId::EMPTY))
     }
 
-    fn placed(&mut self, part: Part, word: &Word<'_>) -> Result<Part, Fault> {
+    fn placed(&mut self, part: SolidId, word: &Word<'_>) -> Result<SolidId, SpannedError> {
         let matrix = matrix::Placed::of(word)?;
         self.replaced(matrix.residual, word.span.clone());
         let scaled = self.builder.scaled(part, matrix.factor);
@@ -362,18 +362,18 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn solid(&mut self, object: &Object<'_>) -> Result<Part, Fault> {
+    fn solid(&mut self, object: &Object<'_>) -> Result<SolidId, SpannedError> {
         let solid = self.shape(object)?.map_err(|reason| {
             let (found, expected) = reason.parts();
             let found = format!("{}, {found}", quote(object.name.text));
-            Fault::input(object.kind.span.clone(), found, expected)
+            SpannedError::input(object.kind.span.clone(), found, expected)
         })?;
         self.replaced(solid.residual, object.name.span.clone());
         let part = self.builder.primitive(solid.primitive);
         Ok(self.builder.moved(part, solid.moves))
     }
 
-    fn shape(&self, object: &Object<'_>) -> Result<Result<Solid, NotOurs>, Fault> {
+    fn shape(&self, object: &Object<'_>) -> Result<Result<Solid, Unsupported>, SpannedError> {
         const KNOWN: [&str; 6] = ["arb8", "ell", "sph", "tgc", "rec", "tor"];
         Ok(match object.kind.text {
             "ell" | "sph" => solids::ellipsoid(object.vectors(["V", "A", "B", "C"])?),
@@ -391,14 +391,18 @@ impl<'a> Reader<'a> {
                 let found = format!("{name}, an object of type {}", quote(kind));
                 let expected =
                     format!("`comb` or a solid that is exact here: {}", KNOWN.join(", "));
-                return Err(Fault::input(object.kind.span.clone(), found, expected));
+                return Err(SpannedError::input(
+                    object.kind.span.clone(),
+                    found,
+                    expected,
+                ));
             }
         })
     }
 }
 
 impl combination::Operator {
-    fn apply(self, builder: &mut Builder, pair: [Part; 2]) -> Part {
+    fn apply(self, builder: &mut Builder, pair: [SolidId; 2]) -> SolidId {
         let [left, right] = pair;
         match self {
             Self::Union => builder.operation(Operation::Union, &pair),

@@ -4,21 +4,21 @@
 use premio_kernel::number::rational::{Rational, to_f64};
 
 use super::super::frame::{Axis, Frame, Vector, cross, difference, dot, length, sum};
-use crate::moves::Moves;
 use crate::primitive::{Primitive, PrimitiveError};
+use crate::transform::Transform;
 
 /// A primitive at its place.
 #[derive(Debug, Clone)]
 pub(super) struct Solid {
     pub(super) primitive: Primitive,
-    pub(super) moves: Moves,
+    pub(super) moves: Transform,
     /// How far the vectors are from those of the solid, relative to their length.
     pub(super) residual: f64,
 }
 
 /// Why a solid is none of ours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NotOurs {
+pub(super) enum Unsupported {
     /// Its axes are not equal and at right angles.
     Ellipsoid,
     /// A cone whose ends are no circles.
@@ -33,7 +33,7 @@ pub(super) enum NotOurs {
     Size(PrimitiveError),
 }
 
-impl NotOurs {
+impl Unsupported {
     /// What was found, and what was expected.
     pub(super) fn parts(self) -> (String, &'static str) {
         let (found, expected) = match self {
@@ -81,7 +81,7 @@ fn extent(vector: &Vector) -> Rational {
 }
 
 /// An ellipsoid: its middle and three half axes.
-pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, NotOurs> {
+pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, Unsupported> {
     let [la, lb, lc] = [&a, &b, &c].map(extent);
     let slants = [slant(&a, &b), slant(&b, &c), slant(&c, &a)];
     let residual = slants
@@ -89,10 +89,10 @@ pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, NotOurs> {
         .chain([unlike(&la, &lb), unlike(&la, &lc)]);
     let residual = residual.fold(0.0, f64::max);
     if residual > MOST {
-        return Err(NotOurs::Ellipsoid);
+        return Err(Unsupported::Ellipsoid);
     }
-    let primitive = Primitive::sphere(la).map_err(NotOurs::Size)?;
-    let moves = Moves::shift(v);
+    let primitive = Primitive::sphere(la).map_err(Unsupported::Size)?;
+    let moves = Transform::shift(v);
     Ok(Solid {
         primitive,
         moves,
@@ -102,7 +102,7 @@ pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, NotOurs> {
 
 /// A truncated general cone: the middle of its base, its height, two half axes of the base and two
 /// of the top.
-pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, NotOurs> {
+pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, Unsupported> {
     let [la, lb, lc, ld] = [&a, &b, &c, &d].map(extent);
     let round = [
         slant(&a, &b),
@@ -113,16 +113,16 @@ pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, NotOurs> {
     let upright = [&a, &b, &c, &d].map(|radius| slant(radius, &h));
     let [round, upright] = [round, upright].map(|all| all.into_iter().fold(0.0, f64::max));
     if round > MOST {
-        return Err(NotOurs::Elliptical);
+        return Err(Unsupported::Elliptical);
     }
     if upright > MOST {
-        return Err(NotOurs::Oblique);
+        return Err(Unsupported::Oblique);
     }
-    let axis = Axis::of(&h).ok_or(NotOurs::NoDirection)?;
-    let primitive = Primitive::frustum(la, lc, axis.length).map_err(NotOurs::Size)?;
+    let axis = Axis::of(&h).ok_or(Unsupported::NoDirection)?;
+    let primitive = Primitive::frustum(la, lc, axis.length).map_err(Unsupported::Size)?;
     Ok(Solid {
         primitive,
-        moves: axis.turn.then(Moves::shift(v)),
+        moves: axis.turn.then(Transform::shift(v)),
         residual: round.max(upright),
     })
 }
@@ -132,12 +132,12 @@ pub(super) fn torus(
     [v, h]: [Vector; 2],
     major: Rational,
     minor: Rational,
-) -> Result<Solid, NotOurs> {
-    let axis = Axis::of(&h).ok_or(NotOurs::NoDirection)?;
-    let primitive = Primitive::torus(major, minor).map_err(NotOurs::Size)?;
+) -> Result<Solid, Unsupported> {
+    let axis = Axis::of(&h).ok_or(Unsupported::NoDirection)?;
+    let primitive = Primitive::torus(major, minor).map_err(Unsupported::Size)?;
     Ok(Solid {
         primitive,
-        moves: axis.turn.then(Moves::shift(v)),
+        moves: axis.turn.then(Transform::shift(v)),
         residual: 0.0,
     })
 }
@@ -153,14 +153,14 @@ const FACES: [[usize; 4]; 6] = [
 ];
 
 /// A polyhedron of eight corners, some of which may be in one place.
-pub(super) fn polyhedron(corners: &[Vector; 8]) -> Result<Solid, NotOurs> {
+pub(super) fn polyhedron(corners: &[Vector; 8]) -> Result<Solid, Unsupported> {
     let distinct = Distinct::of(corners);
     let solid = match distinct.points.len() {
         8 => block(corners),
         6 => wedge(&distinct),
         _ => None,
     };
-    solid.ok_or(NotOurs::Polyhedron)
+    solid.ok_or(Unsupported::Polyhedron)
 }
 
 /// The corners that are in places of their own.
@@ -235,7 +235,7 @@ fn block(corners: &[Vector; 8]) -> Option<Solid> {
     let primitive = Primitive::block(frame.lengths).ok()?;
     Some(Solid {
         primitive,
-        moves: frame.turn.then(Moves::shift(o.clone())),
+        moves: frame.turn.then(Transform::shift(o.clone())),
         residual: frame.residual.max(off),
     })
 }
@@ -294,7 +294,7 @@ impl Prism {
         let off = misplaced(pairs, &edges)?;
         let frame = Frame::of(&right_handed(edges))?;
         let primitive = Primitive::wedge(frame.lengths).ok()?;
-        let shift = Moves::shift(points[self.corner].clone());
+        let shift = Transform::shift(points[self.corner].clone());
         Some(Solid {
             primitive,
             moves: frame.turn.then(shift),

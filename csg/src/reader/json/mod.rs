@@ -7,16 +7,16 @@ use std::ops::Range;
 use premio_kernel::number::rational::Rational;
 
 use self::value::{Content, Document, Member, Value, ValueId, parse};
-use super::Source;
-use super::error::Fault;
+use super::Program;
+use super::error::SpannedError;
 use super::number::{bad_length, literal};
-use crate::builder::{Builder, MAX_MOTION_BITS, Part};
-use crate::moves::{self, Moves};
+use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
+use crate::transform::{self, Transform};
 use crate::tree::Operation;
 use premio_text::escape::quote;
 
-pub(super) fn read(source: &str) -> Result<Source, Fault> {
+pub(super) fn read(source: &str) -> Result<Program, SpannedError> {
     let document = parse(source)?;
     let mut builder = Builder::new();
     let part = Reader {
@@ -25,7 +25,7 @@ pub(super) fn read(source: &str) -> Result<Source, Fault> {
     }
     .solid(document.root)?;
     let span = document.value(document.root).span.clone();
-    Ok(Source {
+    Ok(Program {
         builder,
         part,
         digits: None,
@@ -57,7 +57,7 @@ enum Step {
     Combine {
         op: Operation,
         count: usize,
-        moves: Moves,
+        moves: Transform,
     },
 }
 
@@ -67,9 +67,9 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn solid(&mut self, root: ValueId) -> Result<Part, Fault> {
+    fn solid(&mut self, root: ValueId) -> Result<SolidId, SpannedError> {
         let mut steps = vec![Step::Enter(root)];
-        let mut parts: Vec<Part> = Vec::new();
+        let mut parts: Vec<SolidId> = Vec::new();
         while let Some(step) = steps.pop() {
             match step {
                 Step::Enter(id) => {
@@ -84,15 +84,19 @@ impl<'a> Reader<'a> {
                 }
             }
         }
-        Ok(parts.pop().unwrap_or(Part::EMPTY))
+        Ok(parts.pop().unwrap_or(SolidId::EMPTY))
     }
 
     /// Makes a primitive, or plans the children of an operation.
-    fn enter(&mut self, id: ValueId, steps: &mut Vec<Step>) -> Result<Option<Part>, Fault> {
+    fn enter(
+        &mut self,
+        id: ValueId,
+        steps: &mut Vec<Step>,
+    ) -> Result<Option<SolidId>, SpannedError> {
         let value = self.document.value(id);
         let Content::Object(members) = &value.content else {
             let expected = "a solid: an object with `op` or `prim`";
-            return Err(Fault::input(
+            return Err(SpannedError::input(
                 value.span.clone(),
                 value.content.describe(),
                 expected,
@@ -112,7 +116,7 @@ impl<'a> Reader<'a> {
             (None, Some(name)) => self.primitive(&fields, name).map(Some),
             (Some(_), Some(second)) => {
                 let expected = "either `op` or `prim`, not both";
-                Err(Fault::input(
+                Err(SpannedError::input(
                     second.key_span.clone(),
                     quote(&second.key),
                     expected,
@@ -127,7 +131,7 @@ impl<'a> Reader<'a> {
         fields: &Fields<'a>,
         name: &Member,
         steps: &mut Vec<Step>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), SpannedError> {
         fields.check_known(&["op", "children", "transform"])?;
         let op = choice(self.document.value(name.value), &OPERATIONS)?;
         let children = fields.array(fields.require("children")?, "an array of solids")?;
@@ -141,7 +145,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn primitive(&mut self, fields: &Fields<'a>, name: &Member) -> Result<Part, Fault> {
+    fn primitive(&mut self, fields: &Fields<'a>, name: &Member) -> Result<SolidId, SpannedError> {
         let keys = choice(self.document.value(name.value), &PRIMITIVES)?;
         let known: Vec<&str> = ["prim", "transform"].iter().chain(keys).copied().collect();
         fields.check_known(&known)?;
@@ -194,10 +198,10 @@ fn length_index(dimension: Dimension, count: usize) -> usize {
 }
 
 /// The meaning of a text that is one of a few.
-fn choice<T: Copy>(value: &Value, known: &[(&'static str, T)]) -> Result<T, Fault> {
+fn choice<T: Copy>(value: &Value, known: &[(&'static str, T)]) -> Result<T, SpannedError> {
     let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
     let expected = format!("one of \"{}\"", names.join("\", \""));
-    let fault = Fault::input(value.span.clone(), value.content.describe(), expected);
+    let fault = SpannedError::input(value.span.clone(), value.content.describe(), expected);
     let Content::Text(text) = &value.content else {
         return Err(fault);
     };
@@ -219,11 +223,11 @@ impl<'a> Fields<'a> {
         self.members.iter().find(|member| member.key == key)
     }
 
-    fn require(&self, key: &str) -> Result<&'a Member, Fault> {
+    fn require(&self, key: &str) -> Result<&'a Member, SpannedError> {
         self.find(key).ok_or_else(|| {
             let end = self.span.end;
             let found = format!("an object without `{key}`");
-            Fault::input(
+            SpannedError::input(
                 end.saturating_sub(1)..end,
                 found,
                 format!("the key `{key}`"),
@@ -231,17 +235,17 @@ impl<'a> Fields<'a> {
         })
     }
 
-    fn neither(&self) -> Fault {
+    fn neither(&self) -> SpannedError {
         let found = "an object without `op` or `prim`";
-        Fault::input(self.span.clone(), found, "`op` or `prim`")
+        SpannedError::input(self.span.clone(), found, "`op` or `prim`")
     }
 
-    fn check_unique(&self) -> Result<(), Fault> {
+    fn check_unique(&self) -> Result<(), SpannedError> {
         let mut seen = std::collections::HashSet::new();
         for member in self.members {
             if !seen.insert(member.key.as_str()) {
                 let found = format!("the key {} a second time", quote(&member.key));
-                return Err(Fault::input(
+                return Err(SpannedError::input(
                     member.key_span.clone(),
                     found,
                     "each key once",
@@ -251,24 +255,24 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    fn check_known(&self, known: &[&str]) -> Result<(), Fault> {
+    fn check_known(&self, known: &[&str]) -> Result<(), SpannedError> {
         for member in self.members {
             if !known.contains(&member.key.as_str()) {
                 let found = format!("the unknown key {}", quote(&member.key));
                 let expected = format!("one of `{}`", known.join("`, `"));
-                let fault = Fault::input(member.key_span.clone(), found, expected);
+                let fault = SpannedError::input(member.key_span.clone(), found, expected);
                 return Err(fault.suggest(&member.key, known.iter().copied()));
             }
         }
         Ok(())
     }
 
-    fn array(&self, member: &Member, expected: &str) -> Result<&'a [ValueId], Fault> {
+    fn array(&self, member: &Member, expected: &str) -> Result<&'a [ValueId], SpannedError> {
         items(self.document, member.value, expected)
     }
 
     /// The numbers of a primitive, in the order of its keys.
-    fn lengths(&self, keys: &[&str]) -> Result<Vec<Length>, Fault> {
+    fn lengths(&self, keys: &[&str]) -> Result<Vec<Length>, SpannedError> {
         if keys == ["size"] {
             let member = self.require("size")?;
             return Ok(lengths::<3>(self.document, member.value, TRIPLE)?.into());
@@ -279,8 +283,8 @@ impl<'a> Fields<'a> {
     }
 
     /// The steps of the optional transform.
-    fn moves(&self) -> Result<Moves, Fault> {
-        let mut moves = Moves::new();
+    fn moves(&self) -> Result<Transform, SpannedError> {
+        let mut moves = Transform::new();
         let Some(member) = self.find("transform") else {
             return Ok(moves);
         };
@@ -288,13 +292,13 @@ impl<'a> Fields<'a> {
             let (step, turned) = self.step(id)?;
             moves.push(step).map_err(|error| {
                 let span = self.document.value(turned).span.clone();
-                Fault::input(span, error.to_string(), "an axis with a direction")
+                SpannedError::input(span, error.to_string(), "an axis with a direction")
             })?;
             let bits = moves.motion().bits();
             if bits > MAX_MOTION_BITS {
                 let found = format!("a transform whose exact numbers take {bits} bits");
                 let span = self.document.value(id).span.clone();
-                return Err(Fault::limit(
+                return Err(SpannedError::limit(
                     span,
                     found,
                     format!("at most {MAX_MOTION_BITS} bits"),
@@ -305,11 +309,11 @@ impl<'a> Fields<'a> {
     }
 
     /// A step, and the value that says about what it turns.
-    fn step(&self, id: ValueId) -> Result<(moves::Step, ValueId), Fault> {
+    fn step(&self, id: ValueId) -> Result<(transform::TransformStep, ValueId), SpannedError> {
         let value = self.document.value(id);
         let expected = "a step: {\"translate\":[x,y,z]}, {\"rotate\":[[x,y,z],degrees]} or \
                         {\"quaternion\":[w,x,y,z]}";
-        let wrong = || Fault::input(value.span.clone(), value.content.describe(), expected);
+        let wrong = || SpannedError::input(value.span.clone(), value.content.describe(), expected);
         let Content::Object(members) = &value.content else {
             return Err(wrong());
         };
@@ -325,37 +329,52 @@ impl<'a> Fields<'a> {
         match member.key.as_str() {
             "translate" => {
                 let offset = numbers(self.document, member.value, TRIPLE)?;
-                Ok((moves::Step::Shift(offset), member.value))
+                Ok((transform::TransformStep::Shift(offset), member.value))
             }
             "quaternion" => {
                 let quaternion = numbers(self.document, member.value, "an array of four numbers")?;
-                Ok((moves::Step::Quaternion(quaternion), member.value))
+                Ok((
+                    transform::TransformStep::Quaternion(quaternion),
+                    member.value,
+                ))
             }
             _ => self.rotation(member.value),
         }
     }
 
-    fn rotation(&self, id: ValueId) -> Result<(moves::Step, ValueId), Fault> {
+    fn rotation(&self, id: ValueId) -> Result<(transform::TransformStep, ValueId), SpannedError> {
         let expected = "an axis and an angle: [[x,y,z],degrees]";
         let &[axis_id, degrees] = items(self.document, id, expected)? else {
             let span = self.document.value(id).span.clone();
-            return Err(Fault::input(span, "an array of another length", expected));
+            return Err(SpannedError::input(
+                span,
+                "an array of another length",
+                expected,
+            ));
         };
         let axis = numbers(self.document, axis_id, TRIPLE)?;
         let degrees = number(self.document, degrees)?.value;
-        Ok((moves::Step::Turn { axis, degrees }, axis_id))
+        Ok((transform::TransformStep::Turn { axis, degrees }, axis_id))
     }
 }
 
-fn items<'a>(document: &'a Document, id: ValueId, expected: &str) -> Result<&'a [ValueId], Fault> {
+fn items<'a>(
+    document: &'a Document,
+    id: ValueId,
+    expected: &str,
+) -> Result<&'a [ValueId], SpannedError> {
     let value = document.value(id);
     match &value.content {
         Content::Array(items) => Ok(items),
-        other => Err(Fault::input(value.span.clone(), other.describe(), expected)),
+        other => Err(SpannedError::input(
+            value.span.clone(),
+            other.describe(),
+            expected,
+        )),
     }
 }
 
-fn number(document: &Document, id: ValueId) -> Result<Length, Fault> {
+fn number(document: &Document, id: ValueId) -> Result<Length, SpannedError> {
     let Value { content, span } = document.value(id);
     match content {
         Content::Number(text) => {
@@ -365,7 +384,11 @@ fn number(document: &Document, id: ValueId) -> Result<Length, Fault> {
                 span: span.clone(),
             })
         }
-        other => Err(Fault::input(span.clone(), other.describe(), "a number")),
+        other => Err(SpannedError::input(
+            span.clone(),
+            other.describe(),
+            "a number",
+        )),
     }
 }
 
@@ -376,15 +399,15 @@ fn lengths<const N: usize>(
     document: &Document,
     id: ValueId,
     expected: &str,
-) -> Result<[Length; N], Fault> {
+) -> Result<[Length; N], SpannedError> {
     let all = items(document, id, expected)?;
-    let all: Result<Vec<Length>, Fault> = match all.len() == N {
+    let all: Result<Vec<Length>, SpannedError> = match all.len() == N {
         true => all.iter().map(|&item| number(document, item)).collect(),
         false => Ok(Vec::new()),
     };
     all?.try_into().map_err(|_| {
         let span = document.value(id).span.clone();
-        Fault::input(span, "an array of another length", expected)
+        SpannedError::input(span, "an array of another length", expected)
     })
 }
 
@@ -392,6 +415,6 @@ fn numbers<const N: usize>(
     document: &Document,
     id: ValueId,
     expected: &str,
-) -> Result<[Rational; N], Fault> {
+) -> Result<[Rational; N], SpannedError> {
     Ok(lengths(document, id, expected)?.map(|length| length.value))
 }

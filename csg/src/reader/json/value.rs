@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::lexer::{Cursor, Dialect, Lexeme, Token};
 use premio_text::escape::quote;
 
@@ -74,7 +74,7 @@ enum Open {
     },
 }
 
-pub(super) fn parse(source: &str) -> Result<Document, Fault> {
+pub(super) fn parse(source: &str) -> Result<Document, SpannedError> {
     let cursor = Cursor::new(source, Dialect::Json)?;
     let mut parser = Parser {
         cursor,
@@ -95,7 +95,7 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    fn document(&mut self) -> Result<ValueId, Fault> {
+    fn document(&mut self) -> Result<ValueId, SpannedError> {
         loop {
             let Some(mut done) = self.begin_value()? else {
                 continue;
@@ -117,7 +117,7 @@ impl Parser<'_> {
     }
 
     /// Reads a whole value, or the beginning of an array or an object that is not empty.
-    fn begin_value(&mut self) -> Result<Option<ValueId>, Fault> {
+    fn begin_value(&mut self) -> Result<Option<ValueId>, SpannedError> {
         let lexeme = self.cursor.next();
         let span = lexeme.span();
         let content = match lexeme.token {
@@ -150,7 +150,7 @@ impl Parser<'_> {
         Ok(Some(self.add(content, span.start..close.span().end)))
     }
 
-    fn scalar(&mut self, lexeme: Lexeme) -> Result<ValueId, Fault> {
+    fn scalar(&mut self, lexeme: Lexeme) -> Result<ValueId, SpannedError> {
         let text = self.cursor.text(lexeme);
         let (content, span) = match (lexeme.token, text) {
             (Token::Text, _) => (Content::Text(self.decode(lexeme)?), lexeme.span()),
@@ -166,22 +166,26 @@ impl Parser<'_> {
         Ok(self.add(content, span))
     }
 
-    fn number(&self, first: Lexeme, digits: Lexeme) -> Result<(Content, Range<usize>), Fault> {
+    fn number(
+        &self,
+        first: Lexeme,
+        digits: Lexeme,
+    ) -> Result<(Content, Range<usize>), SpannedError> {
         let span = first.span().start..digits.span().end;
         let text = self.cursor.source().get(span.clone()).unwrap_or_default();
         if digits.token != Token::Number || !is_json_number(text) {
             let expected = "a number as JSON writes it, such as `-0.5` or `1e-3`";
-            return Err(Fault::input(span, quote(text), expected));
+            return Err(SpannedError::input(span, quote(text), expected));
         }
         Ok((Content::Number(text.to_owned()), span))
     }
 
-    fn decode(&self, lexeme: Lexeme) -> Result<String, Fault> {
+    fn decode(&self, lexeme: Lexeme) -> Result<String, SpannedError> {
         serde_json::from_str(self.cursor.text(lexeme))
             .map_err(|_| self.cursor.unexpected(lexeme, "a text as JSON writes it"))
     }
 
-    fn key(&mut self) -> Result<(String, Range<usize>), Fault> {
+    fn key(&mut self) -> Result<(String, Range<usize>), SpannedError> {
         let lexeme = self.cursor.next();
         if lexeme.token != Token::Text {
             return Err(self.cursor.unexpected(lexeme, "a key in quotes"));
@@ -191,7 +195,7 @@ impl Parser<'_> {
         Ok((key, lexeme.span()))
     }
 
-    fn after_value(&mut self, value: ValueId) -> Result<After, Fault> {
+    fn after_value(&mut self, value: ValueId) -> Result<After, SpannedError> {
         let lexeme = self.cursor.next();
         match self.open.pop() {
             None if lexeme.token == Token::End => Ok(After::End),
@@ -236,7 +240,7 @@ impl Parser<'_> {
         symbol: char,
         start: usize,
         content: Content,
-    ) -> Result<After, Fault> {
+    ) -> Result<After, SpannedError> {
         if !lexeme.is(symbol) {
             return Err(self.cursor.unexpected(lexeme, format!("`,` or `{symbol}`")));
         }

@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::lexer::Lexeme;
 use super::super::number::bad_length;
 use super::expression::Operand;
-use super::words::{MOTIONS, Shape};
-use crate::builder::{Builder, MAX_MOTION_BITS, Part};
-use crate::moves::{Moves, Step, along};
+use super::keywords::{MOTIONS, Shape};
+use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
+use crate::transform::{Transform, TransformStep, along};
 use premio_text::escape::quote;
 
 /// What is around an expression.
@@ -41,7 +41,11 @@ impl<'a> Bracket<'a> {
     }
 
     /// An argument's name has been read.
-    pub(super) fn begin_argument(&mut self, text: &'a str, lexeme: Lexeme) -> Result<(), Fault> {
+    pub(super) fn begin_argument(
+        &mut self,
+        text: &'a str,
+        lexeme: Lexeme,
+    ) -> Result<(), SpannedError> {
         let known = self.known_arguments();
         let index = known
             .iter()
@@ -49,7 +53,7 @@ impl<'a> Bracket<'a> {
         let Some(index) = index else {
             let found = format!("the unknown argument {}", quote(text));
             let expected = format!("one of `{}`", known.join("`, `"));
-            let fault = Fault::input(lexeme.span(), found, expected);
+            let fault = SpannedError::input(lexeme.span(), found, expected);
             return Err(fault.suggest(text, known.iter().copied()));
         };
         match self {
@@ -63,7 +67,7 @@ impl<'a> Bracket<'a> {
     }
 
     /// An argument's value has been read.
-    pub(super) fn end_argument(&mut self, operand: Operand) -> Result<(), Fault> {
+    pub(super) fn end_argument(&mut self, operand: Operand) -> Result<(), SpannedError> {
         match self {
             Self::Statement | Self::Group { .. } => Ok(()),
             Self::Call(call) => call.end_argument(operand),
@@ -76,7 +80,7 @@ impl<'a> Bracket<'a> {
         self,
         close: Lexeme,
         builder: &mut Builder,
-    ) -> Result<Option<(Part, usize)>, Fault> {
+    ) -> Result<Option<(SolidId, usize)>, SpannedError> {
         match self {
             Self::Statement | Self::Group { .. } => Ok(None),
             Self::Call(call) => {
@@ -87,7 +91,7 @@ impl<'a> Bracket<'a> {
             Self::At(placing) => {
                 if !placing.any {
                     let expected = format!("a motion, one of `{}`", MOTIONS.join("`, `"));
-                    return Err(Fault::input(close.span(), "`)`", expected));
+                    return Err(SpannedError::input(close.span(), "`)`", expected));
                 }
                 Ok(Some((
                     builder.moved(placing.part, placing.moves),
@@ -122,17 +126,26 @@ impl<'a> Call<'a> {
         }
     }
 
-    fn begin_argument(&mut self, index: usize, text: &'a str, lexeme: Lexeme) -> Result<(), Fault> {
+    fn begin_argument(
+        &mut self,
+        index: usize,
+        text: &'a str,
+        lexeme: Lexeme,
+    ) -> Result<(), SpannedError> {
         if matches!(self.values.get(index), Some(Some(_))) {
             let found = format!("{} a second time", quote(text));
-            return Err(Fault::input(lexeme.span(), found, "each argument once"));
+            return Err(SpannedError::input(
+                lexeme.span(),
+                found,
+                "each argument once",
+            ));
         }
         self.current = index;
         self.current_name = text;
         Ok(())
     }
 
-    fn end_argument(&mut self, operand: Operand) -> Result<(), Fault> {
+    fn end_argument(&mut self, operand: Operand) -> Result<(), SpannedError> {
         let span = operand.span.clone();
         let what_for = format!("for `{}`", self.current_name);
         let value = operand.number(&what_for)?;
@@ -142,7 +155,7 @@ impl<'a> Call<'a> {
         Ok(())
     }
 
-    fn primitive(self, close: Lexeme) -> Result<Primitive, Fault> {
+    fn primitive(self, close: Lexeme) -> Result<Primitive, SpannedError> {
         let required = self.shape.arguments().iter().take(self.shape.required());
         let missing: Vec<&str> = required
             .zip(&self.values)
@@ -152,7 +165,7 @@ impl<'a> Call<'a> {
         if !missing.is_empty() {
             let keyword = self.shape.keyword();
             let expected = format!("the argument `{}` of `{keyword}`", missing.join("`, `"));
-            return Err(Fault::input(close.span(), "`)`", expected));
+            return Err(SpannedError::input(close.span(), "`)`", expected));
         }
         let value = |index: usize| {
             let value = self.values.get(index).and_then(Option::as_ref);
@@ -168,7 +181,7 @@ impl<'a> Call<'a> {
     }
 
     /// The cone's optional radius was not given: point at the one that was.
-    fn without_apex_radius(&self, error: PrimitiveError) -> Fault {
+    fn without_apex_radius(&self, error: PrimitiveError) -> SpannedError {
         match &self.values[0] {
             Some((value, span)) => bad_length(error, Some(value), span.clone()),
             None => bad_length(error, None, self.keyword.span()),
@@ -207,43 +220,43 @@ fn argument_index(shape: Shape, dimension: Dimension) -> usize {
 
 /// A solid whose motions are being read.
 pub(super) struct Placing {
-    part: Part,
+    part: SolidId,
     start: usize,
     open: Lexeme,
-    moves: Moves,
+    moves: Transform,
     any: bool,
     /// The index among [`MOTIONS`] of the motion being read.
     current: usize,
 }
 
 impl Placing {
-    pub(super) fn new(part: Part, start: usize, open: Lexeme) -> Self {
+    pub(super) fn new(part: SolidId, start: usize, open: Lexeme) -> Self {
         Self {
             part,
             start,
             open,
-            moves: Moves::new(),
+            moves: Transform::new(),
             any: false,
             current: 0,
         }
     }
 
-    fn end_argument(&mut self, operand: Operand) -> Result<(), Fault> {
+    fn end_argument(&mut self, operand: Operand) -> Result<(), SpannedError> {
         let span = operand.span.clone();
         let name = MOTIONS.get(self.current).copied().unwrap_or_default();
         let value = operand.number(&format!("for `{name}`"))?;
         let step = match self.current {
-            axis @ 0..3 => Step::Shift(along(axis, value)),
-            turn => Step::about(turn - 3, value),
+            axis @ 0..3 => TransformStep::Shift(along(axis, value)),
+            turn => TransformStep::about(turn - 3, value),
         };
         self.moves.push(step).map_err(|error| {
-            Fault::input(span.clone(), error.to_string(), "an angle in degrees")
+            SpannedError::input(span.clone(), error.to_string(), "an angle in degrees")
         })?;
         self.any = true;
         let bits = self.moves.motion().bits();
         if bits > MAX_MOTION_BITS {
             let found = format!("motions whose exact numbers take {bits} bits");
-            return Err(Fault::limit(
+            return Err(SpannedError::limit(
                 span,
                 found,
                 format!("at most {MAX_MOTION_BITS} bits"),

@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::number::{check_length, show};
-use crate::builder::{Builder, Part};
+use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 
 /// A number or a solid.
 #[derive(Debug, Clone)]
 pub(super) enum Value {
     Number(Rational),
-    Solid(Part),
+    Solid(SolidId),
 }
 
 impl Value {
@@ -33,10 +33,10 @@ pub(super) struct Operand {
 }
 
 impl Operand {
-    pub(super) fn number(self, what_for: &str) -> Result<Rational, Fault> {
+    pub(super) fn number(self, what_for: &str) -> Result<Rational, SpannedError> {
         match self.value {
             Value::Number(number) => Ok(number),
-            other => Err(Fault::input(
+            other => Err(SpannedError::input(
                 self.span,
                 other.describe(),
                 format!("a number {what_for}"),
@@ -44,10 +44,10 @@ impl Operand {
         }
     }
 
-    pub(super) fn solid(self, what_for: &str) -> Result<Part, Fault> {
+    pub(super) fn solid(self, what_for: &str) -> Result<SolidId, SpannedError> {
         match self.value {
             Value::Solid(part) => Ok(part),
-            other => Err(Fault::input(
+            other => Err(SpannedError::input(
                 self.span,
                 other.describe(),
                 format!("a solid {what_for}"),
@@ -116,7 +116,11 @@ impl Expression {
         self.operators.push(operator);
     }
 
-    pub(super) fn infix(&mut self, operator: Operator, builder: &mut Builder) -> Result<(), Fault> {
+    pub(super) fn infix(
+        &mut self,
+        operator: Operator,
+        builder: &mut Builder,
+    ) -> Result<(), SpannedError> {
         self.reduce(operator.rank(), builder)?;
         self.operators.push(operator);
         self.complete = false;
@@ -124,13 +128,13 @@ impl Expression {
     }
 
     /// The value of the whole expression; `None` if nothing was read.
-    pub(super) fn close(mut self, builder: &mut Builder) -> Result<Option<Operand>, Fault> {
+    pub(super) fn close(mut self, builder: &mut Builder) -> Result<Option<Operand>, SpannedError> {
         self.reduce(0, builder)?;
         Ok(self.operands.pop())
     }
 
     /// Applies the operators that go before one of the given rank.
-    fn reduce(&mut self, rank: u8, builder: &mut Builder) -> Result<(), Fault> {
+    fn reduce(&mut self, rank: u8, builder: &mut Builder) -> Result<(), SpannedError> {
         while let Some(operator) = self.operators.pop_if(|last| last.rank() >= rank) {
             let Some(right) = self.operands.pop() else {
                 return Ok(());
@@ -149,7 +153,7 @@ impl Expression {
     }
 }
 
-fn negate(operand: Operand) -> Result<Operand, Fault> {
+fn negate(operand: Operand) -> Result<Operand, SpannedError> {
     let span = operand.span.clone();
     let value = Value::Number(-operand.number("after `-`")?);
     Ok(Operand { value, span })
@@ -160,7 +164,7 @@ fn apply(
     left: Operand,
     right: Operand,
     builder: &mut Builder,
-) -> Result<Operand, Fault> {
+) -> Result<Operand, SpannedError> {
     let span = left.span.start..right.span.end;
     let side = |side: &str| format!("{side} `{}`", operator.text());
     let (before, after) = (side("before"), side("after"));
@@ -176,7 +180,7 @@ fn apply(
         Operator::Subtract => a - b,
         Operator::Multiply => a * b,
         Operator::Divide if b.is_zero() => {
-            return Err(Fault::input(
+            return Err(SpannedError::input(
                 place,
                 "a division by zero",
                 "a number other than zero",

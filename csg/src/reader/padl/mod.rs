@@ -5,27 +5,27 @@
 
 mod brackets;
 mod expression;
-mod words;
+mod keywords;
 
 use std::collections::HashMap;
 use std::ops::Range;
 
 use self::brackets::{Bracket, Call, Placing};
 use self::expression::{Expression, Operand, Operator, Value};
-use self::words::{KEYWORDS, Keyword};
-use super::error::Fault;
+use self::keywords::{KEYWORDS, Keyword};
+use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::number::literal;
-use super::{Options, Source};
-use crate::builder::{Builder, Part};
+use super::{Program, ReadOptions};
+use crate::builder::{Builder, SolidId};
 use premio_text::LineColumn;
 use premio_text::escape::quote;
 
-pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
+pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, SpannedError> {
     let mut parser = Parser::new(source)?;
     while parser.statement()? {}
     let (part, span) = parser.part(options.part.as_deref())?;
-    Ok(Source {
+    Ok(Program {
         builder: parser.builder,
         part,
         digits: None,
@@ -50,12 +50,12 @@ struct Parser<'a> {
     cursor: Cursor<'a>,
     builder: Builder,
     names: HashMap<&'a str, Definition>,
-    last_solid: Option<(Part, Range<usize>)>,
+    last_solid: Option<(SolidId, Range<usize>)>,
     frames: Vec<Frame<'a>>,
 }
 
 impl<'a> Parser<'a> {
-    fn new(source: &'a str) -> Result<Self, Fault> {
+    fn new(source: &'a str) -> Result<Self, SpannedError> {
         Ok(Self {
             cursor: Cursor::new(source, Dialect::Padl)?,
             builder: Builder::new(),
@@ -70,7 +70,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reads one statement; false at the end of the text.
-    fn statement(&mut self) -> Result<bool, Fault> {
+    fn statement(&mut self) -> Result<bool, SpannedError> {
         self.cursor.skip_newlines();
         let name = self.cursor.next();
         if name.token == Token::End {
@@ -95,11 +95,11 @@ impl<'a> Parser<'a> {
         Ok(true)
     }
 
-    fn check_new_name(&self, name: Lexeme) -> Result<(), Fault> {
+    fn check_new_name(&self, name: Lexeme) -> Result<(), SpannedError> {
         let text = self.cursor.text(name);
         if Keyword::of(text).is_some() {
             let found = format!("the keyword {}", quote(text));
-            return Err(Fault::input(
+            return Err(SpannedError::input(
                 name.span(),
                 found,
                 "a name that is not a keyword",
@@ -108,14 +108,14 @@ impl<'a> Parser<'a> {
         if let Some(earlier) = self.names.get(text) {
             let line = self.line(earlier.span.start);
             let found = format!("{}, which is set already", quote(text));
-            return Err(Fault::input(name.span(), found, "a new name")
+            return Err(SpannedError::input(name.span(), found, "a new name")
                 .help(format!("it was set on line {line}")));
         }
         Ok(())
     }
 
     /// Reads the right-hand side of a statement, to the end of its line.
-    fn value(&mut self) -> Result<Value, Fault> {
+    fn value(&mut self) -> Result<Value, SpannedError> {
         self.frames.clear();
         self.open(Bracket::Statement);
         loop {
@@ -152,7 +152,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reads a value or the beginning of one.
-    fn operand(&mut self) -> Result<(), Fault> {
+    fn operand(&mut self) -> Result<(), SpannedError> {
         let lexeme = self.cursor.next();
         match lexeme.token {
             Token::Number => {
@@ -171,7 +171,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn word(&mut self, lexeme: Lexeme) -> Result<(), Fault> {
+    fn word(&mut self, lexeme: Lexeme) -> Result<(), SpannedError> {
         let text = self.cursor.text(lexeme);
         match Keyword::of(text) {
             Some(Keyword::Shape(shape)) => {
@@ -188,13 +188,13 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn name(&mut self, lexeme: Lexeme, text: &str) -> Result<(), Fault> {
+    fn name(&mut self, lexeme: Lexeme, text: &str) -> Result<(), SpannedError> {
         if let Some(definition) = self.names.get(text) {
             let value = definition.value.clone();
             self.push(value, lexeme.span());
             return Ok(());
         }
-        let fault = Fault::input(
+        let fault = SpannedError::input(
             lexeme.span(),
             format!("the unknown name {}", quote(text)),
             "a name set on an earlier line",
@@ -206,7 +206,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reads what follows a value; gives the statement's value at its end.
-    fn operator(&mut self) -> Result<Option<Value>, Fault> {
+    fn operator(&mut self) -> Result<Option<Value>, SpannedError> {
         let lexeme = self.cursor.next();
         let operator = match lexeme.token {
             Token::Symbol('+') => Operator::Add,
@@ -226,14 +226,14 @@ impl<'a> Parser<'a> {
         Ok(None)
     }
 
-    fn not_an_operator(&self, lexeme: Lexeme) -> Fault {
+    fn not_an_operator(&self, lexeme: Lexeme) -> SpannedError {
         let text = self.cursor.text(lexeme);
         let known = ["UN", "INT", "DIF", "AT"];
         self.unclosed(lexeme, "an operator or the end of the value")
             .suggest(text, known)
     }
 
-    fn begin_placing(&mut self, at: Lexeme) -> Result<(), Fault> {
+    fn begin_placing(&mut self, at: Lexeme) -> Result<(), SpannedError> {
         let Some(operand) = self.expression().and_then(Expression::take_operand) else {
             return Err(self.cursor.unexpected(at, "a solid before `AT`"));
         };
@@ -245,7 +245,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reads the name of the first argument, if the bracket is not closed at once.
-    fn first_argument(&mut self) -> Result<(), Fault> {
+    fn first_argument(&mut self) -> Result<(), SpannedError> {
         self.cursor.skip_newlines();
         if self.cursor.peek().is(')') {
             let close = self.cursor.next();
@@ -254,7 +254,7 @@ impl<'a> Parser<'a> {
         self.argument_name()
     }
 
-    fn argument_name(&mut self) -> Result<(), Fault> {
+    fn argument_name(&mut self) -> Result<(), SpannedError> {
         self.cursor.skip_newlines();
         let lexeme = self.cursor.next();
         let text = self.cursor.text(lexeme);
@@ -276,7 +276,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reads the `)`, the `,` or the end of the line that ends an expression.
-    fn close(&mut self, lexeme: Lexeme) -> Result<Option<Value>, Fault> {
+    fn close(&mut self, lexeme: Lexeme) -> Result<Option<Value>, SpannedError> {
         let Some(frame) = self.frames.last() else {
             return Ok(None);
         };
@@ -304,14 +304,14 @@ impl<'a> Parser<'a> {
     }
 
     /// Takes the innermost expression and its value.
-    fn end_expression(&mut self) -> Result<Option<Operand>, Fault> {
+    fn end_expression(&mut self) -> Result<Option<Operand>, SpannedError> {
         let Some(frame) = self.frames.last_mut() else {
             return Ok(None);
         };
         std::mem::take(&mut frame.expression).close(&mut self.builder)
     }
 
-    fn end_group(&mut self, close: Lexeme) -> Result<(), Fault> {
+    fn end_group(&mut self, close: Lexeme) -> Result<(), SpannedError> {
         let operand = self.end_expression()?;
         let open = match self.frames.pop().map(|frame| frame.bracket) {
             Some(Bracket::Group { open }) => open,
@@ -323,7 +323,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn end_argument(&mut self) -> Result<(), Fault> {
+    fn end_argument(&mut self) -> Result<(), SpannedError> {
         let operand = self.end_expression()?;
         match (self.frames.last_mut(), operand) {
             (Some(frame), Some(operand)) => frame.bracket.end_argument(operand),
@@ -331,7 +331,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn end_bracket(&mut self, close: Lexeme) -> Result<(), Fault> {
+    fn end_bracket(&mut self, close: Lexeme) -> Result<(), SpannedError> {
         let Some(frame) = self.frames.pop() else {
             return Ok(());
         };
@@ -342,7 +342,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The error at a word, with the bracket that is open there if the text ends.
-    fn unclosed(&self, lexeme: Lexeme, expected: &str) -> Fault {
+    fn unclosed(&self, lexeme: Lexeme, expected: &str) -> SpannedError {
         let fault = self.cursor.unexpected(lexeme, expected);
         let open = self.frames.last().and_then(|frame| frame.bracket.open());
         match open {
@@ -355,11 +355,11 @@ impl<'a> Parser<'a> {
     }
 
     /// The part asked for, or the last solid, and where it was set.
-    fn part(&self, wanted: Option<&str>) -> Result<(Part, Range<usize>), Fault> {
+    fn part(&self, wanted: Option<&str>) -> Result<(SolidId, Range<usize>), SpannedError> {
         let end = self.cursor.source().len();
         let Some(wanted) = wanted else {
             return self.last_solid.clone().ok_or_else(|| {
-                Fault::input(
+                SpannedError::input(
                     end..end,
                     "no solid in the file",
                     "a line such as `PART = BLO(X=1, Y=1, Z=1)`",
@@ -373,11 +373,15 @@ impl<'a> Parser<'a> {
             }) => Ok((*part, span.clone())),
             Some(Definition { value, span }) => {
                 let found = format!("{}, which is {}", quote(wanted), value.describe());
-                Err(Fault::input(span.clone(), found, "the name of a solid"))
+                Err(SpannedError::input(
+                    span.clone(),
+                    found,
+                    "the name of a solid",
+                ))
             }
             None => {
                 let found = format!("no part called {}", quote(wanted));
-                let fault = Fault::input(end..end, found, "the name of a solid in the file");
+                let fault = SpannedError::input(end..end, found, "the name of a solid in the file");
                 let mut known: Vec<&str> = self.names.keys().copied().collect();
                 known.sort_unstable();
                 Err(fault.suggest(wanted, known))

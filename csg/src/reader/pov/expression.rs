@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::frame::Vector;
 use super::super::lexer::{Lexeme, Token};
 use super::super::number::{check_length, literal};
-use super::words::truth;
+use super::keywords::truth;
 use super::{Reader, Value};
-use crate::moves::along;
+use crate::transform::along;
 use premio_text::escape::quote;
 
 /// Brackets are nested at most so deep, and with them this recursion.
@@ -35,23 +35,23 @@ impl Operand {
     }
 
     /// A number, and where it stands.
-    pub(super) fn number(self) -> Result<(Rational, Range<usize>), Fault> {
+    pub(super) fn number(self) -> Result<(Rational, Range<usize>), SpannedError> {
         match self.components.as_slice() {
             [number] => Ok((number.clone(), self.span)),
-            _ => Err(Fault::input(self.span, "a vector", "a number")),
+            _ => Err(SpannedError::input(self.span, "a vector", "a number")),
         }
     }
 
     /// A vector of three, and where it stands; a number stands for three of it, and of two numbers
     /// the third is zero.
-    pub(super) fn vector(self) -> Result<(Vector, Range<usize>), Fault> {
+    pub(super) fn vector(self) -> Result<(Vector, Range<usize>), SpannedError> {
         match self.components.as_slice() {
             [n] => Ok(([n.clone(), n.clone(), n.clone()], self.span)),
             [x, y] => Ok(([x.clone(), y.clone(), Rational::ZERO], self.span)),
             [x, y, z] => Ok(([x.clone(), y.clone(), z.clone()], self.span)),
             other => {
                 let found = format!("a vector of {}", other.len());
-                Err(Fault::input(self.span, found, "a vector of three"))
+                Err(SpannedError::input(self.span, found, "a vector of three"))
             }
         }
     }
@@ -66,14 +66,23 @@ enum Operator {
 }
 
 impl Operator {
-    fn apply(self, a: &Rational, b: &Rational, span: &Range<usize>) -> Result<Rational, Fault> {
+    fn apply(
+        self,
+        a: &Rational,
+        b: &Rational,
+        span: &Range<usize>,
+    ) -> Result<Rational, SpannedError> {
         let value = match self {
             Self::Add => a + b,
             Self::Subtract => a - b,
             Self::Multiply => a * b,
             Self::Divide if b.is_zero() => {
                 let expected = "a number other than zero";
-                return Err(Fault::input(span.clone(), "a division by zero", expected));
+                return Err(SpannedError::input(
+                    span.clone(),
+                    "a division by zero",
+                    expected,
+                ));
             }
             Self::Divide => a / b,
         };
@@ -83,21 +92,21 @@ impl Operator {
 
 impl Reader<'_> {
     /// A number.
-    pub(super) fn number(&mut self) -> Result<(Rational, Range<usize>), Fault> {
+    pub(super) fn number(&mut self) -> Result<(Rational, Range<usize>), SpannedError> {
         self.expression()?.number()
     }
 
     /// A vector of three.
-    pub(super) fn vector(&mut self) -> Result<(Vector, Range<usize>), Fault> {
+    pub(super) fn vector(&mut self) -> Result<(Vector, Range<usize>), SpannedError> {
         self.expression()?.vector()
     }
 
     /// Sums and differences.
-    pub(super) fn expression(&mut self) -> Result<Operand, Fault> {
+    pub(super) fn expression(&mut self) -> Result<Operand, SpannedError> {
         self.sum(0)
     }
 
-    fn sum(&mut self, depth: usize) -> Result<Operand, Fault> {
+    fn sum(&mut self, depth: usize) -> Result<Operand, SpannedError> {
         self.chain(depth, Self::product, |symbol| match symbol {
             '+' => Some(Operator::Add),
             '-' => Some(Operator::Subtract),
@@ -105,7 +114,7 @@ impl Reader<'_> {
         })
     }
 
-    fn product(&mut self, depth: usize) -> Result<Operand, Fault> {
+    fn product(&mut self, depth: usize) -> Result<Operand, SpannedError> {
         self.chain(depth, Self::signed, |symbol| match symbol {
             '*' => Some(Operator::Multiply),
             '/' => Some(Operator::Divide),
@@ -117,9 +126,9 @@ impl Reader<'_> {
     fn chain(
         &mut self,
         depth: usize,
-        operand: fn(&mut Self, usize) -> Result<Operand, Fault>,
+        operand: fn(&mut Self, usize) -> Result<Operand, SpannedError>,
         operator: fn(char) -> Option<Operator>,
-    ) -> Result<Operand, Fault> {
+    ) -> Result<Operand, SpannedError> {
         let mut left = operand(self, depth)?;
         while let Token::Symbol(symbol) = self.cursor.peek().token
             && let Some(operator) = operator(symbol)
@@ -131,7 +140,7 @@ impl Reader<'_> {
         Ok(left)
     }
 
-    fn signed(&mut self, depth: usize) -> Result<Operand, Fault> {
+    fn signed(&mut self, depth: usize) -> Result<Operand, SpannedError> {
         let start = self.cursor.peek().span().start;
         let mut negative = false;
         while let Token::Symbol(sign @ ('-' | '+')) = self.cursor.peek().token {
@@ -151,7 +160,7 @@ impl Reader<'_> {
     }
 
     /// One component of a vector, as in `V.x`.
-    fn component(&mut self, of: &Operand) -> Result<Operand, Fault> {
+    fn component(&mut self, of: &Operand) -> Result<Operand, SpannedError> {
         self.cursor.next();
         let name = self.cursor.next();
         let index = match self.cursor.text(name) {
@@ -169,7 +178,7 @@ impl Reader<'_> {
         Ok(Operand { components, span })
     }
 
-    fn operand(&mut self, depth: usize) -> Result<Operand, Fault> {
+    fn operand(&mut self, depth: usize) -> Result<Operand, SpannedError> {
         let lexeme = self.cursor.next();
         let one = |number: Rational| Operand {
             components: vec![number],
@@ -178,7 +187,7 @@ impl Reader<'_> {
         if depth == MAX_DEPTH {
             let found = "brackets in brackets";
             let expected = format!("at most {MAX_DEPTH} of them");
-            return Err(Fault::limit(lexeme.span(), found, expected));
+            return Err(SpannedError::limit(lexeme.span(), found, expected));
         }
         match lexeme.token {
             Token::Number => literal(self.cursor.text(lexeme), lexeme.span()).map(one),
@@ -196,7 +205,7 @@ impl Reader<'_> {
         }
     }
 
-    fn components(&mut self, open: Lexeme, depth: usize) -> Result<Operand, Fault> {
+    fn components(&mut self, open: Lexeme, depth: usize) -> Result<Operand, SpannedError> {
         let mut components = Vec::new();
         loop {
             components.push(self.sum(depth)?.number()?.0);
@@ -213,7 +222,7 @@ impl Reader<'_> {
         }
     }
 
-    fn name(&mut self, lexeme: Lexeme) -> Result<Operand, Fault> {
+    fn name(&mut self, lexeme: Lexeme) -> Result<Operand, SpannedError> {
         let text = self.cursor.text(lexeme);
         let span = lexeme.span();
         let unit = |axis: usize| along(axis, Rational::ONE).to_vec();
@@ -223,10 +232,10 @@ impl Reader<'_> {
             ("z", _) => unit(2),
             (_, Some(Value::Number(number))) => vec![number.clone()],
             (_, Some(Value::Vector(vector))) => vector.clone(),
-            (_, Some(Value::Refused(fault))) => return Err(Fault::clone(fault)),
+            (_, Some(Value::Refused(fault))) => return Err(SpannedError::clone(fault)),
             (_, Some(other)) => {
                 let found = format!("{}, which is {}", quote(text), other.describe());
-                return Err(Fault::input(span, found, "a number or a vector"));
+                return Err(SpannedError::input(span, found, "a number or a vector"));
             }
             (_, None) => match truth(text) {
                 Some(truth) => vec![Rational::from(u8::from(truth))],
@@ -237,17 +246,21 @@ impl Reader<'_> {
     }
 }
 
-fn combined(operator: Operator, left: Operand, right: Operand) -> Result<Operand, Fault> {
+fn combined(operator: Operator, left: Operand, right: Operand) -> Result<Operand, SpannedError> {
     let span = left.span.start..right.span.end;
     let (a, b) = (&left.components, &right.components);
     let apply = |(a, b): (&Rational, &Rational)| operator.apply(a, b, &span);
-    let components: Result<Vec<Rational>, Fault> = match (a.as_slice(), b.as_slice()) {
+    let components: Result<Vec<Rational>, SpannedError> = match (a.as_slice(), b.as_slice()) {
         ([a], b) => b.iter().map(|b| apply((a, b))).collect(),
         (a, [b]) => a.iter().map(|a| apply((a, b))).collect(),
         (a, b) if a.len() == b.len() => a.iter().zip(b).map(apply).collect(),
         (a, b) => {
             let found = format!("vectors of {} and of {}", a.len(), b.len());
-            return Err(Fault::input(span, found, "vectors of the same length"));
+            return Err(SpannedError::input(
+                span,
+                found,
+                "vectors of the same length",
+            ));
         }
     };
     let components = components?;

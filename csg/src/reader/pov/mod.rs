@@ -5,22 +5,22 @@
 //! made of it, and not where it is only declared.
 
 mod expression;
+mod keywords;
 mod object;
 mod solid;
-mod words;
 
 use std::collections::HashMap;
 use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
+use self::keywords::{PASSED_OVER, SOLIDS};
 use self::solid::Object;
-use self::words::{PASSED_OVER, SOLIDS};
-use super::error::Fault;
+use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::notes::Notes;
-use super::{Options, Source};
-use crate::builder::{Builder, Part};
+use super::{Program, ReadOptions};
+use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 use premio_text::LineColumn;
 use premio_text::escape::quote;
@@ -29,7 +29,7 @@ use premio_text::escape::quote;
 const LEFT_HANDED: &str = "POV-Ray's axes are left-handed: coordinates are kept as they are \
     written, so that the solid is the mirror image of what POV-Ray shows";
 
-pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
+pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, SpannedError> {
     let mut reader = Reader {
         cursor: Cursor::new(source, Dialect::Pov)?,
         builder: Builder::new(),
@@ -46,7 +46,7 @@ pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
     };
     reader.notes.add(LEFT_HANDED, span.start..span.start);
     let (digits, notes) = reader.notes.finish();
-    Ok(Source {
+    Ok(Program {
         builder: reader.builder,
         part,
         digits,
@@ -65,7 +65,7 @@ enum Value {
     Vector(Vec<Rational>),
     Object(Object, Range<usize>),
     /// Nothing that is understood here; told where it is used.
-    Refused(Box<Fault>),
+    Refused(Box<SpannedError>),
     /// A texture, a colour, a camera.
     Other,
 }
@@ -95,7 +95,7 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// Reads all statements.
-    fn scene(&mut self) -> Result<(), Fault> {
+    fn scene(&mut self) -> Result<(), SpannedError> {
         loop {
             let lexeme = self.cursor.next();
             let text = self.cursor.text(lexeme);
@@ -103,7 +103,7 @@ impl<'a> Reader<'a> {
                 Token::End => return Ok(()),
                 Token::Symbol(';') => {}
                 Token::Symbol('#') => self.directive()?,
-                Token::Name if words::is_object(text) => {
+                Token::Name if keywords::is_object(text) => {
                     let object = self.object(lexeme)?;
                     self.scene.push((object, lexeme.span()));
                 }
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn statement_expected(&self, lexeme: Lexeme) -> Fault {
+    fn statement_expected(&self, lexeme: Lexeme) -> SpannedError {
         let text = self.cursor.text(lexeme);
         let expected = format!("an object, one of `{}`, or `#declare`", SOLIDS.join("`, `"));
         let fault = self.cursor.unexpected(lexeme, expected);
@@ -124,7 +124,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A statement that begins with `#`.
-    fn directive(&mut self) -> Result<(), Fault> {
+    fn directive(&mut self) -> Result<(), SpannedError> {
         let word = self.cursor.next();
         match self.cursor.text(word) {
             "declare" | "local" => self.declare(),
@@ -158,7 +158,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The text of `#debug` and the like.
-    fn pass_over_message(&mut self) -> Result<(), Fault> {
+    fn pass_over_message(&mut self) -> Result<(), SpannedError> {
         let text = self.cursor.next();
         match text.token {
             Token::Text => Ok(()),
@@ -171,13 +171,13 @@ impl<'a> Reader<'a> {
     }
 
     /// A name and its value; the old value is gone.
-    fn declare(&mut self) -> Result<(), Fault> {
+    fn declare(&mut self) -> Result<(), SpannedError> {
         let name = self.cursor.next();
         if name.token != Token::Name {
             return Err(self.cursor.unexpected(name, "a name to declare"));
         }
         let known = self.cursor.text(name);
-        if words::is_object(known) || ["x", "y", "z"].contains(&known) {
+        if keywords::is_object(known) || ["x", "y", "z"].contains(&known) {
             return Err(self.cursor.unexpected(name, "a name that is not a keyword"));
         }
         self.cursor.expect('=', "after the name that is declared")?;
@@ -189,10 +189,10 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn declared_value(&mut self) -> Result<Value, Fault> {
+    fn declared_value(&mut self) -> Result<Value, SpannedError> {
         let first = self.cursor.peek();
         let text = self.cursor.text(first);
-        if first.token == Token::Name && words::is_object(text) {
+        if first.token == Token::Name && keywords::is_object(text) {
             self.cursor.next();
             let object = self.object(first)?;
             return Ok(Value::Object(object, first.span()));
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
             Token::Number | Token::Symbol('<' | '(' | '-' | '+')
         );
         let known = ["x", "y", "z"].contains(&text)
-            || words::truth(text).is_some()
+            || keywords::truth(text).is_some()
             || self.names.contains_key(text);
         if !number && !known {
             // A colour, a function, a text, or a name of a file that is not read.
@@ -230,7 +230,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The error at a name that stands for nothing here.
-    fn unknown(&self, lexeme: Lexeme) -> Fault {
+    fn unknown(&self, lexeme: Lexeme) -> SpannedError {
         let text = self.cursor.text(lexeme);
         let found = match lexeme.token {
             Token::Name => format!("the unknown name {}", quote(text)),
@@ -239,7 +239,7 @@ impl<'a> Reader<'a> {
         let expected = "an exact number, or a name that is declared above";
         let mut known: Vec<&str> = self.names.keys().copied().collect();
         known.sort_unstable();
-        let fault = Fault::input(lexeme.span(), found, expected);
+        let fault = SpannedError::input(lexeme.span(), found, expected);
         match self.included.as_slice() {
             [] => fault.suggest(text, known),
             files => {
@@ -270,14 +270,14 @@ impl<'a> Reader<'a> {
     }
 
     /// Passes over a block in braces.
-    fn pass_over_block(&mut self, word: Lexeme) -> Result<(), Fault> {
+    fn pass_over_block(&mut self, word: Lexeme) -> Result<(), SpannedError> {
         let what_for = format!("after `{}`", self.cursor.text(word));
         let open = self.cursor.expect('{', &what_for)?;
         self.pass_over_to_end_of(open)
     }
 
     /// Passes over all to the bracket that closes one.
-    fn pass_over_to_end_of(&mut self, open: Lexeme) -> Result<(), Fault> {
+    fn pass_over_to_end_of(&mut self, open: Lexeme) -> Result<(), SpannedError> {
         let mut depth = 1usize;
         while depth > 0 {
             let next = self.cursor.next();
@@ -291,7 +291,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn unclosed(&self, end: Lexeme, open: Lexeme) -> Fault {
+    fn unclosed(&self, end: Lexeme, open: Lexeme) -> SpannedError {
         let source = self.cursor.source().as_bytes();
         let line = LineColumn::of(source, open.span().start).line;
         let fault = self.cursor.unexpected(end, "a closing bracket");
@@ -306,7 +306,7 @@ impl<'a> Reader<'a> {
     }
 
     /// An object by the name that it is declared with, and its place.
-    fn declared(&mut self, name: &str) -> Result<(Part, Range<usize>), Fault> {
+    fn declared(&mut self, name: &str) -> Result<(SolidId, Range<usize>), SpannedError> {
         let end = self.cursor.source().len();
         match self.names.get(name).cloned() {
             Some(Value::Object(object, span)) => {
@@ -315,11 +315,16 @@ impl<'a> Reader<'a> {
             }
             Some(other) => {
                 let found = format!("{}, which is {}", quote(name), other.describe());
-                Err(Fault::input(end..end, found, "the name of an object"))
+                Err(SpannedError::input(
+                    end..end,
+                    found,
+                    "the name of an object",
+                ))
             }
             None => {
                 let found = format!("no object called {}", quote(name));
-                let fault = Fault::input(end..end, found, "the name of an object in the file");
+                let fault =
+                    SpannedError::input(end..end, found, "the name of an object in the file");
                 Err(fault.suggest(name, self.objects()))
             }
         }
@@ -335,10 +340,10 @@ impl<'a> Reader<'a> {
     }
 
     /// All objects of the scene.
-    fn whole(&mut self) -> Result<Part, Fault> {
+    fn whole(&mut self) -> Result<SolidId, SpannedError> {
         if self.scene.is_empty() {
             let end = self.cursor.source().len();
-            let fault = Fault::input(end..end, "no object in the scene", "one at least");
+            let fault = SpannedError::input(end..end, "no object in the scene", "one at least");
             let names = self.objects();
             return Err(match names.is_empty() {
                 true => fault,
@@ -355,5 +360,5 @@ impl<'a> Reader<'a> {
 
 /// Whether a word cannot be part of a value.
 fn begins_statement(word: &str) -> bool {
-    words::is_object(word) || PASSED_OVER.contains(&word)
+    keywords::is_object(word) || PASSED_OVER.contains(&word)
 }

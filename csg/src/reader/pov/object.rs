@@ -1,11 +1,11 @@
 //! Objects as they stand in a text: a word, braces, what the object is made of, and modifiers.
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::lexer::{Lexeme, Token};
+use super::keywords::{self, FLAGS, NOT_OURS, REFUSED, SOLIDS, SURFACES};
 use super::solid::{self, Object};
-use super::words::{self, FLAGS, NOT_OURS, REFUSED, SOLIDS, SURFACES};
 use super::{NO_MACROS, Reader, Value};
-use crate::builder::Part;
+use crate::builder::SolidId;
 use crate::tree::Operation;
 use premio_text::escape::quote;
 
@@ -32,11 +32,11 @@ enum Kind {
 
 impl Reader<'_> {
     /// Reads an object from after its first word.
-    pub(super) fn object(&mut self, first: Lexeme) -> Result<Object, Fault> {
+    pub(super) fn object(&mut self, first: Lexeme) -> Result<Object, SpannedError> {
         if self.inside == MAX_INSIDE {
             let found = "declarations of objects inside objects";
             let expected = format!("at most {MAX_INSIDE} of them");
-            return Err(Fault::limit(first.span(), found, expected));
+            return Err(SpannedError::limit(first.span(), found, expected));
         }
         self.inside += 1;
         let mut frames = Vec::new();
@@ -53,13 +53,19 @@ impl Reader<'_> {
     }
 
     /// Reads the beginning of an object; gives it where it is whole.
-    fn begin(&mut self, word: Lexeme, frames: &mut Vec<Frame>) -> Result<Option<Object>, Fault> {
+    fn begin(
+        &mut self,
+        word: Lexeme,
+        frames: &mut Vec<Frame>,
+    ) -> Result<Option<Object>, SpannedError> {
         let text = self.cursor.text(word);
         if NOT_OURS.contains(&text) {
             self.pass_over_block(word)?;
             let found = format!("the object {}", quote(text));
             let expected = format!("one that is exact here: `{}`", SOLIDS.join("`, `"));
-            return Ok(Some(Fault::input(word.span(), found, expected).into()));
+            return Ok(Some(
+                SpannedError::input(word.span(), found, expected).into(),
+            ));
         }
         self.cursor.expect('{', &format!("after `{text}`"))?;
         let mut frame = Frame {
@@ -75,7 +81,7 @@ impl Reader<'_> {
             _ => {
                 let name = self.cursor.peek();
                 let known = self.names.get(self.cursor.text(name));
-                let begins = words::is_object(self.cursor.text(name));
+                let begins = keywords::is_object(self.cursor.text(name));
                 match known {
                     Some(Value::Object(object, _)) if name.token == Token::Name => {
                         frame.object = Some(object.clone());
@@ -94,23 +100,23 @@ impl Reader<'_> {
     }
 
     /// The error at a name that stands for no object, to be told where that is used.
-    fn no_object(&mut self, name: Lexeme) -> Result<Fault, Fault> {
+    fn no_object(&mut self, name: Lexeme) -> Result<SpannedError, SpannedError> {
         self.cursor.next();
         let text = self.cursor.text(name);
         if self.cursor.peek().is('(') {
             return Err(self.cursor.unexpected(name, "an object").help(NO_MACROS));
         }
         Ok(match self.names.get(text) {
-            Some(Value::Refused(fault)) => Fault::clone(fault),
+            Some(Value::Refused(fault)) => SpannedError::clone(fault),
             Some(other) => {
                 let found = format!("{}, which is {}", quote(text), other.describe());
-                Fault::input(name.span(), found, "an object")
+                SpannedError::input(name.span(), found, "an object")
             }
             None => self.unknown(name),
         })
     }
 
-    fn primitive(&mut self, word: Lexeme) -> Result<Object, Fault> {
+    fn primitive(&mut self, word: Lexeme) -> Result<Object, SpannedError> {
         let text = self.cursor.text(word);
         let made = match text {
             "box" => {
@@ -152,9 +158,9 @@ impl Reader<'_> {
     }
 
     /// Reads what comes next in the innermost object; gives one that is whole.
-    fn inner(&mut self, frames: &mut Vec<Frame>) -> Result<Option<Object>, Fault> {
+    fn inner(&mut self, frames: &mut Vec<Frame>) -> Result<Option<Object>, SpannedError> {
         let Some(frame) = frames.last_mut() else {
-            return Ok(Some(Part::EMPTY.into()));
+            return Ok(Some(SolidId::EMPTY.into()));
         };
         let lexeme = self.cursor.next();
         let text = self.cursor.text(lexeme);
@@ -166,7 +172,7 @@ impl Reader<'_> {
                 Ok(Some(object))
             }
             Token::Symbol('#') => self.directive().map(|()| None),
-            Token::Name if frame.object.is_none() && words::is_object(text) => {
+            Token::Name if frame.object.is_none() && keywords::is_object(text) => {
                 let taken = frame.kind == Kind::Single && !frame.children.is_empty();
                 match taken {
                     true => Err(self.cursor.unexpected(lexeme, "a modifier or `}`")),
@@ -204,7 +210,7 @@ impl Reader<'_> {
         }
     }
 
-    fn modified(&mut self, mut object: Object, word: Lexeme) -> Result<Object, Fault> {
+    fn modified(&mut self, mut object: Object, word: Lexeme) -> Result<Object, SpannedError> {
         let text = self.cursor.text(word);
         match text {
             "translate" => {
@@ -235,7 +241,7 @@ impl Reader<'_> {
                 self.pass_over_argument(text)?;
                 let found = format!("the modifier {}", quote(text));
                 let expected = "`translate`, `rotate`, or `scale` the same in all directions";
-                Ok(Fault::input(word.span(), found, expected).into())
+                Ok(SpannedError::input(word.span(), found, expected).into())
             }
             _ => {
                 let known = ["translate", "rotate", "scale", "inverse"];
@@ -246,7 +252,7 @@ impl Reader<'_> {
     }
 
     /// What stands after a modifier that is refused.
-    fn pass_over_argument(&mut self, modifier: &str) -> Result<(), Fault> {
+    fn pass_over_argument(&mut self, modifier: &str) -> Result<(), SpannedError> {
         let next = self.cursor.peek();
         match (modifier, next.token) {
             (_, Token::Symbol('{')) => {
@@ -266,7 +272,7 @@ impl Reader<'_> {
     fn switch(&mut self) -> Option<bool> {
         let next = self.cursor.peek();
         let value = match next.token {
-            Token::Name => words::truth(self.cursor.text(next)),
+            Token::Name => keywords::truth(self.cursor.text(next)),
             Token::Number => Some(!self.cursor.text(next).trim_matches(['0', '.']).is_empty()),
             _ => None,
         };

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::frame::{Axis, Vector, difference};
 use super::super::number::bad_length;
-use crate::builder::{Builder, Part};
-use crate::moves::{Moves, Step};
+use crate::builder::{Builder, SolidId};
 use crate::primitive::{Primitive, PrimitiveError};
+use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 use premio_text::escape::quote;
 
@@ -19,9 +19,9 @@ pub(super) enum Shape {
     /// A box along the axes, from its least corner to its greatest: it may be scaled differently
     /// along them.
     Box(Box<[Vector; 2]>),
-    Part(Part),
+    Part(SolidId),
     /// Nothing that is exact here; told where it is used.
-    Refused(Box<Fault>),
+    Refused(Box<SpannedError>),
 }
 
 /// An object, or what is outside it.
@@ -38,14 +38,14 @@ impl From<Shape> for Object {
     }
 }
 
-impl From<Part> for Object {
-    fn from(part: Part) -> Self {
+impl From<SolidId> for Object {
+    fn from(part: SolidId) -> Self {
         Shape::Part(part).into()
     }
 }
 
-impl From<Fault> for Object {
-    fn from(fault: Fault) -> Self {
+impl From<SpannedError> for Object {
+    fn from(fault: SpannedError) -> Self {
         Shape::Refused(Box::new(fault)).into()
     }
 }
@@ -55,15 +55,15 @@ fn placed(
     builder: &mut Builder,
     made: Result<Primitive, PrimitiveError>,
     (last, span): (Option<&Rational>, &Range<usize>),
-    moves: Moves,
-) -> Result<Part, Fault> {
+    moves: Transform,
+) -> Result<SolidId, SpannedError> {
     let primitive = made.map_err(|error| bad_length(error, last, span.clone()))?;
     let part = builder.primitive(primitive);
     Ok(builder.moved(part, moves))
 }
 
 /// A box between two opposite corners.
-pub(super) fn block(a: Vector, b: Vector, span: Range<usize>) -> Result<Object, Fault> {
+pub(super) fn block(a: Vector, b: Vector, span: Range<usize>) -> Result<Object, SpannedError> {
     let (mut least, mut greatest) = (a, b);
     for (x, y) in least.iter_mut().zip(&mut greatest) {
         if *x > *y {
@@ -71,7 +71,7 @@ pub(super) fn block(a: Vector, b: Vector, span: Range<usize>) -> Result<Object, 
         }
         if *x == *y {
             let expected = "two corners that differ along x, y and z";
-            return Err(Fault::input(span, "a box without volume", expected));
+            return Err(SpannedError::input(span, "a box without volume", expected));
         }
     }
     Ok(Shape::Box(Box::new([least, greatest])).into())
@@ -81,8 +81,8 @@ pub(super) fn sphere(
     builder: &mut Builder,
     middle: Vector,
     (radius, span): (Rational, Range<usize>),
-) -> Result<Object, Fault> {
-    let moves = Moves::shift(middle);
+) -> Result<Object, SpannedError> {
+    let moves = Transform::shift(middle);
     let made = Primitive::sphere(radius.clone());
     placed(builder, made, (Some(&radius), &span), moves).map(Object::from)
 }
@@ -93,12 +93,16 @@ pub(super) fn cone(
     [base, top]: [Vector; 2],
     [radius, end]: [Rational; 2],
     span: Range<usize>,
-) -> Result<Object, Fault> {
+) -> Result<Object, SpannedError> {
     let Some(axis) = Axis::of(&difference(&top, &base)) else {
         let expected = "two points that differ";
-        return Err(Fault::input(span, "an axis without length", expected));
+        return Err(SpannedError::input(
+            span,
+            "an axis without length",
+            expected,
+        ));
     };
-    let moves = axis.turn.then(Moves::shift(base));
+    let moves = axis.turn.then(Transform::shift(base));
     let made = Primitive::frustum(radius, end, axis.length);
     placed(builder, made, (None, &span), moves).map(Object::from)
 }
@@ -108,19 +112,27 @@ pub(super) fn torus(
     builder: &mut Builder,
     major: Rational,
     (minor, span): (Rational, Range<usize>),
-) -> Result<Object, Fault> {
+) -> Result<Object, SpannedError> {
     let axis = Axis::of(&[0, 1, 0].map(Rational::from));
-    let moves = axis.map_or_else(Moves::new, |axis| axis.turn);
+    let moves = axis.map_or_else(Transform::new, |axis| axis.turn);
     let made = Primitive::torus(major, minor.clone());
     placed(builder, made, (Some(&minor), &span), moves).map(Object::from)
 }
 
 impl Object {
     /// The solid of an object that is not turned inside out.
-    pub(super) fn solid(self, builder: &mut Builder, span: Range<usize>) -> Result<Part, Fault> {
+    pub(super) fn solid(
+        self,
+        builder: &mut Builder,
+        span: Range<usize>,
+    ) -> Result<SolidId, SpannedError> {
         if self.inverse {
             let expected = "a solid, or `inverse` in an intersection or a difference";
-            return Err(Fault::input(span, "what is outside of a solid", expected));
+            return Err(SpannedError::input(
+                span,
+                "what is outside of a solid",
+                expected,
+            ));
         }
         self.shape.part(builder)
     }
@@ -142,17 +154,17 @@ impl Object {
                 let add = |corner: Vector| super::super::frame::sum(&corner, &by);
                 Shape::Box(Box::new(corners.map(add))).into()
             }
-            shape => moved(builder, shape, Moves::shift(by)),
+            shape => moved(builder, shape, Transform::shift(by)),
         })
     }
 
     /// Turned about x, then about y, then about z, by degrees.
     pub(super) fn rotated(self, builder: &mut Builder, degrees: Vector) -> Self {
-        let mut moves = Moves::new();
+        let mut moves = Transform::new();
         for (axis, degrees) in degrees.into_iter().enumerate() {
             if !degrees.is_zero() {
                 // A coordinate axis has a direction.
-                let _ = moves.push(Step::about(axis, degrees));
+                let _ = moves.push(TransformStep::about(axis, degrees));
             }
         }
         match moves.steps() {
@@ -164,7 +176,7 @@ impl Object {
     pub(super) fn scaled(self, builder: &mut Builder, by: Vector, span: Range<usize>) -> Self {
         if by.iter().any(Rational::is_zero) {
             let found = "a scale of zero";
-            return Fault::input(span, found, "factors other than zero").into();
+            return SpannedError::input(span, found, "factors other than zero").into();
         }
         self.changed(|shape| match shape {
             Shape::Box(corners) => {
@@ -177,7 +189,7 @@ impl Object {
     }
 }
 
-fn moved(builder: &mut Builder, shape: Shape, moves: Moves) -> Object {
+fn moved(builder: &mut Builder, shape: Shape, moves: Transform) -> Object {
     match shape.part(builder) {
         Ok(part) => builder.moved(part, moves).into(),
         Err(fault) => fault.into(),
@@ -192,7 +204,7 @@ fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usi
         let [x, y, z] = by;
         let found = format!("a scale of {}", quote(&format!("<{x}, {y}, {z}>")));
         let expected = "the same in all directions, but for a box along the axes";
-        return Fault::input(span, found, expected).into();
+        return SpannedError::input(span, found, expected).into();
     }
     let part = match shape.part(builder) {
         Ok(part) => builder.scaled(part, factor),
@@ -214,19 +226,19 @@ fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usi
     let turn = std::array::from_fn(|i| {
         std::array::from_fn(|j| Rational::from(if i == j { signs[i] } else { 0 }))
     });
-    let moves = Moves::quarter_turns(&turn).unwrap_or_default();
+    let moves = Transform::quarter_turns(&turn).unwrap_or_default();
     builder.moved(part, moves).into()
 }
 
 impl Shape {
-    fn part(self, builder: &mut Builder) -> Result<Part, Fault> {
+    fn part(self, builder: &mut Builder) -> Result<SolidId, SpannedError> {
         match self {
             Self::Part(part) => Ok(part),
             Self::Refused(fault) => Err(*fault),
             Self::Box(corners) => {
                 let [least, greatest] = *corners;
                 let made = Primitive::block(difference(&greatest, &least));
-                placed(builder, made, (None, &(0..0)), Moves::shift(least))
+                placed(builder, made, (None, &(0..0)), Transform::shift(least))
             }
         }
     }
@@ -247,7 +259,7 @@ fn operation(
     op: Operation,
     objects: Vec<Object>,
     span: Range<usize>,
-) -> Result<Object, Fault> {
+) -> Result<Object, SpannedError> {
     let mut kept = Vec::new();
     let mut taken = Vec::new();
     for (index, object) in objects.into_iter().enumerate() {
@@ -263,13 +275,17 @@ fn operation(
         Operation::Union if taken.is_empty() => builder.operation(Operation::Union, &kept),
         Operation::Intersection | Operation::Difference if !kept.is_empty() => {
             let common = builder.operation(Operation::Intersection, &kept);
-            let all: Vec<Part> = std::iter::once(common).chain(taken).collect();
+            let all: Vec<SolidId> = std::iter::once(common).chain(taken).collect();
             builder.operation(Operation::Difference, &all)
         }
-        _ if taken.is_empty() => Part::EMPTY,
+        _ if taken.is_empty() => SolidId::EMPTY,
         _ => {
             let expected = "an operation that leaves a solid";
-            return Err(Fault::input(span, "what is outside of a solid", expected));
+            return Err(SpannedError::input(
+                span,
+                "what is outside of a solid",
+                expected,
+            ));
         }
     };
     Ok(part.into())

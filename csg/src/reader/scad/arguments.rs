@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::lexer::{Cursor, Lexeme, Token};
 use super::super::number::{literal, show};
 use premio_text::escape::quote;
@@ -50,18 +50,18 @@ impl Argument {
     }
 
     /// The error that something else should stand here.
-    pub(super) fn wrong(&self, expected: impl Into<String>) -> Fault {
-        Fault::input(self.span.clone(), self.describe(), expected)
+    pub(super) fn wrong(&self, expected: impl Into<String>) -> SpannedError {
+        SpannedError::input(self.span.clone(), self.describe(), expected)
     }
 
-    pub(super) fn number(&self) -> Result<&Rational, Fault> {
+    pub(super) fn number(&self) -> Result<&Rational, SpannedError> {
         match &self.value {
             Value::Number(number) => Ok(number),
             _ => Err(self.wrong("a number")),
         }
     }
 
-    pub(super) fn bool(&self) -> Result<bool, Fault> {
+    pub(super) fn bool(&self) -> Result<bool, SpannedError> {
         match self.value {
             Value::Bool(value) => Ok(value),
             _ => Err(self.wrong("`true` or `false`")),
@@ -69,19 +69,22 @@ impl Argument {
     }
 
     /// The items of a list of `N`.
-    pub(super) fn list<const N: usize>(&self, expected: &str) -> Result<&[Argument; N], Fault> {
+    pub(super) fn list<const N: usize>(
+        &self,
+        expected: &str,
+    ) -> Result<&[Argument; N], SpannedError> {
         match &self.value {
             Value::List(items) => {
                 let count = items.len();
                 items.as_slice().try_into().map_err(|_| {
-                    Fault::input(self.span.clone(), format!("a list of {count}"), expected)
+                    SpannedError::input(self.span.clone(), format!("a list of {count}"), expected)
                 })
             }
             _ => Err(self.wrong(expected)),
         }
     }
 
-    pub(super) fn items(&self, expected: &str) -> Result<&[Argument], Fault> {
+    pub(super) fn items(&self, expected: &str) -> Result<&[Argument], SpannedError> {
         match &self.value {
             Value::List(items) => Ok(items),
             _ => Err(self.wrong(expected)),
@@ -100,7 +103,7 @@ pub(super) struct Arguments {
 
 impl Arguments {
     /// Reads the arguments in brackets after a node's name.
-    pub(super) fn parse(cursor: &mut Cursor<'_>, node: Lexeme) -> Result<Self, Fault> {
+    pub(super) fn parse(cursor: &mut Cursor<'_>, node: Lexeme) -> Result<Self, SpannedError> {
         let name = cursor.text(node).to_owned();
         cursor.expect('(', &format!("after `{name}`"))?;
         let mut arguments = Vec::new();
@@ -125,7 +128,7 @@ impl Arguments {
 
     /// Gives the arguments without a name their names, in order; refuses names that are not
     /// known and names given twice. What only tells how finely to approximate is passed over.
-    pub(super) fn bind(&mut self, known: &[&str]) -> Result<(), Fault> {
+    pub(super) fn bind(&mut self, known: &[&str]) -> Result<(), SpannedError> {
         const PASSED_OVER: [&str; 8] = [
             "$fn",
             "$fa",
@@ -150,12 +153,16 @@ impl Arguments {
             if !known.contains(&text) && !PASSED_OVER.contains(&text) {
                 let found = format!("the unknown argument {} of `{}`", quote(text), self.node);
                 let expected = format!("one of `{}`", known.join("`, `"));
-                let fault = Fault::input(name.span.clone(), found, expected);
+                let fault = SpannedError::input(name.span.clone(), found, expected);
                 return Err(fault.suggest(text, known.iter().copied()));
             }
             if !seen.insert(text) {
                 let found = format!("{} a second time", quote(text));
-                return Err(Fault::input(name.span.clone(), found, "each argument once"));
+                return Err(SpannedError::input(
+                    name.span.clone(),
+                    found,
+                    "each argument once",
+                ));
             }
         }
         Ok(())
@@ -169,7 +176,7 @@ impl Arguments {
         })
     }
 
-    pub(super) fn require(&self, name: &str) -> Result<&Argument, Fault> {
+    pub(super) fn require(&self, name: &str) -> Result<&Argument, SpannedError> {
         let undefined = self.arguments.iter().find(|argument| {
             let named = argument.name.as_ref().is_some_and(|n| n.text == name);
             named && matches!(argument.value, Value::Undefined)
@@ -178,17 +185,17 @@ impl Arguments {
             Some(argument) => argument.wrong(format!("a value for `{name}`")),
             None => {
                 let found = format!("`{}` without `{name}`", self.node);
-                Fault::input(self.span.clone(), found, format!("the argument `{name}`"))
+                SpannedError::input(self.span.clone(), found, format!("the argument `{name}`"))
             }
         })
     }
 
-    pub(super) fn flag(&self, name: &str) -> Result<bool, Fault> {
+    pub(super) fn flag(&self, name: &str) -> Result<bool, SpannedError> {
         self.find(name).map_or(Ok(false), Argument::bool)
     }
 }
 
-fn argument(cursor: &mut Cursor<'_>) -> Result<Argument, Fault> {
+fn argument(cursor: &mut Cursor<'_>) -> Result<Argument, SpannedError> {
     let first = cursor.next();
     if first.token == Token::Name && cursor.peek().is('=') {
         cursor.next();
@@ -207,7 +214,7 @@ fn argument(cursor: &mut Cursor<'_>) -> Result<Argument, Fault> {
 }
 
 /// A value. The depth of lists is bounded, and with it the depth of this recursion.
-fn value(cursor: &mut Cursor<'_>, first: Lexeme, depth: usize) -> Result<Argument, Fault> {
+fn value(cursor: &mut Cursor<'_>, first: Lexeme, depth: usize) -> Result<Argument, SpannedError> {
     let mut span = first.span();
     let value = match (first.token, cursor.text(first)) {
         (Token::Symbol('['), _) => {
@@ -236,7 +243,7 @@ fn value(cursor: &mut Cursor<'_>, first: Lexeme, depth: usize) -> Result<Argumen
     })
 }
 
-fn signed(cursor: &Cursor<'_>, negative: bool, lexeme: Lexeme) -> Result<Value, Fault> {
+fn signed(cursor: &Cursor<'_>, negative: bool, lexeme: Lexeme) -> Result<Value, SpannedError> {
     match (lexeme.token, cursor.text(lexeme)) {
         (Token::Number, text) => {
             let number = literal(text, lexeme.span())?;
@@ -250,7 +257,7 @@ fn signed(cursor: &Cursor<'_>, negative: bool, lexeme: Lexeme) -> Result<Value, 
     }
 }
 
-fn list(cursor: &mut Cursor<'_>, depth: usize) -> Result<(Vec<Argument>, usize), Fault> {
+fn list(cursor: &mut Cursor<'_>, depth: usize) -> Result<(Vec<Argument>, usize), SpannedError> {
     let mut items = Vec::new();
     while !cursor.peek().is(']') {
         let first = cursor.next();

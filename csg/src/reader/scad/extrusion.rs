@@ -5,11 +5,11 @@
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::arguments::{Argument, Arguments, Value};
 use super::shapes::{Shape, check_smooth, checked, length, radius};
-use crate::moves::Moves;
 use crate::primitive::Primitive;
+use crate::transform::Transform;
 
 /// How high a figure is raised, and from where.
 #[derive(Debug, Clone)]
@@ -24,7 +24,7 @@ pub(super) fn half(value: &Rational) -> Rational {
 
 impl Raise {
     /// What the arguments of `linear_extrude` say. A height of zero makes every figure empty.
-    pub(super) fn of(arguments: &mut Arguments) -> Result<Self, Fault> {
+    pub(super) fn of(arguments: &mut Arguments) -> Result<Self, SpannedError> {
         arguments.bind(&["height", "center", "scale", "twist", "v", "h"])?;
         let height = match arguments.find("h") {
             Some(height) => length(height, "height")?,
@@ -39,13 +39,13 @@ impl Raise {
         Ok(Self { height, bottom })
     }
 
-    fn at(&self, x: Rational, y: Rational) -> Moves {
-        Moves::shift([x, y, self.bottom.clone()])
+    fn at(&self, x: Rational, y: Rational) -> Transform {
+        Transform::shift([x, y, self.bottom.clone()])
     }
 }
 
 /// Refuses what would make the sides of an extrusion anything but straight up.
-fn check_straight(arguments: &Arguments) -> Result<(), Fault> {
+fn check_straight(arguments: &Arguments) -> Result<(), SpannedError> {
     let one = Rational::ONE;
     if let Some(scale) = arguments.find("scale") {
         let unscaled = match &scale.value {
@@ -77,7 +77,7 @@ pub(super) fn circle(
     arguments: &mut Arguments,
     raise: &Raise,
     smooth: bool,
-) -> Result<Shape, Fault> {
+) -> Result<Shape, SpannedError> {
     arguments.bind(&["r", "d"])?;
     let Some(radius) = radius(arguments, "r", "d")? else {
         return arguments.require("r").map(|_| None);
@@ -91,7 +91,7 @@ pub(super) fn circle(
     Ok(Some((checked(cylinder, &arguments.span)?, moves)))
 }
 
-pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, Fault> {
+pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, SpannedError> {
     arguments.bind(&["size", "center"])?;
     let size = arguments.require("size")?;
     let (x, y) = if size.number().is_ok() {
@@ -113,7 +113,7 @@ pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, 
 }
 
 /// A triangle with a right angle between legs along the axes: a wedge.
-pub(super) fn polygon(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, Fault> {
+pub(super) fn polygon(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, SpannedError> {
     arguments.bind(&["points", "paths"])?;
     let points = arguments.require("points")?;
     let refused =
@@ -150,13 +150,13 @@ pub(super) fn polygon(arguments: &mut Arguments, raise: &Raise) -> Result<Shape,
 
 type Point = [Rational; 2];
 
-fn point(argument: &Argument) -> Result<Point, Fault> {
+fn point(argument: &Argument) -> Result<Point, SpannedError> {
     let [x, y] = argument.list("a point: a list of two numbers")?;
     Ok([x.number()?.clone(), y.number()?.clone()])
 }
 
 /// The points in the order of the one path, if a path is given.
-fn chosen(arguments: &Arguments, points: &[Argument]) -> Result<Vec<Point>, Fault> {
+fn chosen(arguments: &Arguments, points: &[Argument]) -> Result<Vec<Point>, SpannedError> {
     let Some(paths) = arguments.find("paths") else {
         return points.iter().map(point).collect();
     };
@@ -181,7 +181,7 @@ fn wedge(
     corner: &Point,
     leg_x: Rational,
     leg_y: Rational,
-) -> Result<(Primitive, Moves), Fault> {
+) -> Result<(Primitive, Transform), SpannedError> {
     let sign = |leg: &Rational| if *leg > Rational::ZERO { 1i32 } else { -1 };
     let (u, v) = (sign(&leg_x), sign(&leg_y));
     // Columns (u,0,0), (0,0,w), (0,v,0): the determinant is -u v w.
@@ -197,6 +197,6 @@ fn wedge(
     let offset = [corner[0].clone(), corner[1].clone(), &raise.bottom + lift];
     let size = [leg_x * Rational::from(u), height, leg_y * Rational::from(v)];
     let wedge = checked(Primitive::wedge(size), &arguments.span)?;
-    let turn = Moves::quarter_turns(&matrix).unwrap_or_default();
-    Ok((wedge, turn.then(Moves::shift(offset))))
+    let turn = Transform::quarter_turns(&matrix).unwrap_or_default();
+    Ok((wedge, turn.then(Transform::shift(offset))))
 }

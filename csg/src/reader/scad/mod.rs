@@ -10,19 +10,19 @@ mod shapes;
 
 use self::arguments::Arguments;
 use self::nodes::{Around, Kind, Node};
-use super::error::Fault;
+use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::notes::Notes;
-use super::{Options, Source};
-use crate::builder::{Builder, Part};
+use super::{Program, ReadOptions};
+use crate::builder::{Builder, SolidId};
 use premio_text::LineColumn;
 
-pub(super) fn read(source: &str, options: &Options) -> Result<Source, Fault> {
+pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, SpannedError> {
     let cursor = Cursor::new(source, Dialect::Scad)?;
     let mut reader = Reader::new(cursor, options.smooth);
     let part = reader.file()?;
     let (digits, notes) = reader.notes.finish();
-    Ok(Source {
+    Ok(Program {
         builder: reader.builder,
         part,
         digits,
@@ -38,7 +38,7 @@ const SIX_DIGITS: f64 = 1e-6;
 struct Frame {
     kind: Kind,
     around: Around,
-    children: Vec<Part>,
+    children: Vec<SolidId>,
     open: Lexeme,
     /// The child is one statement, without braces.
     single: bool,
@@ -63,7 +63,7 @@ struct Reader<'a> {
     smooth: bool,
     frames: Vec<Frame>,
     notes: Notes,
-    marked_root: Option<Part>,
+    marked_root: Option<SolidId>,
 }
 
 impl<'a> Reader<'a> {
@@ -78,7 +78,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn file(&mut self) -> Result<Part, Fault> {
+    fn file(&mut self) -> Result<SolidId, SpannedError> {
         // With a subtree marked `!` all that is outside it counts for nothing.
         let live = !self.cursor.contains('!');
         let open = self.cursor.peek();
@@ -102,7 +102,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn end_of_file(&mut self, end: Lexeme) -> Result<Part, Fault> {
+    fn end_of_file(&mut self, end: Lexeme) -> Result<SolidId, SpannedError> {
         match (self.frames.pop(), self.frames.is_empty()) {
             (Some(file), true) => {
                 let part = file.kind.combine(&mut self.builder, &file.children);
@@ -118,11 +118,11 @@ impl<'a> Reader<'a> {
                     .unexpected(end, expected)
                     .help(format!("the block opened on line {line} is not closed")))
             }
-            (None, _) => Ok(Part::EMPTY),
+            (None, _) => Ok(SolidId::EMPTY),
         }
     }
 
-    fn close_block(&mut self, brace: Lexeme) -> Result<(), Fault> {
+    fn close_block(&mut self, brace: Lexeme) -> Result<(), SpannedError> {
         let closes = self.frames.len() > 1 && self.frames.last().is_some_and(|f| !f.single);
         if !closes {
             return Err(self.cursor.unexpected(brace, "a node"));
@@ -155,7 +155,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds a finished part to the block around it.
-    fn give(&mut self, part: Part, root: bool) {
+    fn give(&mut self, part: SolidId, root: bool) {
         if root {
             self.marked_root.get_or_insert(part);
         } else if let Some(frame) = self.frames.last_mut() {
@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads one node, up to the beginning of its block.
-    fn statement(&mut self, first: Lexeme) -> Result<(), Fault> {
+    fn statement(&mut self, first: Lexeme) -> Result<(), SpannedError> {
         let (marks, name) = self.marks(first);
         if name.token != Token::Name {
             return Err(self
@@ -221,9 +221,9 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn place(&mut self, shape: shapes::Shape) -> Part {
+    fn place(&mut self, shape: shapes::Shape) -> SolidId {
         let Some((primitive, moves)) = shape else {
-            return Part::EMPTY;
+            return SolidId::EMPTY;
         };
         let part = self.builder.primitive(primitive);
         self.builder.moved(part, moves)
@@ -236,7 +236,7 @@ impl<'a> Reader<'a> {
         open: Lexeme,
         live: bool,
         root: bool,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), SpannedError> {
         let next = self.cursor.peek();
         let single = match next.token {
             Token::Symbol('{') => false,

@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::lexer::Lexeme;
 use super::super::notes::Notes;
-use super::super::placement::{NotRigid, Placement, placement};
+use super::super::rigid_fit::{NotRigid, Placement, placement};
 use super::arguments::{Argument, Arguments};
 use super::extrusion::{self, Raise};
 use super::shapes::{self, Shape};
-use crate::builder::{Builder, Part};
+use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 use premio_text::escape::quote;
 
@@ -24,7 +24,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    pub(super) fn combine(self, builder: &mut Builder, children: &[Part]) -> Part {
+    pub(super) fn combine(self, builder: &mut Builder, children: &[SolidId]) -> SolidId {
         let op = match self {
             Self::Union | Self::Placed(_) => Operation::Union,
             Self::Intersection => Operation::Intersection,
@@ -88,7 +88,7 @@ pub(super) fn node(
     around: &Around,
     smooth: bool,
     notes: &mut Notes,
-) -> Result<Node, Fault> {
+) -> Result<Node, SpannedError> {
     let plane = !matches!(around, Around::Nothing);
     let block = |kind| {
         Ok(Node::Block {
@@ -106,7 +106,7 @@ pub(super) fn node(
         "multmatrix" => matrix(arguments, around, notes),
         "linear_extrude" | "rotate_extrude" | "cube" | "sphere" | "cylinder" if plane => {
             let found = format!("{} inside an extrusion", quote(name));
-            Err(Fault::input(place.span(), found, "a plane figure"))
+            Err(SpannedError::input(place.span(), found, "a plane figure"))
         }
         "linear_extrude" => {
             let around = Around::Raised(Box::new(Raise::of(arguments)?));
@@ -132,11 +132,11 @@ fn figure(
     arguments: &mut Arguments,
     around: &Around,
     smooth: bool,
-) -> Result<Shape, Fault> {
+) -> Result<Shape, SpannedError> {
     match (name, around) {
         (_, Around::Nothing) => {
             let found = format!("the plane figure {} outside an extrusion", quote(name));
-            Err(Fault::input(place.span(), found, "a solid"))
+            Err(SpannedError::input(place.span(), found, "a solid"))
         }
         ("circle", Around::Revolved(placing)) => {
             shapes::revolved_circle(arguments, placing.moves.motion(), smooth)
@@ -148,16 +148,16 @@ fn figure(
     }
 }
 
-fn not_in_revolution(place: Lexeme, name: &str) -> Fault {
+fn not_in_revolution(place: Lexeme, name: &str) -> SpannedError {
     let found = format!("{} inside `rotate_extrude`", quote(name));
-    Fault::input(
+    SpannedError::input(
         place.span(),
         found,
         "a circle beside the axis, which makes a torus",
     )
 }
 
-fn unknown(name: &str, place: Lexeme) -> Fault {
+fn unknown(name: &str, place: Lexeme) -> SpannedError {
     let reason = match name {
         "hull" | "minkowski" | "offset" | "projection" | "resize" | "fill" | "roof" => {
             "it is not a regularised set operation or a rigid motion"
@@ -168,15 +168,15 @@ fn unknown(name: &str, place: Lexeme) -> Fault {
         }
         _ => {
             let found = format!("the unknown node {}", quote(name));
-            let fault = Fault::input(place.span(), found, "a node that can be read");
+            let fault = SpannedError::input(place.span(), found, "a node that can be read");
             return fault.suggest(name, KNOWN);
         }
     };
     let found = format!("the node {}", quote(name));
-    Fault::input(place.span(), found, "a node that can be read").help(reason)
+    SpannedError::input(place.span(), found, "a node that can be read").help(reason)
 }
 
-fn revolve(arguments: &mut Arguments, smooth: bool) -> Result<Node, Fault> {
+fn revolve(arguments: &mut Arguments, smooth: bool) -> Result<Node, SpannedError> {
     arguments.bind(&["angle", "start"])?;
     shapes::check_smooth(arguments, smooth)?;
     if let Some(angle) = arguments.find("angle") {
@@ -194,7 +194,7 @@ fn revolve(arguments: &mut Arguments, smooth: bool) -> Result<Node, Fault> {
 }
 
 /// The rows of a matrix of 4 by 4.
-fn rows(argument: &Argument) -> Result<[[Rational; 4]; 4], Fault> {
+fn rows(argument: &Argument) -> Result<[[Rational; 4]; 4], SpannedError> {
     let mut matrix: [[Rational; 4]; 4] = Default::default();
     let rows: &[Argument; 4] = argument.list("a matrix of four rows")?;
     for (row, argument) in matrix.iter_mut().zip(rows) {
@@ -210,7 +210,11 @@ fn rows(argument: &Argument) -> Result<[[Rational; 4]; 4], Fault> {
     Ok(matrix)
 }
 
-fn matrix(arguments: &mut Arguments, around: &Around, notes: &mut Notes) -> Result<Node, Fault> {
+fn matrix(
+    arguments: &mut Arguments,
+    around: &Around,
+    notes: &mut Notes,
+) -> Result<Node, SpannedError> {
     arguments.bind(&["m"])?;
     let argument = arguments.require("m")?;
     let [a, b, c, _] = rows(argument)?;
@@ -246,30 +250,30 @@ fn matrix(arguments: &mut Arguments, around: &Around, notes: &mut Notes) -> Resu
 }
 
 /// In an extrusion only motions in the plane make sense.
-fn check_plane(placement: &Placement, span: &Range<usize>) -> Result<(), Fault> {
+fn check_plane(placement: &Placement, span: &Range<usize>) -> Result<(), SpannedError> {
     let motion = placement.moves.motion();
     let matrix = motion.rotation_matrix();
     if matrix[2][2].is_one() && motion.offset()[2].is_zero() {
         return Ok(());
     }
     let found = "a matrix that leaves the plane, inside an extrusion";
-    Err(Fault::input(
+    Err(SpannedError::input(
         span.clone(),
         found,
         "a motion in the xy plane",
     ))
 }
 
-fn not_rigid(reason: NotRigid, span: Range<usize>) -> Fault {
+fn not_rigid(reason: NotRigid, span: Range<usize>) -> SpannedError {
     let expected = "a rigid motion, perhaps mirrored";
     match reason {
         NotRigid::Scaled(factor) => {
             let found = format!("a matrix that scales by {factor:.6}");
-            Fault::input(span, found, expected)
+            SpannedError::input(span, found, expected)
                 .help("give the primitives their final sizes in place of a scale")
         }
         NotRigid::Distorted => {
-            Fault::input(span, "a matrix that changes lengths or angles", expected)
+            SpannedError::input(span, "a matrix that changes lengths or angles", expected)
         }
     }
 }

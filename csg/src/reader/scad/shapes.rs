@@ -5,40 +5,44 @@ use std::ops::Range;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
-use super::super::error::Fault;
+use super::super::error::SpannedError;
 use super::super::number::{bad_length, show};
 use super::arguments::{Argument, Arguments};
 use super::extrusion::half;
-use crate::moves::Moves;
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
+use crate::transform::Transform;
 
 /// A primitive at its place; `None` for one of size zero, which adds nothing.
-pub(super) type Shape = Option<(Primitive, Moves)>;
+pub(super) type Shape = Option<(Primitive, Transform)>;
 
 /// A length of zero or more.
-pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, Fault> {
+pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, SpannedError> {
     let value = argument.number()?;
     if *value < Rational::ZERO {
         let expected = format!("a {what} of zero or more");
-        return Err(Fault::input(argument.span.clone(), show(value), expected));
+        return Err(SpannedError::input(
+            argument.span.clone(),
+            show(value),
+            expected,
+        ));
     }
     Ok(value.clone())
 }
 
-fn shift_z(z: Rational) -> Moves {
-    Moves::shift([Rational::ZERO, Rational::ZERO, z])
+fn shift_z(z: Rational) -> Transform {
+    Transform::shift([Rational::ZERO, Rational::ZERO, z])
 }
 
 /// Lengths that were checked already: an error here points at the whole node.
 pub(super) fn checked(
     made: Result<Primitive, PrimitiveError>,
     span: &Range<usize>,
-) -> Result<Primitive, Fault> {
+) -> Result<Primitive, SpannedError> {
     made.map_err(|error| bad_length(error, None, span.clone()))
 }
 
 /// Whether a node's `$fn` asks for a polygon in place of a circle, and is not to be overridden.
-pub(super) fn check_smooth(arguments: &Arguments, smooth: bool) -> Result<(), Fault> {
+pub(super) fn check_smooth(arguments: &Arguments, smooth: bool) -> Result<(), SpannedError> {
     const FEWEST_SMOOTH: i32 = 16;
     let Some(argument) = arguments.find("$fn") else {
         return Ok(());
@@ -50,11 +54,11 @@ pub(super) fn check_smooth(arguments: &Arguments, smooth: bool) -> Result<(), Fa
     }
     let found = format!("{} for `$fn`, which asks for a polygon", show(value));
     let expected = format!("0 or more than {FEWEST_SMOOTH}, which is read as a smooth surface");
-    Err(Fault::input(argument.span.clone(), found, expected)
+    Err(SpannedError::input(argument.span.clone(), found, expected)
         .help("`--smooth` reads every `$fn` as a smooth surface"))
 }
 
-pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, Fault> {
+pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, SpannedError> {
     arguments.bind(&["size", "center"])?;
     let size = arguments.require("size")?;
     let size = if size.number().is_ok() {
@@ -72,9 +76,9 @@ pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, Fault> {
         return Ok(None);
     }
     let moves = if arguments.flag("center")? {
-        Moves::shift(std::array::from_fn(|i| -half(&size[i])))
+        Transform::shift(std::array::from_fn(|i| -half(&size[i])))
     } else {
-        Moves::new()
+        Transform::new()
     };
     Ok(Some((
         checked(Primitive::block(size), &arguments.span)?,
@@ -87,7 +91,7 @@ pub(super) fn radius(
     arguments: &Arguments,
     radius: &str,
     diameter: &str,
-) -> Result<Option<Rational>, Fault> {
+) -> Result<Option<Rational>, SpannedError> {
     if let Some(argument) = arguments.find(radius) {
         return length(argument, "radius").map(Some);
     }
@@ -97,7 +101,7 @@ pub(super) fn radius(
     }
 }
 
-fn required_radius(arguments: &Arguments) -> Result<Rational, Fault> {
+fn required_radius(arguments: &Arguments) -> Result<Rational, SpannedError> {
     match radius(arguments, "r", "d")? {
         Some(radius) => Ok(radius),
         None => arguments
@@ -106,7 +110,7 @@ fn required_radius(arguments: &Arguments) -> Result<Rational, Fault> {
     }
 }
 
-pub(super) fn sphere(arguments: &mut Arguments, smooth: bool) -> Result<Shape, Fault> {
+pub(super) fn sphere(arguments: &mut Arguments, smooth: bool) -> Result<Shape, SpannedError> {
     arguments.bind(&["r", "d"])?;
     let radius = required_radius(arguments)?;
     if radius.is_zero() {
@@ -114,10 +118,10 @@ pub(super) fn sphere(arguments: &mut Arguments, smooth: bool) -> Result<Shape, F
     }
     check_smooth(arguments, smooth)?;
     let sphere = checked(Primitive::sphere(radius), &arguments.span)?;
-    Ok(Some((sphere, Moves::new())))
+    Ok(Some((sphere, Transform::new())))
 }
 
-pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape, Fault> {
+pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape, SpannedError> {
     arguments.bind(&["h", "r1", "r2", "center", "r", "d", "d1", "d2"])?;
     let height = length(arguments.require("h")?, "height")?;
     let both = radius(arguments, "r", "d")?;
@@ -149,7 +153,7 @@ pub(super) fn revolved_circle(
     arguments: &mut Arguments,
     placing: &Motion,
     smooth: bool,
-) -> Result<Shape, Fault> {
+) -> Result<Shape, SpannedError> {
     arguments.bind(&["r", "d"])?;
     let minor = required_radius(arguments)?;
     if minor.is_zero() {
@@ -160,12 +164,12 @@ pub(super) fn revolved_circle(
     let major = if *x < Rational::ZERO { -x } else { x.clone() };
     let torus =
         Primitive::torus(major.clone(), minor).map_err(|error| match error.dimension() {
-            Dimension::Major => Fault::input(
+            Dimension::Major => SpannedError::input(
                 arguments.span.clone(),
                 "a circle centred on the axis of `rotate_extrude`",
                 "a circle clear of the axis, which makes a torus",
             ),
-            _ => Fault::input(
+            _ => SpannedError::input(
                 arguments.span.clone(),
                 format!(
                     "a circle that reaches the axis of `rotate_extrude`, {} from its centre",

@@ -8,7 +8,7 @@ fn asc(text: &str) -> String {
 }
 
 /// The one primitive of a solid, and its place.
-fn solid(put: &str) -> Placed {
+fn solid(put: &str) -> PlacedPrimitive {
     let tree = tree(&format!("put {{s}} {put}\n"), Format::Asc);
     let (_, placed) = tree.leaves().next().unwrap();
     placed.clone()
@@ -97,9 +97,9 @@ put top comb region no tree {^ {l lens} {l rod}}
     let bored = |p: [f64; 3]| ball(p) && !rod([p[0] - 1.0, p[1], p[2]]);
     let lens = |p: [f64; 3]| bored(p) && bored([p[0], p[1] - 3.0, p[2]]);
     assert_same_points(&tree(text, Format::Asc), |p| lens(p) != rod(p));
-    let options = Options {
+    let options = ReadOptions {
         part: Some("bored.r".to_owned()),
-        ..Options::default()
+        ..ReadOptions::default()
     };
     let part = read("part", text.as_bytes(), Format::Asc, &options).unwrap();
     assert_same_points(&part.tree, bored);

@@ -15,7 +15,7 @@ fn corpus() -> Option<PathBuf> {
     folder
 }
 
-fn file(name: &str, options: &Options) -> Option<Result<Description, ReadError>> {
+fn file(name: &str, options: &ReadOptions) -> Option<Result<Description, ReadError>> {
     let path = corpus()?.join("openscad").join(name);
     let bytes = std::fs::read(path).unwrap();
     Some(read(name, &bytes, Format::Csg, options))
@@ -34,7 +34,7 @@ fn flattened_files_are_read() {
         ("nullspace-difference.csg", 2),
     ];
     for (name, count) in counts {
-        let Some(read) = file(name, &Options::default()) else {
+        let Some(read) = file(name, &ReadOptions::default()) else {
             return;
         };
         let description = read.unwrap();
@@ -46,7 +46,7 @@ fn flattened_files_are_read() {
         );
     }
     for name in ["example019.csg", "example022.csg", "for-nested-tests.csg"] {
-        let Some(read) = file(name, &Options::default()) else {
+        let Some(read) = file(name, &ReadOptions::default()) else {
             return;
         };
         assert!(read.unwrap().tree.leaves().count() > 20, "{name}");
@@ -55,11 +55,11 @@ fn flattened_files_are_read() {
 
 #[test]
 fn polygons_and_scales_are_refused() {
-    let Some(polygons) = file("sphere-tests.csg", &Options::default()) else {
+    let Some(polygons) = file("sphere-tests.csg", &ReadOptions::default()) else {
         return;
     };
     assert!(polygons.unwrap_err().found.contains("$fn"));
-    let options = Options {
+    let options = ReadOptions {
         smooth: true,
         part: None,
     };
@@ -67,7 +67,7 @@ fn polygons_and_scales_are_refused() {
         return;
     };
     assert!(smooth.is_ok());
-    let Some(scaled) = file("transform-tests.csg", &Options::default()) else {
+    let Some(scaled) = file("transform-tests.csg", &ReadOptions::default()) else {
         return;
     };
     let error = scaled.unwrap_err();

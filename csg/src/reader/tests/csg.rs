@@ -123,7 +123,7 @@ fn small_numbers_of_sides_are_polygons_unless_told() {
     for sides in ["0.1", "3", "16"] {
         let text = format!("sphere($fn = {sides}, r = 5);");
         assert!(read_text(&text, Format::Csg).is_err());
-        let options = Options {
+        let options = ReadOptions {
             smooth: true,
             part: None,
         };

@@ -11,11 +11,11 @@ mod robustness;
 
 use super::*;
 use crate::primitive::Primitive;
-use crate::tree::{Node, NodeId, Operation, Placed};
+use crate::tree::{NodeId, Operation, PlacedPrimitive, TreeNode};
 use premio_kernel::number::rational::{Rational, to_f64};
 
 fn read_text(text: &str, format: Format) -> Result<Description, ReadError> {
-    read("part", text.as_bytes(), format, &Options::default())
+    read("part", text.as_bytes(), format, &ReadOptions::default())
 }
 
 fn tree(text: &str, format: Format) -> Tree {
@@ -53,12 +53,12 @@ fn inside(tree: &Tree, point: [f64; 3]) -> bool {
     let mut held = vec![false; tree.nodes().len()];
     for (index, node) in tree.nodes().iter().enumerate().rev() {
         held[index] = match node {
-            Node::Leaf(Placed { primitive, motion }) => {
+            TreeNode::Leaf(PlacedPrimitive { primitive, motion }) => {
                 let back = motion.inverse();
                 let exact = point.map(|x| premio_kernel::number::rational::from_f64(x).unwrap());
                 holds(primitive, back.apply_point(&exact).map(|x| to_f64(&x)))
             }
-            Node::Operation { op, children } => {
+            TreeNode::Operation { op, children } => {
                 let mut below = children.iter().map(|child: &NodeId| held[child.index()]);
                 match op {
                     Operation::Union => below.any(|h| h),

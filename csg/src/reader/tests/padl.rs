@@ -98,9 +98,9 @@ fn the_part_is_the_last_solid_or_the_one_named() {
     let text = "A = SPH(R=1)\nB = A UN SPH(R=2)\nN = 5\n";
     assert_eq!(padl(text).leaves().count(), 2);
     let part = |name: &str| {
-        let options = Options {
+        let options = ReadOptions {
             part: Some(name.to_owned()),
-            ..Options::default()
+            ..ReadOptions::default()
         };
         read("part", text.as_bytes(), Format::Padl, &options)
     };

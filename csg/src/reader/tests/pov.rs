@@ -16,7 +16,7 @@ fn n<const N: usize>(values: [i32; N]) -> [Rational; N] {
 }
 
 /// The one primitive of a scene.
-fn only(text: &str) -> Placed {
+fn only(text: &str) -> PlacedPrimitive {
     let tree = tree(text, Format::Pov);
     let (_, placed) = tree.leaves().next().unwrap();
     placed.clone()
@@ -121,9 +121,9 @@ fn parts_by_name() {
         #declare Step = 3*x; #declare C = union { object { A } object { A translate Step.x*y } }
         plane { y, 0 }";
     let part = |name: &str| {
-        let options = Options {
+        let options = ReadOptions {
             part: Some(name.to_owned()),
-            ..Options::default()
+            ..ReadOptions::default()
         };
         read("part", text.as_bytes(), Format::Pov, &options)
     };

@@ -28,7 +28,7 @@ const SEEDS: [(&str, Format); 5] = [
 
 /// Reads, and checks that an error's place is in the text.
 fn check(bytes: &[u8], format: Format) {
-    if let Err(error) = read("part", bytes, format, &Options::default()) {
+    if let Err(error) = read("part", bytes, format, &ReadOptions::default()) {
         assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());
         assert!(error.line >= 1 && error.column >= 1);
         assert!(!error.to_string().is_empty());

@@ -4,11 +4,11 @@
 //! way it is inside. Half way symmetric parts touch themselves.
 
 use super::FaceLocator;
+use crate::brep::surface_path::{CrossingSense, DirectedArc, SurfacePath};
 use crate::brep::topology::Sense;
-use crate::brep::walk::{DirectedArc, Passage, Walk};
 use crate::geometry::surface::Surface;
-use crate::number::precision::Number;
-use crate::number::sign::Sign;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 
 /// Where on an arc a walk starts.
@@ -29,7 +29,7 @@ const NEXT: f64 = 64.0;
 /// A point as far as this from the boundary, in bands, is well away from it: no other is looked for.
 const LONG: f64 = (1 << 20) as f64;
 
-impl<N: Number> FaceLocator<'_, N> {
+impl<N: Float> FaceLocator<'_, N> {
     /// A point inside the face, at least `away` along a walk from its boundary; none of a face
     /// without a boundary, and where no walk tells one.
     pub fn interior(&self, away: N) -> Option<Point3<N>> {
@@ -72,35 +72,35 @@ impl<N: Number> FaceLocator<'_, N> {
     }
 
     /// The walks of the surface's own kinds through a point of it.
-    fn walks_through(&self, p: &Point3<N>, towards: Vector3<N>) -> Vec<Walk<N>> {
-        let parallel = || Walk::parallel(self.surface, p, Sense::Along, self.band);
+    fn walks_through(&self, p: &Point3<N>, towards: Vector3<N>) -> Vec<SurfacePath<N>> {
+        let parallel = || SurfacePath::parallel(self.surface, p, Sense::Along, self.band);
         let mut walks = Vec::new();
         match self.surface {
-            Surface::Plane(s) => walks.push(Walk::straight(s, p, towards)),
+            Surface::Plane(s) => walks.push(SurfacePath::straight(s, p, towards)),
             Surface::Sphere(s) => {
                 let target = p + towards * s.radius;
-                walks.extend(Walk::great_circle(&s.frame.origin, p, &target));
+                walks.extend(SurfacePath::great_circle(&s.frame.origin, p, &target));
             }
             Surface::Cylinder(_) | Surface::Cone(_) => {
                 walks.extend(parallel());
-                let down = Walk::ruling_through(self.surface, p, Sense::Along);
+                let down = SurfacePath::ruling_through(self.surface, p, Sense::Along);
                 walks.extend(down);
             }
             Surface::Torus(s) => {
                 walks.extend(parallel());
-                walks.push(Walk::tube(s, p, Sense::Along));
+                walks.push(SurfacePath::tube(s, p, Sense::Along));
             }
         }
         walks
     }
 
     /// Where a walk from the boundary plainly leaves the face, before it meets anything else.
-    fn left_at(&self, walk: &Walk<N>) -> Option<N> {
+    fn left_at(&self, walk: &SurfacePath<N>) -> Option<N> {
         let start = N::of(NEXT) * self.band;
-        let mut first: Option<(N, Passage)> = None;
+        let mut first: Option<(N, CrossingSense)> = None;
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
-            let mut note = |at: N, _: N, passage: Passage| {
+            let mut note = |at: N, _: N, passage: CrossingSense| {
                 let is_first = first.is_none_or(|known| at.is_short_of(known.0));
                 if at.is_beyond(start) && is_first {
                     first = Some((at, passage));
@@ -109,7 +109,7 @@ impl<N: Number> FaceLocator<'_, N> {
             walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
         });
         first
-            .filter(|met| met.1 == Passage::Leaving)
+            .filter(|met| met.1 == CrossingSense::Leaving)
             .map(|met| met.0)
     }
 }

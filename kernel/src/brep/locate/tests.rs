@@ -41,11 +41,11 @@ fn arc(curve: &Curve, range: [f64; 2], sense: Sense) -> DirectedArc<'_> {
     }
 }
 
-fn expect(inside: bool) -> Place {
+fn expect(inside: bool) -> PointLocation {
     if inside {
-        Place::Inside
+        PointLocation::Inside
     } else {
-        Place::Outside
+        PointLocation::Outside
     }
 }
 
@@ -108,7 +108,7 @@ proptest! {
         let arcs = vec![arc(&base, [0.0, TAU], Sense::Against)];
         let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
         prop_assert_eq!(locator.place(&surface.point(u, v)), expect(v < 2.0));
-        prop_assert_eq!(locator.place(&f.origin), Place::Inside);
+        prop_assert_eq!(locator.place(&f.origin), PointLocation::Inside);
     }
 
     #[test]
@@ -121,7 +121,7 @@ proptest! {
         let p = surface.point(u, v);
         prop_assert_eq!(locator.place(&p), expect(2.0 * v.sin() > 1.0));
         let whole = FaceLocator::new(&surface, Sense::Along, vec![], BAND);
-        prop_assert_eq!(whole.place(&p), Place::Inside);
+        prop_assert_eq!(whole.place(&p), PointLocation::Inside);
     }
 
     #[test]
@@ -177,9 +177,9 @@ fn on_a_torus_no_order_of_the_arcs_hides_a_way() {
         let arcs: Vec<_> = (0..4).map(|k| upper[(turn + k) % 4]).collect();
         let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
         let place = |u: f64, v: f64| locator.place(&surface.point(u, v));
-        assert_eq!(place(5.0, half), Place::Outside);
-        assert_eq!(place(5.0, 0.0), Place::Outside);
-        assert_eq!(place(2.0, 1.0), Place::Inside);
+        assert_eq!(place(5.0, half), PointLocation::Outside);
+        assert_eq!(place(5.0, 0.0), PointLocation::Outside);
+        assert_eq!(place(2.0, 1.0), PointLocation::Inside);
     }
 }
 
@@ -198,13 +198,22 @@ fn a_slit_along_the_top_of_a_torus_hides_nothing() {
     let quarter = 0.25 * TAU;
     for phi in [quarter, -quarter, 0.0, 2.0 * quarter, quarter + 1e-6, 1.0] {
         for theta in [0.0, 3.0, 5.0] {
-            assert_eq!(locator.place(&surface.point(theta, phi)), Place::Inside);
+            assert_eq!(
+                locator.place(&surface.point(theta, phi)),
+                PointLocation::Inside
+            );
         }
     }
     for phi in [-quarter, 0.0, 1.0] {
-        assert_eq!(locator.place(&surface.point(1.5, phi)), Place::Inside);
+        assert_eq!(
+            locator.place(&surface.point(1.5, phi)),
+            PointLocation::Inside
+        );
     }
-    assert_eq!(locator.place(&surface.point(1.5, quarter)), Place::On);
+    assert_eq!(
+        locator.place(&surface.point(1.5, quarter)),
+        PointLocation::On
+    );
 }
 
 /// A hemisphere next to its rim: great circles to points of the rim run along it.
@@ -243,14 +252,18 @@ fn slits_on_a_great_circle_hide_nothing() {
     let arcs = [one, other].map(|range| sides.map(|sense| arc(&circle, range, sense)));
     let locator = FaceLocator::new(&surface, Sense::Along, arcs.concat(), BAND);
     for (u, place) in [
-        (1.0, Place::On),
-        (2.5, Place::Inside),
-        (4.0, Place::On),
-        (5.5, Place::Inside),
-        (6.0, Place::Inside),
+        (1.0, PointLocation::On),
+        (2.5, PointLocation::Inside),
+        (4.0, PointLocation::On),
+        (5.5, PointLocation::Inside),
+        (6.0, PointLocation::Inside),
     ] {
         assert_eq!(locator.place(&surface.point(u, 0.0)), place, "{u}");
-        assert_eq!(locator.place(&surface.point(u, 0.5)), Place::Inside, "{u}");
+        assert_eq!(
+            locator.place(&surface.point(u, 0.5)),
+            PointLocation::Inside,
+            "{u}"
+        );
     }
 }
 
@@ -261,6 +274,9 @@ fn points_on_the_boundary_are_on() {
     let outer = circle_at(&f, 0.0, 5.0);
     let arcs = vec![arc(&outer, [0.0, TAU], Sense::Along)];
     let locator = FaceLocator::new(&surface, Sense::Along, arcs, BAND);
-    assert_eq!(locator.place(&f.point(3.0, 4.0, 0.0)), Place::On);
-    assert_eq!(locator.place(&f.point(3.0, 4.0 - 1e-8, 0.0)), Place::Inside);
+    assert_eq!(locator.place(&f.point(3.0, 4.0, 0.0)), PointLocation::On);
+    assert_eq!(
+        locator.place(&f.point(3.0, 4.0 - 1e-8, 0.0)),
+        PointLocation::Inside
+    );
 }

@@ -1,16 +1,16 @@
 //! Walks between the loops of a torus: both circles through each loop, then ways to the first one.
 
 use super::{STARTS, Sorter};
+use crate::brep::surface_path::{DirectedArc, SurfacePath};
 use crate::brep::topology::Sense;
-use crate::brep::walk::{DirectedArc, Walk};
 use crate::geometry::surface::Torus;
-use crate::geometry::toric::wrap;
+use crate::geometry::torus_curve::wrap;
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::sign::Sign;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 
-impl<N: Number> Sorter<'_, N> {
+impl<N: Float> Sorter<'_, N> {
     /// Both circles through a loop's point, and a way to the first loop.
     pub(super) fn walk_torus(
         &mut self,
@@ -22,9 +22,9 @@ impl<N: Number> Sorter<'_, N> {
     ) -> bool {
         let (mut tubes, mut rounds) = (false, false);
         for sense in [Sense::Along, Sense::Against] {
-            let tube = Walk::tube(&t, p, sense);
+            let tube = SurfacePath::tube(&t, p, sense);
             tubes |= self.follow(ring, arc, p, left, &[tube], None);
-            if let Some(round) = Walk::parallel(self.surface, p, sense, self.band) {
+            if let Some(round) = SurfacePath::parallel(self.surface, p, sense, self.band) {
                 rounds |= self.follow(ring, arc, p, left, &[round], None);
             }
         }
@@ -51,21 +51,21 @@ impl<N: Number> Sorter<'_, N> {
         let [around, along] = self.winding;
         for turn in [N::of(0.4), N::of(2.6), N::of(4.3)] {
             for sense in [Sense::Along, Sense::Against] {
-                let leg = Walk::tube(t, p, sense).upto(turn * t.minor);
+                let leg = SurfacePath::tube(t, p, sense).upto(turn * t.minor);
                 let corner = leg.point(turn * t.minor);
                 if let (true, Some(round)) = (
                     along,
-                    Walk::parallel(self.surface, &corner, sense, self.band),
+                    SurfacePath::parallel(self.surface, &corner, sense, self.band),
                 ) && self.follow(ring, arc, p, left, &[leg, round], None)
                 {
                     return true;
                 }
-                let Some(round) = Walk::parallel(self.surface, p, sense, self.band) else {
+                let Some(round) = SurfacePath::parallel(self.surface, p, sense, self.band) else {
                     continue;
                 };
                 let radius = t.frame.coordinates(p).xy().length();
                 let leg = round.upto(turn * radius);
-                let tube = Walk::tube(t, &leg.point(turn * radius), sense);
+                let tube = SurfacePath::tube(t, &leg.point(turn * radius), sense);
                 if around && self.follow(ring, arc, p, left, &[leg, tube], None) {
                     return true;
                 }
@@ -100,7 +100,7 @@ impl<N: Number> Sorter<'_, N> {
                         continue;
                     };
                     let from_left =
-                        |leg: &Walk<N>| leg.direction(&q.point).dot(&q.left).is_below_zero();
+                        |leg: &SurfacePath<N>| leg.direction(&q.point).dot(&q.left).is_below_zero();
                     let reached = match self.twin(goal) {
                         Some(twin) if !legs.last().is_some_and(from_left) => twin,
                         _ => goal,
@@ -122,7 +122,7 @@ impl<N: Number> Sorter<'_, N> {
         p: &Point3<N>,
         q: &Point3<N>,
         height: Height<N>,
-    ) -> Option<Vec<Walk<N>>> {
+    ) -> Option<Vec<SurfacePath<N>>> {
         let ([u, v], [x, y]) = (self.surface.parameters(p), self.surface.parameters(q));
         let toward = |a: N| {
             if a.is_above_zero() {
@@ -134,11 +134,11 @@ impl<N: Number> Sorter<'_, N> {
         let turn = wrap(x - u);
         let round = |w: N| {
             let from = self.surface.point(u, w);
-            let walk = Walk::parallel(self.surface, &from, toward(turn), self.band)?;
+            let walk = SurfacePath::parallel(self.surface, &from, toward(turn), self.band)?;
             Some((walk, turn.abs() * (t.major + t.minor * w.cos())))
         };
         let tube = |from: &Point3<N>, rise: N| {
-            let walk = Walk::tube(t, from, toward(rise));
+            let walk = SurfacePath::tube(t, from, toward(rise));
             (walk, rise.abs() * t.minor)
         };
         let mut legs = match height {
@@ -153,7 +153,7 @@ impl<N: Number> Sorter<'_, N> {
         if let Some((_, length)) = legs.last_mut() {
             *length -= N::of(64.0) * self.band;
         }
-        let cut = |(walk, length): (Walk<N>, N)| walk.upto(length.max(N::ZERO));
+        let cut = |(walk, length): (SurfacePath<N>, N)| walk.upto(length.max(N::ZERO));
         Some(legs.into_iter().map(cut).collect())
     }
 
@@ -200,7 +200,7 @@ struct Run<N> {
     swept: N,
 }
 
-impl<N: Number> Run<N> {
+impl<N: Float> Run<N> {
     fn along(angles: &[[N; 2]], start: [N; 2]) -> Self {
         let ([mut x, mut y], mut swept) = (start, N::ZERO);
         for pair in angles.windows(2) {
@@ -228,7 +228,7 @@ impl<N: Number> Run<N> {
 
 /// The angle about the tube at which a way on a torus goes around the axis.
 #[derive(Clone, Copy)]
-enum Height<N: Number = f64> {
+enum Height<N: Float = f64> {
     /// Where the way starts.
     First,
     /// Where it ends.
@@ -237,14 +237,14 @@ enum Height<N: Number = f64> {
 }
 
 /// How a loop runs around a torus.
-pub(super) struct Turns<N: Number = f64> {
+pub(super) struct Turns<N: Float = f64> {
     /// Around the axis, and around the tube.
     pub winds: [bool; 2],
     /// Positive for one that runs counterclockwise, if it does not wind.
     pub area: N,
 }
 
-impl<N: Number> Turns<N> {
+impl<N: Float> Turns<N> {
     /// Whether it winds at all.
     pub fn winds(&self) -> bool {
         self.winds.contains(&true)

@@ -5,30 +5,30 @@
 //! divided out before what is left is traced.
 
 use super::place;
-use crate::geometry::bitrig::BiTrig;
+use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::curve::Circle;
 use crate::geometry::frame::Frame;
-use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Surface, Torus};
+use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
 use crate::geometry::trigonometric::divide;
 use crate::geometry::vector::{Length, direction};
+use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::precision::Number;
-use crate::number::roots::{Zeros, isolate};
-use crate::number::sign::Judge;
+use crate::number::predicates::Predicates;
+use crate::number::roots::{Roots, isolate};
 use nalgebra::{Point3, Vector3};
 
 /// A circle of a torus along which another surface touches it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Contact<N: Number> {
+pub(super) enum Contact<N: Float> {
     /// Round the tube, at this θ.
     Meridian(N),
     /// The outer or the inner rim, at this φ.
     Rim(N),
 }
 
-impl<N: Number> Contact<N> {
+impl<N: Float> Contact<N> {
     /// The circle.
     pub fn circle(&self, t: &Torus<N>) -> Circle<N> {
         match *self {
@@ -38,11 +38,11 @@ impl<N: Number> Contact<N> {
     }
 
     /// The form with its double zero along the circle divided out.
-    pub fn divided_out(&self, form: &BiTrig<N>) -> BiTrig<N> {
+    pub fn divided_out(&self, form: &BivariateTrigPoly<N>) -> BivariateTrigPoly<N> {
         let (Self::Meridian(angle) | Self::Rim(angle)) = *self;
         let (sin, cos) = angle.sin_cos();
         let factor = [N::ONE, -cos, -sin];
-        let mut rest = BiTrig::zero();
+        let mut rest = BivariateTrigPoly::zero();
         for j in 0..5 {
             let entry = |i: usize| match self {
                 Self::Meridian(_) => [i, j],
@@ -58,7 +58,7 @@ impl<N: Number> Contact<N> {
     }
 
     /// The angles (θ, φ) of the circle's points at which a form vanishes.
-    pub fn zeros(&self, form: &BiTrig<N>) -> Vec<[N; 2]> {
+    pub fn zeros(&self, form: &BivariateTrigPoly<N>) -> Vec<[N; 2]> {
         let along = |x: Interval<N>| match *self {
             Self::Meridian(theta) => {
                 let p = form.partials(Interval::point(theta), x);
@@ -80,7 +80,7 @@ impl<N: Number> Contact<N> {
         let breaks: Vec<N> = (0..=8)
             .map(|i| N::of(0.1) + N::TAU * N::whole(i) / N::of(8.0))
             .collect();
-        let Zeros::At { roots, .. } = isolate(&along, &breaks, form.bound() * N::ROUNDING) else {
+        let Roots::At { roots, .. } = isolate(&along, &breaks, form.bound() * N::ROUNDING) else {
             return Vec::new();
         };
         let once = roots
@@ -103,13 +103,13 @@ impl<N: Number> Contact<N> {
 }
 
 /// The circle around the axis, `up` along it, with the given radius.
-pub(super) fn parallel<N: Number>(t: &Torus<N>, up: N, radius: N) -> Circle<N> {
+pub(super) fn parallel<N: Float>(t: &Torus<N>, up: N, radius: N) -> Circle<N> {
     let frame = t.frame.at(t.frame.origin + t.frame.z * up);
     Circle { frame, radius }
 }
 
 /// The circle of the tube at the angle θ.
-pub(super) fn meridian<N: Number>(t: &Torus<N>, theta: N) -> Circle<N> {
+pub(super) fn meridian<N: Float>(t: &Torus<N>, theta: N) -> Circle<N> {
     let out = t.frame.x * theta.cos() + t.frame.y * theta.sin();
     let centre = t.frame.origin + out * t.major;
     let frame = Frame {
@@ -125,10 +125,10 @@ pub(super) fn meridian<N: Number>(t: &Torus<N>, theta: N) -> Circle<N> {
 }
 
 /// All circles of a torus, the pair's first, along which the other surface touches it.
-pub(super) fn contacts<N: Number>(
+pub(super) fn contacts<N: Float>(
     t: &Torus<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
 ) -> Vec<Contact<N>> {
     let mut all = Vec::new();
     all.extend(equal_tubes(t, pair, judge).map(Contact::Meridian));
@@ -146,25 +146,25 @@ pub(super) fn contacts<N: Number>(
 
 /// Whether a torus, the second, touches the tube of the first with its outer (`true`) or its inner
 /// rim all round.
-fn ring_on_tube<N: Number>(pair: &Pair<'_, N>, judge: &Judge) -> Option<bool> {
+fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, judge: &Predicates) -> Option<bool> {
     let at = place(&pair.b.surface.frame().origin);
     let coincide = |question, relation| judge.coincide(question, pair.how(relation), at);
     let outer = [true, false].into_iter();
-    let mut outer = outer.filter(|&o| coincide("rim on tube", Relation::RimOfTube(o)));
+    let mut outer = outer.filter(|&o| coincide("rim on tube", PairMeasure::RimOfTube(o)));
     let outer = outer.next()?;
-    let on = coincide("centre on spine", Relation::OffSpine)
-        && coincide("axis along spine", Relation::AcrossSpine);
+    let on = coincide("centre on spine", PairMeasure::OffSpine)
+        && coincide("axis along spine", PairMeasure::AcrossSpine);
     on.then_some(outer)
 }
 
 /// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
 /// the tube, a straight pipe or another bend that continues it.
-fn equal_tubes<N: Number>(t: &Torus<N>, pair: &Pair<'_, N>, judge: &Judge) -> Option<N> {
+fn equal_tubes<N: Float>(t: &Torus<N>, pair: &SurfacePair<'_, N>, judge: &Predicates) -> Option<N> {
     let (other, extent) = (pair.b.surface, pair.extent);
     let f = other.frame();
     let radii = match other {
-        Surface::Sphere(_) | Surface::Cylinder(_) => Relation::SizeOfTube,
-        Surface::Torus(_) => Relation::Tubes,
+        Surface::Sphere(_) | Surface::Cylinder(_) => PairMeasure::SizeOfTube,
+        Surface::Torus(_) => PairMeasure::Tubes,
         Surface::Plane(_) | Surface::Cone(_) => return None,
     };
     if !judge.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
@@ -202,11 +202,11 @@ fn equal_tubes<N: Number>(t: &Torus<N>, pair: &Pair<'_, N>, judge: &Judge) -> Op
 }
 
 /// A point of both spines, where two tori's spine circles touch.
-fn common_spine_point<N: Number>(
+fn common_spine_point<N: Float>(
     t: &Torus<N>,
     u: &Torus<N>,
     away: &Vector3<N>,
-    judge: &Judge,
+    judge: &Predicates,
 ) -> Option<Point3<N>> {
     // Touching circles: the common tangent is perpendicular to both radii, so the point lies on
     // the line through both centres' feet; try the points of t's spine in u's plane and back.

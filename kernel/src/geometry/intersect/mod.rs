@@ -1,7 +1,7 @@
 //! The curves in which two surfaces meet: all components, with their singular points.
 //!
 //! Whether two surfaces are parallel, coaxial, tangent or equal in radius is asked as a distance
-//! over the part's extent and decided by the [`Judge`]; the constructions then take the answer.
+//! over the part's extent and decided by the [`Predicates`]; the constructions then take the answer.
 
 mod contact;
 mod plane;
@@ -11,22 +11,22 @@ mod sphere;
 mod torus;
 
 use super::curve::Curve;
-use super::relation::{Carrier, Pair, Relation};
 use super::surface::{Cone, Surface, SurfaceKind};
+use super::surface_pair::{Carrier, PairMeasure, SurfacePair};
 use super::trace::Unresolved;
 use super::vector::rounded as place;
 use crate::brep::topology::Sense;
 use crate::geometry::vector::Length;
+use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::precision::Number;
-use crate::number::roots::{Function, Zeros, isolate};
-use crate::number::sign::Judge;
+use crate::number::predicates::Predicates;
+use crate::number::roots::{Function, Roots, isolate};
 use nalgebra::Point3;
 
 /// A ball that holds the part: what lies outside is not asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent<N: Number = f64> {
+pub struct RegionOfInterest<N: Float = f64> {
     /// The centre.
     pub centre: Point3<N>,
     /// The radius.
@@ -35,7 +35,7 @@ pub struct Extent<N: Number = f64> {
 
 /// One component of an intersection.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Branch<N: Number = f64> {
+pub struct Branch<N: Float = f64> {
     /// The curve.
     pub curve: Curve<N>,
     /// The range of its parameter.
@@ -48,7 +48,7 @@ pub struct Branch<N: Number = f64> {
 
 /// A singular point of an intersection: where it crosses or ends on itself.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node<N: Number = f64> {
+pub struct Node<N: Float = f64> {
     /// The place.
     pub point: Point3<N>,
     /// Where the branches pass: (index of the branch, parameter); empty for an isolated point.
@@ -57,7 +57,7 @@ pub struct Node<N: Number = f64> {
 
 /// Where two surfaces meet.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Meeting<N: Number = f64> {
+pub struct SurfaceIntersection<N: Float = f64> {
     /// The curves.
     pub branches: Vec<Branch<N>>,
     /// The singular points.
@@ -78,7 +78,7 @@ pub enum IntersectionError {
     },
 }
 
-impl<N: Number> Meeting<N> {
+impl<N: Float> SurfaceIntersection<N> {
     fn nothing() -> Self {
         Self::default()
     }
@@ -94,7 +94,7 @@ impl<N: Number> Meeting<N> {
     }
 
     /// Adds the whole of a curve, as far as it lies within the extent.
-    fn add(&mut self, curve: Curve<N>, tangent: bool, extent: &Extent<N>) {
+    fn add(&mut self, curve: Curve<N>, tangent: bool, extent: &RegionOfInterest<N>) {
         if let Some(range) = curve.range_within(&extent.centre, extent.radius) {
             let closed = curve.period().is_some();
             self.branches.push(Branch {
@@ -107,7 +107,7 @@ impl<N: Number> Meeting<N> {
     }
 
     /// Adds a node at a point, with its parameter on each branch that passes it.
-    fn cross_at(&mut self, point: Point3<N>, judge: &Judge) {
+    fn cross_at(&mut self, point: Point3<N>, judge: &Predicates) {
         let on = self.branches.iter().enumerate();
         let on = on.map(|(i, branch)| (i, branch.curve.parameter(&point)));
         let passed =
@@ -118,14 +118,14 @@ impl<N: Number> Meeting<N> {
 }
 
 /// The curves in which two distinct surfaces meet within the extent.
-pub fn meet<N: Number>(
+pub fn meet<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,
-    extent: &Extent<N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+    extent: &RegionOfInterest<N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     use Surface as S;
-    let pair = Pair::new(a, b, extent);
+    let pair = SurfacePair::new(a, b, extent);
     let turned = pair.turned();
     Ok(match (a.surface, b.surface) {
         (S::Plane(p), S::Plane(q)) => plane::plane_plane(p, q, &pair, judge),
@@ -144,31 +144,31 @@ pub fn meet<N: Number>(
 }
 
 /// Whether the axes of two carriers are one line within the band.
-fn same_line<N: Number>(pair: &Pair<'_, N>, place: [f64; 3], judge: &Judge) -> bool {
-    judge.coincide("axes side by side", pair.how(Relation::Drift), place)
-        && judge.coincide("axis on axis", pair.how(Relation::OffLine), place)
+fn same_line<N: Float>(pair: &SurfacePair<'_, N>, place: [f64; 3], judge: &Predicates) -> bool {
+    judge.coincide("axes side by side", pair.how(PairMeasure::Drift), place)
+        && judge.coincide("axis on axis", pair.how(PairMeasure::OffLine), place)
 }
 
 /// Whether two surfaces coincide over the extent: `Along` with the same side inside, `Against`
 /// with opposite sides, which only planes can be.
-pub fn coincidence<N: Number>(
+pub fn coincidence<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,
-    extent: &Extent<N>,
-    judge: &Judge,
+    extent: &RegionOfInterest<N>,
+    judge: &Predicates,
 ) -> Option<Sense> {
     let kinds = [a, b].map(|c| c.surface.kind());
     let against = a.surface.frame().z.dot(&b.surface.frame().z) < N::ZERO;
     if kinds[0] != kinds[1] || (against && kinds[0] == SurfaceKind::Cone) {
         return None;
     }
-    let pair = Pair::new(a, b, extent);
+    let pair = SurfacePair::new(a, b, extent);
     // Most pairs are far apart: only what could matter is put to the judge.
-    if pair.estimate(Relation::Apart) > N::TWO * judge.reach() {
+    if pair.estimate(PairMeasure::Apart) > N::TWO * judge.reach() {
         return None;
     }
     let place = place(&a.surface.frame().origin);
-    if !judge.coincide("surface on surface", pair.how(Relation::Apart), place) {
+    if !judge.coincide("surface on surface", pair.how(PairMeasure::Apart), place) {
         return None;
     }
     Some(if against && kinds[0] == SurfaceKind::Plane {
@@ -179,15 +179,15 @@ pub fn coincidence<N: Number>(
 }
 
 /// The parts of a range on which a function along the curve is positive.
-fn positive_parts<N: Number>(
+fn positive_parts<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     f: &impl Function<N>,
     band: N,
 ) -> Vec<[N; 2]> {
     let roots = match isolate(f, &curve.breaks(range[0], range[1]), band) {
-        Zeros::Everywhere => return Vec::new(),
-        Zeros::At { roots, .. } => roots,
+        Roots::Everywhere => return Vec::new(),
+        Roots::At { roots, .. } => roots,
     };
     let value = |t: N| f.at(t).v;
     if roots.is_empty() {
@@ -216,7 +216,7 @@ fn positive_parts<N: Number>(
 }
 
 /// The parts of a curve that lie on a surface's own nappe, where it is a cone.
-fn nappe_parts<N: Number>(
+fn nappe_parts<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     surface: &Surface<N>,
@@ -229,12 +229,12 @@ fn nappe_parts<N: Number>(
 }
 
 /// How far along a cone's axis from its apex a curve runs.
-struct AboveApex<'a, N: Number = f64> {
+struct AboveApex<'a, N: Float = f64> {
     curve: &'a Curve<N>,
     cone: &'a Cone<N>,
 }
 
-impl<N: Number> Function<N> for AboveApex<'_, N> {
+impl<N: Float> Function<N> for AboveApex<'_, N> {
     fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
         self.cone.frame.local(self.curve.jet_over(t))[2]
     }

@@ -1,30 +1,30 @@
 //! A plane and another surface: lines and conics in closed form.
 
-use super::{Branch, Extent, Meeting, Node, place};
+use super::{Branch, Node, RegionOfInterest, SurfaceIntersection, place};
 use crate::geometry::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
 use crate::geometry::frame::Frame;
-use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere};
+use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::sign::{Judge, Side};
+use crate::number::float::Float;
+use crate::number::predicates::{Predicates, Side};
 use nalgebra::{Point3, Vector3};
 
 /// The signed height of a point over a plane.
-fn height<N: Number>(p: &Plane<N>, x: &Point3<N>) -> N {
+fn height<N: Float>(p: &Plane<N>, x: &Point3<N>) -> N {
     (x - p.frame.origin).dot(&p.frame.z)
 }
 
-pub(super) fn plane_plane<N: Number>(
+pub(super) fn plane_plane<N: Float>(
     p: &Plane<N>,
     q: &Plane<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
-    let mut meeting = Meeting::nothing();
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
+    let mut meeting = SurfaceIntersection::nothing();
     let across = p.frame.z.cross(&q.frame.z);
     let at = place(&p.frame.origin);
-    if judge.coincide("plane along plane", pair.how(Relation::Drift), at) {
+    if judge.coincide("plane along plane", pair.how(PairMeasure::Drift), at) {
         return meeting;
     }
     let direction = across.unit();
@@ -42,24 +42,24 @@ pub(super) fn plane_plane<N: Number>(
     meeting
 }
 
-pub(super) fn plane_sphere<N: Number>(
+pub(super) fn plane_sphere<N: Float>(
     p: &Plane<N>,
     s: &Sphere<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
     let h = height(p, &s.frame.origin);
     let foot = s.frame.origin - p.frame.z * h;
     match judge.contact(
         "plane on sphere",
-        pair.how(Relation::PlaneOnSphere),
+        pair.how(PairMeasure::PlaneOnSphere),
         place(&foot),
     ) {
-        Side::Outside => Meeting::nothing(),
-        Side::On => Meeting::touch(foot),
+        Side::Outside => SurfaceIntersection::nothing(),
+        Side::On => SurfaceIntersection::touch(foot),
         Side::Inside => {
             let radius = ((s.radius - h.abs()) * (s.radius + h.abs())).sqrt();
-            let mut meeting = Meeting::nothing();
+            let mut meeting = SurfaceIntersection::nothing();
             let frame = p.frame.at(foot);
             meeting.add(Curve::Circle(Circle { frame, radius }), false, pair.extent);
             meeting
@@ -74,17 +74,17 @@ const FAR: f64 = 256.0;
 /// How many times as far as what is asked about lies a vertex that a long ellipse is told from.
 const NEAR: f64 = 16.0;
 
-pub(super) fn plane_cylinder<N: Number>(
+pub(super) fn plane_cylinder<N: Float>(
     p: &Plane<N>,
     c: &Cylinder<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
-    let mut meeting = Meeting::nothing();
+    let mut meeting = SurfaceIntersection::nothing();
     let at = place(&c.frame.origin);
-    if judge.coincide("plane along axis", pair.how(Relation::Lean), at) {
+    if judge.coincide("plane along axis", pair.how(PairMeasure::Lean), at) {
         // The axis is parallel to the plane.
         let along = (pair.extent.centre - c.frame.origin).dot(&z);
         let middle = c.frame.origin + z * along;
@@ -99,7 +99,7 @@ pub(super) fn plane_cylinder<N: Number>(
         };
         match judge.side(
             "plane on cylinder",
-            pair.how(Relation::PlaneOnCylinder),
+            pair.how(PairMeasure::PlaneOnCylinder),
             place(&foot),
         ) {
             Side::Outside => {}
@@ -114,7 +114,7 @@ pub(super) fn plane_cylinder<N: Number>(
         return meeting;
     }
     let centre = c.frame.origin - z * (height(p, &c.frame.origin) / cos);
-    let tilt = pair.how(Relation::PlaneAcrossCylinder);
+    let tilt = pair.how(PairMeasure::PlaneAcrossCylinder);
     if judge.coincide("plane across axis", tilt, at) {
         let frame = c.frame.at(centre);
         meeting.add(
@@ -142,11 +142,11 @@ pub(super) fn plane_cylinder<N: Number>(
 /// With X along the plane's steepest line from the point next to the extent's centre, and Y across,
 /// the points at X have the distance h + c X from the axis in the direction of the plane's normal:
 /// (h + c X)² + Y² = r².
-fn add_long_section<N: Number>(
+fn add_long_section<N: Float>(
     p: &Plane<N>,
     s: &Cylinder<N>,
-    extent: &Extent<N>,
-    meeting: &mut Meeting<N>,
+    extent: &RegionOfInterest<N>,
+    meeting: &mut SurfaceIntersection<N>,
 ) {
     let (n, z, r) = (p.frame.z, s.frame.z, s.radius);
     let middle = s.frame.origin + z * (extent.centre - s.frame.origin).dot(&z);
@@ -183,26 +183,26 @@ fn add_long_section<N: Number>(
     }
 }
 
-pub(super) fn plane_cone<N: Number>(
+pub(super) fn plane_cone<N: Float>(
     p: &Plane<N>,
     c: &Cone<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
     let apex = c.frame.origin;
     let h = height(p, &apex);
-    match judge.contact("apex on plane", pair.how(Relation::Height), place(&apex)) {
+    match judge.contact("apex on plane", pair.how(PairMeasure::Height), place(&apex)) {
         Side::On => plane_through_apex(p, c, pair, judge),
         _ => plane_beside_apex(p, c, h, pair, judge),
     }
 }
 
-fn plane_through_apex<N: Number>(
+fn plane_through_apex<N: Float>(
     p: &Plane<N>,
     c: &Cone<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
     let apex = c.frame.origin;
     let n = c.frame.components(&p.frame.z);
     let across = n.x.hypot(n.y);
@@ -215,7 +215,7 @@ fn plane_through_apex<N: Number>(
             direction: c.frame.vector(&local),
         }
     };
-    let mut meeting = Meeting::nothing();
+    let mut meeting = SurfaceIntersection::nothing();
     let mut add = |u: N, tangent: bool| {
         let curve = Curve::Line(ruling(u));
         if let Some([_, end]) = curve.range_within(&pair.extent.centre, pair.extent.radius)
@@ -239,10 +239,10 @@ fn plane_through_apex<N: Number>(
     };
     match judge.side(
         "plane along a cone's ruling",
-        pair.how(Relation::PlaneOnRuling),
+        pair.how(PairMeasure::PlaneOnRuling),
         place(&apex),
     ) {
-        Side::Outside => return Meeting::touch(apex),
+        Side::Outside => return SurfaceIntersection::touch(apex),
         Side::On => add(if n.z > N::ZERO { u0 + N::PI } else { u0 }, true),
         Side::Inside => {
             let half = (-n.z * c.cos / (across * c.sin))
@@ -255,21 +255,21 @@ fn plane_through_apex<N: Number>(
     meeting
 }
 
-fn plane_beside_apex<N: Number>(
+fn plane_beside_apex<N: Float>(
     p: &Plane<N>,
     c: &Cone<N>,
     h: N,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
-    let mut meeting = Meeting::nothing();
+    let mut meeting = SurfaceIntersection::nothing();
     let tan = c.sin / c.cos;
     // The semi-latus rectum of every section is the apex's distance times tan.
     let rectum = h.abs() * tan;
     let at = place(&c.frame.origin);
-    if judge.coincide("plane across axis", pair.how(Relation::Drift), at) {
+    if judge.coincide("plane across axis", pair.how(PairMeasure::Drift), at) {
         let up = -h / cos;
         if up > N::ZERO {
             let frame = c.frame.at(c.frame.origin + z * up);
@@ -290,7 +290,7 @@ fn plane_beside_apex<N: Number>(
     let rates = rulings.map(|r| n.dot(&r));
     let vertex = |i: usize| c.frame.origin - rulings[i] * (h / rates[i]);
     let parallel = [false, true].map(|far| {
-        let along = pair.how(Relation::PlaneAlongRuling(far));
+        let along = pair.how(PairMeasure::PlaneAlongRuling(far));
         judge.coincide("ruling along plane", along, at)
     });
     if let Some(i) = parallel.iter().position(|&p| p) {

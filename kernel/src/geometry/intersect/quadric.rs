@@ -1,31 +1,31 @@
 //! Two quadrics, neither a plane: which of them carries the curve, and what needs no rulings.
 
 use super::rulings::Rulings;
-use super::{Branch, Extent, IntersectionError, Meeting, place};
+use super::{Branch, IntersectionError, RegionOfInterest, SurfaceIntersection, place};
 use crate::geometry::curve::{Curve, Line};
 use crate::geometry::frame::Frame;
-use crate::geometry::quartic::Ruled;
-use crate::geometry::relation::{Pair, Relation};
+use crate::geometry::quadric_curve::Ruled;
 use crate::geometry::surface::{Cone, Cylinder, Surface};
+use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
 use crate::geometry::vector::Length;
+use crate::number::analytic::Analytic;
+use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::precision::Number;
-use crate::number::roots::{Contact, Zeros, isolate};
-use crate::number::scalar::Scalar;
-use crate::number::sign::{Judge, Side};
+use crate::number::predicates::{Predicates, Side};
+use crate::number::roots::{RootKind, Roots, isolate};
 use nalgebra::Vector3;
 
-pub(super) fn quadric_quadric<N: Number>(
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+pub(super) fn quadric_quadric<N: Float>(
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     use Surface as S;
     let turned = pair.turned();
     match (pair.a.surface, pair.b.surface) {
         (S::Cylinder(c), S::Cylinder(d)) => {
             let at = place(&c.frame.origin);
-            if judge.coincide("axes side by side", pair.how(Relation::Drift), at) {
+            if judge.coincide("axes side by side", pair.how(PairMeasure::Drift), at) {
                 return Ok(parallel_cylinders(c, d, pair, judge));
             }
             over_rulings(pair, judge)
@@ -35,24 +35,28 @@ pub(super) fn quadric_quadric<N: Number>(
         (S::Cone(c), S::Cone(_)) => cones(c, pair, judge),
         (S::Cone(_), _) => over_rulings(pair, judge),
         (_, S::Cone(_)) => over_rulings(&turned, judge),
-        _ => Ok(Meeting::nothing()),
+        _ => Ok(SurfaceIntersection::nothing()),
     }
 }
 
-fn parallel_cylinders<N: Number>(
+fn parallel_cylinders<N: Float>(
     c: &Cylinder<N>,
     d: &Cylinder<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
     let extent = pair.extent;
     let z = c.frame.z;
     let at = |f: &Frame<N>| f.origin + f.z * ((extent.centre - f.origin).dot(&z) / f.z.dot(&z));
     let (p, q) = (at(&c.frame), at(&d.frame));
     let away = q - p;
     let dist = away.length();
-    let mut meeting = Meeting::nothing();
-    if judge.coincide("axis on axis", pair.how(Relation::BetweenAxes), place(&p)) {
+    let mut meeting = SurfaceIntersection::nothing();
+    if judge.coincide(
+        "axis on axis",
+        pair.how(PairMeasure::BetweenAxes),
+        place(&p),
+    ) {
         return meeting;
     }
     let axis = away / dist;
@@ -66,8 +70,8 @@ fn parallel_cylinders<N: Number>(
     };
     let foot = p + axis * x;
     let side = |gap| judge.side("cylinder along cylinder", pair.how(gap), place(&foot));
-    let outer = side(Relation::CylinderBesideCylinder);
-    match (outer, side(Relation::CylinderInCylinder)) {
+    let outer = side(PairMeasure::CylinderBesideCylinder);
+    match (outer, side(PairMeasure::CylinderInCylinder)) {
         (Side::On, _) => meeting.add(line(p + axis * r), true, extent),
         (_, Side::On) => meeting.add(line(p + axis * r.copysign(r - s)), true, extent),
         (Side::Inside, Side::Inside) => {
@@ -81,13 +85,13 @@ fn parallel_cylinders<N: Number>(
     meeting
 }
 
-fn cones<N: Number>(
+fn cones<N: Float>(
     c: &Cone<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let at = place(&c.frame.origin);
-    if judge.contact("apex on apex", pair.how(Relation::Between), at) == Side::On {
+    if judge.contact("apex on apex", pair.how(PairMeasure::Between), at) == Side::On {
         return Ok(common_apex(c, pair.b.surface, pair.extent, judge));
     }
     let turned = pair.turned();
@@ -98,13 +102,13 @@ fn cones<N: Number>(
 }
 
 /// Two cones with one apex meet in common rulings.
-fn common_apex<N: Number>(
+fn common_apex<N: Float>(
     c: &Cone<N>,
     other: &Surface<N>,
-    extent: &Extent<N>,
-    judge: &Judge,
-) -> Meeting<N> {
-    let mut meeting = Meeting::touch(c.frame.origin);
+    extent: &RegionOfInterest<N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
+    let mut meeting = SurfaceIntersection::touch(c.frame.origin);
     let m = c.sin / c.cos;
     // The distance from the other cone, a part's radius away from the apex, along each ruling.
     let along = |u: Jet<Interval<N>>| {
@@ -118,13 +122,13 @@ fn common_apex<N: Number>(
     let breaks: Vec<N> = (0..=8)
         .map(|i| N::of(0.1) + N::TAU * N::whole(i) / N::of(8.0))
         .collect();
-    let Zeros::At { roots, .. } = isolate(&|t| along(Jet::variable(t)), &breaks, judge.band())
+    let Roots::At { roots, .. } = isolate(&|t| along(Jet::variable(t)), &breaks, judge.band())
     else {
         return meeting;
     };
     let mut angles: Vec<(N, bool)> = roots
         .iter()
-        .map(|r| (r.t, r.contact != Contact::Simple))
+        .map(|r| (r.t, r.contact != RootKind::Simple))
         .collect();
     if let (Some(&(a, _)), Some(&(b, _))) = (angles.first(), angles.last())
         && angles.len() > 1
@@ -155,10 +159,10 @@ fn common_apex<N: Number>(
 
 /// Over the rulings of the pair's first; where the curve has a cusp over these, at the apex of the
 /// second, over the second's, each of which has one point of the curve but the apex.
-fn over_rulings<N: Number>(
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+fn over_rulings<N: Float>(
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     match over_first(pair, judge) {
         Err(IntersectionError::Cusp { .. }) if holds_apex(pair, judge) => {
             over_first(&pair.turned(), judge)
@@ -168,25 +172,27 @@ fn over_rulings<N: Number>(
 }
 
 /// Whether the pair's second is a cone whose apex lies on the first.
-fn holds_apex<N: Number>(pair: &Pair<'_, N>, judge: &Judge) -> bool {
+fn holds_apex<N: Float>(pair: &SurfacePair<'_, N>, judge: &Predicates) -> bool {
     let Surface::Cone(cone) = pair.b.surface else {
         return false;
     };
     let (away, at) = (
-        pair.how(Relation::PointOnQuadric),
+        pair.how(PairMeasure::PointOnQuadric),
         place(&cone.frame.origin),
     );
     judge.contact("apex on quadric", away, at) == Side::On
 }
 
-fn over_first<N: Number>(
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+fn over_first<N: Float>(
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let base = match pair.a.surface {
         Surface::Cylinder(c) => Ruled::Cylinder(*c),
         Surface::Cone(c) => Ruled::Cone(*c),
-        Surface::Plane(_) | Surface::Sphere(_) | Surface::Torus(_) => return Ok(Meeting::nothing()),
+        Surface::Plane(_) | Surface::Sphere(_) | Surface::Torus(_) => {
+            return Ok(SurfaceIntersection::nothing());
+        }
     };
     let rulings = Rulings::new(base, pair);
     let is_single = match base {

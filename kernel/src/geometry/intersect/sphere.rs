@@ -1,26 +1,26 @@
 //! Two spheres.
 
-use super::{Meeting, place};
+use super::{SurfaceIntersection, place};
 use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::frame::Frame;
-use crate::geometry::relation::{Pair, Relation};
 use crate::geometry::surface::Sphere;
+use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::sign::{Judge, Side};
+use crate::number::float::Float;
+use crate::number::predicates::{Predicates, Side};
 
-pub(super) fn sphere_sphere<N: Number>(
+pub(super) fn sphere_sphere<N: Float>(
     s: &Sphere<N>,
     t: &Sphere<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Meeting<N> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> SurfaceIntersection<N> {
     let away = t.frame.origin - s.frame.origin;
     let d = away.length();
     let (r, q) = (s.radius, t.radius);
     let at = place(&s.frame.origin);
-    if judge.coincide("centre on centre", pair.how(Relation::Between), at) {
-        return Meeting::nothing();
+    if judge.coincide("centre on centre", pair.how(PairMeasure::Between), at) {
+        return SurfaceIntersection::nothing();
     }
     let axis = away / d;
     let x = N::HALF * (d + (r - q) * (r + q) / d);
@@ -29,19 +29,19 @@ pub(super) fn sphere_sphere<N: Number>(
     let beside = s.frame.origin + axis * r;
     let within = s.frame.origin + axis * r.copysign(r - q);
     let side = |gap, at| judge.contact("sphere on sphere", pair.how(gap), place(at));
-    let outer = side(Relation::SphereBesideSphere, &beside);
-    match (outer, side(Relation::SphereInSphere, &within)) {
-        (Side::On, _) => Meeting::touch(beside),
-        (_, Side::On) => Meeting::touch(within),
+    let outer = side(PairMeasure::SphereBesideSphere, &beside);
+    match (outer, side(PairMeasure::SphereInSphere, &within)) {
+        (Side::On, _) => SurfaceIntersection::touch(beside),
+        (_, Side::On) => SurfaceIntersection::touch(within),
         (Side::Inside, Side::Inside) => {
             // Heron: the product of the four gaps, none of which cancels.
             let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
             let radius = area.max(N::ZERO).sqrt() / (N::TWO * d);
-            let mut meeting = Meeting::nothing();
+            let mut meeting = SurfaceIntersection::nothing();
             let frame = Frame::about(foot, axis);
             meeting.add(Curve::Circle(Circle { frame, radius }), false, pair.extent);
             meeting
         }
-        _ => Meeting::nothing(),
+        _ => SurfaceIntersection::nothing(),
     }
 }

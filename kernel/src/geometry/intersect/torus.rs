@@ -2,26 +2,26 @@
 //! otherwise the curve through the torus's angles.
 
 use super::contact::{contacts, meridian, parallel};
-use super::{Branch, IntersectionError, Meeting, Node, nappe_parts, place, same_line};
-use crate::geometry::bitrig::BiTrig;
+use super::{Branch, IntersectionError, Node, SurfaceIntersection, nappe_parts, place, same_line};
+use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::curve::{Circle, Curve};
-use crate::geometry::cut::lies_on;
-use crate::geometry::relation::{Pair, Relation};
+use crate::geometry::curve_surface::lies_on;
 use crate::geometry::surface::{Plane, Surface, Torus};
+use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
 use crate::geometry::trace::trace;
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::sign::{Judge, Side};
+use crate::number::float::Float;
+use crate::number::predicates::{Predicates, Side};
 use nalgebra::{Point3, Vector2};
 
 /// Through the angles of the smaller one: on the other, far from the curve, the form is large, and
 /// its rounding with it.
-pub(super) fn torus_torus<N: Number>(
+pub(super) fn torus_torus<N: Float>(
     t: &Torus<N>,
     o: &Torus<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     if o.major + o.minor < t.major + t.minor {
         torus_with(o, &pair.turned(), judge)
     } else {
@@ -30,11 +30,11 @@ pub(super) fn torus_torus<N: Number>(
 }
 
 /// The torus is the pair's first.
-pub(super) fn torus_with<N: Number>(
+pub(super) fn torus_with<N: Float>(
     t: &Torus<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let (other, extent) = (pair.b.surface, pair.extent);
     if let Some(meeting) = coaxial(t, pair, judge) {
         return Ok(meeting);
@@ -62,16 +62,16 @@ pub(super) fn torus_with<N: Number>(
 }
 
 /// The other surface as a function of the torus's angles: a distance to first order.
-pub(super) fn form<N: Number>(t: &Torus<N>, other: &Surface<N>) -> BiTrig<N> {
+pub(super) fn form<N: Float>(t: &Torus<N>, other: &Surface<N>) -> BivariateTrigPoly<N> {
     let surface = Surface::Torus(*t);
-    BiTrig::interpolate(|theta, phi| {
+    BivariateTrigPoly::interpolate(|theta, phi| {
         let p = surface.point(theta, phi);
         polynomial_level(other, &p, t)
     })
 }
 
 /// The polynomial that vanishes on a surface, scaled to be the distance near to it.
-fn polynomial_level<N: Number>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N {
+fn polynomial_level<N: Float>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N {
     let slope = match s {
         Surface::Plane(_) => N::ONE,
         Surface::Cylinder(c) => N::TWO * c.radius,
@@ -85,14 +85,14 @@ fn polynomial_level<N: Number>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N
     s.polynomial(p) / slope
 }
 
-fn traced<N: Number>(
+fn traced<N: Float>(
     t: &Torus<N>,
     other: &Surface<N>,
-    form: &BiTrig<N>,
-    judge: &Judge,
-) -> Result<Meeting<N>, IntersectionError> {
+    form: &BivariateTrigPoly<N>,
+    judge: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let traced = trace(t, form, judge.band())?;
-    let mut meeting = Meeting::nothing();
+    let mut meeting = SurfaceIntersection::nothing();
     for [theta, phi] in &traced.close {
         let p = Surface::Torus(*t).point(*theta, *phi);
         judge.contact("torus touches surface", other.distance(&p), place(&p));
@@ -159,11 +159,11 @@ fn traced<N: Number>(
 
 /// The circle that a branch is, where it is one: a sphere across a torus's spine meets it in circles
 /// of the tube, a cone about a tangent of the spine in one.
-fn circle_of<N: Number>(
+fn circle_of<N: Float>(
     branch: &Curve<N>,
     t: &Torus<N>,
     other: &Surface<N>,
-    judge: &Judge,
+    judge: &Predicates,
 ) -> Option<Curve<N>> {
     let period = branch.period()?;
     let [a, b, c] =
@@ -175,7 +175,7 @@ fn circle_of<N: Number>(
 
 /// The end of a part of a closed curve, or the singular point there: next to one, rounding is all
 /// that tells where the curve leaves a nappe.
-fn at_pass<N: Number>(curve: &Curve<N>, end: N, passes: &[N], judge: &Judge) -> N {
+fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], judge: &Predicates) -> N {
     let there = curve.point(end);
     let near = passes.iter().map(|&at| {
         let turns = curve
@@ -189,13 +189,17 @@ fn at_pass<N: Number>(curve: &Curve<N>, end: N, passes: &[N], judge: &Judge) -> 
 }
 
 /// What is coaxial meets in parallel circles: points of the two profiles in a half plane.
-fn coaxial<N: Number>(t: &Torus<N>, pair: &Pair<'_, N>, judge: &Judge) -> Option<Meeting<N>> {
+fn coaxial<N: Float>(
+    t: &Torus<N>,
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Option<SurfaceIntersection<N>> {
     let other = pair.b.surface;
     let f = other.frame();
     let at = place(&t.frame.origin);
     let is_coaxial = match other {
-        Surface::Plane(_) => judge.coincide("plane across axis", pair.how(Relation::Tilt), at),
-        Surface::Sphere(_) => judge.coincide("centre on axis", pair.how(Relation::OffAxis), at),
+        Surface::Plane(_) => judge.coincide("plane across axis", pair.how(PairMeasure::Tilt), at),
+        Surface::Sphere(_) => judge.coincide("centre on axis", pair.how(PairMeasure::OffAxis), at),
         _ => same_line(pair, at, judge),
     };
     if !is_coaxial {
@@ -222,7 +226,7 @@ fn coaxial<N: Number>(t: &Torus<N>, pair: &Pair<'_, N>, judge: &Judge) -> Option
         Surface::Sphere(s) => profile.circle(&Vector2::new(N::ZERO, up), s.radius),
         Surface::Torus(s) => profile.circle(&Vector2::new(s.major, up), s.minor),
     };
-    let mut meeting = Meeting::nothing();
+    let mut meeting = SurfaceIntersection::nothing();
     for (p, tangent) in points {
         if p.x > N::ZERO {
             meeting.add(Curve::Circle(parallel(t, p.y, p.x)), tangent, pair.extent);
@@ -232,16 +236,16 @@ fn coaxial<N: Number>(t: &Torus<N>, pair: &Pair<'_, N>, judge: &Judge) -> Option
 }
 
 /// The circle of the tube in a half plane from the axis, and what is coaxial to the torus.
-struct Profile<'a, N: Number = f64> {
+struct Profile<'a, N: Float = f64> {
     /// The centre of the tube: its distance from the axis, and its height.
     tube: Vector2<N>,
     radius: N,
-    pair: &'a Pair<'a, N>,
-    judge: &'a Judge,
+    pair: &'a SurfacePair<'a, N>,
+    judge: &'a Predicates,
 }
 
-impl<N: Number> Profile<'_, N> {
-    fn side(&self, question: &'static str, relation: Relation, at: &Vector2<N>) -> Side {
+impl<N: Float> Profile<'_, N> {
+    fn side(&self, question: &'static str, relation: PairMeasure, at: &Vector2<N>) -> Side {
         let f = self.pair.a.surface.frame();
         let at = f.point(at.x, N::ZERO, at.y);
         self.judge
@@ -252,7 +256,11 @@ impl<N: Number> Profile<'_, N> {
     fn line(&self, o: &Vector2<N>, d: &Vector2<N>) -> Vec<(Vector2<N>, bool)> {
         let foot = o + d * (self.tube - o).dot(d);
         let (h, r) = ((self.tube - foot).length(), self.radius);
-        match self.side("line on circle of a profile", Relation::LineOnTube, &foot) {
+        match self.side(
+            "line on circle of a profile",
+            PairMeasure::LineOnTube,
+            &foot,
+        ) {
             Side::Outside => Vec::new(),
             Side::On => vec![(foot, true)],
             Side::Inside => {
@@ -266,14 +274,14 @@ impl<N: Number> Profile<'_, N> {
     fn circle(&self, a: &Vector2<N>, r: N) -> Vec<(Vector2<N>, bool)> {
         let away = self.tube - a;
         let (d, q) = (away.length(), self.radius);
-        let concentric = self.side("centre on centre", Relation::BetweenTubes, &self.tube);
+        let concentric = self.side("centre on centre", PairMeasure::BetweenTubes, &self.tube);
         if concentric == Side::On {
             return Vec::new();
         }
         let axis = away / d;
         let foot = a + axis * (N::HALF * (d + (r - q) * (r + q) / d));
         let side = |gap| self.side("circle on circle of a profile", gap, &foot);
-        match (side(Relation::BesideTube), side(Relation::InTube)) {
+        match (side(PairMeasure::BesideTube), side(PairMeasure::InTube)) {
             (Side::On, _) => vec![(a + axis * r, true)],
             (_, Side::On) => vec![(a + axis * r.copysign(r - q), true)],
             (Side::Inside, Side::Inside) => {
@@ -288,20 +296,20 @@ impl<N: Number> Profile<'_, N> {
 }
 
 /// A plane through the centre that holds the axis, or touches the tube twice (Villarceau).
-fn central_plane<N: Number>(
+fn central_plane<N: Float>(
     t: &Torus<N>,
     p: &Plane<N>,
-    pair: &Pair<'_, N>,
-    judge: &Judge,
-) -> Option<Meeting<N>> {
+    pair: &SurfacePair<'_, N>,
+    judge: &Predicates,
+) -> Option<SurfaceIntersection<N>> {
     let (n, extent) = (p.frame.z, pair.extent);
     let at = place(&t.frame.origin);
-    let height = pair.turned().how(Relation::Height);
+    let height = pair.turned().how(PairMeasure::Height);
     if !judge.coincide("centre on plane", height, at) {
         return None;
     }
-    let mut meeting = Meeting::nothing();
-    if judge.coincide("axis in plane", pair.how(Relation::Upright), at) {
+    let mut meeting = SurfaceIntersection::nothing();
+    if judge.coincide("axis in plane", pair.how(PairMeasure::Upright), at) {
         let q = t.frame.components(&n);
         let theta = q.y.atan2(q.x) + N::TAU / N::of(4.0);
         for theta in [theta, theta + N::TAU / N::TWO] {
@@ -311,7 +319,7 @@ fn central_plane<N: Number>(
     }
     let across = n.cross(&t.frame.z);
     let slope = across.length();
-    let gap = pair.how(Relation::PlaneOnBothSides);
+    let gap = pair.how(PairMeasure::PlaneOnBothSides);
     if !judge.coincide("plane touching a torus twice", gap, at) {
         return None;
     }

@@ -1,6 +1,6 @@
 //! Singular points of every kind, whose branches are known by hand.
 
-use crate::geometry::bitrig::BiTrig;
+use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cone, Surface, Torus};
 use crate::geometry::trace::{Traced, trace};
@@ -20,7 +20,7 @@ const TORUS: Torus = Torus {
 
 /// Of a function of the angles: whole, with every point on it.
 fn traced(f: impl Fn(f64, f64) -> f64) -> Traced {
-    let form = BiTrig::interpolate(&f);
+    let form = BivariateTrigPoly::interpolate(&f);
     let traced = trace(&TORUS, &form, 1e-11).unwrap();
     for b in &traced.branches {
         for i in 0..10 * b.segments.len() {

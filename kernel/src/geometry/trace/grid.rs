@@ -1,18 +1,18 @@
 //! Cells of the parameter torus, and the first grid of them.
 
-use crate::geometry::toric::wrap;
-use crate::number::precision::Number;
+use crate::geometry::torus_curve::wrap;
+use crate::number::float::Float;
 
 /// A rectangle of angles.
 #[derive(Clone, Copy, Debug)]
-pub struct Cell<N: Number = f64> {
+pub struct Cell<N: Float = f64> {
     /// The least angles.
     pub lo: [N; 2],
     /// The greatest angles.
     pub hi: [N; 2],
 }
 
-impl<N: Number> Cell<N> {
+impl<N: Float> Cell<N> {
     /// The angles in the middle.
     pub fn centre(&self) -> [N; 2] {
         [
@@ -63,7 +63,7 @@ const START: [f64; 2] = [0.061_803_4, 0.041_421_4];
 
 /// Where the lines of the first grid lie: they are free, but for a curve that runs through a corner.
 #[derive(Clone, Copy, Debug)]
-pub struct Layout<N: Number = f64> {
+pub struct Layout<N: Float = f64> {
     /// The size of a zone, as a part of the greatest.
     pub shrink: N,
     /// How far the sides of a zone lie from its point, as parts of its size: low and high, along
@@ -80,7 +80,7 @@ const SKEWS: [[[f64; 2]; 2]; 3] = [
     [[1.0, 0.831_9], [0.537_1, 0.611_3]],
 ];
 
-impl<N: Number> Layout<N> {
+impl<N: Float> Layout<N> {
     /// One after the other: every skew, then with smaller zones.
     pub fn of(attempt: usize) -> Self {
         let n = attempt as i32;
@@ -94,7 +94,7 @@ impl<N: Number> Layout<N> {
 }
 
 /// The cells of the first grid, without singular points.
-pub fn plain_grid<N: Number>() -> Vec<Cell<N>> {
+pub fn plain_grid<N: Float>() -> Vec<Cell<N>> {
     let layout = Layout::of(0);
     let [xs, ys] = [0, 1].map(|angle| lines(angle, &[], &layout));
     grid(&xs, &ys)
@@ -102,7 +102,7 @@ pub fn plain_grid<N: Number>() -> Vec<Cell<N>> {
 
 /// The lines of the first grid along one `angle`, by its index: even ones, but none through a zone,
 /// and the sides of the zones, given as (centre, size).
-pub fn lines<N: Number>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Vec<N> {
+pub fn lines<N: Float>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Vec<N> {
     let (start, skew) = (layout.start[angle], layout.skew[angle]);
     let mut all: Vec<N> = (0..GRID)
         .map(|i| start + N::TAU * N::of(i as f64) / N::of(GRID as f64))
@@ -136,7 +136,7 @@ const SAME: f64 = 1.0 / (1 << 20) as f64;
 const WITHIN: f64 = 0.999;
 
 /// The cells between lines of both angles.
-pub fn grid<N: Number>(xs: &[N], ys: &[N]) -> Vec<Cell<N>> {
+pub fn grid<N: Float>(xs: &[N], ys: &[N]) -> Vec<Cell<N>> {
     let mut cells = Vec::new();
     for x in xs.windows(2) {
         for y in ys.windows(2) {

@@ -3,14 +3,14 @@
 
 use super::grid::{Cell, Layout, grid, lines};
 use super::{Leaf, Singular, Traced, Tracer, Unresolved};
-use crate::geometry::bitrig::BiTrig;
-use crate::geometry::chart::Chart;
-use crate::geometry::singular::{Pass, SingularPoint};
+use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
+use crate::geometry::blow_up::Chart;
+use crate::geometry::singular::{BranchTangent, SingularPoint};
 use crate::geometry::surface::Torus;
-use crate::geometry::toric::{Axis, Segment, Toric, wrap};
+use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, TorusParameter, wrap};
+use crate::number::analytic::Analytic;
+use crate::number::float::Float;
 use crate::number::interval::Interval;
-use crate::number::precision::Number;
-use crate::number::scalar::Scalar;
 use std::collections::{BTreeMap, HashMap};
 
 /// A root on a side, by the angles there.
@@ -18,14 +18,14 @@ type RootId = usize;
 
 /// The roots on all sides, shared by the cells on both sides of them.
 #[derive(Default)]
-struct Sides<N: Number = f64> {
+struct Sides<N: Float = f64> {
     roots: Vec<[N; 2]>,
     known: HashMap<(usize, Name, Name, Name), Vec<RootId>>,
 }
 
 /// The zones along one angle, by its index, as (centre, size): those that lie over one another have
 /// their lines in common, and the size of the least.
-fn zones<N: Number>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, N)> {
+fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, N)> {
     let size = |p: &SingularPoint<N>| {
         let over = |q: &&SingularPoint<N>| wrap(p.angles[k] - q.angles[k]).abs() <= p.zone + q.zone;
         let sizes = points.iter().filter(over).map(|q| q.zone);
@@ -41,15 +41,15 @@ fn zones<N: Number>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N,
 type Name = [u64; 4];
 
 /// A line's name: lines a period apart are the same.
-fn key<N: Number>(x: N, first: N) -> Name {
+fn key<N: Float>(x: N, first: N) -> Name {
     let y = if x >= first + N::TAU { first } else { x };
     y.bits()
 }
 
 /// A piece of the curve in one cell: the roots or the singular point it joins.
-struct Piece<N: Number = f64> {
+struct Piece<N: Float = f64> {
     ends: [End; 2],
-    segment: Segment<N>,
+    segment: TorusCurveSegment<N>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -59,7 +59,7 @@ enum End {
     Pass(usize, usize),
 }
 
-impl<N: Number> Tracer<'_, N> {
+impl<N: Float> Tracer<'_, N> {
     pub(super) fn assemble(
         &self,
         torus: &Torus<N>,
@@ -146,7 +146,7 @@ impl<N: Number> Tracer<'_, N> {
         mut roots: Vec<(RootId, [N; 2])>,
         pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
-        let k = if axis == Axis::Around { 0 } else { 1 };
+        let k = if axis == TorusParameter::Around { 0 } else { 1 };
         roots.sort_by(|a, b| a.1[k].total_cmp(&b.1[k]));
         if roots.len() % 2 == 1 {
             return Err(Unresolved::at(cell.centre()));
@@ -157,7 +157,7 @@ impl<N: Number> Tracer<'_, N> {
                 let g = self.form.partials(p[0], p[1]);
                 if k == 0 { -g.x / g.y } else { -g.y / g.x }
             };
-            let segment = Segment {
+            let segment = TorusCurveSegment {
                 axis,
                 from: p[k],
                 to: q[k],
@@ -216,19 +216,19 @@ impl<N: Number> Tracer<'_, N> {
 }
 
 /// A root on the side of a singular point's zone in the coordinates of a branch.
-struct Reached<N: Number = f64> {
+struct Reached<N: Float = f64> {
     sigma: N,
     kappa: N,
     /// How far it is from the branch's leading term.
     miss: N,
 }
 
-impl<N: Number> Reached<N> {
-    fn by(pass: &Pass<N>, away: [N; 2]) -> Self {
+impl<N: Float> Reached<N> {
+    fn by(pass: &BranchTangent<N>, away: [N; 2]) -> Self {
         let chart = &pass.chart;
         let [s, y] = match chart.axis {
-            Axis::Around => away,
-            Axis::Tube => [away[1], away[0]],
+            TorusParameter::Around => away,
+            TorusParameter::Tube => [away[1], away[0]],
         };
         let (sigma, kappa) = (chart.sigma(s, y), chart.kappa(s, y));
         let rise = sigma.powi(chart.weights.rise as i32).abs();
@@ -243,7 +243,11 @@ impl<N: Number> Reached<N> {
 
 /// The graph of κ from a singular point to a root around it; none where it is not known to be the
 /// only one.
-fn node_segment<N: Number>(index: usize, pass: &Pass<N>, end: &Reached<N>) -> Option<Segment<N>> {
+fn node_segment<N: Float>(
+    index: usize,
+    pass: &BranchTangent<N>,
+    end: &Reached<N>,
+) -> Option<TorusCurveSegment<N>> {
     let chart = &pass.chart;
     let slope = |sigma: N, kappa: N| {
         let g = chart.partials(sigma, kappa);
@@ -265,7 +269,7 @@ fn node_segment<N: Number>(index: usize, pass: &Pass<N>, end: &Reached<N>) -> Op
         let steep = g.x.over(g.y).magnitude();
         let reach = steep * end.sigma.abs();
         if reach <= margin {
-            return Some(Segment {
+            return Some(TorusCurveSegment {
                 axis: chart.axis,
                 from: N::ZERO,
                 to: end.sigma,
@@ -286,11 +290,11 @@ fn node_segment<N: Number>(index: usize, pass: &Pass<N>, end: &Reached<N>) -> Op
 const BRACKETS: u32 = 6;
 
 /// The corners of cells on every line of the grid.
-struct Corners<N: Number = f64> {
+struct Corners<N: Float = f64> {
     on: [HashMap<Name, Vec<N>>; 2],
 }
 
-fn corners<'a, N: Number>(cells: impl Iterator<Item = &'a Cell<N>>, x0: N, y0: N) -> Corners<N> {
+fn corners<'a, N: Float>(cells: impl Iterator<Item = &'a Cell<N>>, x0: N, y0: N) -> Corners<N> {
     let mut on: [HashMap<Name, Vec<N>>; 2] = Default::default();
     for c in cells {
         for fixed in [0, 1] {
@@ -309,7 +313,7 @@ fn corners<'a, N: Number>(cells: impl Iterator<Item = &'a Cell<N>>, x0: N, y0: N
     Corners { on }
 }
 
-impl<N: Number> Corners<N> {
+impl<N: Float> Corners<N> {
     fn between(&self, fixed: usize, name: Name, lo: N, hi: N) -> Vec<N> {
         let list = self.on[fixed].get(&name).map_or(&[][..], Vec::as_slice);
         list.iter()
@@ -320,9 +324,9 @@ impl<N: Number> Corners<N> {
 }
 
 /// Pieces joined to closed branches.
-fn chain<N: Number>(
+fn chain<N: Float>(
     torus: &Torus<N>,
-    form: &BiTrig<N>,
+    form: &BivariateTrigPoly<N>,
     points: &[SingularPoint<N>],
     pieces: Vec<Piece<N>>,
 ) -> Result<Traced<N>, Unresolved> {
@@ -375,7 +379,7 @@ fn chain<N: Number>(
             let pair = &at[&name(&entry)];
             here = if pair[0] == here { pair[1] } else { pair[0] };
         }
-        branches.push(Toric {
+        branches.push(TorusCurve {
             torus: *torus,
             form: form.clone(),
             charts: charts.clone(),

@@ -9,19 +9,19 @@
 pub(super) mod grid;
 mod join;
 
-use super::bitrig::{BiTrig, Partials, Reaches};
+use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Reaches};
 use super::singular::{Critical, singular_points};
 use super::surface::Torus;
-use super::toric::{Axis, Toric, wrap};
+use super::torus_curve::{TorusCurve, TorusParameter, wrap};
 use super::trigonometric::Trigonometric;
-use crate::number::precision::Number;
-use crate::number::roots::{Contact, Zeros, isolate};
+use crate::number::float::Float;
+use crate::number::roots::{RootKind, Roots, isolate};
 use grid::{Cell, Layout};
 use std::cell::Cell as Counter;
 
 /// A point where the curve crosses or touches itself, by its angles.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Singular<N: Number = f64> {
+pub struct Singular<N: Float = f64> {
     /// (θ, φ).
     pub angles: [N; 2],
     /// Where the branches pass: (index of the branch, parameter). Empty for an isolated point.
@@ -30,9 +30,9 @@ pub struct Singular<N: Number = f64> {
 
 /// The zero set of F.
 #[derive(Clone, Debug, Default)]
-pub struct Traced<N: Number = f64> {
+pub struct Traced<N: Float = f64> {
     /// The branches, all closed.
-    pub branches: Vec<Toric<N>>,
+    pub branches: Vec<TorusCurve<N>>,
     /// The singular points.
     pub singular: Vec<Singular<N>>,
     /// The critical points of F, by their angles, that are singular points or nearly so.
@@ -48,7 +48,7 @@ pub struct Unresolved {
 }
 
 impl Unresolved {
-    pub(super) fn at<N: Number>(angles: [N; 2]) -> Self {
+    pub(super) fn at<N: Float>(angles: [N; 2]) -> Self {
         Self {
             angles: angles.map(N::rounded),
         }
@@ -56,7 +56,7 @@ impl Unresolved {
 }
 
 /// Taylor's bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
-pub(super) struct Bounds<N: Number = f64> {
+pub(super) struct Bounds<N: Float = f64> {
     /// The least |F|; below zero where F may vanish.
     pub least: N,
     /// The least and the greatest |F_x|.
@@ -74,13 +74,13 @@ enum Holds {
     Nothing,
     /// A graph over an angle, and a bound of its slope.
     Graph {
-        axis: Axis,
+        axis: TorusParameter,
         steep: f64,
     },
     Unknown,
 }
 
-impl<N: Number> Bounds<N> {
+impl<N: Float> Bounds<N> {
     fn holds(&self) -> Holds {
         let graph = |axis, along: N, across: N| {
             let steep = (along / across).above();
@@ -90,9 +90,9 @@ impl<N: Number> Bounds<N> {
         if self.least > N::ZERO {
             Holds::Nothing
         } else if y[0] > N::ZERO && x[1] <= N::of(STEEP) * y[0] {
-            graph(Axis::Around, x[1], y[0])
+            graph(TorusParameter::Around, x[1], y[0])
         } else if x[0] > N::ZERO && y[1] <= N::of(STEEP) * x[0] {
-            graph(Axis::Tube, y[1], x[0])
+            graph(TorusParameter::Tube, y[1], x[0])
         } else {
             Holds::Unknown
         }
@@ -100,23 +100,23 @@ impl<N: Number> Bounds<N> {
 }
 
 /// A cell in which the curve is a graph.
-struct Leaf<N: Number = f64> {
+struct Leaf<N: Float = f64> {
     cell: Cell<N>,
     /// The angle that the graph runs over.
-    axis: Axis,
+    axis: TorusParameter,
     /// A bound of its slope.
     steep: f64,
 }
 
-pub(super) struct Tracer<'a, N: Number = f64> {
-    pub form: &'a BiTrig<N>,
+pub(super) struct Tracer<'a, N: Float = f64> {
+    pub form: &'a BivariateTrigPoly<N>,
     /// Bounds of the form's rows.
     pub reaches: Reaches<N>,
     /// A bound of the rounding error of the form.
     pub slop: N,
     pub band: N,
     /// The form in doubles, of one of more digits.
-    rough: Option<Box<BiTrig>>,
+    rough: Option<Box<BivariateTrigPoly>>,
     /// How many cells may still be looked at.
     cells: Counter<u32>,
 }
@@ -126,13 +126,13 @@ pub(super) struct Tracer<'a, N: Number = f64> {
 const MOST_CELLS: u32 = 1 << 17;
 
 /// A bound of the rounding error of a form.
-fn slop<N: Number>(form: &BiTrig<N>) -> N {
+fn slop<N: Float>(form: &BivariateTrigPoly<N>) -> N {
     form.bound() * N::EPSILON * N::of(64.0)
 }
 
 /// The depth at which a cell that is still undecided is given up: where its sides are next to the
 /// root of the numbers' precision, in doubles 1e-7 radians.
-pub(super) fn deepest<N: Number>() -> u32 {
+pub(super) fn deepest<N: Float>() -> u32 {
     let bits = -N::EPSILON.rounded().log2();
     bits as u32 - SPARED
 }
@@ -143,8 +143,8 @@ const SPARED: u32 = 4;
 /// A graph's slope is at most this in an accepted cell.
 const STEEP: f64 = 2.0;
 
-impl<'a, N: Number> Tracer<'a, N> {
-    fn new(form: &'a BiTrig<N>, band: N) -> Self {
+impl<'a, N: Float> Tracer<'a, N> {
+    fn new(form: &'a BivariateTrigPoly<N>, band: N) -> Self {
         let slop = slop(form);
         Self {
             form,
@@ -164,7 +164,7 @@ impl<'a, N: Number> Tracer<'a, N> {
     }
 
     /// The form in doubles, of one of more digits, and how far it is off.
-    pub(super) fn rough(&self) -> Option<(&BiTrig, f64)> {
+    pub(super) fn rough(&self) -> Option<(&BivariateTrigPoly, f64)> {
         let form = self.rough.as_deref()?;
         Some((form, slop(form)))
     }
@@ -234,7 +234,7 @@ impl<'a, N: Number> Tracer<'a, N> {
     fn roots_on(&self, fixed: usize, at: N, lo: N, hi: N) -> Option<Vec<N>> {
         let f = Trigonometric::new(&self.form.section(fixed == 0, at).0);
         match isolate(&f, &[lo, hi], self.slop) {
-            Zeros::At { roots, .. } if roots.iter().all(|r| r.contact == Contact::Simple) => {
+            Roots::At { roots, .. } if roots.iter().all(|r| r.contact == RootKind::Simple) => {
                 Some(roots.into_iter().map(|r| r.t).collect())
             }
             _ => None,
@@ -242,15 +242,15 @@ impl<'a, N: Number> Tracer<'a, N> {
     }
 }
 
-pub(super) fn near<N: Number>(a: &[N; 2], b: &[N; 2], reach: N) -> bool {
+pub(super) fn near<N: Float>(a: &[N; 2], b: &[N; 2], reach: N) -> bool {
     wrap(a[0] - b[0]).abs() <= reach && wrap(a[1] - b[1]).abs() <= reach
 }
 
 /// All branches of `form` = 0 on the torus, where `form` is a distance to first order and `band`
 /// the resolution.
-pub fn trace<N: Number>(
+pub fn trace<N: Float>(
     torus: &Torus<N>,
-    form: &BiTrig<N>,
+    form: &BivariateTrigPoly<N>,
     band: N,
 ) -> Result<Traced<N>, Unresolved> {
     let tracer = Tracer::new(form, band);
@@ -285,7 +285,7 @@ mod tests {
             major,
             minor,
         };
-        let form = BiTrig::interpolate(|x, y| {
+        let form = BivariateTrigPoly::interpolate(|x, y| {
             let p = Surface::Torus(torus).point(x, y);
             surface.level([p.x, p.y, p.z])
         });

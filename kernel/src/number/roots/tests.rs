@@ -1,11 +1,11 @@
 use super::*;
-use crate::number::wide::Wide;
+use crate::number::extended::F237;
 use std::cell::Cell;
 
 fn roots(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<Root> {
     match isolate(&|t| f(Jet::variable(t)), breaks, 1e-11) {
-        Zeros::At { roots, .. } => roots,
-        Zeros::Everywhere => panic!("everywhere"),
+        Roots::At { roots, .. } => roots,
+        Roots::Everywhere => panic!("everywhere"),
     }
 }
 
@@ -15,8 +15,8 @@ fn k(x: f64) -> Jet<Interval> {
 
 fn misses(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<f64> {
     match isolate_closely(&|t| f(Jet::variable(t)), breaks, 1e-11) {
-        Zeros::At { misses, .. } => misses.iter().map(|m| m.1).collect(),
-        Zeros::Everywhere => panic!("everywhere"),
+        Roots::At { misses, .. } => misses.iter().map(|m| m.1).collect(),
+        Roots::Everywhere => panic!("everywhere"),
     }
 }
 
@@ -54,18 +54,18 @@ fn simple_roots_are_found_in_order() {
     for (a, b) in t.iter().zip([-2.0, 0.25, 0.5]) {
         assert!((a - b).abs() < 1e-14);
     }
-    assert!(r.iter().all(|r| r.contact == Contact::Simple));
+    assert!(r.iter().all(|r| r.contact == RootKind::Simple));
 }
 
 #[test]
 fn a_double_root_touches_and_a_triple_one_crosses() {
     let r = roots(|t| (t - k(0.3)).square() * (t + k(1.0)), &[0.0, 1.0]);
     assert_eq!(r.len(), 1);
-    assert_eq!(r[0].contact, Contact::Touching);
+    assert_eq!(r[0].contact, RootKind::Touching);
     assert!((r[0].t - 0.3).abs() < 1e-12);
     let r = roots(|t| (t - k(0.3)).square() * (t - k(0.3)), &[0.0, 1.0]);
     assert_eq!(r.len(), 1);
-    assert_eq!(r[0].contact, Contact::Inflected);
+    assert_eq!(r[0].contact, RootKind::Inflected);
     assert!((r[0].t - 0.3).abs() < 1e-8);
 }
 
@@ -89,7 +89,7 @@ fn rounding_at_the_edge_of_the_band_makes_no_roots() {
         y.v = y.v + noise(t);
         y
     };
-    let Zeros::At { roots, .. } = isolate(&f, &[0.0, 1.0], 1e-11) else {
+    let Roots::At { roots, .. } = isolate(&f, &[0.0, 1.0], 1e-11) else {
         panic!("everywhere");
     };
     assert_eq!(roots.len(), 1);
@@ -102,7 +102,7 @@ fn trigonometric_roots_and_a_zero_function() {
     assert_eq!(r.len(), 2);
     assert!((r[0].t - std::f64::consts::PI).abs() < 1e-15);
     let z = isolate(&|t| Jet::variable(t).scale(0.0), &[0.0, 1.0], 1e-11);
-    assert_eq!(z, Zeros::Everywhere);
+    assert_eq!(z, Roots::Everywhere);
 }
 
 #[test]
@@ -114,8 +114,8 @@ fn a_crossing_lies_in_its_cluster() {
     let [touch, crossing] = r.as_slice() else {
         panic!("{r:?}")
     };
-    assert_eq!(touch.contact, Contact::Touching);
-    assert_eq!(crossing.contact, Contact::Simple);
+    assert_eq!(touch.contact, RootKind::Touching);
+    assert_eq!(crossing.contact, RootKind::Simple);
     assert!((crossing.t - 1.0).abs() < 1e-12, "{crossing:?}");
 }
 
@@ -144,11 +144,11 @@ fn what_rounding_hides_is_told_in_few_pieces() {
             dd: dd + noise(1.0),
         }
     };
-    let Zeros::At { roots, .. } = isolate_closely(&noisy, &[-1.0, 1.0], 1e-11) else {
+    let Roots::At { roots, .. } = isolate_closely(&noisy, &[-1.0, 1.0], 1e-11) else {
         panic!("everywhere");
     };
     assert_eq!(roots.len(), 1, "{roots:?}");
-    assert_eq!(roots[0].contact, Contact::Touching);
+    assert_eq!(roots[0].contact, RootKind::Touching);
     assert!(roots[0].t.abs() < 6e-3, "{roots:?}");
     assert!(asked.get() < 10_000, "{}", asked.get());
 }
@@ -158,12 +158,12 @@ fn what_rounding_hides_is_told_in_few_pieces() {
 #[test]
 fn what_runs_along_zero_is_told_at_once() {
     struct Along<'a>(&'a Cell<usize>);
-    impl Function<Wide> for Along<'_> {
-        fn over(&self, t: Interval<Wide>) -> Jet<Interval<Wide>> {
+    impl Function<F237> for Along<'_> {
+        fn over(&self, t: Interval<F237>) -> Jet<Interval<F237>> {
             self.0.set(self.0.get() + 1);
             let wave = Jet::variable(t).times(3.0).sin_cos().0.times(1e-20);
             let width = t.width();
-            let around = |v: Interval<Wide>| v + Interval::new(-width, width);
+            let around = |v: Interval<F237>| v + Interval::new(-width, width);
             Jet {
                 v: around(wave.v),
                 d: around(wave.d),
@@ -172,9 +172,9 @@ fn what_runs_along_zero_is_told_at_once() {
         }
     }
     let asked = Cell::new(0);
-    let ends = [Wide::of(0.5), Wide::of(1.5)];
-    let zeros = isolate(&Along(&asked), &ends, Wide::of(1e-45));
-    let Zeros::At { roots, .. } = zeros else {
+    let ends = [F237::of(0.5), F237::of(1.5)];
+    let zeros = isolate(&Along(&asked), &ends, F237::of(1e-45));
+    let Roots::At { roots, .. } = zeros else {
         panic!("everywhere");
     };
     let found: Vec<f64> = roots.iter().map(|r| r.t.rounded()).collect();

@@ -3,12 +3,18 @@
 
 use crate::learned::Learned;
 use crate::part::Part;
-use premio_csg::boundary::{EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use std::fmt::Write;
 
 fn check(text: &str, turns: usize, circles: usize) {
-    let tree = read("part", text.as_bytes(), Format::Json, &Options::default()).unwrap();
+    let tree = read(
+        "part",
+        text.as_bytes(),
+        Format::Json,
+        &ReadOptions::default(),
+    )
+    .unwrap();
     let evaluation = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
     let part = Part::new(&evaluation.brep, evaluation.resolution, &Learned::nothing());
     let found = (part.symmetries.len(), part.circles.len());

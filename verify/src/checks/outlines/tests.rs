@@ -1,10 +1,10 @@
 use super::*;
 use crate::checks::Checker;
 use crate::checks::views::{View, around};
-use premio_csg::boundary::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, Options, read};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::tree::Tree;
-use premio_visibility::contour::{Contour, Kind, Piece};
+use premio_visibility::contour::{Contour, ContourKind, ContourPiece};
 use premio_visibility::contours;
 
 /// Limbs before and behind, creases, a smooth edge, a blind hole, a torus with cusps.
@@ -23,7 +23,13 @@ struct Part {
 
 impl Part {
     fn of(padl: &str) -> Self {
-        let read = read("test", padl.as_bytes(), Format::Padl, &Options::default()).unwrap();
+        let read = read(
+            "test",
+            padl.as_bytes(),
+            Format::Padl,
+            &ReadOptions::default(),
+        )
+        .unwrap();
         Self {
             evaluation: evaluate(&read.tree, &EvaluationOptions::default()).unwrap(),
             tree: read.tree,
@@ -48,7 +54,7 @@ impl Part {
     }
 
     /// The length of a piece in the image, in radii of the window.
-    fn length(&self, seen: &Contours, contour: &Contour, piece: &Piece) -> f64 {
+    fn length(&self, seen: &Contours, contour: &Contour, piece: &ContourPiece) -> f64 {
         let size = self.evaluation.bounds.diagonal();
         let projection = Projection::new(&seen.camera, size);
         let window = Window::around(&projection, &self.evaluation.bounds);
@@ -118,7 +124,7 @@ fn a_missing_contour_is_missed() {
                     "{padl} {name}: without {:?} {k}, {length}: {found}",
                     contour.kind
                 );
-                limbs += usize::from(contour.kind == Kind::Limb);
+                limbs += usize::from(contour.kind == ContourKind::Limb);
             }
         }
     }

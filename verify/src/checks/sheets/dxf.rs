@@ -3,7 +3,7 @@
 use super::Placing;
 use nalgebra::{Point2, Vector2};
 use premio_drawing::sheet::Sheet;
-use premio_drawing::{Layer, Shape, Stroke};
+use premio_drawing::{Layer, Stroke, StrokeShape};
 use std::f64::consts::TAU;
 
 /// A group: its code and its value.
@@ -88,23 +88,23 @@ impl Entity<'_> {
         Ok(self.place(self.number(code)?, self.number(code + 10)?))
     }
 
-    fn shape(&self) -> Result<Shape, String> {
+    fn shape(&self) -> Result<StrokeShape, String> {
         let length = |x: f64| x * self.unit / self.paper.factor;
         match self.groups[0].1 {
-            "LINE" => Ok(Shape::Line([self.point(10)?, self.point(11)?])),
+            "LINE" => Ok(StrokeShape::Line([self.point(10)?, self.point(11)?])),
             "LWPOLYLINE" => {
                 let points = self.numbers(10).zip(self.numbers(20));
                 let place =
                     |(x, y): (Result<f64, String>, Result<f64, String>)| Ok(self.place(x?, y?));
                 let points: Result<Vec<_>, String> = points.map(place).collect();
-                Ok(Shape::Path(points?))
+                Ok(StrokeShape::Path(points?))
             }
             name @ ("CIRCLE" | "ARC") => {
                 let [from, to] = match name {
                     "ARC" => [self.number(50)?, self.number(51)?].map(f64::to_radians),
                     _ => [0.0, TAU],
                 };
-                Ok(Shape::Ellipse {
+                Ok(StrokeShape::Ellipse {
                     centre: self.point(10)?,
                     major: Vector2::new(length(self.number(40)?), 0.0),
                     ratio: 1.0,
@@ -114,7 +114,7 @@ impl Entity<'_> {
             }
             "ELLIPSE" => {
                 let [from, to] = [self.number(41)?, self.number(42)?];
-                Ok(Shape::Ellipse {
+                Ok(StrokeShape::Ellipse {
                     centre: self.point(10)?,
                     major: Vector2::new(length(self.number(11)?), length(self.number(21)?)),
                     ratio: self.number(40)?,

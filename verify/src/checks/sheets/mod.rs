@@ -13,8 +13,8 @@ use super::strokes::{Strokes, point};
 use super::window::Window;
 use nalgebra::Point2;
 use premio_drawing::sheet::{self, Sheet, SheetError};
-use premio_drawing::{Drawing, Layer, Shape, Stroke};
-use premio_kernel::geometry::bounds::Box3;
+use premio_drawing::{Drawing, Layer, Stroke, StrokeShape};
+use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::unit::Unit;
 use premio_visibility::Contours;
 use premio_visibility::contour::ImageCurve;
@@ -93,21 +93,21 @@ struct Placing {
 impl SheetReport {
     /// Draws contours on a sheet, with and without smooth edges, and reads it back. `size` is that of
     /// the drawing.
-    pub fn new(seen: &Contours, bounds: &Box3, size: f64) -> Self {
+    pub fn new(seen: &Contours, bounds: &Aabb, size: f64) -> Self {
         let mut report = Self::default();
         for smooth in [false, true] {
-            let options = premio_drawing::Options {
+            let options = premio_drawing::DrawingOptions {
                 smooth,
                 distance: Some(size * FINE),
-                ..premio_drawing::Options::default()
+                ..premio_drawing::DrawingOptions::default()
             };
             report.drawing(seen, bounds, Drawing::new(seen, &options), size);
         }
         report
     }
 
-    fn drawing(&mut self, seen: &Contours, bounds: &Box3, drawing: Drawing, size: f64) {
-        let how = sheet::Options {
+    fn drawing(&mut self, seen: &Contours, bounds: &Aabb, drawing: Drawing, size: f64) {
+        let how = sheet::SheetOptions {
             title: String::new(),
             unit: Unit::Millimetre,
             paper: sheet::Paper::A0,
@@ -182,7 +182,7 @@ impl SheetReport {
         }
     }
 
-    fn strokes(&mut self, seen: &Contours, bounds: &Box3, read: &[Stroke], scale: &Scale) {
+    fn strokes(&mut self, seen: &Contours, bounds: &Aabb, read: &[Stroke], scale: &Scale) {
         let Scale {
             tolerance,
             apart,
@@ -265,12 +265,12 @@ impl SheetReport {
 }
 
 /// How many rounded points a shape is written by.
-fn corners(shape: &Shape) -> usize {
+fn corners(shape: &StrokeShape) -> usize {
     match shape {
-        Shape::Path(points) => points.len(),
-        Shape::Line(_) => 2,
+        StrokeShape::Path(points) => points.len(),
+        StrokeShape::Line(_) => 2,
         // Centre, half axes and ends, twice over: the length is about a sum of these.
-        Shape::Ellipse { .. } => 8,
+        StrokeShape::Ellipse { .. } => 8,
     }
 }
 
@@ -367,7 +367,7 @@ mod tests {
             "{twice}"
         );
         let stray = report(|strokes| {
-            let shape = Shape::Line([Point2::new(-20.0, -9.0), Point2::new(20.0, 7.0)]);
+            let shape = StrokeShape::Line([Point2::new(-20.0, -9.0), Point2::new(20.0, 7.0)]);
             strokes[0].shape = shape;
         });
         assert!(

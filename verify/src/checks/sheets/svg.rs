@@ -2,7 +2,7 @@
 
 use super::Placing;
 use nalgebra::{Point2, Vector2};
-use premio_drawing::{Layer, Shape, Stroke};
+use premio_drawing::{Layer, Stroke, StrokeShape};
 use std::f64::consts::TAU;
 
 /// The strokes of the views on a sheet of a height, in the coordinates of the drawing.
@@ -49,7 +49,7 @@ fn shapes(
     course: &str,
     place: &dyn Fn([f64; 2]) -> Point2<f64>,
     factor: f64,
-) -> Result<Vec<Shape>, String> {
+) -> Result<Vec<StrokeShape>, String> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut arcs = Vec::new();
     let mut rest = course;
@@ -75,14 +75,14 @@ fn shapes(
     }
     let points: Vec<Point2<f64>> = points.into_iter().map(place).collect();
     match (&points[..], arcs.len()) {
-        (&[a, b], 0) => Ok(vec![Shape::Line([a, b])]),
-        (_, 0) => Ok(vec![Shape::Path(points)]),
+        (&[a, b], 0) => Ok(vec![StrokeShape::Line([a, b])]),
+        (_, 0) => Ok(vec![StrokeShape::Path(points)]),
         _ => Ok(arcs),
     }
 }
 
 /// The arc of at most half an ellipse, counterclockwise, between two points.
-fn arc([a, b]: [Point2<f64>; 2], [rx, ry]: [f64; 2], turn: f64) -> Shape {
+fn arc([a, b]: [Point2<f64>; 2], [rx, ry]: [f64; 2], turn: f64) -> StrokeShape {
     // In units of the half axes it is an arc of the unit circle.
     let (sin, cos) = turn.sin_cos();
     let axes = [Vector2::new(cos, sin), Vector2::new(-sin, cos)];
@@ -100,7 +100,7 @@ fn arc([a, b]: [Point2<f64>; 2], [rx, ry]: [f64; 2], turn: f64) -> Shape {
     let centre = middle + left * rise;
     let angle = |p: Vector2<f64>| (p.y - centre.y).atan2(p.x - centre.x);
     let from = angle(p);
-    Shape::Ellipse {
+    StrokeShape::Ellipse {
         centre: Point2::from(axes[0] * (centre.x * rx) + axes[1] * (centre.y * ry)),
         major: axes[0] * rx,
         ratio: ry / rx,
@@ -120,7 +120,7 @@ mod tests {
         let half = arc_of([3.0, 0.0], [-1.0, 0.0], [2.0, 2.0], 0.7);
         assert!((half.length() - TAU).abs() < 1e-9);
         let quarter = arc_of([2.0, 0.0], [0.0, 1.0], [2.0, 1.0], 0.0);
-        let Shape::Ellipse { centre, sweep, .. } = quarter else {
+        let StrokeShape::Ellipse { centre, sweep, .. } = quarter else {
             panic!("{quarter:?}")
         };
         assert!(centre.coords.norm() < 1e-12 && (sweep - TAU / 4.0).abs() < 1e-12);

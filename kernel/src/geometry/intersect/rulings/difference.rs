@@ -7,16 +7,16 @@
 //! (p - o)ᵀ (I - e f fᵀ/f²) (p - o) = r², with e = 1, r = s of a cylinder, e = 1 + s², r = 0 of a
 //! cone, e = 0, r = s of a sphere.
 
-use crate::geometry::relation::{Coefficients, Pair};
 use crate::geometry::surface::Surface;
+use crate::geometry::surface_pair::{Coefficients, SurfacePair};
 use crate::geometry::vector::Length;
-use crate::number::enclosure::Enclosure;
-use crate::number::precision::Number;
-use crate::number::real::Real;
+use crate::number::enclosable::Enclosable;
+use crate::number::float::Float;
+use crate::number::rational_interval::RationalInterval;
 use nalgebra::{Matrix3, Vector3};
 
 /// pᵀ A p + 2 b·p + c in the frame of the base.
-pub(super) struct Difference<N: Number = f64> {
+pub(super) struct Difference<N: Float = f64> {
     pub a: Matrix3<N>,
     pub b: Vector3<N>,
     pub c: N,
@@ -28,9 +28,9 @@ const LEAN: f64 = 1.0 / (1 << 10) as f64;
 /// To so many bits.
 const BITS: usize = 256;
 
-impl<N: Number> Difference<N> {
+impl<N: Float> Difference<N> {
     /// Of a pair, the first the base: to first order twice the distance times a length.
-    pub fn of(pair: &Pair<'_, N>) -> Self {
+    pub fn of(pair: &SurfacePair<'_, N>) -> Self {
         let surfaces = [pair.a.surface, pair.b.surface];
         let [a, b] = [pair.a, pair.b].map(|c| c.numbers());
         let parts = Parts::of(surfaces, &a, &b);
@@ -40,7 +40,7 @@ impl<N: Number> Difference<N> {
         }
         let [a, b] = [pair.a, pair.b].map(|c| c.reckoned(BITS));
         Parts::of(surfaces, &a, &b)
-            .map(Enclosure::middle)
+            .map(RationalInterval::middle)
             .difference(surfaces)
     }
 }
@@ -60,18 +60,18 @@ struct Parts<R> {
     level: R,
 }
 
-fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
+fn dot<R: Enclosable>(a: &[R; 3], b: &[R; 3]) -> R {
     let [x, y, z] = [0, 1, 2].map(|i| a[i].clone() * b[i].clone());
     x + y + z
 }
 
 /// a - k b.
-fn less<R: Real>(a: &[R; 3], k: &R, b: &[R; 3]) -> [R; 3] {
+fn less<R: Enclosable>(a: &[R; 3], k: &R, b: &[R; 3]) -> [R; 3] {
     [0, 1, 2].map(|i| a[i].clone() - k.clone() * b[i].clone())
 }
 
 /// e and r².
-fn shape<N: Number, R: Real>(surface: &Surface<N>, size: &R) -> [R; 2] {
+fn shape<N: Float, R: Enclosable>(surface: &Surface<N>, size: &R) -> [R; 2] {
     let (one, none) = (R::constant(1.0), R::constant(0.0));
     let square = size.clone() * size.clone();
     match surface {
@@ -81,8 +81,8 @@ fn shape<N: Number, R: Real>(surface: &Surface<N>, size: &R) -> [R; 2] {
     }
 }
 
-impl<R: Real> Parts<R> {
-    fn of<N: Number>(
+impl<R: Enclosable> Parts<R> {
+    fn of<N: Float>(
         surfaces: [&Surface<N>; 2],
         base: &Coefficients<R>,
         other: &Coefficients<R>,
@@ -128,7 +128,7 @@ impl<R: Real> Parts<R> {
     }
 }
 
-impl<N: Number> Parts<N> {
+impl<N: Float> Parts<N> {
     /// In the base's frame; a cone's equation is a distance times a length with the cosine's square.
     fn difference(&self, [base, other]: [&Surface<N>; 2]) -> Difference<N> {
         let f = base.frame();

@@ -5,25 +5,25 @@
 
 use super::{Rulings, apart, asked_rulings};
 use crate::geometry::curve::Curve;
-use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place};
-use crate::geometry::quartic::{Along, Height, Quartic, Ruled, Sweep};
+use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
+use crate::geometry::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
 use crate::geometry::trigonometric::{Trig1, between, divide, trig1, zeros_of};
 use crate::geometry::vector::Length;
+use crate::number::analytic::{harmonic, harmonic_slope};
 use crate::number::bisection::bisect;
-use crate::number::precision::Number;
-use crate::number::scalar::{harmonic, harmonic_slope};
-use crate::number::sign::{Judge, Side};
+use crate::number::float::Float;
+use crate::number::predicates::{Predicates, Side};
 
 /// Where a curve passes the nodes: (the angle of the node, the parameter).
 type Passes<N> = Vec<(N, N)>;
 
-impl<N: Number> Rulings<'_, N> {
+impl<N: Float> Rulings<'_, N> {
     /// k ≠ 0: two points on each ruling where Δ > 0.
     pub(in crate::geometry::intersect) fn double(
         &self,
-        judge: &Judge,
-    ) -> Result<Meeting<N>, IntersectionError> {
-        let mut meeting = Meeting::nothing();
+        judge: &Predicates,
+    ) -> Result<SurfaceIntersection<N>, IntersectionError> {
+        let mut meeting = SurfaceIntersection::nothing();
         if let Some(root) = self.square_root(judge) {
             self.add_conics(&root, judge, &mut meeting);
         } else {
@@ -34,7 +34,7 @@ impl<N: Number> Rulings<'_, N> {
     }
 
     /// The s of degree one with Δ = s², if within the band there is one.
-    fn square_root(&self, judge: &Judge) -> Option<Trig1<N>> {
+    fn square_root(&self, judge: &Predicates) -> Option<Trig1<N>> {
         let [a0, c1, s1, c2, s2] = self.radicand;
         let rho = (N::TWO * c2.hypot(s2)).sqrt();
         let noise = (N::ROUNDING * self.scale).sqrt();
@@ -70,7 +70,12 @@ impl<N: Number> Rulings<'_, N> {
         })
     }
 
-    fn add_conics(&self, root: &Trig1<N>, judge: &Judge, meeting: &mut Meeting<N>) {
+    fn add_conics(
+        &self,
+        root: &Trig1<N>,
+        judge: &Predicates,
+        meeting: &mut SurfaceIntersection<N>,
+    ) {
         let w = |sign: N| {
             let part = |i: usize| (sign * root[i] - self.linear[i]) / self.lead;
             [part(0), part(1), part(2)]
@@ -100,8 +105,8 @@ impl<N: Number> Rulings<'_, N> {
 
     fn add_quartic(
         &self,
-        judge: &Judge,
-        meeting: &mut Meeting<N>,
+        judge: &Predicates,
+        meeting: &mut SurfaceIntersection<N>,
     ) -> Result<(), IntersectionError> {
         let structure = self.structure(judge)?;
         for &u in &structure.isolated {
@@ -113,8 +118,8 @@ impl<N: Number> Rulings<'_, N> {
                 });
             }
         }
-        let mut curves: Vec<(Quartic<N>, Passes<N>)> = Vec::new();
-        let make = |sweep, height| Quartic {
+        let mut curves: Vec<(QuadricCurve<N>, Passes<N>)> = Vec::new();
+        let make = |sweep, height| QuadricCurve {
             base: self.base,
             sweep,
             height,
@@ -178,10 +183,10 @@ impl<N: Number> Rulings<'_, N> {
     /// Adds a branch, as far as it lies on the base's nappe and on the other's.
     fn add_clipped(
         &self,
-        q: Quartic<N>,
+        q: QuadricCurve<N>,
         nodes: &[(N, N)],
-        judge: &Judge,
-        meeting: &mut Meeting<N>,
+        judge: &Predicates,
+        meeting: &mut SurfaceIntersection<N>,
     ) {
         let curve = Curve::Quartic(Box::new(q));
         let Some(period) = curve.period() else { return };
@@ -224,7 +229,7 @@ impl<N: Number> Rulings<'_, N> {
     /// The ranges of a closed branch over a cone that lie on the cone's nappe within reach. It leaves
     /// these where k w² + 2 B w + C is zero for the least w: the height itself divides by k, which may
     /// be next to nothing.
-    fn nappe_ranges(&self, q: &Quartic<N>, period: N) -> Vec<[N; 2]> {
+    fn nappe_ranges(&self, q: &QuadricCurve<N>, period: N) -> Vec<[N; 2]> {
         let least = N::ONE / self.reach();
         let mut limit = self.constant;
         for (c, b) in limit.iter_mut().zip(&self.linear) {
@@ -259,7 +264,7 @@ impl<N: Number> Rulings<'_, N> {
     }
 
     /// The zeros of Δ by kind.
-    fn structure(&self, judge: &Judge) -> Result<Structure<N>, IntersectionError> {
+    fn structure(&self, judge: &Predicates) -> Result<Structure<N>, IntersectionError> {
         let slope = harmonic_slope(&self.radicand);
         let flat = slope.iter().map(|c| c.abs()).sum::<N>() <= N::ROUNDING * self.scale;
         let extrema = if flat { Vec::new() } else { zeros_of(&slope) };
@@ -307,7 +312,7 @@ impl<N: Number> Rulings<'_, N> {
 
 /// The zeros of Δ by kind.
 #[derive(Default)]
-struct Structure<N: Number = f64> {
+struct Structure<N: Float = f64> {
     /// Δ is nowhere negative.
     positive: bool,
     /// The arcs of angles between simple zeros on which Δ is positive.

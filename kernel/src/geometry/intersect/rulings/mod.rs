@@ -10,26 +10,26 @@ mod single;
 
 use self::difference::Difference;
 use super::plane::{plane_cone, plane_cylinder};
-use super::{Branch, Extent, Meeting, Node, nappe_parts, place};
+use super::{Branch, Node, RegionOfInterest, SurfaceIntersection, nappe_parts, place};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
-use crate::geometry::quartic::Ruled;
-use crate::geometry::relation::{Carrier, Pair};
+use crate::geometry::quadric_curve::Ruled;
 use crate::geometry::surface::{Plane, Surface};
+use crate::geometry::surface_pair::{Carrier, SurfacePair};
 use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1};
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::scalar::harmonic;
-use crate::number::sign::{Judge, Side};
+use crate::number::analytic::harmonic;
+use crate::number::float::Float;
+use crate::number::predicates::{Predicates, Side};
 use nalgebra::{Point3, Vector3};
 
 /// The rulings over which it is asked whether curves are conics.
-fn asked_rulings<N: Number>() -> impl Iterator<Item = N> {
+fn asked_rulings<N: Float>() -> impl Iterator<Item = N> {
     (0..24).map(|i| N::TAU * (N::whole(i) + N::of(0.3)) / N::of(24.0))
 }
 
 /// The distance of a point from the whole quadric of a surface: a cone with both nappes.
-pub(super) fn apart<N: Number>(surface: &Surface<N>, p: &Point3<N>) -> N {
+pub(super) fn apart<N: Float>(surface: &Surface<N>, p: &Point3<N>) -> N {
     match surface {
         Surface::Cone(c) => {
             let q = c.frame.coordinates(p);
@@ -40,7 +40,7 @@ pub(super) fn apart<N: Number>(surface: &Surface<N>, p: &Point3<N>) -> N {
 }
 
 /// The other quadric along the rulings of the base.
-pub(super) struct Rulings<'a, N: Number = f64> {
+pub(super) struct Rulings<'a, N: Float = f64> {
     base: Ruled<N>,
     other: &'a Surface<N>,
     pub lead: N,
@@ -49,19 +49,19 @@ pub(super) struct Rulings<'a, N: Number = f64> {
     radicand: Trig2<N>,
     /// The size of the terms that cancel in the radicand.
     scale: N,
-    extent: &'a Extent<N>,
+    extent: &'a RegionOfInterest<N>,
 }
 
-fn surface_of<N: Number>(base: &Ruled<N>) -> Surface<N> {
+fn surface_of<N: Float>(base: &Ruled<N>) -> Surface<N> {
     match base {
         Ruled::Cylinder(c) => Surface::Cylinder(*c),
         Ruled::Cone(c) => Surface::Cone(*c),
     }
 }
 
-impl<'a, N: Number> Rulings<'a, N> {
+impl<'a, N: Float> Rulings<'a, N> {
     /// Over the rulings of the pair's first.
-    pub(super) fn new(base: Ruled<N>, pair: &Pair<'a, N>) -> Self {
+    pub(super) fn new(base: Ruled<N>, pair: &SurfacePair<'a, N>) -> Self {
         let q = Difference::of(pair);
         let (a, b) = (&q.a, &q.b);
         // The ruling's point is m (cos, sin, 0) + ... with m the radius or the slope.
@@ -158,7 +158,7 @@ impl<'a, N: Number> Rulings<'a, N> {
 
     /// Whether Δ is positive, zero or negative at an angle, decided as the signed distance of the
     /// ruling from the other surface.
-    fn state(&self, u: N, judge: &Judge) -> Side {
+    fn state(&self, u: N, judge: &Predicates) -> Side {
         let w = self.middle(u);
         if !self.is_on_base(w) {
             // The decision concerns the other nappe or lies far off: the plain sign will do.
@@ -178,7 +178,13 @@ impl<'a, N: Number> Rulings<'a, N> {
     }
 
     /// The planar conic w = plane(u), where it lies on the base and on the other surface.
-    fn add_conic(&self, w: &Trig1<N>, tangent: bool, judge: &Judge, meeting: &mut Meeting<N>) {
+    fn add_conic(
+        &self,
+        w: &Trig1<N>,
+        tangent: bool,
+        judge: &Predicates,
+        meeting: &mut SurfaceIntersection<N>,
+    ) {
         let surface = surface_of(&self.base);
         let frame = surface.frame();
         let (normal, offset) = match &self.base {
@@ -202,7 +208,7 @@ impl<'a, N: Number> Rulings<'a, N> {
         };
         let section = Surface::Plane(plane);
         let carriers = [&section, &surface].map(Carrier::constructed);
-        let pair = Pair::new(carriers[0], carriers[1], self.extent);
+        let pair = SurfacePair::new(carriers[0], carriers[1], self.extent);
         let part = match &self.base {
             Ruled::Cylinder(s) => plane_cylinder(&plane, s, &pair, judge),
             Ruled::Cone(s) => plane_cone(&plane, s, &pair, judge),
@@ -221,12 +227,12 @@ impl<'a, N: Number> Rulings<'a, N> {
     }
 
     /// The parts of a curve that lie on the other surface's own nappe, where it is a cone.
-    fn on_other_nappe(&self, curve: &Curve<N>, range: [N; 2], judge: &Judge) -> Vec<[N; 2]> {
+    fn on_other_nappe(&self, curve: &Curve<N>, range: [N; 2], judge: &Predicates) -> Vec<[N; 2]> {
         nappe_parts(curve, range, self.other, judge.band())
     }
 
     /// Whether the heights that `conics` gives over each ruling lie on the other surface.
-    fn meets_in_conics(&self, judge: &Judge, conics: impl Fn(N) -> Vec<N>) -> bool {
+    fn meets_in_conics(&self, judge: &Predicates, conics: impl Fn(N) -> Vec<N>) -> bool {
         let mut worst: N = N::ZERO;
         let mut asked = false;
         for u in asked_rulings() {
@@ -240,7 +246,7 @@ impl<'a, N: Number> Rulings<'a, N> {
     }
 
     /// The apexes through which branches pass: singular points.
-    fn add_apexes(&self, judge: &Judge, meeting: &mut Meeting<N>) {
+    fn add_apexes(&self, judge: &Predicates, meeting: &mut SurfaceIntersection<N>) {
         let surface = surface_of(&self.base);
         for (s, o) in [(&surface, self.other), (self.other, &surface)] {
             if let Surface::Cone(c) = s

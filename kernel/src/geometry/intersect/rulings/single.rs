@@ -2,22 +2,22 @@
 
 use super::{Rulings, apart, surface_of};
 use crate::geometry::curve::{Curve, Line};
-use crate::geometry::intersect::{Branch, IntersectionError, Meeting, Node, place};
-use crate::geometry::quartic::{Height, Quartic, Ruled, Sweep};
+use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
+use crate::geometry::quadric_curve::{Height, QuadricCurve, Ruled, Sweep};
 use crate::geometry::surface::Surface;
 use crate::geometry::trigonometric::{Trig1, Trig2, divide, divide_half, trig1, zeros_of};
 use crate::geometry::vector::Length;
-use crate::number::precision::Number;
-use crate::number::sign::Judge;
+use crate::number::float::Float;
+use crate::number::predicates::Predicates;
 use nalgebra::{Point3, Vector3};
 
-impl<N: Number> Rulings<'_, N> {
+impl<N: Float> Rulings<'_, N> {
     /// k = 0: one point on each ruling, w = -C/(2B).
     pub(in crate::geometry::intersect) fn single(
         &self,
-        judge: &Judge,
-    ) -> Result<Meeting<N>, IntersectionError> {
-        let mut meeting = Meeting::nothing();
+        judge: &Predicates,
+    ) -> Result<SurfaceIntersection<N>, IntersectionError> {
+        let mut meeting = SurfaceIntersection::nothing();
         let shared = self.shared_ruling(judge);
         let tangent = shared.is_some_and(|u0| self.touches_along(u0, judge));
         let height = match shared {
@@ -31,7 +31,7 @@ impl<N: Number> Rulings<'_, N> {
                 constant: self.constant,
             },
         };
-        let quartic = Quartic {
+        let quartic = QuadricCurve {
             base: self.base,
             sweep: Sweep::Round { turns: 1 },
             height,
@@ -48,7 +48,7 @@ impl<N: Number> Rulings<'_, N> {
     }
 
     /// w = -C/(2B) where that is of degree one: a planar conic.
-    fn single_conic(&self, judge: &Judge) -> Option<Trig1<N>> {
+    fn single_conic(&self, judge: &Predicates) -> Option<Trig1<N>> {
         let w = divide(&self.constant, &self.linear).map(|q| -N::HALF * q);
         self.meets_in_conics(judge, |u| vec![trig1(&w, u.sin_cos())])
             .then_some(w)
@@ -57,10 +57,10 @@ impl<N: Number> Rulings<'_, N> {
     /// The curve w = -C/(2B), as far as it lies on both surfaces.
     fn add_single(
         &self,
-        quartic: Quartic<N>,
+        quartic: QuadricCurve<N>,
         shared: Option<N>,
-        judge: &Judge,
-        meeting: &mut Meeting<N>,
+        judge: &Predicates,
+        meeting: &mut SurfaceIntersection<N>,
     ) {
         let whole = [N::ZERO, N::TAU];
         for range in self.bounded_ranges(&quartic, shared, self.reach()) {
@@ -78,7 +78,7 @@ impl<N: Number> Rulings<'_, N> {
     }
 
     /// The ruling that lies on both surfaces, where k = 0: a common zero of B and C.
-    fn shared_ruling(&self, judge: &Judge) -> Option<N> {
+    fn shared_ruling(&self, judge: &Predicates) -> Option<N> {
         if let Ruled::Cylinder(_) = self.base {
             let Surface::Cone(c) = self.other else {
                 return None;
@@ -102,7 +102,7 @@ impl<N: Number> Rulings<'_, N> {
     }
 
     /// Whether the surfaces touch all along the ruling u0 that lies on both.
-    fn touches_along(&self, u0: N, judge: &Judge) -> bool {
+    fn touches_along(&self, u0: N, judge: &Predicates) -> bool {
         let surface = surface_of(&self.base);
         let Surface::Cone(cone) = self.other else {
             return false;
@@ -132,7 +132,7 @@ impl<N: Number> Rulings<'_, N> {
     }
 
     /// The ranges of u over which the single point of a ruling is on the base within reach.
-    fn bounded_ranges(&self, q: &Quartic<N>, shared: Option<N>, reach: N) -> Vec<[N; 2]> {
+    fn bounded_ranges(&self, q: &QuadricCurve<N>, shared: Option<N>, reach: N) -> Vec<[N; 2]> {
         // |w| = reach, w = 1/reach and the poles, as signs of N - x D with w = N/D.
         let quotient = |u: N| q.height_at(u);
         let inside = |u: N| match &self.base {
@@ -195,10 +195,10 @@ impl<N: Number> Rulings<'_, N> {
     fn add_shared(
         &self,
         u0: N,
-        q: &Quartic<N>,
+        q: &QuadricCurve<N>,
         tangent: bool,
-        judge: &Judge,
-        meeting: &mut Meeting<N>,
+        judge: &Predicates,
+        meeting: &mut SurfaceIntersection<N>,
     ) {
         let surface = surface_of(&self.base);
         let frame = surface.frame();
@@ -243,7 +243,7 @@ impl<N: Number> Rulings<'_, N> {
     }
 }
 
-fn same_turn<N: Number>(a: N, b: N) -> bool {
+fn same_turn<N: Float>(a: N, b: N) -> bool {
     let d = (a - b).rem_euclid(N::TAU);
     d.min(N::TAU - d) < N::ONE / N::whole(1 << 20)
 }

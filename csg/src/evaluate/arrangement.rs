@@ -1,0 +1,328 @@
+//! The curves in which carriers meet, and the points in which they are cut.
+//!
+//! Everything that coincides within the resolution is made one here, before any topology: equal
+//! surfaces become one carrier, equal points one vertex that is known by all carriers through it.
+
+use super::EvaluationError;
+use super::distinct_surfaces::{Merged, Source, merge};
+use super::halfspaces::HalfSpaceModel;
+use super::relevance::{Between, Unlisted};
+use super::split_curves::{Later, is_one_pass};
+use super::vertices::{VertexCandidate, VertexMerger};
+use crate::tree::Tree;
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::bounds::{Aabb, pieces};
+use premio_kernel::geometry::curve::{Curve, Line};
+use premio_kernel::geometry::intersect::{Branch, RegionOfInterest, meet};
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::surface_pair::Carrier;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use std::collections::{BTreeMap, HashSet};
+
+/// Where a curve is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cut<N: Float = f64> {
+    /// The parameter.
+    pub t: N,
+    /// The vertex there.
+    pub vertex: usize,
+}
+
+/// A curve in which carriers meet.
+#[derive(Clone, Debug)]
+pub(super) struct IntersectionCurve<N: Float = f64> {
+    /// The curve.
+    pub curve: Curve<N>,
+    /// The range of its parameter.
+    pub range: [N; 2],
+    /// Whether the range is a whole period.
+    pub closed: bool,
+    /// All carriers that hold it, in order.
+    pub carriers: Vec<usize>,
+    /// The pairs of carriers that are tangent all along it.
+    pub tangent: Vec<[usize; 2]>,
+    /// Its box.
+    pub bounds: Aabb,
+    /// Its smooth pieces with their boxes, in order.
+    pub parts: Vec<([N; 2], Aabb)>,
+    /// Where it is cut, in order.
+    pub cuts: Vec<Cut<N>>,
+}
+
+impl<N: Float> IntersectionCurve<N> {
+    /// Puts the cuts in order, each once: a closed curve's first may stand at its end, too.
+    fn order_cuts(&mut self) {
+        let one =
+            |a: &Cut<N>, b: &Cut<N>, turn: N| a.vertex == b.vertex && is_one_pass(a.t - turn, b.t);
+        self.cuts.sort_by(|a, b| a.t.total_cmp(&b.t));
+        self.cuts.dedup_by(|a, b| one(a, b, N::ZERO));
+        let period = self.range[1] - self.range[0];
+        if self.closed
+            && let [first, .., last] = self.cuts[..]
+            && one(&last, &first, period)
+        {
+            self.cuts.pop();
+        }
+    }
+}
+
+/// The solids' boxes, to be asked for what lies near.
+pub(super) type SolidTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
+
+/// All carriers, curves and corners.
+#[derive(Debug)]
+pub(super) struct Arrangement<N: Float = f64> {
+    /// The distinct surfaces.
+    pub carriers: Vec<Surface<N>>,
+    /// For each half space of each solid: its carrier and the sense relative to it.
+    pub sides: Vec<Vec<(usize, Sense)>>,
+    /// The curves.
+    pub meetings: Vec<IntersectionCurve<N>>,
+    /// The corners.
+    pub corners: Vec<VertexCandidate<N>>,
+    /// The close calls of which it is not yet known whether they concern the boundary.
+    pub calls: Vec<Unlisted>,
+    /// The solids' boxes.
+    pub tree: SolidTree,
+}
+
+/// The arrangement of no more than `most` curves and cuts, and where its carriers come from.
+pub(super) fn arrange<'t, N: Float>(
+    tree: &'t Tree,
+    solids: &HalfSpaceModel<N>,
+    extent: &RegionOfInterest<N>,
+    judge: &Predicates,
+    most: usize,
+) -> Result<(Arrangement<N>, Vec<Source<'t>>), EvaluationError> {
+    let Merged {
+        carriers,
+        sources,
+        sides,
+    } = merge(tree, solids, extent, judge);
+    // Faces that nearly meet are asked, too: a close call is listed on either side of the band.
+    let reach = judge.reach();
+    let tree = tree_of(solids, 0..solids.all.len(), reach);
+    let mut found = Arrangement {
+        carriers,
+        sides,
+        meetings: Vec::new(),
+        corners: Vec::new(),
+        calls: Vec::new(),
+        tree,
+    };
+    let mut corners = VertexMerger::new(judge.band());
+    for (pair, supports) in found.pairs(solids, reach, most)? {
+        found.add_pair(pair, &supports, &sources, extent, judge, &mut corners)?;
+        bounded(found.meetings.len(), most)?;
+    }
+    found.settle_contacts(judge);
+    let mut later = Later::default();
+    let mut entities = found.meetings.len();
+    for i in 0..found.meetings.len() {
+        found.cut_meeting(i, solids, judge, &mut corners, &mut later);
+        entities += found.meetings[i].cuts.len();
+        bounded(entities, most)?;
+    }
+    found.calls.append(&mut later.calls);
+    // The best known first: the others are put where they are.
+    later.wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+    for w in &later.wide {
+        found.place_wide(w, judge, &mut corners);
+    }
+    found.calls.append(&mut corners.calls);
+    found.corners = corners.all;
+    found.share_corners(judge);
+    for m in &mut found.meetings {
+        m.order_cuts();
+    }
+    Ok((found, sources))
+}
+
+/// The boxes of some solids, grown by `reach`.
+fn tree_of<N: Float>(
+    solids: &HalfSpaceModel<N>,
+    which: impl Iterator<Item = usize>,
+    reach: N,
+) -> SolidTree {
+    let boxes = which.map(|i| {
+        let b = solids.all[i].bounds.grown(reach);
+        GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
+    });
+    RTree::bulk_load(boxes.collect())
+}
+
+/// An error where more is kept than the limit.
+fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
+    match entities > most {
+        true => Err(EvaluationError::Large { most }),
+        false => Ok(()),
+    }
+}
+
+type Pairs = BTreeMap<(usize, usize), Vec<Aabb>>;
+
+impl<N: Float> Arrangement<N> {
+    /// The pairs of carriers whose faces' boxes meet, with the boxes that they share. Of equal solids
+    /// one is asked.
+    fn pairs(
+        &self,
+        solids: &HalfSpaceModel<N>,
+        reach: N,
+        most: usize,
+    ) -> Result<Pairs, EvaluationError> {
+        let mut pairs = Pairs::new();
+        let mut known = HashSet::new();
+        let is_new = |i: &usize| {
+            let Aabb { min, max } = solids.all[*i].bounds;
+            known.insert((&self.sides[*i], [min, max].map(|p| p.map(f64::to_bits))))
+        };
+        let distinct: Vec<usize> = (0..solids.all.len()).filter(is_new).collect();
+        let tree = tree_of(solids, distinct.iter().copied(), reach);
+        let mut shared = 0;
+        for &i in &distinct {
+            let s = &solids.all[i].bounds;
+            let around = AABB::from_corners(s.min, s.max);
+            for near in tree.locate_in_envelope_intersecting(around) {
+                let j = near.data;
+                if j >= i {
+                    shared += self.add_pairs_of(solids, i, j, reach, &mut pairs);
+                }
+            }
+            bounded(shared, most)?;
+        }
+        Ok(pairs)
+    }
+
+    /// Adds the pairs of two solids, and gives their number.
+    fn add_pairs_of(
+        &self,
+        solids: &HalfSpaceModel<N>,
+        i: usize,
+        j: usize,
+        reach: N,
+        pairs: &mut Pairs,
+    ) -> usize {
+        let mut added = 0;
+        let (s, o) = (&solids.all[i], &solids.all[j]);
+        for (k, a) in s.sides.iter().enumerate() {
+            let box_a = a.bounds.grown(reach);
+            for (l, b) in o.sides.iter().enumerate() {
+                let (c, d) = (self.sides[i][k].0, self.sides[j][l].0);
+                if c == d || (i == j && k >= l) {
+                    continue;
+                }
+                if let Some(shared) = common(&box_a, &b.bounds.grown(reach)) {
+                    pairs.entry((c.min(d), c.max(d))).or_default().push(shared);
+                    added += 1;
+                }
+            }
+        }
+        added
+    }
+
+    fn add_pair(
+        &mut self,
+        (a, b): (usize, usize),
+        supports: &[Aabb],
+        sources: &[Source<'_>],
+        extent: &RegionOfInterest<N>,
+        judge: &Predicates,
+        corners: &mut VertexMerger<N>,
+    ) -> Result<(), EvaluationError> {
+        let exact = [a, b].map(|c| move || sources[c].exact());
+        let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
+        let own = judge.another();
+        let met = meet(carrier(a, 0), carrier(b, 1), extent, &own)?;
+        for call in judge.take(own) {
+            match call.local {
+                true => self.calls.push((call, Between::Carriers([a, b]))),
+                false => judge.list(call),
+            }
+        }
+        let mut kept: Vec<Vec<usize>> = Vec::new();
+        for branch in &met.branches {
+            kept.push(self.add_branch(a, b, branch, supports, judge));
+        }
+        for node in &met.nodes {
+            if node.on.is_empty() && !supports.iter().any(|s| s.holds(&node.point)) {
+                continue;
+            }
+            let vertex = corners.at(&node.point, &[a, b], judge);
+            for &(branch, t) in &node.on {
+                for &m in &kept[branch] {
+                    let [lo, hi] = self.meetings[m].range;
+                    let band = judge.band::<N>();
+                    if t.lies_in([lo - band, hi + band]) {
+                        let t = t.clamp(lo, hi);
+                        self.meetings[m].cuts.push(Cut { t, vertex });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a branch as far as both faces' boxes hold it: the indices it was given.
+    fn add_branch(
+        &mut self,
+        a: usize,
+        b: usize,
+        branch: &Branch<N>,
+        supports: &[Aabb],
+        judge: &Predicates,
+    ) -> Vec<usize> {
+        let ranges = match &branch.curve {
+            Curve::Line(line) => clipped(line, branch.range, supports),
+            _ => vec![branch.range],
+        };
+        let mut kept = Vec::new();
+        for range in ranges {
+            let parts = pieces(&branch.curve, range);
+            let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
+            if !supports
+                .iter()
+                .any(|s| common(s, &b3.grown(judge.band::<N>())).is_some())
+            {
+                continue;
+            }
+            kept.push(self.meetings.len());
+            self.meetings.push(IntersectionCurve {
+                curve: branch.curve.clone(),
+                range,
+                closed: branch.closed && range == branch.range,
+                carriers: vec![a, b],
+                tangent: branch.tangent.then_some([a, b]).into_iter().collect(),
+                bounds: b3,
+                parts,
+                cuts: Vec::new(),
+            });
+        }
+        kept
+    }
+}
+
+/// What two boxes share.
+pub(super) fn common(a: &Aabb, b: &Aabb) -> Option<Aabb> {
+    let min: [f64; 3] = std::array::from_fn(|i| a.min[i].max(b.min[i]));
+    let max: [f64; 3] = std::array::from_fn(|i| a.max[i].min(b.max[i]));
+    (0..3)
+        .all(|i| min[i].is_at_most(max[i]))
+        .then_some(Aabb { min, max })
+}
+
+/// The parts of a line within the boxes, overlapping ones joined.
+fn clipped<N: Float>(line: &Line<N>, range: [N; 2], boxes: &[Aabb]) -> Vec<[N; 2]> {
+    let mut parts: Vec<[N; 2]> = boxes.iter().filter_map(|b| b.along(line, range)).collect();
+    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut joined: Vec<[N; 2]> = Vec::new();
+    for p in parts {
+        match joined.last_mut() {
+            Some(last) if p[0].is_at_most(last[1]) => last[1] = last[1].max(p[1]),
+            _ => joined.push(p),
+        }
+    }
+    joined
+}

@@ -1,0 +1,248 @@
+//! The pieces of curves between consecutive corners, each once, however many pairs of carriers
+//! gave its curve.
+
+use super::arrangement::{Arrangement, IntersectionCurve};
+use super::vertices::VertexCandidate;
+use nalgebra::Point3;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::curve_surface::lies_on;
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use std::collections::HashMap;
+
+/// A piece of a curve between two corners, or a closed curve without any.
+#[derive(Clone, Debug)]
+pub(super) struct EdgeCandidate<N: Float = f64> {
+    /// The index of the curve's meeting.
+    pub meeting: usize,
+    /// The range of the parameter, increasing.
+    pub range: [N; 2],
+    /// The corners at both ends.
+    pub ends: Option<[usize; 2]>,
+    /// All carriers that hold it, in order.
+    pub carriers: Vec<usize>,
+    /// The pairs of carriers that are tangent all along it.
+    pub tangent: Vec<[usize; 2]>,
+}
+
+/// What two copies of a piece have in common: the home of a closed curve, the corners at both ends.
+type Name = (Option<usize>, Option<[usize; 2]>);
+
+pub(super) fn pieces<N: Float>(
+    arrangement: &Arrangement<N>,
+    judge: &Predicates,
+) -> Vec<EdgeCandidate<N>> {
+    let homes = homes(arrangement, judge);
+    let mut all: Vec<EdgeCandidate<N>> = Vec::new();
+    // Two pieces that run over the same points share their ends, and a home or, where the curves
+    // are one within the resolution only, two carriers.
+    let mut known: HashMap<Name, Vec<usize>> = HashMap::new();
+    for (index, m) in arrangement.meetings.iter().enumerate() {
+        for (range, ends) in spans(m) {
+            let piece = EdgeCandidate {
+                meeting: index,
+                range,
+                ends,
+                carriers: arrangement.holding(m, range, ends, judge),
+                tangent: m.tangent.clone(),
+            };
+            if piece.carriers.len() > 2 {
+                let name = ends.map(|[a, b]| [a.min(b), a.max(b)]);
+                let home = homes[index];
+                let list = known.entry((name.is_none().then_some(home), name));
+                let list = list.or_default();
+                let middle = m.curve.point(N::HALF * (range[0] + range[1]));
+                let same = list.iter().copied().find(|&i| {
+                    let other: &EdgeCandidate<N> = &all[i];
+                    let curve = &arrangement.meetings[other.meeting].curve;
+                    (homes[other.meeting] == home || other.shares_two(&piece))
+                        && passes(curve, other.range, &middle, judge)
+                });
+                if let Some(i) = same {
+                    all[i].add(&piece);
+                    continue;
+                }
+                list.push(all.len());
+            }
+            all.push(piece);
+        }
+    }
+    for piece in &mut all {
+        let home = homes[piece.meeting];
+        if home != piece.meeting {
+            piece.move_to(home, arrangement);
+        }
+    }
+    all
+}
+
+/// For each meeting the first one on the same curve. Of the copies found from several pairs of
+/// carriers each is clipped to faces of its own pair, and knows only the carriers near these.
+fn homes<N: Float>(arrangement: &Arrangement<N>, judge: &Predicates) -> Vec<usize> {
+    let mut homes: Vec<usize> = (0..arrangement.meetings.len()).collect();
+    let mut by_pair: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+    for (i, m) in arrangement.meetings.iter().enumerate() {
+        // What is shorter than the resolution lies in everything near it, and has no pieces.
+        if m.carriers.len() < 3 || spans(m).is_empty() {
+            continue;
+        }
+        for (k, &a) in m.carriers.iter().enumerate() {
+            for &b in &m.carriers[k + 1..] {
+                let list = by_pair.entry([a, b]).or_default();
+                for &j in list.iter() {
+                    let (p, q) = (first_home(&homes, i), first_home(&homes, j));
+                    if p != q && same_curve(&arrangement.meetings[j], m, judge) {
+                        homes[p.max(q)] = p.min(q);
+                    }
+                }
+                list.push(i);
+            }
+        }
+    }
+    (0..homes.len()).map(|i| first_home(&homes, i)).collect()
+}
+
+fn first_home(homes: &[usize], mut i: usize) -> usize {
+    while homes[i] != i {
+        i = homes[i];
+    }
+    i
+}
+
+/// Whether two meetings that have two carriers in common run over one curve: two points of the
+/// longer one tell, of which one at most is where they cross.
+fn same_curve<N: Float>(
+    a: &IntersectionCurve<N>,
+    b: &IntersectionCurve<N>,
+    judge: &Predicates,
+) -> bool {
+    let (long, short) = match a.bounds.diagonal().is_beyond(b.bounds.diagonal()) {
+        true => (a, b),
+        false => (b, a),
+    };
+    let [lo, hi] = long.range;
+    [N::ONE, N::TWO].iter().all(|&part| {
+        let p = long.curve.point(lo + (hi - lo) * part / N::of(3.0));
+        is_same_place(&short.curve.point(short.curve.parameter(&p)), &p, judge)
+    })
+}
+
+/// Whether points of curves that may be one are: there, or far apart.
+fn is_same_place<N: Float>(p: &Point3<N>, q: &Point3<N>, judge: &Predicates) -> bool {
+    let reach = N::of(SAME) * judge.band::<N>();
+    (p - q).length().is_within(reach)
+}
+
+/// Curves and pieces that may be one lie within this many times the resolution, or far apart.
+const SAME: f64 = 64.0;
+
+impl<N: Float> Arrangement<N> {
+    /// The carriers that hold a span of a meeting: the meeting's, and what both corners lie on and
+    /// the span does not leave by more than the resolution, next to a contact. A corner knows only
+    /// the carriers of curves that come near the faces that cut it, so the other's are asked, too.
+    fn holding(
+        &self,
+        m: &IntersectionCurve<N>,
+        range: [N; 2],
+        ends: Option<[usize; 2]>,
+        judge: &Predicates,
+    ) -> Vec<usize> {
+        let mut carriers = m.carriers.clone();
+        let Some([a, b]) = ends.map(|ends| ends.map(|v| &self.corners[v])) else {
+            return carriers;
+        };
+        let is_on = |corner: &VertexCandidate<N>, c: usize| {
+            corner.is_on(c) || judge.within(self.carriers[c].distance(&corner.point))
+        };
+        let mut either = [&a.carriers[..], &b.carriers].concat();
+        either.sort_unstable();
+        either.dedup();
+        let held = either.into_iter().filter(|&c| {
+            !m.carriers.contains(&c)
+                && is_on(a, c)
+                && is_on(b, c)
+                && lies_on(&m.curve, range, &self.carriers[c], judge.band())
+        });
+        carriers.extend(held);
+        carriers.sort_unstable();
+        carriers
+    }
+}
+
+impl<N: Float> EdgeCandidate<N> {
+    /// The length over which directions are compared: the extent of its curve.
+    pub(super) fn reach(&self, arrangement: &Arrangement<N>) -> N {
+        N::of(arrangement.meetings[self.meeting].bounds.diagonal())
+    }
+
+    /// Whether two carriers at least hold another one, too.
+    fn shares_two(&self, other: &Self) -> bool {
+        let shared = self.carriers.iter().filter(|c| other.carriers.contains(c));
+        shared.count() > 1
+    }
+
+    /// Takes what a copy of it is known by.
+    fn add(&mut self, copy: &EdgeCandidate<N>) {
+        self.tangent.extend(&copy.tangent);
+        self.carriers.extend(&copy.carriers);
+        self.carriers.sort_unstable();
+        self.carriers.dedup();
+    }
+
+    /// Puts a piece on another copy of its curve, so that it can be joined to the pieces there.
+    fn move_to(&mut self, home: usize, arrangement: &Arrangement<N>) {
+        let Some([a, b]) = self.ends else { return };
+        let own = &arrangement.meetings[self.meeting].curve;
+        let curve = &arrangement.meetings[home].curve;
+        let middle = N::HALF * (self.range[0] + self.range[1]);
+        let at = |v: usize| curve.parameter(&arrangement.corners[v].point);
+        let (mut lo, mut hi, t) = (at(a), at(b), curve.parameter(&own.point(middle)));
+        if own.tangent(middle).dot(&curve.tangent(t)).is_below_zero() {
+            (lo, hi) = (hi, lo);
+            self.ends = Some([b, a]);
+        }
+        hi = curve.in_cycle(hi, lo);
+        if let (true, Some(cycle)) = (hi.is_exactly(lo), curve.cycle()) {
+            hi += cycle;
+        }
+        self.range = [lo, hi];
+        self.meeting = home;
+    }
+}
+
+/// The ranges between consecutive cuts, with the corners at their ends. What lies before the first
+/// and after the last cut of an open curve is outside one of the faces' boxes.
+fn spans<N: Float>(m: &IntersectionCurve<N>) -> Vec<([N; 2], Option<[usize; 2]>)> {
+    if m.cuts.is_empty() {
+        return if m.closed {
+            vec![(m.range, None)]
+        } else {
+            Vec::new()
+        };
+    }
+    let mut spans: Vec<_> = m
+        .cuts
+        .windows(2)
+        .map(|c| ([c[0].t, c[1].t], Some([c[0].vertex, c[1].vertex])))
+        .collect();
+    if m.closed {
+        let (first, last) = (m.cuts[0], m.cuts[m.cuts.len() - 1]);
+        let period = m.range[1] - m.range[0];
+        spans.push((
+            [last.t, first.t + period],
+            Some([last.vertex, first.vertex]),
+        ));
+    }
+    let length = |r: &[N; 2]| r[1] - r[0];
+    let short = length(&m.range) * N::ROUNDING;
+    spans.retain(|(r, _)| length(r).is_beyond(short));
+    spans
+}
+
+/// Whether a curve passes through a point within a range.
+fn passes<N: Float>(curve: &Curve<N>, range: [N; 2], p: &Point3<N>, judge: &Predicates) -> bool {
+    let t = curve.in_cycle(curve.parameter(p), range[0]);
+    // Two pieces between the same corners in the same carriers are one or far apart.
+    t.lies_in(range) && is_same_place(&curve.point(t), p, judge)
+}

@@ -1,0 +1,428 @@
+//! Which pieces are edges, and where their faces lie: neighbourhoods.
+//!
+//! Around a piece its carriers stand like the leaves of an open book: each gives two half sheets.
+//! Between two neighbouring sheets the side of every carrier is known, so the tree says whether
+//! there is material. A piece is an edge where the pattern is neither constant nor one smooth
+//! sheet; a sheet where it changes is a face there. Notation: T is the tangent of the piece, d the
+//! direction of a sheet away from it, l = T × d the direction counterclockwise, n the carrier's
+//! normal.
+
+use super::EvaluationError;
+use super::arrangement::Arrangement;
+use super::edge_candidates::EdgeCandidate;
+use super::halfspaces::HalfSpaceModel;
+use super::membership::Membership;
+use super::radial_order::Spot;
+use super::relevance::CloseCallFilter;
+use super::vertices::VertexCandidate;
+use crate::tree::NodeId;
+use nalgebra::Point3;
+use premio_kernel::brep::assemble::{BoundaryInput, EdgeInput, FaceUse, VertexInput};
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::{Length, rounded};
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use std::collections::HashMap;
+
+/// A primitive near a piece: what is left to know whether it holds a sector.
+struct Near {
+    leaf: NodeId,
+    /// Carriers of the piece (by place) and the side of each on which the primitive lies.
+    open: Vec<(usize, Sense)>,
+}
+
+/// What was seen from a point of a piece.
+struct NeighbourhoodSample<N: Float = f64> {
+    /// The primitives that hold it, by leaf.
+    near: Vec<Near>,
+    /// The distance of the surface that is nearest to changing the answer.
+    margin: N,
+}
+
+impl<N: Float> NeighbourhoodSample<N> {
+    /// Whether any surface through the point belongs to a primitive that is there.
+    fn may_have_faces(&self) -> bool {
+        self.near.iter().any(|n| !n.open.is_empty())
+    }
+
+    /// Whether nothing came so near to changing the answer.
+    fn is_clearer_than(&self, other: &Self) -> bool {
+        self.margin.is_beyond(other.margin)
+    }
+}
+
+struct Classifier<'a, N: Float = f64> {
+    solids: &'a HalfSpaceModel<N>,
+    arrangement: &'a Arrangement<N>,
+    membership: &'a Membership<'a>,
+    judge: &'a Predicates,
+}
+
+/// Where to look at a piece, as fractions of its range; the later ones are for when a surface
+/// passes through the first.
+const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
+
+pub(super) fn boundary<N: Float>(
+    concern: &CloseCallFilter<'_, N>,
+    pieces: Vec<EdgeCandidate<N>>,
+) -> Result<BoundaryInput<N>, EvaluationError> {
+    let CloseCallFilter {
+        solids,
+        arrangement,
+        membership,
+        judge,
+    } = *concern;
+    let classifier = Classifier {
+        solids,
+        arrangement,
+        membership,
+        judge,
+    };
+    let mut edges: Vec<(EdgeCandidate<N>, Vec<FaceUse>)> = Vec::new();
+    for piece in pieces {
+        let wings = classifier.wings(&piece)?;
+        if !wings.is_empty() {
+            edges.push((piece, wings));
+        }
+    }
+    let joined = join(edges, arrangement);
+    let whole = classifier.whole_surfaces(&joined)?;
+    let raw = |e: Joined<N>| EdgeInput {
+        curve: e.piece.meeting,
+        range: e.piece.range,
+        ends: e.piece.ends,
+        smooth: classifier.is_smooth(&e.piece, &e.wings),
+        wings: e.wings,
+        passes: e.passes,
+    };
+    let point = |c: &VertexCandidate<N>| VertexInput {
+        place: c.point,
+        surfaces: c.carriers.clone(),
+        nodes: c.nodes.clone(),
+    };
+    Ok(BoundaryInput {
+        edges: joined.into_iter().map(raw).collect(),
+        whole,
+        points: arrangement.corners.iter().map(point).collect(),
+        curves: arrangement
+            .meetings
+            .iter()
+            .map(|m| m.curve.clone())
+            .collect(),
+        surfaces: arrangement.carriers.clone(),
+    })
+}
+
+impl<N: Float> Classifier<'_, N> {
+    fn surface(&self, carrier: usize) -> &Surface<N> {
+        &self.arrangement.carriers[carrier]
+    }
+
+    /// The faces around a piece, none where it is no edge: pairs enclose material, in order.
+    fn wings(&self, piece: &EdgeCandidate<N>) -> Result<Vec<FaceUse>, EvaluationError> {
+        let curve = &self.arrangement.meetings[piece.meeting].curve;
+        let [lo, hi] = piece.range;
+        let mut best: Option<(N, NeighbourhoodSample<N>)> = None;
+        for look in LOOKS {
+            let t = lo + (hi - lo) * N::of(look);
+            let look = self.look(&curve.point(t), &piece.carriers);
+            if !look.may_have_faces() {
+                return Ok(Vec::new());
+            }
+            let clear = !self.judge.is_close(look.margin);
+            if best.as_ref().is_none_or(|(_, b)| look.is_clearer_than(b)) {
+                best = Some((t, look));
+            }
+            if clear {
+                break;
+            }
+        }
+        let Some((t, look)) = best else {
+            return Ok(Vec::new());
+        };
+        // A surface that stays close along the whole piece without holding it: its plain sign
+        // decides. Where it comes nearest was asked when the curve was cut, and of its corners.
+        let spot = Spot {
+            arrangement: self.arrangement,
+            judge: self.judge,
+            piece,
+            point: curve.point(t),
+            tangent: curve.tangent(t),
+        };
+        self.wings_at(&spot, &look.near)
+    }
+
+    /// What is near `p` as far as the piece's own carriers leave it open.
+    fn look(&self, p: &Point3<N>, carriers: &[usize]) -> NeighbourhoodSample<N> {
+        let mut near = Vec::new();
+        let mut margin = N::INFINITY;
+        for s in self.arrangement.tree.locate_all_at_point(rounded(p)) {
+            let solid = &self.solids.all[s.data];
+            let mut open = Vec::new();
+            // By how much the point is inside all other sides, and outside one of them.
+            let (mut inside, mut outside) = (N::INFINITY, N::NEG_INFINITY);
+            for (side, &(c, sense)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
+                if let Ok(at) = carriers.binary_search(&c) {
+                    open.push((at, sense));
+                    continue;
+                }
+                let distance = side.surface.distance(p);
+                inside = inside.min(distance.abs());
+                outside = outside.max(distance);
+            }
+            if outside.reaches(N::ZERO) {
+                margin = margin.min(outside);
+            } else {
+                margin = margin.min(inside);
+                near.push(Near {
+                    leaf: solid.leaf,
+                    open,
+                });
+            }
+        }
+        near.sort_by_key(|n| n.leaf);
+        NeighbourhoodSample { near, margin }
+    }
+
+    fn wings_at(&self, spot: &Spot<'_, N>, near: &[Near]) -> Result<Vec<FaceUse>, EvaluationError> {
+        let piece = spot.piece;
+        let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
+        let sheets = spot.sheets(has_face)?;
+        let n = sheets.len();
+        // The sides before the first sheet: opposite to what lies beyond a carrier's first one.
+        let mut sides = vec![Sense::Along; piece.carriers.len()];
+        for s in sheets.iter().rev() {
+            sides[s.carrier] = s.beyond.reversed();
+        }
+        let inside = |sides: &[Sense]| {
+            let held: Vec<NodeId> = near
+                .iter()
+                .filter(|s| s.open.iter().all(|&(c, sense)| sides[c] == sense))
+                .map(|s| s.leaf)
+                .collect();
+            !held.is_empty() && self.membership.holds(&held)
+        };
+        let mut before = inside(&sides);
+        let mut changes: Vec<(usize, bool)> = Vec::new();
+        for (i, s) in sheets.iter().enumerate() {
+            sides[s.carrier] = s.beyond;
+            let after = inside(&sides);
+            if after != before {
+                changes.push((i, after));
+            }
+            before = after;
+        }
+        if let [(i, _), (j, _)] = changes[..]
+            && sheets[i].carrier == sheets[j].carrier
+        {
+            return Ok(Vec::new());
+        }
+        let first = changes.iter().position(|c| c.1).unwrap_or(0);
+        changes.rotate_left(first);
+        debug_assert!(n >= changes.len());
+        let wing = |&(i, after): &(usize, bool)| {
+            let s = &sheets[i];
+            // Material beyond: the outward normal is -l, the face lies to the right of T.
+            let outward = if (s.beyond == Sense::Along) == after {
+                Sense::Along
+            } else {
+                Sense::Against
+            };
+            let sense = if after { Sense::Against } else { Sense::Along };
+            FaceUse {
+                surface: piece.carriers[s.carrier],
+                outward,
+                sense,
+            }
+        };
+        Ok(changes.iter().map(wing).collect())
+    }
+
+    /// Whether the two faces of an edge continue one another smoothly.
+    fn is_smooth(&self, piece: &EdgeCandidate<N>, wings: &[FaceUse]) -> bool {
+        let [a, b] = *wings else { return false };
+        let told = piece
+            .tangent
+            .iter()
+            .any(|t| *t == [a.surface, b.surface] || *t == [b.surface, a.surface]);
+        let curve = &self.arrangement.meetings[piece.meeting].curve;
+        let p = curve.point(N::HALF * (piece.range[0] + piece.range[1]));
+        let normal = |w: &FaceUse| self.surface(w.surface).normal(&p) * w.outward.sign::<N>();
+        let (m, n) = (normal(&a), normal(&b));
+        let tangent = told
+            || self
+                .judge
+                .within(m.cross(&n).length() * piece.reach(self.arrangement));
+        tangent && m.dot(&n).is_above_zero()
+    }
+
+    /// The closed carriers without any edge that are faces as a whole.
+    fn whole_surfaces(&self, edges: &[Joined<N>]) -> Result<Vec<(usize, Sense)>, EvaluationError> {
+        let mut bounded = vec![false; self.arrangement.carriers.len()];
+        for wing in edges.iter().flat_map(|e| &e.wings) {
+            bounded[wing.surface] = true;
+        }
+        let mut whole = Vec::new();
+        for (c, surface) in self.arrangement.carriers.iter().enumerate() {
+            if bounded[c] || !matches!(surface, Surface::Sphere(_) | Surface::Torus(_)) {
+                continue;
+            }
+            if let Some(sense) = self.whole(c, surface)? {
+                whole.push((c, sense));
+            }
+        }
+        Ok(whole)
+    }
+
+    /// Whether material changes across a closed surface, at the point of it that is farthest from
+    /// anything else: without an edge it does everywhere or nowhere.
+    fn whole(
+        &self,
+        carrier: usize,
+        surface: &Surface<N>,
+    ) -> Result<Option<Sense>, EvaluationError> {
+        let mut best: Option<(Point3<N>, NeighbourhoodSample<N>)> = None;
+        for i in 1..40 {
+            // Steps of the golden section spread over the surface.
+            let u = N::whole(i) * N::of(2.399_963_229_728_653);
+            let v = N::of(1.3) * (N::whole(i) * N::of(0.7)).sin();
+            let p = surface.point(u, v);
+            let look = self.look(&p, &[carrier]);
+            if !look.may_have_faces() {
+                return Ok(None);
+            }
+            let clear = !self.judge.is_close(look.margin);
+            if best.as_ref().is_none_or(|(_, b)| look.is_clearer_than(b)) {
+                best = Some((p, look));
+            }
+            if clear {
+                break;
+            }
+        }
+        let Some((p, look)) = best else {
+            return Ok(None);
+        };
+        if self.judge.within(look.margin) {
+            let place = rounded(&p);
+            return Err(EvaluationError::Closed { place });
+        }
+        let held = |side: Sense| {
+            let near = look.near.iter();
+            let within = near.filter(|s| s.open.iter().all(|o| o.1 == side));
+            let held: Vec<NodeId> = within.map(|s| s.leaf).collect();
+            !held.is_empty() && self.membership.holds(&held)
+        };
+        Ok(match (held(Sense::Along), held(Sense::Against)) {
+            (true, false) => Some(Sense::Along),
+            (false, true) => Some(Sense::Against),
+            _ => None,
+        })
+    }
+}
+
+/// An edge: pieces of one curve, one after the other.
+struct Joined<N: Float = f64> {
+    /// All of it.
+    piece: EdgeCandidate<N>,
+    /// The faces around it.
+    wings: Vec<FaceUse>,
+    /// The corners inside it.
+    passes: Vec<usize>,
+}
+
+/// Joins the pieces of one curve at corners where nothing else ends and the faces stay the same.
+fn join<N: Float>(
+    edges: Vec<(EdgeCandidate<N>, Vec<FaceUse>)>,
+    arrangement: &Arrangement<N>,
+) -> Vec<Joined<N>> {
+    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (i, (piece, _)) in edges.iter().enumerate() {
+        for v in piece.ends.iter().flatten() {
+            at.entry(*v).or_default().push(i);
+        }
+    }
+    // The next piece along the curve, where the corner between is none.
+    let mut next: Vec<Option<usize>> = vec![None; edges.len()];
+    let mut has_previous = vec![false; edges.len()];
+    for (i, (piece, wings)) in edges.iter().enumerate() {
+        let Some([_, end]) = piece.ends else { continue };
+        let list = &at[&end];
+        let [a, b] = list[..] else { continue };
+        let j = if a == i { b } else { a };
+        let (other, same) = &edges[j];
+        let curve = &arrangement.meetings[piece.meeting].curve;
+        let follows = other.meeting == piece.meeting
+            && other.ends.is_some_and(|e| e[0] == end)
+            && meets_at(curve.cycle(), piece.range[1], other.range[0])
+            && !curve.turns_back(piece.range[1])
+            && same_wings(wings, same);
+        if follows {
+            next[i] = Some(j);
+            has_previous[j] = true;
+        }
+    }
+    let mut done = vec![false; edges.len()];
+    let mut joined = Vec::new();
+    let starts = (0..edges.len())
+        .filter(|&i| !has_previous[i])
+        .chain(0..edges.len());
+    for start in starts {
+        if done[start] {
+            continue;
+        }
+        done[start] = true;
+        let (mut piece, wings) = edges[start].clone();
+        let mut passes = Vec::new();
+        let mut last = start;
+        while let Some(j) = next[last] {
+            passes.extend(edges[last].0.ends.map(|e| e[1]));
+            if j == start {
+                piece.ends = None;
+                break;
+            }
+            done[j] = true;
+            let curve = &arrangement.meetings[piece.meeting].curve;
+            piece.range[1] = run_on(curve.cycle(), piece.range[1], edges[j].0.range);
+            if let (Some(ends), Some(e)) = (piece.ends.as_mut(), edges[j].0.ends) {
+                ends[1] = e[1];
+            }
+            last = j;
+        }
+        if piece.ends.is_none()
+            && let Some(cycle) = arrangement.meetings[piece.meeting].curve.cycle()
+        {
+            piece.range[1] = piece.range[0] + cycle;
+        }
+        joined.push(Joined {
+            piece,
+            wings,
+            passes,
+        });
+    }
+    joined
+}
+
+/// Where a piece ends that begins where the one before it does, counted on over the turns: a sum of
+/// lengths would leave a gap of its rounding in a closed curve.
+fn run_on<N: Float>(cycle: Option<N>, before: N, [from, to]: [N; 2]) -> N {
+    cycle.map_or(to, |p| to + p * ((before - from) / p).round())
+}
+
+/// Whether two parameters are the same point of a curve.
+fn meets_at<N: Float>(cycle: Option<N>, a: N, b: N) -> bool {
+    let scale = N::ONE / N::whole(1 << 24);
+    let away = match cycle {
+        Some(p) => {
+            let d = (a - b).rem_euclid(p);
+            d.min(p - d)
+        }
+        None => (a - b).abs(),
+    };
+    away.is_at_most(scale * (N::ONE + a.abs()))
+}
+
+/// Whether two pieces have the same faces around them, wherever the count starts.
+fn same_wings(a: &[FaceUse], b: &[FaceUse]) -> bool {
+    a.len() == b.len() && (0..a.len()).any(|k| (0..a.len()).all(|i| a[i] == b[(i + k) % b.len()]))
+}

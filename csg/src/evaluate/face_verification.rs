@@ -1,0 +1,171 @@
+//! Every face asked of the tree itself, at a place of its own.
+//!
+//! A boundary is told from what meets: curves are cut, and around each piece the tree says where
+//! material is. What is told wrongly there may still close, and is a boundary, but of another solid. At
+//! a point inside a face, away from all that meets, the tree must have material just below and none
+//! just above, whatever was told on the way.
+
+use super::relevance::CloseCallFilter;
+use crate::tree::NodeId;
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::locate::FaceLocator;
+use premio_kernel::brep::topology::FaceId;
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::rounded;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::Compare;
+
+/// How far above and below a face the tree is asked, in bands.
+const STEP: f64 = 16.0;
+
+/// A point of a face, and its outward normal.
+struct FaceVerifier<'a, N: Float> {
+    surface: &'a Surface<N>,
+    point: Point3<N>,
+    normal: Vector3<N>,
+}
+
+/// What a surface does next to a face.
+enum Beside {
+    /// It is the face's own, or off it: below and above the face, whether the half space holds.
+    Plain([bool; 2]),
+    /// It meets the face there, or lies nearly on it.
+    Unclear,
+}
+
+impl<N: Float> CloseCallFilter<'_, N> {
+    /// A point of a face of which the tree says something else; none where the tree agrees with all
+    /// faces, as far as it tells.
+    pub(super) fn contradiction(&self, brep: &Brep<N>) -> Option<[f64; 3]> {
+        let mut faces = brep.topology.face_ids();
+        faces.find_map(|face| {
+            let witness = self.witness(brep, face)?;
+            let [below, above] = self.told(&witness)?;
+            let agrees = below && !above;
+            (!agrees).then(|| rounded(&witness.point))
+        })
+    }
+
+    fn witness<'a>(&self, brep: &'a Brep<N>, face: FaceId) -> Option<FaceVerifier<'a, N>> {
+        let band = self.judge.band::<N>();
+        let locator = FaceLocator::of(brep, face, band);
+        let point = locator.interior(N::TWO * N::of(STEP) * band)?;
+        let surface = brep.surface(face);
+        let normal = surface.normal(&point) * brep.sense(face).sign::<N>();
+        Some(FaceVerifier {
+            surface,
+            point,
+            normal,
+        })
+    }
+
+    /// Whether there is material below a point of a face, and above it; none where something else is
+    /// next to the point.
+    fn told(&self, at: &FaceVerifier<'_, N>) -> Option<[bool; 2]> {
+        let mut held: [Vec<NodeId>; 2] = Default::default();
+        let near = self
+            .arrangement
+            .tree
+            .locate_all_at_point(rounded(&at.point));
+        for s in near {
+            let solid = &self.solids.all[s.data];
+            let mut inside = [true; 2];
+            for (side, (carrier, _)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
+                let is_own = self.arrangement.carriers[*carrier] == *at.surface;
+                match self.beside(&side.surface, is_own, at) {
+                    Beside::Plain(holds) => {
+                        inside = [inside[0] && holds[0], inside[1] && holds[1]];
+                    }
+                    Beside::Unclear => return None,
+                }
+            }
+            for (held, inside) in held.iter_mut().zip(inside) {
+                if inside {
+                    held.push(solid.leaf);
+                }
+            }
+        }
+        Some(held.map(|mut leaves| {
+            leaves.sort_unstable();
+            !leaves.is_empty() && self.membership.holds(&leaves)
+        }))
+    }
+
+    fn beside(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Beside {
+        let step = N::of(STEP) * self.judge.band::<N>();
+        let places = [-step, step].map(|away| surface.distance(&(at.point + at.normal * away)));
+        let holds = places.map(N::is_below_zero);
+        let is_near = places.iter().any(|d| d.is_within(N::HALF * step));
+        // Another one may touch the face there alone.
+        match is_near || (holds[0] != holds[1] && !is_own) {
+            true => Beside::Unclear,
+            false => Beside::Plain(holds),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
+mod tests {
+    use super::super::arrangement::arrange;
+    use super::super::halfspaces::HalfSpaceModel;
+    use super::super::membership::Membership;
+    use super::super::{EvaluationOptions, MOST_ENTITIES, evaluate};
+    use super::*;
+    use crate::reader::{Format, ReadOptions, read};
+    use crate::tree::Tree;
+    use premio_kernel::geometry::intersect::RegionOfInterest;
+    use premio_kernel::number::predicates::Predicates;
+
+    const PARTS: [[&str; 2]; 4] = [
+        ["BLO(X=2, Y=2, Z=2)", "CYL(R=0.5, H=3) AT (MOVX=1, MOVY=1)"],
+        ["TOR(RMAJ=2, RMIN=0.5)", "BLO(X=3, Y=3, Z=3)"],
+        ["CON(R=1, H=2)", "SPH(R=0.7) AT (MOVZ=0.5, MOVX=0.3)"],
+        ["SPH(R=1)", "WED(X=1, Y=1, Z=1)"],
+    ];
+
+    const OPERATIONS: [&str; 3] = ["UN", "INT", "DIF"];
+
+    fn tree([a, b]: [&str; 2], op: &str) -> Tree {
+        let text = format!("PART = {a} {op} {b}\n");
+        let read = read(
+            "part",
+            text.as_bytes(),
+            Format::Padl,
+            &ReadOptions::default(),
+        );
+        read.unwrap().tree
+    }
+
+    /// Whether a boundary is contradicted by the tree of the same primitives otherwise joined.
+    fn is_contradicted(tree: &Tree, joined: &Tree) -> bool {
+        let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
+        let solids = HalfSpaceModel::<f64>::of(tree);
+        let judge = Predicates::new(known.resolution);
+        let extent = RegionOfInterest {
+            centre: solids.bounds.centre(),
+            radius: 0.75 * solids.bounds.diagonal(),
+        };
+        let arranged = arrange(tree, &solids, &extent, &judge, MOST_ENTITIES);
+        let concern = CloseCallFilter {
+            solids: &solids,
+            arrangement: &arranged.unwrap().0,
+            membership: &Membership::new(joined),
+            judge: &judge,
+        };
+        concern.contradiction(&known.brep).is_some()
+    }
+
+    #[test]
+    fn the_boundary_of_another_solid_is_contradicted() {
+        for part in PARTS {
+            for op in OPERATIONS {
+                for other in OPERATIONS {
+                    let told = is_contradicted(&tree(part, op), &tree(part, other));
+                    assert_eq!(told, op != other, "{part:?}: {op} for {other}");
+                }
+            }
+        }
+    }
+}

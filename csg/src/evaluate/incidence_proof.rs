@@ -1,0 +1,252 @@
+//! What passes through a point and along a curve, proven without rounding: for exact evaluation.
+//!
+//! Numbers of 237 bits propose the corners and the carriers through each, the curves and the carriers
+//! that hold them. Here the corner is made the exact zero of three polynomials, and every other one
+//! that is to vanish there is proven to: the levels of its carriers, and where gradients seem to
+//! depend on one another, what says that they do. A carrier holds a curve if it passes through more
+//! points of it than it could otherwise (Bézout).
+
+use super::EvaluationError;
+use super::arrangement::Arrangement;
+use super::distinct_surfaces::Source;
+use super::edge_candidates::EdgeCandidate;
+use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::{Length, rounded};
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, FINEST_RESOLUTION, Predicates};
+use premio_kernel::number::rational::Rational;
+use premio_kernel::proof::{AlgebraicPoint, Polynomial, ZeroTest, deflated};
+use std::cell::OnceCell;
+
+/// The carriers without rounding.
+struct Forms<'a, N: Float> {
+    carriers: &'a [Surface<N>],
+    sources: &'a [Source<'a>],
+    known: Vec<OnceCell<Polynomial>>,
+}
+
+impl<'a, N: Float> Forms<'a, N> {
+    fn of(carriers: &'a [Surface<N>], sources: &'a [Source<'a>]) -> Self {
+        let known = carriers.iter().map(|_| OnceCell::new()).collect();
+        Self {
+            carriers,
+            sources,
+            known,
+        }
+    }
+
+    fn level(&self, carrier: usize) -> &Polynomial {
+        let make = || Polynomial::of(&self.carriers[carrier], &self.sources[carrier].exact());
+        self.known[carrier].get_or_init(make)
+    }
+}
+
+/// Proves what lies on what in an arrangement, and counts it.
+pub(super) fn prove<N: Float>(
+    arrangement: &Arrangement<N>,
+    pieces: &[EdgeCandidate<N>],
+    sources: &[Source<'_>],
+    judge: &Predicates,
+) -> Result<(), EvaluationError> {
+    let forms = Forms::of(&arrangement.carriers, sources);
+    for corner in &arrangement.corners {
+        let (point, carriers) = (corner.point, &corner.carriers);
+        let incidence = Incidence::of(&forms, carriers, &point, judge);
+        if !incidence.is_plain() {
+            let reach = judge.band::<N>() / N::of(FINEST_RESOLUTION.sqrt());
+            incidence.settle("point on surfaces", None, (&point, reach), judge)?;
+        }
+    }
+    for piece in pieces {
+        if piece.carriers.len() > 2 || !piece.tangent.is_empty() {
+            let curve = &arrangement.meetings[piece.meeting].curve;
+            Holding::of(&forms, curve, piece).settle(judge)?;
+        }
+    }
+    Ok(())
+}
+
+/// What is to vanish at a point next to a place.
+struct Incidence<'f> {
+    /// The levels of the carriers.
+    levels: Vec<&'f Polynomial>,
+    /// What says that normals depend on one another.
+    dependences: Vec<Polynomial>,
+}
+
+impl<'f> Incidence<'f> {
+    /// Carriers that seem to pass through a point: there, where their normals seem to depend on one
+    /// another, they are to do so, and an apex is to be one.
+    fn of<N: Float>(
+        forms: &'f Forms<'_, N>,
+        carriers: &[usize],
+        place: &Point3<N>,
+        judge: &Predicates,
+    ) -> Self {
+        let levels: Vec<&Polynomial> = carriers.iter().map(|&c| forms.level(c)).collect();
+        let mut dependences = Vec::new();
+        let mut normals: Vec<(usize, Vector3<N>)> = Vec::new();
+        for (i, &c) in carriers.iter().enumerate() {
+            match &forms.carriers[c] {
+                Surface::Cone(cone) if is_there(&(cone.frame.origin - place), judge) => {
+                    dependences.extend(levels[i].gradient());
+                }
+                surface => normals.push((i, surface.normal(place))),
+            }
+        }
+        for (n, &(i, a)) in normals.iter().enumerate() {
+            for (m, &(j, b)) in normals.iter().enumerate().skip(n + 1) {
+                let across = a.cross(&b);
+                if is_flat(across.length()) {
+                    dependences.extend(levels[i].touching(levels[j]));
+                    continue;
+                }
+                for &(k, c) in &normals[m + 1..] {
+                    let parallel = [a, b].iter().any(|n| is_flat(n.cross(&c).length()));
+                    if !parallel && is_flat(across.unit().dot(&c)) {
+                        dependences.push(levels[i].dependence(levels[j], levels[k]));
+                    }
+                }
+            }
+        }
+        dependences.retain(|p| p.degree() > 0);
+        Self {
+            levels,
+            dependences,
+        }
+    }
+
+    /// Whether it is three surfaces across one another: nothing is to be proven.
+    fn is_plain(&self) -> bool {
+        self.levels.len() <= 3 && self.dependences.is_empty()
+    }
+
+    /// Proves all of it at the point next to a place, no farther than `reach`; with `cut` the point
+    /// of that.
+    fn settle<N: Float>(
+        &self,
+        question: &'static str,
+        cut: Option<&Polynomial>,
+        (place, reach): (&Point3<N>, N),
+        judge: &Predicates,
+    ) -> Result<(), EvaluationError> {
+        let vanishing = || self.levels.iter().copied().chain(&self.dependences);
+        let mut defining: Vec<Polynomial> = vanishing().chain(cut).cloned().collect();
+        let mut point = None;
+        for _ in 0..DEFLATIONS {
+            defining.sort_by_key(|p| (p.degree(), p.height()));
+            let found = AlgebraicPoint::next_to(&defining, place);
+            point = found.filter(|point| point.from(place).length().is_within(reach));
+            if point.is_some() {
+                break;
+            }
+            defining.extend(deflated(&defining, place));
+        }
+        let Some(mut point) = point else {
+            judge.count_assumed(vanishing().count() as u64);
+            return Ok(());
+        };
+        for p in vanishing()
+            .filter(|&p| !point.is_defined_by(p))
+            .collect::<Vec<_>>()
+        {
+            match point.is_zero_of(p) {
+                ZeroTest::Zero => judge.count_proven(1),
+                ZeroTest::Open => judge.count_assumed(1),
+                ZeroTest::Apart => {
+                    let place = rounded(place);
+                    return Err(EvaluationError::Doubt { question, place });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How often a point is looked for, with more said of it each time.
+const DEFLATIONS: usize = 3;
+
+/// Whether an angle is nothing as far as 237 bits tell of points where surfaces touch: by the root of
+/// the resolution.
+fn is_flat<N: Float>(angle: N) -> bool {
+    angle.is_within(N::of(FINEST_RESOLUTION.sqrt()))
+}
+
+/// The same of the way to a point.
+fn is_there<N: Float>(way: &Vector3<N>, judge: &Predicates) -> bool {
+    judge.within(way.length() * N::of(FINEST_RESOLUTION.sqrt()))
+}
+
+/// The carriers of a piece of a curve are to hold it.
+struct Holding<'f, N: Float> {
+    forms: &'f Forms<'f, N>,
+    curve: &'f Curve<N>,
+    piece: &'f EdgeCandidate<N>,
+    /// As many points of a curve do not lie on a surface that does not hold it.
+    points: u32,
+}
+
+impl<'f, N: Float> Holding<'f, N> {
+    fn of(forms: &'f Forms<'f, N>, curve: &'f Curve<N>, piece: &'f EdgeCandidate<N>) -> Self {
+        let degrees = piece.carriers.iter().map(|&c| forms.level(c).degree());
+        let mut degrees: Vec<u32> = degrees.collect();
+        degrees.sort_unstable();
+        // The curve is a part of what two of them have in common, and touching surfaces have
+        // gradients whose cross product vanishes.
+        let least: u32 = degrees.iter().take(2).product();
+        let most = degrees.last().copied().unwrap_or(1);
+        let most = match piece.tangent.is_empty() {
+            true => most,
+            false => most.max(2 * most - 2),
+        };
+        Self {
+            forms,
+            curve,
+            piece,
+            points: least * most + 1,
+        }
+    }
+
+    fn settle(&self, judge: &Predicates) -> Result<(), EvaluationError> {
+        let [lo, hi] = self.piece.range;
+        let curve = self.curve;
+        let step = (hi - lo) / N::whole(self.points + 1);
+        for k in 1..=self.points {
+            // Not at even parts, where a symmetric curve may be singular.
+            let t = lo + step * (N::whole(k) + N::of(ASIDE));
+            let place = curve.point(t);
+            let next = curve.point(t + step);
+            let incidence = Incidence::of(self.forms, &self.piece.carriers, &place, judge);
+            let way = (next - place).length();
+            let Some(cut) = across(&place, &curve.tangent(t), way) else {
+                judge.count_assumed(incidence.levels.len() as u64);
+                continue;
+            };
+            let near = (&place, N::HALF * way);
+            incidence.settle("curve on surfaces", Some(&cut), near, judge)?;
+        }
+        Ok(())
+    }
+}
+
+/// A plane across a curve, next to a point of it, in few digits: it lies nearer than a part of
+/// `step`.
+fn across<N: Float>(place: &Point3<N>, tangent: &Vector3<N>, step: N) -> Option<Polynomial> {
+    let digits = N::of(DIGITS) - N::of(step.rounded().log2()).floor();
+    let one = N::TWO.powi(digits.rounded() as i32);
+    let rounded = |x: N, one: N| Some((x * one).round().exact()? / one.exact()?);
+    let all = |v: &Vector3<N>, one: N| -> Option<[Rational; 3]> {
+        Some([rounded(v.x, one)?, rounded(v.y, one)?, rounded(v.z, one)?])
+    };
+    let point = all(&place.coords, one)?;
+    let direction = all(tangent, N::TWO.powi(DIGITS as i32))?;
+    let plane = Polynomial::plane(&point, &direction);
+    (plane.degree() == 1).then_some(plane)
+}
+
+/// How far from even parts of a curve its points are taken.
+const ASIDE: f64 = -0.381_966;
+/// The bits to which a plane across a curve is rounded, in terms of the way to the next.
+const DIGITS: f64 = 8.0;

@@ -1,0 +1,292 @@
+//! Whether a choice of sides is material: the tree as a function of the primitives that hold a
+//! point. Only those need be named; all others are taken as not holding it.
+
+use crate::tree::{NodeId, Operation, Tree, TreeNode};
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// The tree, turned over so that a few leaves can be followed upwards.
+pub(super) struct Membership<'a> {
+    tree: &'a Tree,
+    /// Each node's parent, and its place among the parent's children.
+    parents: Vec<Option<(NodeId, usize)>>,
+}
+
+/// What was found of a node so far.
+struct Count {
+    node: NodeId,
+    first: bool,
+    others: usize,
+}
+
+impl Count {
+    /// One child holds the point: the first, or another.
+    fn of(node: NodeId, first: bool) -> Self {
+        let others = usize::from(!first);
+        Self {
+            node,
+            first,
+            others,
+        }
+    }
+
+    fn add(&mut self, other: Self) {
+        self.first |= other.first;
+        self.others += other.others;
+    }
+}
+
+/// What a point may be in of the children of an operation: some it is in, some it may be in.
+#[derive(Default)]
+struct Choice {
+    first: Option<Hold>,
+    /// How many of the others it is in.
+    held: usize,
+    /// How many of the others it may be in.
+    open: usize,
+}
+
+/// Whether a point is in something for sure.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Hold {
+    Held,
+    Open,
+}
+
+impl<'a> Membership<'a> {
+    /// The tree turned over.
+    pub fn new(tree: &'a Tree) -> Self {
+        let mut parents = vec![None; tree.nodes().len()];
+        for (i, node) in tree.nodes().iter().enumerate() {
+            if let TreeNode::Operation { children, .. } = node {
+                for (k, child) in children.iter().enumerate() {
+                    parents[child.index()] = Some((NodeId(i), k));
+                }
+            }
+        }
+        Self { tree, parents }
+    }
+
+    /// Whether a point in exactly the given primitives (by leaf) is in the solid. A parent stands
+    /// before its children, so the greatest index is always ready to be decided.
+    pub fn holds(&self, leaves: &[NodeId]) -> bool {
+        // The operations above what holds the point, and whether that is their first child.
+        let mut waiting: BinaryHeap<(NodeId, bool)> = BinaryHeap::new();
+        for leaf in leaves {
+            match self.parents[leaf.index()] {
+                Some((parent, place)) => waiting.push((parent, place == 0)),
+                None => return true,
+            }
+        }
+        while let Some((node, first)) = waiting.pop() {
+            let mut count = Count::of(node, first);
+            while let Some(&(same, first)) = waiting.peek().filter(|w| w.0 == node) {
+                count.add(Count::of(same, first));
+                waiting.pop();
+            }
+            // On from there alone, as long as nothing else is to be decided first.
+            let mut ready = Some(count);
+            while let Some(count) = ready.take().filter(|count| self.decide(count)) {
+                let Some((parent, place)) = self.parents[count.node.index()] else {
+                    return true;
+                };
+                match waiting
+                    .peek()
+                    .is_some_and(|(next, _)| next.index() >= parent.index())
+                {
+                    true => waiting.push((parent, place == 0)),
+                    false => ready = Some(Count::of(parent, place == 0)),
+                }
+            }
+        }
+        false
+    }
+
+    fn decide(&self, count: &Count) -> bool {
+        match &self.tree[count.node] {
+            TreeNode::Leaf(_) => true,
+            TreeNode::Operation {
+                op: Operation::Union,
+                ..
+            } => true,
+            TreeNode::Operation {
+                op: Operation::Intersection,
+                children,
+            } => count.first && count.others + 1 == children.len(),
+            TreeNode::Operation {
+                op: Operation::Difference,
+                ..
+            } => count.first && count.others == 0,
+        }
+    }
+
+    /// Of the primitives that a point may be in or not, `open`, those on which it depends whether
+    /// the point is material; it is in those named `held`, and in no others. Every primitive stands
+    /// in the tree once, so that all choices are free.
+    pub fn deciding(&self, held: &[NodeId], open: &[NodeId]) -> Vec<NodeId> {
+        let choices = self.choices(held, open);
+        let decides = |leaf: &NodeId| {
+            let mut node = *leaf;
+            while let Some((parent, place)) = self.parents[node.index()] {
+                let choice = choices.get(&parent);
+                if !choice.is_some_and(|c| self.follows(parent, place, c)) {
+                    return false;
+                }
+                node = parent;
+            }
+            true
+        };
+        open.iter().copied().filter(decides).collect()
+    }
+
+    /// What the operations above some primitives may hold.
+    fn choices(&self, held: &[NodeId], open: &[NodeId]) -> BTreeMap<NodeId, Choice> {
+        let mut done = BTreeMap::new();
+        let mut waiting: BTreeMap<NodeId, Choice> = BTreeMap::new();
+        let named = |list: &[NodeId], hold| list.iter().map(move |&n| (n, hold)).collect();
+        let mut found: Vec<(NodeId, Hold)> = named(held, Hold::Held);
+        found.extend::<Vec<_>>(named(open, Hold::Open));
+        loop {
+            for (node, hold) in found.drain(..) {
+                let Some((parent, place)) = self.parents[node.index()] else {
+                    continue;
+                };
+                let choice = waiting.entry(parent).or_default();
+                match (place, hold) {
+                    (0, _) => choice.first = Some(hold),
+                    (_, Hold::Held) => choice.held += 1,
+                    (_, Hold::Open) => choice.open += 1,
+                }
+            }
+            let Some((node, choice)) = waiting.pop_last() else {
+                return done;
+            };
+            found.extend(self.hold(node, &choice).map(|hold| (node, hold)));
+            done.insert(node, choice);
+        }
+    }
+
+    /// Whether a point is in an operation's result; none where it cannot be.
+    fn hold(&self, node: NodeId, choice: &Choice) -> Option<Hold> {
+        let TreeNode::Operation { op, children } = &self.tree[node] else {
+            return None;
+        };
+        let first_held = choice.first == Some(Hold::Held);
+        let present = usize::from(choice.first.is_some()) + choice.held + choice.open;
+        let (possible, sure) = match op {
+            Operation::Union => (present > 0, first_held || choice.held > 0),
+            Operation::Intersection => {
+                let all = present == children.len();
+                (all, first_held && choice.open == 0)
+            }
+            Operation::Difference => {
+                let left = choice.first.is_some() && choice.held == 0;
+                (left, first_held && choice.open == 0)
+            }
+        };
+        possible.then_some(if sure { Hold::Held } else { Hold::Open })
+    }
+
+    /// Whether the others can be chosen so that an operation's result is what an open child is, or
+    /// the opposite.
+    fn follows(&self, node: NodeId, place: usize, choice: &Choice) -> bool {
+        let TreeNode::Operation { op, children } = &self.tree[node] else {
+            return false;
+        };
+        match op {
+            Operation::Union => choice.first != Some(Hold::Held) && choice.held == 0,
+            Operation::Intersection => {
+                let present = usize::from(choice.first.is_some()) + choice.held + choice.open;
+                present == children.len()
+            }
+            Operation::Difference => choice.held == 0 && (place == 0 || choice.first.is_some()),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
+mod tests {
+    use super::*;
+    use crate::reader::{Format, ReadOptions, read};
+
+    /// Of the primitives of a part that are open, by their places in the text, those that decide.
+    fn deciding(part: &str, held: &[usize], open: &[usize]) -> Vec<usize> {
+        let text = format!("A = SPH(R=1)\nP = {part}\n");
+        let tree = read(
+            "part",
+            text.as_bytes(),
+            Format::Padl,
+            &ReadOptions::default(),
+        );
+        let tree = tree.unwrap().tree;
+        let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
+        let named = |list: &[usize]| -> Vec<NodeId> { list.iter().map(|&i| leaves[i]).collect() };
+        let found = Membership::new(&tree).deciding(&named(held), &named(open));
+        let place = |id| leaves.iter().position(|l| *l == id).unwrap();
+        found.into_iter().map(place).collect()
+    }
+
+    /// The same from the root down.
+    fn is_in(tree: &Tree, node: NodeId, held: &[NodeId]) -> bool {
+        match &tree[node] {
+            TreeNode::Leaf(_) => held.contains(&node),
+            TreeNode::Operation { op, children } => {
+                let mut of = children.iter().map(|&child| is_in(tree, child, held));
+                match op {
+                    Operation::Union => of.any(|held| held),
+                    Operation::Intersection => of.all(|held| held),
+                    Operation::Difference => of.next() == Some(true) && !of.any(|held| held),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_choice_of_sides_is_told() {
+        let parts = [
+            "A",
+            "A UN A INT A",
+            "A DIF (A DIF (A DIF (A UN A)))",
+            "(A UN A) DIF (A INT A) UN (A DIF A)",
+            "((A INT A) UN (A INT A)) INT ((A DIF A) UN (A DIF A))",
+            "(((((A UN A) DIF A) UN A) DIF A) INT (A UN A)) DIF A",
+        ];
+        for part in parts {
+            let text = format!("A = SPH(R=1)\nP = {part}\n");
+            let tree = read(
+                "part",
+                text.as_bytes(),
+                Format::Padl,
+                &ReadOptions::default(),
+            );
+            let tree = tree.unwrap().tree;
+            let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
+            let membership = Membership::new(&tree);
+            for choice in 0_u32..1 << leaves.len() {
+                let named = leaves.iter().enumerate();
+                let held: Vec<NodeId> = named
+                    .filter(|(i, _)| choice & (1 << i) != 0)
+                    .map(|(_, leaf)| *leaf)
+                    .collect();
+                let told = membership.holds(&held);
+                assert_eq!(told, is_in(&tree, NodeId(0), &held), "{part} {choice:b}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_others_cover_does_not_decide() {
+        assert_eq!(deciding("A UN A", &[], &[0, 1]), [0, 1]);
+        assert!(deciding("A UN A", &[0], &[1]).is_empty());
+        assert_eq!(deciding("A INT A", &[0], &[1]), [1]);
+        assert!(deciding("A INT A", &[], &[1]).is_empty());
+        assert_eq!(deciding("A DIF A", &[], &[0, 1]), [0, 1]);
+        assert!(deciding("A DIF A", &[1], &[0]).is_empty());
+        assert!(deciding("A DIF A", &[], &[1]).is_empty());
+        // Taken away from what is added to.
+        assert!(deciding("(A DIF A) UN A", &[2], &[0, 1]).is_empty());
+        assert_eq!(deciding("(A DIF A) UN A", &[1], &[0, 2]), [2]);
+        assert_eq!(deciding("(A DIF A) UN A", &[0], &[1, 2]), [1, 2]);
+        assert_eq!(deciding("(A UN A) INT A", &[0], &[1, 2]), [2]);
+    }
+}

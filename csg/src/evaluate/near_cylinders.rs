@@ -1,0 +1,57 @@
+//! Frustums that are nearly cylinders: their apex is far away, or nowhere within the resolution.
+
+use super::EvaluationError;
+use super::halfspaces::HalfSpaceModel;
+use crate::primitive::Primitive;
+use crate::tree::{PlacedPrimitive, Tree};
+use premio_kernel::geometry::intersect::RegionOfInterest;
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use premio_kernel::number::rational::{Rational, to_f64};
+
+/// The tree with cylinders for the frustums whose radii are equal within the resolution; none where
+/// there is none.
+pub(super) fn without(tree: &Tree, judge: &Predicates) -> Option<Tree> {
+    tree.with_primitives(|placed| straight(placed, judge))
+}
+
+fn straight(placed: &PlacedPrimitive, judge: &Predicates) -> Option<Primitive> {
+    let Primitive::Frustum { base, top, height } = &placed.primitive else {
+        return None;
+    };
+    let origin = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
+    let place = placed.motion.apply_point(&origin).each_ref().map(to_f64);
+    let taper = base - top;
+    let equal = judge.coincide("radii of a frustum", &taper, place);
+    equal.then(|| Primitive::Cylinder {
+        radius: (base + top) / Rational::from(2),
+        height: height.clone(),
+    })
+}
+
+/// Refuses cones whose apex is so far away that the rounding of their axes moves their walls by more
+/// than the resolution.
+pub(super) fn check<N: Float>(
+    solids: &HalfSpaceModel<N>,
+    extent: &RegionOfInterest<N>,
+    judge: &Predicates,
+) -> Result<(), EvaluationError> {
+    for side in solids.all.iter().flat_map(|solid| &solid.sides) {
+        if let Surface::Cone(cone) = &side.surface {
+            let away = (cone.frame.origin - extent.centre).length();
+            let moved = N::of(ROUNDINGS) * N::EPSILON * away;
+            if moved.is_beyond(judge.band()) {
+                return Err(EvaluationError::Taper {
+                    place: side.bounds.centre().into(),
+                    away: away.rounded(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How many roundings of the axis move the wall.
+const ROUNDINGS: f64 = 4.0;

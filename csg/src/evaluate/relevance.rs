@@ -1,0 +1,151 @@
+//! Which close calls concern the boundary.
+//!
+//! A carrier runs on where its primitive has no face, and a primitive has faces where others cover
+//! them. Next to a point the part depends on the primitives that come near it, and of these on such
+//! alone as the tree leaves a choice: what is decided between other carriers changes nothing there.
+
+use super::arrangement::Arrangement;
+use super::halfspaces::{HalfSpace, HalfSpaceModel};
+use super::membership::Membership;
+use super::vertices::VertexCandidate;
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::vector::rounded;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{CloseCall, Compare, Predicates, Side};
+use rstar::AABB;
+
+/// What a close call lies between.
+#[derive(Clone, Debug)]
+pub(super) enum Between {
+    /// Two corners.
+    Corners([usize; 2]),
+    /// A corner and a point that was made one with it, which these carriers define.
+    CornerAndPoint(usize, Vec<usize>),
+    /// A curve, by its meeting, and a carrier.
+    Curve(usize, usize),
+    /// Two carriers.
+    Carriers([usize; 2]),
+}
+
+/// A close call, not yet listed.
+pub(super) type Unlisted = (CloseCall, Between);
+
+/// The primitives as a tree joins them, to be asked for what matters next to a point.
+pub(super) struct CloseCallFilter<'a, N: Float = f64> {
+    pub solids: &'a HalfSpaceModel<N>,
+    pub arrangement: &'a Arrangement<N>,
+    pub membership: &'a Membership<'a>,
+    pub judge: &'a Predicates,
+}
+
+impl<N: Float> CloseCallFilter<'_, N> {
+    /// Lists the close calls that concern the boundary: of those met on the way, and between
+    /// corners and surfaces.
+    pub fn list(&self) {
+        for (call, between) in &self.arrangement.calls {
+            if self.concerns(call.place, between) {
+                self.judge.list(call.clone());
+            }
+        }
+        for corner in &self.arrangement.corners {
+            self.list_beside(corner);
+        }
+    }
+
+    /// Lists the surfaces that pass by a corner.
+    fn list_beside(&self, corner: &VertexCandidate<N>) {
+        let place = rounded(&corner.point);
+        let mut beside: Vec<(usize, N)> = Vec::new();
+        for s in self.arrangement.tree.locate_all_at_point(place) {
+            for (side, &(c, _)) in self.sides(s.data) {
+                let distance = side.surface.distance(&corner.point);
+                if self.judge.is_close(distance) && !corner.is_on(c) {
+                    beside.push((c, distance));
+                }
+            }
+        }
+        if beside.is_empty() {
+            return;
+        }
+        let carriers = self.carriers(place);
+        let has = |c: &usize| carriers.binary_search(c).is_ok();
+        if !is_vertex(corner, has) {
+            return;
+        }
+        for (_, distance) in beside.into_iter().filter(|(c, _)| has(c)) {
+            self.judge.side("point beside surface", distance, place);
+        }
+    }
+
+    /// The sides of a solid, each with its carrier and its sense.
+    fn sides(
+        &self,
+        solid: usize,
+    ) -> impl Iterator<Item = (&HalfSpace<N>, &(usize, Sense))> + Clone {
+        let sides = self.solids.all[solid].sides.iter();
+        sides.zip(&self.arrangement.sides[solid])
+    }
+
+    fn concerns(&self, place: [f64; 3], between: &Between) -> bool {
+        let carriers = self.carriers(place);
+        let has = |c: &usize| carriers.binary_search(c).is_ok();
+        let vertex = |v: usize| is_vertex(&self.arrangement.corners[v], has);
+        match between {
+            Between::Corners(both) => both.iter().all(|&v| vertex(v)),
+            Between::CornerAndPoint(v, point) => vertex(*v) && point.iter().all(has),
+            Between::Curve(m, c) => has(c) && is_edge(&self.arrangement.meetings[*m].carriers, has),
+            Between::Carriers(both) => both.iter().all(has),
+        }
+    }
+
+    /// The carriers, in order, of the faces next to a place of the primitives on which it depends
+    /// where the part is there.
+    fn carriers(&self, place: [f64; 3]) -> Vec<usize> {
+        let p = Point3::from(place.map(N::of));
+        // Both of what a close call lies between are within its distance of the place.
+        let margin = N::TWO * self.judge.reach::<N>();
+        let [lo, hi] = [-margin, margin].map(|by| rounded(&(p + Vector3::repeat(by))));
+        let around = AABB::from_corners(lo, hi);
+        let (mut held, mut open) = (Vec::new(), Vec::new());
+        let mut faces = Vec::new();
+        for s in self
+            .arrangement
+            .tree
+            .locate_in_envelope_intersecting(around)
+        {
+            let solid = &self.solids.all[s.data];
+            let away =
+                |(side, &(c, _)): (&HalfSpace<N>, &(usize, Sense))| (side.surface.distance(&p), c);
+            let sides = self.sides(s.data).map(away);
+            let outside = sides.clone().fold(N::NEG_INFINITY, |most, s| most.max(s.0));
+            match Side::of(outside, margin) {
+                Side::Inside => held.push(solid.leaf),
+                Side::On => {
+                    open.push(solid.leaf);
+                    let near = sides.filter(|(distance, _)| distance.is_within(margin));
+                    faces.extend(near.map(|(_, c)| (solid.leaf, c)));
+                }
+                Side::Outside => {}
+            }
+        }
+        let deciding = self.membership.deciding(&held, &open);
+        faces.retain(|(leaf, _)| deciding.contains(leaf));
+        let mut carriers: Vec<usize> = faces.into_iter().map(|face| face.1).collect();
+        carriers.sort_unstable();
+        carriers.dedup();
+        carriers
+    }
+}
+
+/// Whether a corner is one of the carriers that matter alone: two of them have it by themselves, or
+/// three meet in it.
+fn is_vertex<N: Float>(corner: &VertexCandidate<N>, has: impl Fn(&usize) -> bool) -> bool {
+    let through = corner.carriers.iter().filter(|c| has(c)).count();
+    through > 2 || corner.nodes.iter().any(|both| both.iter().all(&has))
+}
+
+/// Whether two of the carriers of a curve matter.
+fn is_edge(carriers: &[usize], has: impl Fn(&usize) -> bool) -> bool {
+    carriers.iter().filter(|c| has(c)).count() > 1
+}

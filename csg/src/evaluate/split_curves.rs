@@ -1,0 +1,392 @@
+//! Where curves are cut: by the carriers of all faces that come near, and at points known
+//! beforehand.
+
+use super::arrangement::{Arrangement, Cut, IntersectionCurve, common};
+use super::halfspaces::HalfSpaceModel;
+use super::relevance::{Between, Unlisted};
+use super::vertices::VertexMerger;
+use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::curve_surface::{comes_near, lies_on, roots};
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::{Length, rounded, solution};
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use premio_kernel::number::roots::{Root, RootKind};
+use rstar::AABB;
+use std::collections::HashMap;
+
+/// A curve may pass one corner twice, but never within this part of a radian or a unit.
+const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
+
+/// Whether two parameters at one corner are one pass of it.
+pub(super) fn is_one_pass<N: Float>(t: N, other: N) -> bool {
+    (t - other).abs().is_short_of(N::of(CLOSE_PASS))
+}
+
+/// A contact of so high an order that many points are within the band.
+pub(super) struct Wide<N: Float = f64> {
+    meeting: usize,
+    carrier: usize,
+    /// The parameter that fits best.
+    t: N,
+    /// How far from there the points are within the band.
+    pub reach: N,
+}
+
+/// What is met on the way and dealt with when all curves are cut.
+#[derive(Default)]
+pub(super) struct Later<N: Float = f64> {
+    /// The contacts of high order.
+    pub wide: Vec<Wide<N>>,
+    /// The close calls.
+    pub calls: Vec<Unlisted>,
+}
+
+impl<N: Float> Arrangement<N> {
+    /// Cuts a curve by the carriers of all faces that come near it.
+    pub(super) fn cut_meeting(
+        &mut self,
+        index: usize,
+        solids: &HalfSpaceModel<N>,
+        judge: &Predicates,
+        corners: &mut VertexMerger<N>,
+        later: &mut Later<N>,
+    ) {
+        let m = &self.meetings[index];
+        let around = AABB::from_corners(m.bounds.min, m.bounds.max);
+        let mut near: Vec<(usize, Aabb)> = Vec::new();
+        for s in self.tree.locate_in_envelope_intersecting(around) {
+            for (k, side) in solids.all[s.data].sides.iter().enumerate() {
+                let c = self.sides[s.data][k].0;
+                let face = side.bounds.grown(judge.reach::<N>());
+                if !m.carriers.contains(&c) && common(&face, &m.bounds).is_some() {
+                    near.push((c, face));
+                }
+            }
+        }
+        near.sort_by_key(|n| n.0);
+        let known: Vec<Cut<N>> = m.cuts.clone();
+        let mut holding = Vec::new();
+        let mut cuts = Vec::new();
+        for faces in near.chunk_by(|a, b| a.0 == b.0) {
+            match self.cuts_by(index, faces, &known, judge, corners, later) {
+                Some(found) => cuts.extend(found),
+                None => holding.push(faces[0].0),
+            }
+        }
+        let m = &mut self.meetings[index];
+        m.carriers.extend(holding);
+        m.carriers.sort_unstable();
+        m.cuts.extend(cuts);
+    }
+
+    /// The cuts of a curve by the faces of one carrier; none where the carrier holds the curve.
+    fn cuts_by(
+        &self,
+        index: usize,
+        faces: &[(usize, Aabb)],
+        known: &[Cut<N>],
+        judge: &Predicates,
+        corners: &mut VertexMerger<N>,
+        later: &mut Later<N>,
+    ) -> Option<Vec<Cut<N>>> {
+        let c = faces[0].0;
+        let m = &self.meetings[index];
+        let mut cuts = self.special_points(index, c, known, judge, corners);
+        let special: Vec<(N, Point3<N>)> = cuts
+            .iter()
+            .map(|s| (s.t, corners.all[s.vertex].point))
+            .collect();
+        let at_special = |p: &Point3<N>| {
+            let mut points = special.iter().map(|s| s.1);
+            points.any(|s| (s - p).length().is_within(judge.reach()))
+        };
+        let (roots, misses) = m.meet(&self.carriers[c], faces, judge)?;
+        let mut note = |question, distance, p: &Point3<N>| {
+            let (_, call) = judge.decide(question, distance, rounded(p));
+            let call = call.map(|call| (call, Between::Curve(index, c)));
+            later.calls.extend(call);
+        };
+        for r in roots {
+            let p = m.curve.point(r.t);
+            if special.iter().any(|s| m.holds_within(r.lo, r.hi, s.0)) || at_special(&p) {
+                continue;
+            }
+            if let Some(margin) = r.margin {
+                note("curve on surface", margin, &p);
+            }
+            let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).length());
+            let mut reach = ends[0].max(ends[1]);
+            if r.contact == RootKind::Touching {
+                reach = reach.max(m.touching_length(r.t, &self.carriers[c], judge));
+            }
+            if reach.is_beyond(judge.reach()) {
+                later.wide.push(Wide {
+                    meeting: index,
+                    carrier: c,
+                    t: r.t,
+                    reach,
+                });
+                continue;
+            }
+            let all = [m.carriers[0], m.carriers[1], c];
+            let plain = r.contact == RootKind::Simple;
+            let p = if plain {
+                self.polished(p, all, judge)
+            } else {
+                p
+            };
+            cuts.push(Cut {
+                t: r.t,
+                vertex: corners.at(&p, &all, judge),
+            });
+        }
+        for (t, value) in misses {
+            let p = m.curve.point(t);
+            if !at_special(&p) {
+                note("curve beside surface", value, &p);
+            }
+        }
+        Some(cuts)
+    }
+
+    /// Puts a cut whose place is not well known at a corner that is, where there is one in reach.
+    pub(super) fn place_wide(
+        &mut self,
+        w: &Wide<N>,
+        judge: &Predicates,
+        corners: &mut VertexMerger<N>,
+    ) {
+        let m = &self.meetings[w.meeting];
+        let all = [m.carriers[0], m.carriers[1], w.carrier];
+        let middle = m.curve.point(w.t);
+        let fits = |v: &usize| {
+            let p = corners.all[*v].point;
+            (p - middle).length().is_within(w.reach)
+                && all
+                    .iter()
+                    .all(|&c| judge.within(self.carriers[c].distance(&p)))
+                && judge.within((m.curve.point(m.curve.parameter(&p)) - p).length())
+        };
+        let away = |v: &usize| (corners.all[*v].point - middle).length();
+        let best = (0..corners.all.len())
+            .filter(fits)
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        let (t, vertex) = match best {
+            Some(v) => {
+                let p = corners.all[v].point;
+                // A curve may pass its corner twice: only elsewhere its parameter is asked for.
+                let t = match judge.within((p - middle).length()) {
+                    true => w.t,
+                    false => in_range(&m.curve, m.range, m.curve.parameter(&p)),
+                };
+                (t, corners.at(&p, &all, judge))
+            }
+            None => (w.t, corners.at(&middle, &all, judge)),
+        };
+        self.meetings[w.meeting].cuts.push(Cut { t, vertex });
+    }
+
+    /// The points of a curve known beforehand to lie on a carrier: where the curve crosses itself,
+    /// and the carrier's apex. The distance is no smooth function along the curve there, so roots
+    /// next to them are less well known than the points.
+    fn special_points(
+        &self,
+        index: usize,
+        carrier: usize,
+        known: &[Cut<N>],
+        judge: &Predicates,
+        corners: &mut VertexMerger<N>,
+    ) -> Vec<Cut<N>> {
+        let m = &self.meetings[index];
+        let surface = &self.carriers[carrier];
+        let mut special: Vec<Cut<N>> = Vec::new();
+        for cut in known {
+            let p = corners.all[cut.vertex].point;
+            if judge.within(surface.distance(&p)) {
+                let vertex = corners.at(&p, &[carrier], judge);
+                special.push(Cut { vertex, ..*cut });
+            }
+        }
+        if let Surface::Cone(cone) = surface {
+            let apex = cone.frame.origin;
+            if m.bounds.grown(judge.band::<N>()).holds(&apex) {
+                let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
+                let away = (m.curve.point(t) - apex).length();
+                if t.lies_in(m.range) && judge.within(away) {
+                    let all = [m.carriers[0], m.carriers[1], carrier];
+                    special.push(Cut {
+                        t,
+                        vertex: corners.at(&apex, &all, judge),
+                    });
+                }
+            }
+        }
+        special
+    }
+
+    /// The common point of three surfaces next to `p`, by Newton's steps where they are well
+    /// apart in direction: of surfaces that touch within the resolution steps may lead anywhere.
+    fn polished(&self, p: Point3<N>, all: [usize; 3], judge: &Predicates) -> Point3<N> {
+        let mut q = p;
+        for _ in 0..2 {
+            let rows = all.map(|c| self.carriers[c].normal(&q));
+            let off = all.map(|c| self.carriers[c].distance(&q));
+            let volume = rows[0].dot(&rows[1].cross(&rows[2]));
+            if volume.abs().is_short_of(N::ROUNDING.sqrt()) {
+                return p;
+            }
+            match solution(rows.map(<[N; 3]>::from), off) {
+                Some(step) => q -= Vector3::from(step),
+                None => return p,
+            }
+        }
+        match judge.within((q - p).length()) {
+            true => q,
+            false => p,
+        }
+    }
+
+    /// Makes every curve know the corners that its carriers know, and every corner the carriers of the
+    /// curves that pass it: each cut was found by two of them and a third.
+    pub(super) fn share_corners(&mut self, judge: &Predicates) {
+        let mut by_pair: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
+        for (i, m) in self.meetings.iter().enumerate() {
+            for (k, &a) in m.carriers.iter().enumerate() {
+                for &b in &m.carriers[k + 1..] {
+                    by_pair.entry((a, b)).or_default().push(i);
+                }
+            }
+        }
+        for v in 0..self.corners.len() {
+            let mut asked: Vec<usize> = Vec::new();
+            // What a corner learns may lead it to other curves.
+            loop {
+                let carriers = &self.corners[v].carriers;
+                let mut ask: Vec<usize> = Vec::new();
+                for (k, &a) in carriers.iter().enumerate() {
+                    for &b in &carriers[k + 1..] {
+                        ask.extend(by_pair.get(&(a, b)).into_iter().flatten());
+                    }
+                }
+                ask.sort_unstable();
+                ask.dedup();
+                ask.retain(|i| !asked.contains(i));
+                if !self.pass_all(&ask, v, judge) {
+                    break;
+                }
+                asked.extend(ask);
+            }
+        }
+    }
+
+    /// Makes curves know a corner that they pass; whether it knows another carrier by them.
+    fn pass_all(&mut self, meetings: &[usize], v: usize, judge: &Predicates) -> bool {
+        let corner = &mut self.corners[v];
+        let known = corner.carriers.len();
+        for &i in meetings {
+            let m = &mut self.meetings[i];
+            if m.bounds.grown(judge.band::<N>()).holds(&corner.point) {
+                m.pass(v, &corner.point, judge);
+            }
+            if m.cuts.iter().any(|cut| cut.vertex == v) {
+                corner.carriers.extend(&m.carriers);
+            }
+        }
+        corner.carriers.sort_unstable();
+        corner.carriers.dedup();
+        corner.carriers.len() > known
+    }
+}
+
+/// The roots of a surface along a curve, and the nearest misses.
+type Met<N> = (Vec<Root<N>>, Vec<(N, N)>);
+
+impl<N: Float> IntersectionCurve<N> {
+    /// Where the curve meets a surface, as far as it runs through the boxes of faces of it; none
+    /// where it lies on the surface.
+    fn meet(
+        &self,
+        surface: &Surface<N>,
+        faces: &[(usize, Aabb)],
+        judge: &Predicates,
+    ) -> Option<Met<N>> {
+        let band = judge.band();
+        if lies_on(&self.curve, self.range, surface, band) {
+            return None;
+        }
+        let mut all = Met::default();
+        let near = |b: &Aabb| {
+            faces.iter().any(|(_, face)| common(face, b).is_some())
+                && comes_near(surface, b, judge.reach())
+        };
+        let mut parts = self.parts.as_slice();
+        while let Some(first) = parts.iter().position(|p| near(&p.1)) {
+            parts = &parts[first..];
+            let count = parts.iter().take_while(|p| near(&p.1)).count();
+            let range = [parts[0].0[0], parts[count - 1].0[1]];
+            let (found, misses) = roots(&self.curve, range, surface, band);
+            all.0.extend(found);
+            all.1.extend(misses);
+            parts = &parts[count..];
+        }
+        Some(all)
+    }
+
+    /// How far from a point where the curve touches a surface it leaves that by more than the
+    /// resolution, to a factor of two.
+    fn touching_length(&self, t: N, surface: &Surface<N>, judge: &Predicates) -> N {
+        let length = self.range[1] - self.range[0];
+        let leaves = |step: &N| {
+            let sides = [t - *step, t + *step].map(|t| surface.distance(&self.curve.point(t)));
+            step.reaches(length) || !sides.iter().any(|&away| judge.within(away))
+        };
+        let mut steps =
+            std::iter::successors(Some(length * N::ROUNDING), |step| Some(N::TWO * *step));
+        let first = steps.find(leaves).unwrap_or(length);
+        (self.curve.point(t + first) - self.curve.point(t)).length()
+    }
+
+    /// Whether a parameter lies in a range, on a closed curve a turn more or less.
+    fn holds_within(&self, lo: N, hi: N, t: N) -> bool {
+        let period = if self.closed {
+            self.range[1] - self.range[0]
+        } else {
+            N::ZERO
+        };
+        [-period, N::ZERO, period]
+            .iter()
+            .any(|&turn| (t + turn).lies_in([lo, hi]))
+    }
+
+    /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, and
+    /// a quartic that runs into an apex, where it has no direction, at its ends, too.
+    fn pass(&mut self, vertex: usize, p: &Point3<N>, judge: &Predicates) {
+        let [lo, hi] = self.range;
+        let t = in_range(&self.curve, self.range, self.curve.parameter(p));
+        let runs_into = matches!(self.curve, Curve::Quartic(_)) || self.curve.period().is_some();
+        let opened = !self.closed && runs_into;
+        let ends = if opened {
+            [Some(lo), Some(hi)]
+        } else {
+            [None, None]
+        };
+        for t in ends.into_iter().flatten().chain([t]) {
+            let known = self
+                .cuts
+                .iter()
+                .any(|c| c.vertex == vertex && (!opened || is_one_pass(c.t, t)));
+            let on = t.lies_in([lo, hi]) && judge.within((self.curve.point(t) - p).length());
+            if on && !known {
+                self.cuts.push(Cut { t, vertex });
+            }
+        }
+    }
+}
+
+/// A parameter brought into the cycle that starts with a range.
+fn in_range<N: Float>(curve: &Curve<N>, range: [N; 2], t: N) -> N {
+    curve.in_cycle(t, range[0])
+}

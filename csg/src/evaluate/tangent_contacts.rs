@@ -1,0 +1,89 @@
+//! Where two carriers touch along a curve, and another curve runs next to it.
+//!
+//! Carriers that touch are within the resolution of one another over a strip. A curve of one of
+//! them and a third carrier that runs inside the strip lies on both, so the contact may as well be
+//! along that one, whose place is known: two curves that bound a strip in which nothing can be told
+//! apart would leave its faces without an order.
+
+use super::arrangement::{Arrangement, IntersectionCurve};
+use nalgebra::Point3;
+use premio_kernel::geometry::curve_surface::lies_on;
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use premio_kernel::number::roots::probes;
+
+impl<N: Float> Arrangement<N> {
+    /// Puts contacts along curves where other curves run inside their strips.
+    pub(super) fn settle_contacts(&mut self, judge: &Predicates) {
+        let mut settled = vec![false; self.meetings.len()];
+        for i in 0..self.meetings.len() {
+            let contact = &self.meetings[i];
+            let [both] = contact.tangent[..] else {
+                continue;
+            };
+            // What stands for a contact stays; what crosses others is known at the crossings.
+            if contact.carriers[..] != both || !contact.cuts.is_empty() {
+                continue;
+            }
+            let nearest = (0..self.meetings.len())
+                .filter(|&j| !settled[j])
+                .filter_map(|j| Some((self.strip(both, i, j, judge)?, j)))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((_, j)) = nearest {
+                self.meetings[j].tangent.push(both);
+                settled[i] = true;
+            }
+        }
+        let mut settled = settled.into_iter();
+        self.meetings.retain(|_| settled.next() == Some(false));
+    }
+
+    /// How wide the strip is between the contact of two carriers and another curve of one of them,
+    /// where that runs along all of it and is not the same.
+    fn strip(
+        &self,
+        both: [usize; 2],
+        contact: usize,
+        other: usize,
+        judge: &Predicates,
+    ) -> Option<N> {
+        let (contact, other) = (&self.meetings[contact], &self.meetings[other]);
+        let third = both.map(|c| !other.carriers.contains(&c));
+        if third[0] == third[1] {
+            return None;
+        }
+        let carriers = both.map(|c| &self.carriers[c]);
+        let missing = carriers[usize::from(third[1])];
+        if !lies_on(&other.curve, other.range, missing, judge.band()) {
+            return None;
+        }
+        let mut width: N = N::ZERO;
+        let [lo, hi] = contact.range;
+        for part in probes().chain([N::ZERO, N::ONE]) {
+            let t = lo + (hi - lo) * part;
+            let p = contact.curve.point(t);
+            let aside = other.beside(&p, judge.reach())? - p;
+            let along = aside.dot(&contact.curve.tangent(t)).abs();
+            let middle = p + aside * N::HALF;
+            let inside = carriers.iter().all(|s| judge.within(s.distance(&middle)));
+            let across = aside.length() + judge.reach::<N>();
+            if !inside || (N::TWO * along).is_beyond(across) {
+                return None;
+            }
+            width = width.max(aside.length());
+        }
+        (!judge.within(width)).then_some(width)
+    }
+}
+
+impl<N: Float> IntersectionCurve<N> {
+    /// The point next to another one, where that is not beyond the ends.
+    fn beside(&self, p: &Point3<N>, reach: N) -> Option<Point3<N>> {
+        let [lo, hi] = self.range;
+        let t = self.curve.in_cycle(self.curve.parameter(p), lo);
+        let q = self.curve.point(t.clamp(lo, hi));
+        let beyond = (q - self.curve.point(t)).length();
+        beyond.is_within(reach).then_some(q)
+    }
+}

@@ -1,0 +1,90 @@
+//! Primitives and parts that are no thicker than what coincides: their opposite faces become one, and they
+//! vanish.
+
+use crate::primitive::Primitive;
+use crate::tree::{PlacedPrimitive, Tree};
+use premio_kernel::brep::face_integrals::Mass;
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::number::predicates::{CloseCall, Compare, Predicates};
+use premio_kernel::number::rational::{Rational, to_f64};
+
+/// Lists the primitives whose thickness is close to the resolution.
+pub(super) fn list(tree: &Tree, judge: &Predicates) {
+    for (_, placed) in tree.leaves() {
+        let thickness = thickness(&placed.primitive);
+        if judge.is_close(thickness) {
+            judge.list(CloseCall {
+                question: "opposite faces of a primitive",
+                place: middle(placed),
+                distance: thickness,
+                local: true,
+            });
+        }
+    }
+}
+
+/// The close call that left nothing of a part: by finer numbers it is a solid, thicker than the `noise`
+/// of the description.
+pub(super) fn remainder(fine: &Mass, noise: f64) -> Option<CloseCall> {
+    // A plate has two sides.
+    let thickness = 2.0 * fine.volume / fine.area;
+    thickness.is_beyond(noise).then(|| CloseCall {
+        question: "opposite faces of the part, of which nothing is left",
+        place: fine.centroid.into(),
+        distance: thickness,
+        local: false,
+    })
+}
+
+/// How far faces may be off that are meant to coincide: turns by other than quarters are rounded to the
+/// digits of a double.
+pub(super) fn rounding(tree: &Tree, bounds: &Aabb) -> f64 {
+    let is_exact =
+        |entry: &Rational| entry.is_zero() || entry.is_one() || (-entry.clone()).is_one();
+    let is_quarter = |placed: &PlacedPrimitive| {
+        let matrix = placed.motion.rotation_matrix();
+        matrix.iter().flatten().all(is_exact)
+    };
+    match tree.leaves().all(|(_, placed)| is_quarter(placed)) {
+        true => 0.0,
+        false => f64::EPSILON * bounds.diagonal(),
+    }
+}
+
+/// The least distance between opposite faces of a primitive, or across it.
+fn thickness(primitive: &Primitive) -> f64 {
+    let least = |lengths: &[f64]| lengths.iter().copied().fold(f64::INFINITY, f64::min);
+    match primitive {
+        Primitive::Block { size } => least(&size.each_ref().map(to_f64)),
+        Primitive::Wedge { size } => {
+            let [x, y, z] = size.each_ref().map(to_f64);
+            // From the edge at the right angle to the slope.
+            least(&[y, x * (z / x.hypot(z))])
+        }
+        Primitive::Cylinder { radius, height } => least(&[2.0 * to_f64(radius), to_f64(height)]),
+        Primitive::Frustum { base, top, height } => {
+            let widest = to_f64(base).max(to_f64(top));
+            least(&[2.0 * widest, to_f64(height)])
+        }
+        Primitive::Sphere { radius } => 2.0 * to_f64(radius),
+        Primitive::Torus { minor, .. } => 2.0 * to_f64(minor),
+    }
+}
+
+/// A point in the middle of a primitive, or on its axis.
+fn middle(placed: &PlacedPrimitive) -> [f64; 3] {
+    let half = |length: &Rational| length / Rational::from(2);
+    let nothing = || Rational::ZERO;
+    let point = match &placed.primitive {
+        Primitive::Block { size } => size.each_ref().map(half),
+        Primitive::Wedge { size } => {
+            let [x, y, z] = size.each_ref().map(half);
+            [half(&x), y, half(&z)]
+        }
+        Primitive::Cylinder { height, .. } | Primitive::Frustum { height, .. } => {
+            [nothing(), nothing(), half(height)]
+        }
+        Primitive::Sphere { .. } | Primitive::Torus { .. } => [nothing(), nothing(), nothing()],
+    };
+    placed.motion.apply_point(&point).each_ref().map(to_f64)
+}

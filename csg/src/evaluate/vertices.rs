@@ -1,0 +1,116 @@
+//! The corners: points where curves are cut, equal ones made one.
+
+use super::relevance::{Between, Unlisted};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::vector::{Length, rounded};
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates, Side};
+use std::collections::HashMap;
+
+/// A point where a curve is cut.
+#[derive(Clone, Debug)]
+pub(super) struct VertexCandidate<N: Float = f64> {
+    /// The place.
+    pub point: Point3<N>,
+    /// The carriers through it, in order.
+    pub carriers: Vec<usize>,
+    /// The pairs of carriers that have it by themselves: where they touch, where their curve
+    /// crosses itself, an apex.
+    pub nodes: Vec<[usize; 2]>,
+}
+
+impl<N: Float> VertexCandidate<N> {
+    /// Whether a carrier passes through it.
+    pub fn is_on(&self, carrier: usize) -> bool {
+        self.carriers.binary_search(&carrier).is_ok()
+    }
+}
+
+/// The cell of a grid that holds a point.
+type Key = [[u64; 4]; 3];
+
+/// Corners by place, so that equal ones are one.
+pub(super) struct VertexMerger<N: Float = f64> {
+    /// In the order in which they were found.
+    pub all: Vec<VertexCandidate<N>>,
+    /// The close calls met.
+    pub calls: Vec<Unlisted>,
+    grid: HashMap<Key, Vec<usize>>,
+    cell: N,
+}
+
+impl<N: Float> VertexMerger<N> {
+    pub fn new(band: N) -> Self {
+        Self {
+            all: Vec::new(),
+            calls: Vec::new(),
+            grid: HashMap::new(),
+            cell: N::of(256.0) * band,
+        }
+    }
+
+    fn key(&self, p: &Point3<N>) -> Key {
+        [0, 1, 2].map(|i| (p[i] / self.cell).floor().bits())
+    }
+
+    /// The corner at `p`, which the given carriers define, or are known to pass through.
+    pub fn at(&mut self, p: &Point3<N>, carriers: &[usize], judge: &Predicates) -> usize {
+        let v = self.found(p, carriers, judge);
+        let corner = &mut self.all[v];
+        for &c in carriers {
+            if let Err(at) = corner.carriers.binary_search(&c) {
+                corner.carriers.insert(at, c);
+            }
+        }
+        if let [a, b] = *carriers {
+            corner.nodes.push([a, b]);
+        }
+        v
+    }
+
+    /// The corner that coincides with `p`, or a new one.
+    fn found(&mut self, p: &Point3<N>, carriers: &[usize], judge: &Predicates) -> usize {
+        let new = self.all.len();
+        if let Some((d, v)) = self.nearest(p, judge.reach()) {
+            let (side, call) = judge.decide("point on point", d, rounded(p));
+            let one = side == Side::On;
+            let between = match one {
+                true => Between::CornerAndPoint(v, carriers.to_vec()),
+                false => Between::Corners([v, new]),
+            };
+            self.calls.extend(call.map(|call| (call, between)));
+            if one {
+                return v;
+            }
+        }
+        self.all.push(VertexCandidate {
+            point: *p,
+            carriers: Vec::new(),
+            nodes: Vec::new(),
+        });
+        self.grid.entry(self.key(p)).or_default().push(new);
+        new
+    }
+
+    /// The corner nearest to `p` that is nearer than `reach`, with its distance.
+    fn nearest(&self, p: &Point3<N>, reach: N) -> Option<(N, usize)> {
+        let lo = self.key(&(p - Vector3::repeat(reach)));
+        let hi = self.key(&(p + Vector3::repeat(reach)));
+        let mut best: Option<(N, usize)> = None;
+        // A cell is wider than twice the reach: there are two at most along each axis.
+        let both = |i: usize| [Some(lo[i]), (hi[i] != lo[i]).then_some(hi[i])];
+        for x in both(0).into_iter().flatten() {
+            for y in both(1).into_iter().flatten() {
+                for z in both(2).into_iter().flatten() {
+                    for &v in self.grid.get(&[x, y, z]).into_iter().flatten() {
+                        let d = (self.all[v].point - p).length();
+                        if best.is_none_or(|b| d.is_short_of(b.0)) {
+                            best = Some((d, v));
+                        }
+                    }
+                }
+            }
+        }
+        best.filter(|b| b.0.is_short_of(reach))
+    }
+}

@@ -1,0 +1,213 @@
+//! On which surfaces a line enters and leaves material.
+//!
+//! The surfaces are the primitives' own; those of several primitives that coincide are one, so that
+//! neighbouring lines that cross one face of the part cross one surface.
+
+use super::shape::Shape;
+use super::{Event, Leaf, Ray, RayOracle};
+use nalgebra::Vector3;
+use premio_kernel::number::predicates::ROUNDING;
+
+/// Where a line enters or leaves material; every other one is an entry, the first of all is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceCrossing {
+    /// The line's parameter.
+    pub at: f64,
+    /// The surface, among those of the tree.
+    pub surface: usize,
+    /// Whether the line comes from the inside of a round surface; false of a plane.
+    pub outwards: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Plane,
+    Cylinder,
+    Cone,
+    Sphere,
+    Torus,
+}
+
+/// A surface: a point of it, its centre or its apex; its normal or axis, up to the sign; its radii,
+/// or the slope of a cone.
+#[derive(Clone, Copy, Debug)]
+struct Carrier {
+    kind: Kind,
+    point: Vector3<f64>,
+    axis: Vector3<f64>,
+    sizes: [f64; 2],
+}
+
+/// The surfaces of a tree's primitives, each once.
+#[derive(Debug)]
+pub struct Surfaces<'a> {
+    material: &'a RayOracle,
+    /// The tree's list, in the part's frame.
+    all: Vec<Carrier>,
+    /// Of each leaf: its surfaces in its own frame, with their place in the tree's list.
+    of_leaves: Vec<Vec<(Carrier, usize)>>,
+}
+
+impl Carrier {
+    fn new(kind: Kind, point: Vector3<f64>, axis: Vector3<f64>, sizes: [f64; 2]) -> Self {
+        Self {
+            kind,
+            point,
+            axis,
+            sizes,
+        }
+    }
+
+    fn plane(point: Vector3<f64>, normal: Vector3<f64>) -> Self {
+        Self::new(Kind::Plane, point, normal.normalize(), [0.0; 2])
+    }
+
+    /// In the part's frame, with the point of a plane or a cylinder nearest to `middle`.
+    fn placed(&self, leaf: &Leaf, middle: &Vector3<f64>) -> Self {
+        let (point, axis) = (leaf.turn * self.point + leaf.offset, leaf.turn * self.axis);
+        let along = axis * axis.dot(&(middle - point));
+        let point = match self.kind {
+            Kind::Plane => middle - along,
+            Kind::Cylinder => point + along,
+            Kind::Cone | Kind::Sphere | Kind::Torus => point,
+        };
+        Self {
+            point,
+            axis,
+            ..*self
+        }
+    }
+
+    /// The normal at a point of it, up to length and sign.
+    fn normal(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        let away = p - self.point;
+        let along = away.dot(&self.axis);
+        let radial = away - self.axis * along;
+        match self.kind {
+            Kind::Plane => self.axis,
+            Kind::Cylinder => radial,
+            Kind::Cone => radial.normalize() - self.axis * (self.sizes[0] * along.signum()),
+            Kind::Sphere => away,
+            Kind::Torus => away - radial.normalize() * self.sizes[0],
+        }
+    }
+
+    /// Whether two carriers differ by no more than `near`, a distance in a part of some size.
+    fn coincides(&self, other: &Self, near: f64, size: f64) -> bool {
+        let sizes = self.sizes.iter().zip(other.sizes);
+        self.kind == other.kind
+            && (self.point - other.point).norm() <= near
+            && self.axis.cross(&other.axis).norm() * size <= near
+            && sizes.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) <= near
+    }
+}
+
+/// The surfaces of a primitive in its own frame.
+fn carriers(shape: &Shape) -> Vec<Carrier> {
+    let (zero, z) = (Vector3::zeros(), Vector3::z());
+    let unit = |i: usize| Vector3::ith_axis(i).into_inner();
+    let low = |i: usize| Carrier::plane(zero, unit(i));
+    let high = |i: usize, at: f64| Carrier::plane(unit(i) * at, unit(i));
+    match *shape {
+        Shape::Block(size) => (0..3).flat_map(|i| [low(i), high(i, size[i])]).collect(),
+        Shape::Wedge([x, y, z]) => {
+            let slant = Carrier::plane(unit(0) * x, Vector3::new(1.0 / x, 0.0, 1.0 / z));
+            vec![low(0), low(1), high(1, y), low(2), slant]
+        }
+        Shape::Frustum {
+            base,
+            slope,
+            height,
+            ..
+        } => {
+            let side = if slope == 0.0 {
+                Carrier::new(Kind::Cylinder, zero, z, [base, 0.0])
+            } else {
+                Carrier::new(Kind::Cone, z * (-base / slope), z, [slope.abs(), 0.0])
+            };
+            vec![low(2), high(2, height), side]
+        }
+        Shape::Sphere(r) => vec![Carrier::new(Kind::Sphere, zero, zero, [r, 0.0])],
+        Shape::Torus { major, minor } => {
+            vec![Carrier::new(Kind::Torus, zero, z, [major, minor])]
+        }
+    }
+}
+
+impl<'a> Surfaces<'a> {
+    /// Collects the surfaces of a tree.
+    pub fn of(material: &'a RayOracle) -> Self {
+        let (size, middle) = (material.bounds.diagonal(), material.bounds.centre().coords);
+        let near = size * ROUNDING.sqrt();
+        let mut all: Vec<Carrier> = Vec::new();
+        let of_leaves = material.leaves.iter().map(|leaf| {
+            let own = carriers(&leaf.shape).into_iter().map(|local| {
+                let placed = local.placed(leaf, &middle);
+                let known = all.iter().position(|c| c.coincides(&placed, near, size));
+                let index = known.unwrap_or_else(|| {
+                    all.push(placed);
+                    all.len() - 1
+                });
+                (local, index)
+            });
+            own.collect()
+        });
+        let of_leaves = of_leaves.collect();
+        Self {
+            material,
+            all,
+            of_leaves,
+        }
+    }
+
+    /// How much farther along its direction a line meets a surface than at a crossing if it is moved
+    /// by `step`, to first order; infinite where the line touches the surface.
+    pub fn slope(&self, ray: &Ray, crossing: &SurfaceCrossing, step: &Vector3<f64>) -> f64 {
+        let p = ray.origin + ray.direction * crossing.at;
+        let normal = self.all[crossing.surface].normal(&p.coords);
+        -step.dot(&normal) / ray.direction.dot(&normal)
+    }
+
+    /// Where a line enters and leaves material, in order; gaps, then slivers, no longer than `least`
+    /// are closed. None where another surface is met no farther than that from one of them: the
+    /// two touch there, and rounding tells which is met.
+    pub fn crossings(&self, ray: &Ray, least: f64) -> Option<Vec<SurfaceCrossing>> {
+        let mut joined: Vec<[Event; 2]> = Vec::new();
+        let material = self.material;
+        let mut scratch = material.scratch();
+        material.cross_leaves(ray, &mut scratch, |span| match joined.last_mut() {
+            Some(last) if span[0].at - last[1].at <= least => last[1] = span[1],
+            _ => joined.push(span),
+        });
+        joined.retain(|[lo, hi]| hi.at - lo.at > least);
+        let met = |event: &Event| {
+            let crossing = self.crossing(ray, event)?;
+            let first = scratch.events.partition_point(|e| e.at < event.at - least);
+            let near = scratch.events[first..].iter();
+            let near = near.take_while(|e| e.at <= event.at + least);
+            let mut others = near.filter(|e| e.leaf != event.leaf);
+            let alone = others.all(|e| {
+                let other = self.crossing(ray, e);
+                other.is_some_and(|other| other.surface == crossing.surface)
+            });
+            alone.then_some(crossing)
+        };
+        joined.iter().flatten().map(met).collect()
+    }
+
+    fn crossing(&self, ray: &Ray, event: &Event) -> Option<SurfaceCrossing> {
+        let leaf = &self.material.leaves[event.leaf];
+        let p = leaf.local_point(&(ray.origin + ray.direction * event.at));
+        let off = |c: &Carrier| match c.kind {
+            Kind::Plane => c.axis.dot(&(p - c.point)).abs(),
+            _ => leaf.shape.level(&p).abs(),
+        };
+        let own = self.of_leaves[event.leaf].iter();
+        let (carrier, surface) = own.min_by(|a, b| off(&a.0).total_cmp(&off(&b.0)))?;
+        Some(SurfaceCrossing {
+            at: event.at,
+            surface: *surface,
+            outwards: carrier.kind != Kind::Plane && !event.enters,
+        })
+    }
+}

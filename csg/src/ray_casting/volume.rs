@@ -1,0 +1,174 @@
+//! The volume by rays: the mean length of material on parallel lines.
+
+use super::shape::clip;
+use super::{Ray, RayOracle};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::geometry::frame::Frame;
+use std::f64::consts::{PI, SQRT_2};
+
+/// A measured value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+impl Estimate {
+    /// How many standard errors a value is away; none where it is as near as `rounding`.
+    pub fn deviation(&self, value: f64, rounding: f64) -> f64 {
+        let off = (value - self.value).abs();
+        if off <= rounding {
+            return 0.0;
+        }
+        off / self.standard_error
+    }
+}
+
+/// How many independent grids the rays are dealt to: their scatter gives the error.
+const GRIDS: usize = 32;
+
+/// The plastic number's powers, by which Roberts's sequence steps through the unit square.
+const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+
+impl RayOracle {
+    /// The volume by about `rays` rays along a direction in general position: low-discrepancy
+    /// grids at random places, which `seed` chooses.
+    pub fn volume(&self, rays: usize, seed: u64) -> Estimate {
+        let length = |_: &Ray, [lo, hi]: [f64; 2]| hi - lo;
+        self.measured(&self.bounds, length, rays, seed)
+    }
+
+    /// The same, with as many rays for what lies in a box as for what does not: a small part of a
+    /// large tree is missed otherwise.
+    pub fn volume_about(&self, part: &Aabb, rays: usize, seed: u64) -> Estimate {
+        let within = |ray: &Ray, span: [f64; 2]| {
+            let mut inside = span;
+            let met = (0..3).all(|i| {
+                let (from, along) = (ray.origin[i], ray.direction[i]);
+                clip(&mut inside, part.min[i] - from, -along)
+                    && clip(&mut inside, from - part.max[i], along)
+            });
+            if met { inside[1] - inside[0] } else { 0.0 }
+        };
+        let beyond = |ray: &Ray, span: [f64; 2]| span[1] - span[0] - within(ray, span);
+        let near = self.measured(part, within, rays, seed);
+        let far = self.measured(&self.bounds, beyond, rays, seed);
+        Estimate {
+            value: near.value + far.value,
+            standard_error: near.standard_error.hypot(far.standard_error),
+        }
+    }
+
+    /// The integral of a length along rays through a box, of each span of material.
+    fn measured(
+        &self,
+        bounds: &Aabb,
+        length: impl Fn(&Ray, [f64; 2]) -> f64,
+        rays: usize,
+        seed: u64,
+    ) -> Estimate {
+        if bounds.min[0] > bounds.max[0] {
+            return Estimate::default();
+        }
+        let window = Window::around(bounds);
+        let mut scratch = self.scratch();
+        let each = (rays / GRIDS).max(1);
+        let mut random = SplitMix(seed);
+        let mut means = [0.0; GRIDS];
+        for mean in &mut means {
+            let shift = [random.next(), random.next()];
+            let mut sum = 0.0;
+            for k in 0..each {
+                let at = |i: usize| (shift[i] + k as f64 * STEPS[i]).fract();
+                let ray = window.ray(at(0), at(1));
+                self.cross(&ray, &mut scratch, |span| sum += length(&ray, span));
+            }
+            *mean = sum / each as f64 * window.area();
+        }
+        let n = GRIDS as f64;
+        let value = means.iter().sum::<f64>() / n;
+        let scatter: f64 = means.iter().map(|m| (m - value).powi(2)).sum();
+        Estimate {
+            value,
+            standard_error: (scatter / (n * (n - 1.0))).sqrt(),
+        }
+    }
+}
+
+impl RayOracle {
+    /// The box around all places where about `rays` parallel rays enter or leave material: no
+    /// larger than the part's own. Spans up to `least` long are none: where faces of primitives
+    /// coincide, they are rounding.
+    pub fn extent(&self, rays: usize, least: f64) -> Aabb {
+        let mut extent = Aabb::EMPTY;
+        if self.bounds.min[0] > self.bounds.max[0] {
+            return extent;
+        }
+        let window = Window::around(&self.bounds);
+        let mut scratch = self.scratch();
+        for k in 0..rays {
+            let [u, v] = STEPS.map(|step| ((k as f64 + 0.5) * step).fract());
+            let ray = window.ray(u, v);
+            self.cross(&ray, &mut scratch, |span| {
+                for at in span.into_iter().filter(|_| span[1] - span[0] > least) {
+                    extent = extent.hull(&Aabb::of(&(ray.origin + ray.direction * at)));
+                }
+            });
+        }
+        extent
+    }
+}
+
+/// A rectangle across the direction of the rays that a whole box is behind.
+struct Window {
+    frame: Frame,
+    min: [f64; 2],
+    size: [f64; 2],
+}
+
+impl Window {
+    fn around(bounds: &Aabb) -> Self {
+        // No turn of a whole number of degrees brings an axis to this direction.
+        let direction = Vector3::new(1.0, SQRT_2, PI).normalize();
+        let frame = Frame::about(bounds.centre(), direction);
+        let half = Vector3::from_fn(|i, _| 0.5 * (bounds.max[i] - bounds.min[i]));
+        let reach = [frame.x, frame.y].map(|axis| axis.abs().dot(&half));
+        Self {
+            frame,
+            min: reach.map(|r| -r),
+            size: reach.map(|r| 2.0 * r),
+        }
+    }
+
+    fn area(&self) -> f64 {
+        self.size[0] * self.size[1]
+    }
+
+    fn ray(&self, u: f64, v: f64) -> Ray {
+        let origin: Point3<f64> = self.frame.point(
+            self.min[0] + u * self.size[0],
+            self.min[1] + v * self.size[1],
+            0.0,
+        );
+        Ray {
+            origin,
+            direction: self.frame.z,
+        }
+    }
+}
+
+/// Steele, Lea and Flood's generator (2014).
+struct SplitMix(u64);
+
+impl SplitMix {
+    /// A number in [0, 1).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}

@@ -1,0 +1,292 @@
+//! The rigid placement that a matrix of six-digit decimals stands for.
+//!
+//! Notation: `A` the matrix as written, `S` the mirror `y -> -y`, `R` an exact rotation with
+//! `A = R` or `A = R S` up to the rounding of the file.
+
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
+use premio_kernel::motion::RationalMatrix;
+use premio_kernel::number::rational::{Rational, from_f64, to_f64};
+
+use crate::transform::{Transform, TransformStep};
+
+/// How far, entry by entry, a matrix may be from the rotation it stands for.
+// Programs write six digits: 5e-7 an entry, and a few times that after products of matrices.
+pub(super) const MAX_RESIDUAL: f64 = 2e-5;
+
+/// An entry this near to a whole number comes from a sine or cosine of a quarter turn.
+const NEAR_WHOLE: f64 = 1e-12;
+
+/// The rounding of a turn's entry, where numbers are written with six digits or fewer.
+const SIX_DIGITS: f64 = 1.1e-6;
+
+/// The rounding of a turn's entry, where it was reckoned and written with all digits of a double.
+const ALL_DIGITS: f64 = 1e-15;
+
+/// `p -> R S p + t` or `p -> R p + t`, and how far its matrix is from the one written.
+#[derive(Debug, Clone)]
+pub(super) struct Placement {
+    pub(super) moves: Transform,
+    pub(super) mirrored: bool,
+    pub(super) residual: f64,
+    /// Whether entries are written with more than six digits.
+    full: bool,
+}
+
+/// What is less than this changes a matrix of doubles by their rounding only.
+pub(super) const DOUBLES: f64 = 1e-12;
+
+impl Placement {
+    /// The placement that moves nothing.
+    pub(super) fn identity() -> Self {
+        Self {
+            moves: Transform::new(),
+            mirrored: false,
+            residual: 0.0,
+            full: false,
+        }
+    }
+
+    /// Whether the matrix stands for another than the one that is written: a file of six digits has
+    /// lost those of its offsets, too.
+    pub(super) fn replaces(&self) -> bool {
+        match self.full {
+            true => self.residual > DOUBLES,
+            false => self.residual > 0.0,
+        }
+    }
+
+    /// This placement first, then the other.
+    pub(super) fn then(&self, outer: &Self) -> Self {
+        let inner = if outer.mirrored {
+            self.moves.mirrored_y()
+        } else {
+            self.moves.clone()
+        };
+        Self {
+            moves: inner.then(outer.moves.clone()),
+            mirrored: self.mirrored != outer.mirrored,
+            residual: self.residual.max(outer.residual),
+            full: self.full && outer.full,
+        }
+    }
+}
+
+/// Why a matrix is no rigid placement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum NotRigid {
+    /// The same factor in all directions.
+    Scaled(f64),
+    /// Lengths or angles change.
+    Distorted,
+}
+
+/// The exact rigid placement nearest to a matrix and a translation.
+pub(super) fn placement(
+    matrix: &RationalMatrix,
+    offset: [Rational; 3],
+) -> Result<Placement, NotRigid> {
+    let doubles = Matrix3::from_fn(|i, j| to_f64(&matrix[i][j]));
+    check_rigid(&doubles)?;
+    let digits = matrix.iter().flatten().map(significant_digits).max();
+    let digits = digits.unwrap_or(0);
+    let mirrored = doubles.determinant() < 0.0;
+    let sign = |j: usize| if mirrored && j == 1 { -1.0 } else { 1.0 };
+    let proper = Matrix3::from_fn(|i, j| sign(j) * doubles[(i, j)]);
+    let rotation = nearest_rotation(&proper, rounding(digits)).ok_or(NotRigid::Distorted)?;
+    let mut exact = rotation.motion().rotation_matrix();
+    if mirrored {
+        for row in &mut exact {
+            row[1] = -std::mem::take(&mut row[1]);
+        }
+    }
+    let residual = distance(&exact, matrix);
+    if residual > MAX_RESIDUAL {
+        return Err(NotRigid::Distorted);
+    }
+    Ok(Placement {
+        moves: rotation.then(Transform::shift(offset)),
+        mirrored,
+        residual,
+        full: digits > FEW,
+    })
+}
+
+/// The largest difference between two entries.
+fn distance(a: &RationalMatrix, b: &RationalMatrix) -> f64 {
+    let entries = a.iter().flatten().zip(b.iter().flatten());
+    entries
+        .map(|(x, y)| to_f64(&(x - y)).abs())
+        .fold(0.0, f64::max)
+}
+
+fn check_rigid(matrix: &Matrix3<f64>) -> Result<(), NotRigid> {
+    // A product of two columns doubles the error of an entry, and adds three of them.
+    let gram = matrix.transpose() * matrix;
+    let far = |target: f64| (gram - Matrix3::identity() * target).amax();
+    if far(1.0) <= 6.0 * MAX_RESIDUAL {
+        return Ok(());
+    }
+    let square = gram.trace() / 3.0;
+    if square > 0.0 && far(square) <= 6.0 * MAX_RESIDUAL * square {
+        return Err(NotRigid::Scaled(square.sqrt()));
+    }
+    Err(NotRigid::Distorted)
+}
+
+/// The digits of most files.
+const FEW: i32 = 6;
+
+/// How far an entry may be from a sine or cosine, by the digits that the entries are written with.
+fn rounding(digits: i32) -> f64 {
+    let beyond = digits.max(FEW) - FEW;
+    ALL_DIGITS.max(SIX_DIGITS * 0.1f64.powi(beyond))
+}
+
+/// The number of digits of a decimal from the first that is not zero, to seventeen at the most.
+fn significant_digits(value: &Rational) -> i32 {
+    const MOST: i32 = 17;
+    let ten = Rational::from(10);
+    let mut magnitude = if *value < Rational::ZERO {
+        -value
+    } else {
+        value.clone()
+    };
+    // Entries are at most one, or nearly so; what is much smaller is noise.
+    let mut digits = 0;
+    while digits < MOST && !magnitude.is_int() {
+        magnitude *= &ten;
+        if magnitude >= Rational::ONE || digits > 0 {
+            digits += 1;
+        } else if magnitude.is_zero() {
+            break;
+        }
+    }
+    digits
+}
+
+fn nearest_rotation(matrix: &Matrix3<f64>, rounding: f64) -> Option<Transform> {
+    quarter_turns(matrix).or_else(|| {
+        let step = whole_angle(matrix, rounding).or_else(|| general(matrix))?;
+        let mut moves = Transform::new();
+        moves.push(step).ok()?;
+        Some(moves)
+    })
+}
+
+/// A matrix of zeros and ones, which is exact.
+fn quarter_turns(matrix: &Matrix3<f64>) -> Option<Transform> {
+    let whole = matrix.map(f64::round);
+    if (matrix - whole).amax() > NEAR_WHOLE {
+        return None;
+    }
+    let entry = |i: usize, j: usize| from_f64(whole[(i, j)]).unwrap_or(Rational::ZERO);
+    Transform::quarter_turns(&[0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))))
+}
+
+/// A turn about a coordinate axis by a multiple of a quarter degree, if that explains all digits.
+fn whole_angle(matrix: &Matrix3<f64>, rounding: f64) -> Option<TransformStep> {
+    const STEPS: f64 = 4.0;
+    let axis = (0..3).find(|&k| (matrix[(k, k)] - 1.0).abs() <= NEAR_WHOLE)?;
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let degrees = matrix[(j, i)].atan2(matrix[(i, i)]).to_degrees();
+    let degrees = from_f64((degrees * STEPS).round() / STEPS)?;
+    let step = TransformStep::about(axis, degrees);
+    let motion = step.motion().ok()?;
+    let explained = (motion.rotation_f64() - matrix).amax() <= rounding;
+    explained.then_some(step)
+}
+
+/// The rotation of the quaternion that is nearest to a matrix.
+fn general(matrix: &Matrix3<f64>) -> Option<TransformStep> {
+    let rotation = Rotation3::from_matrix_unchecked(orthogonal_factor(matrix)?);
+    let quaternion: Quaternion<f64> = UnitQuaternion::from_rotation_matrix(&rotation).into_inner();
+    let [x, y, z, w] = quaternion.coords.into();
+    let [w, x, y, z] = [w, x, y, z].map(from_f64);
+    Some(TransformStep::Quaternion([w?, x?, y?, z?]))
+}
+
+/// The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986).
+/// A matrix this close to orthogonal needs two steps; zeros stay zeros.
+fn orthogonal_factor(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let mut factor = *matrix;
+    for _ in 0..4 {
+        factor = (factor + factor.try_inverse()?.transpose()) / 2.0;
+    }
+    Some(factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use premio_kernel::motion::Motion;
+    use premio_kernel::number::rational::from_decimal;
+    use proptest::prelude::*;
+
+    fn origin() -> [Rational; 3] {
+        Motion::identity().offset().clone()
+    }
+
+    fn written(matrix: &Matrix3<f64>) -> RationalMatrix {
+        // Six significant digits.
+        let entry = |x: f64| from_decimal(&format!("{x:.5e}")).unwrap();
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(matrix[(i, j)])))
+    }
+
+    #[test]
+    fn whole_angles_are_recognised() {
+        let turn = Motion::rotation([0, 1, 0].map(Rational::from), &30.into()).unwrap();
+        let found = placement(&written(&turn.rotation_f64()), origin()).unwrap();
+        assert_eq!(found.moves.motion(), &turn);
+        assert!(!found.mirrored && found.residual > 0.0);
+    }
+
+    #[test]
+    fn quarter_turns_leave_no_residual() {
+        let turn = Motion::rotation([0, 0, 1].map(Rational::from), &(-90).into()).unwrap();
+        let found = placement(&turn.rotation_matrix(), origin()).unwrap();
+        assert_eq!((found.moves.motion(), found.residual), (&turn, 0.0));
+    }
+
+    #[test]
+    fn what_is_not_rigid_is_refused() {
+        let matrix = |m: [[i32; 3]; 3]| m.map(|row| row.map(Rational::from));
+        let refused = |m| placement(&matrix(m), origin()).map(|_| ()).unwrap_err();
+        assert_eq!(
+            refused([[2, 0, 0], [0, 2, 0], [0, 0, 2]]),
+            NotRigid::Scaled(2.0)
+        );
+        assert_eq!(
+            refused([[1, 0, 0], [0, 2, 0], [0, 0, 1]]),
+            NotRigid::Distorted
+        );
+        assert_eq!(
+            refused([[0, 0, 0], [0, 0, 0], [0, 0, 0]]),
+            NotRigid::Distorted
+        );
+        assert_eq!(
+            refused([[1, 1, 0], [0, 1, 0], [0, 0, 1]]),
+            NotRigid::Distorted
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn any_rotation_is_found(
+            axis in prop::array::uniform3(-9i32..=9),
+            degrees in -180.0f64..180.0,
+            mirror in any::<bool>(),
+        ) {
+            let axis = if axis == [0; 3] { [1, 0, 0] } else { axis }.map(Rational::from);
+            let turn = Motion::rotation(axis, &from_f64(degrees).unwrap()).unwrap();
+            let mut matrix = turn.rotation_f64();
+            if mirror {
+                matrix.column_mut(1).neg_mut();
+            }
+            let found = placement(&written(&matrix), origin()).unwrap();
+            prop_assert_eq!(found.mirrored, mirror);
+            prop_assert!(found.residual < 3e-6);
+            let off = (found.moves.motion().rotation_f64() - turn.rotation_f64()).amax();
+            prop_assert!(off < 3e-6);
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! A boundary as other kernels keep it: every edge has two faces and ends in vertices, and no face
+//! closes around its surface.
+//!
+//! An edge of four faces or more is taken apart into pairs of faces that enclose material between
+//! them, a vertex into its fans (`pairs`); so the solids that touch there are as many as before. A
+//! face that closes around its surface is cut along a ruling, a meridian or a circle of a torus, its
+//! seam, which it has on both sides (`seams`, `linked`). What is smaller than the points of other
+//! kernels are apart is closed (`short`).
+
+mod gaps;
+mod loops;
+mod pairs;
+mod seams;
+pub(crate) mod short;
+
+use crate::parameters::ParameterWindow;
+use nalgebra::Point3;
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};
+use premio_kernel::geometry::curve::Curve;
+use std::borrow::Cow;
+
+/// An edge between two sides of faces.
+#[derive(Clone, Debug)]
+pub struct SeamedEdge<'a> {
+    /// The edge of the boundary that it is, or is a piece of; none for a seam.
+    pub source: Option<EdgeId>,
+    /// Its curve.
+    pub curve: Cow<'a, Curve>,
+    /// The range of the curve's parameter, increasing.
+    pub range: [f64; 2],
+    /// The vertices at the start and at the end.
+    pub ends: [usize; 2],
+}
+
+/// A face that does not close around its surface.
+#[derive(Clone, Debug)]
+pub struct SeamedFace {
+    /// The face of the boundary that it is, or is a piece of.
+    pub source: FaceId,
+    /// The surface, turned so that angles are counted from the seam, with the window of the face.
+    pub window: ParameterWindow,
+    /// Whether the outward normal is the surface's own.
+    pub sense: Sense,
+    /// The loops, the outer one first: edges with the sense in which they are run, the face to the
+    /// left as seen from outside.
+    pub loops: Vec<Vec<(usize, Sense)>>,
+}
+
+/// A boundary with seams.
+#[derive(Clone, Debug, Default)]
+pub struct TwoManifold<'a> {
+    /// The vertices.
+    pub points: Vec<Point3<f64>>,
+    /// The edges.
+    pub edges: Vec<SeamedEdge<'a>>,
+    /// The faces.
+    pub faces: Vec<SeamedFace>,
+    /// The faces of each shell of each solid, the outer shell first.
+    pub solids: Vec<Vec<Vec<usize>>>,
+}
+
+/// Why a boundary cannot be given seams.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SeamError {
+    /// Material ends in a wall of no thickness: a face is cracked along an edge, and no loop of other
+    /// kernels runs twice through one place.
+    #[error(
+        "a wall without thickness at ({:.9}, {:.9}, {:.9}): no other kernel has such a face",
+        place[0],
+        place[1],
+        place[2]
+    )]
+    Crack {
+        /// A point of the edge.
+        place: [f64; 3],
+    },
+    /// Every seam that was tried runs along an edge, or through a vertex.
+    #[error(
+        "no seam could be laid through face {} at ({:.9}, {:.9}, {:.9})",
+        face.0, place[0], place[1], place[2]
+    )]
+    Blocked {
+        /// The face.
+        face: FaceId,
+        /// A point of its boundary.
+        place: [f64; 3],
+    },
+    /// The pieces of a face do not tell which loop lies within which.
+    #[error("the loops of face {} do not tell which encloses which", face.0)]
+    Loops {
+        /// The face.
+        face: FaceId,
+    },
+}
+
+impl<'a> TwoManifold<'a> {
+    /// The boundary with seams; `band` is the part's resolution.
+    pub fn of(brep: &'a Brep, band: f64) -> Result<Self, SeamError> {
+        let pairs = pairs::Pairs::of(brep);
+        if let Some(edge) = pairs.crack(brep) {
+            let [lo, hi] = brep.range(edge);
+            let place = brep.curve(edge).point(0.5 * (lo + hi)).into();
+            return Err(SeamError::Crack { place });
+        }
+        let cuts: Result<Vec<seams::Cut>, SeamError> = brep
+            .topology
+            .face_ids()
+            .map(|face| seams::Cut::of(brep, face, &pairs.rings[face.index()], band))
+            .collect();
+        loops::seamed(brep, &pairs, &cuts?)
+    }
+}

@@ -1,0 +1,192 @@
+//! Where a face leaves room for a seam.
+
+use crate::parameters::ParameterWindow;
+use nalgebra::{Point2, Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::topology::EdgeId;
+use premio_kernel::geometry::surface::{Sphere, turn};
+use premio_kernel::geometry::torus_curve::wrap;
+use std::f64::consts::TAU;
+
+/// Points along the edges of a face, edge by edge.
+#[derive(Debug)]
+pub(super) struct Samples {
+    edges: Vec<Sampled>,
+    /// Where edges touch.
+    touches: Vec<Point3<f64>>,
+}
+
+#[derive(Debug)]
+struct Sampled {
+    points: Vec<Point3<f64>>,
+    /// Whether the last point is the first without being a vertex.
+    closed: bool,
+}
+
+/// Into how many steps a smooth piece of a curve is divided.
+const STEPS: u32 = 16;
+
+/// How far inside an edge it is asked beside its ends, as a part of it: at an apex there is no angle.
+const INNER: f64 = 1.0 / (1 << 16) as f64;
+
+/// So many seams are tried.
+const TRIED: usize = 24;
+
+impl Samples {
+    pub fn of(brep: &Brep, edges: impl Iterator<Item = EdgeId>) -> Self {
+        let sampled = |edge: EdgeId| {
+            let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
+            let breaks = curve.breaks(lo, hi);
+            let steps = breaks.windows(2).flat_map(|pair| {
+                let (a, b) = (pair[0], pair[1]);
+                (0..STEPS).map(move |k| a + (b - a) * f64::from(k) / f64::from(STEPS))
+            });
+            let inner = INNER * (hi - lo);
+            let mut at = vec![lo, lo + inner];
+            at.extend(steps.skip(1));
+            at.extend([hi - inner, hi]);
+            Sampled {
+                points: at.into_iter().map(|t| curve.point(t)).collect(),
+                closed: brep.topology.edge(edge).ends.is_none(),
+            }
+        };
+        let edges: Vec<EdgeId> = edges.collect();
+        let all = brep.topology.touches.iter().zip(&brep.geometry.touches);
+        let touches = all.filter(|(touch, _)| touch.edges.iter().any(|e| edges.contains(e)));
+        Self {
+            touches: touches.map(|(_, p)| *p).collect(),
+            edges: edges.into_iter().map(sampled).collect(),
+        }
+    }
+
+    pub fn points(&self) -> impl Iterator<Item = &Point3<f64>> {
+        self.edges.iter().flat_map(|e| &e.points)
+    }
+
+    /// By how much the parameter `i`, an angle, turns along each edge; not a number along one through a
+    /// pole.
+    pub fn turns(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
+        let turn = |edge: &Sampled| {
+            let angles: Vec<f64> = edge.points.iter().map(|p| window.of(p)[i]).collect();
+            angles.windows(2).map(|w| wrap(w[1] - w[0])).sum()
+        };
+        self.edges.iter().map(turn).collect()
+    }
+
+    /// The values of the parameter `i`, which is an angle, at which edges end, turn back or touch.
+    pub fn critical(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
+        let touches = self.touches.iter().map(|p| window.of(p)[i]);
+        let mut critical: Vec<f64> = touches.filter(|x| x.is_finite()).collect();
+        for edge in &self.edges {
+            edge.add_turns(window, i, &mut critical);
+        }
+        for angle in &mut critical {
+            *angle = turn(*angle);
+        }
+        critical.sort_by(f64::total_cmp);
+        critical.dedup_by(|b, a| *b - *a <= SAME);
+        critical
+    }
+
+    /// The places at which a seam is tried, of the parameter `i`, which is an angle: at zero if there
+    /// is room, then amid the gaps between where edges end or turn back, the widest first.
+    pub fn candidates(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
+        let mut critical = self.critical(window, i);
+        let Some(&first) = critical.first() else {
+            return vec![0.0];
+        };
+        critical.push(first + TAU);
+        let mut gaps: Vec<[f64; 2]> = critical.windows(2).map(|w| [w[0], w[1]]).collect();
+        gaps.sort_by(|a, b| (b[1] - b[0]).total_cmp(&(a[1] - a[0])));
+        let room = ROOM * (gaps[0][1] - gaps[0][0]);
+        let has_room = critical.iter().all(|c| {
+            let away = turn(*c);
+            away.min(TAU - away) > room
+        });
+        let zero = has_room.then_some(0.0);
+        let middles = gaps.iter().map(|[a, b]| turn(0.5 * (a + b)));
+        zero.into_iter().chain(middles.take(TRIED)).collect()
+    }
+}
+
+/// An angle that changes by more from one sample to the next leaps.
+const LEAP: f64 = 1.0;
+
+/// Angles that differ by no more are the same.
+pub(super) const SAME: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// There is room at an angle if nothing is nearer than this part of the widest gap.
+const ROOM: f64 = 1.0 / 8.0;
+
+impl Sampled {
+    /// The angles at the ends of the edge and where it turns back.
+    fn add_turns(&self, window: &ParameterWindow, i: usize, found: &mut Vec<f64>) {
+        let parameters = self.points.iter().map(|p| window.of(p));
+        let known: Vec<Point2<f64>> = parameters.filter(|p| p[i].is_finite()).collect();
+        let (Some(first), Some(last)) = (known.first(), known.last()) else {
+            return;
+        };
+        let mut steps: Vec<(f64, f64)> = known
+            .windows(2)
+            .map(|w| (w[0][i], wrap(w[1][i] - w[0][i])))
+            .collect();
+        match self.closed {
+            false => found.extend([first[i], last[i]]),
+            true => steps.extend(steps.first().copied()),
+        }
+        let turns = steps.windows(2).filter(|s| s[0].1 * s[1].1 <= 0.0);
+        found.extend(turns.map(|s| s[1].0));
+        // Through an apex the angle leaps.
+        let leaps = steps.iter().filter(|s| s.1.abs() > LEAP);
+        found.extend(leaps.flat_map(|s| [s.0, s.0 + s.1]));
+    }
+}
+
+/// Axes of a sphere's parameters for a face, the best first: those that keep well away from the edges, and
+/// of them one to which most edges are parallel circles; its own, if no other is better.
+pub(super) fn axes(
+    sphere: &Sphere,
+    samples: &Samples,
+    circles: &[Vector3<f64>],
+) -> Vec<Vector3<f64>> {
+    let arm = |p: &Point3<f64>| (p - sphere.frame.origin).normalize();
+    let arms: Vec<Vector3<f64>> = samples.points().map(arm).collect();
+    let away = |z: &Vector3<f64>| {
+        let near = arms.iter().map(|a| a.dot(z).abs());
+        1.0 - near.fold(0.0, f64::max)
+    };
+    let parallel = |z: &Vector3<f64>| {
+        let along = circles.iter().filter(|c| c.dot(z).abs() > 1.0 - PARALLEL);
+        along.count()
+    };
+    let f = &sphere.frame;
+    let known = std::iter::once(&f.z).chain(circles);
+    let clear = known.filter(|z| away(z) > CLEAR);
+    let best = clear.reduce(|best, z| {
+        if parallel(z) > parallel(best) {
+            z
+        } else {
+            best
+        }
+    });
+    let spread = (0..SPREAD).map(|k| {
+        let z = (f64::from(k) + 0.5) / f64::from(SPREAD);
+        let (sin, cos) = (GOLDEN * f64::from(k)).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vector3::new(r * cos, r * sin, z)
+    });
+    // Later ones first, which are taken where two are as far away.
+    let mut all: Vec<Vector3<f64>> = [f.x, f.y].into_iter().chain(spread).collect();
+    all.reverse();
+    all.sort_by(|a, b| away(b).total_cmp(&away(a)));
+    best.copied().into_iter().chain(all).collect()
+}
+
+/// Directions are the same if their cosine is less by this than one.
+const PARALLEL: f64 = 1.0 / (1u64 << 40) as f64;
+/// A pole is well away from the edges if its cosine to them is less by this than one.
+const CLEAR: f64 = 1.0 / 512.0;
+/// How many axes are tried beside a sphere's own.
+const SPREAD: u32 = 64;
+/// The golden angle: its multiples spread over the circle.
+const GOLDEN: f64 = 2.399_963_229_728_653;

@@ -1,0 +1,599 @@
+//! The seams of a face.
+//!
+//! A seam is a ruling of a cylinder or a cone, a meridian of a sphere, a circle about the tube of a
+//! torus or a parallel of it. Where it lies in the face is told by its crossings with the edges, as a
+//! walk of `brep::walk` tells them; of the places that are tried the one is taken that cuts least. Two
+//! seams of a torus cross in a vertex of their own.
+
+use super::SeamError;
+use super::gaps::{Samples, axes};
+use crate::parameters::{ParameterWindow, turned, with_axis};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::locate::{FaceLocator, PointLocation};
+use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, SurfacePath};
+use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense};
+use premio_kernel::geometry::curve::{Circle, Curve, Line};
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::Surface;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// How a face is cut.
+#[derive(Debug)]
+pub(super) struct Cut {
+    /// The surface and where its angles start: at the seams.
+    pub window: ParameterWindow,
+    /// The seams, pieces of which lie in the face.
+    pub seams: Vec<Seam>,
+}
+
+/// A piece of a seam that lies in the face.
+#[derive(Clone, Debug)]
+pub(super) struct Seam {
+    pub curve: Curve,
+    /// The parameter of the curve at both ends, increasing.
+    pub range: [f64; 2],
+    /// Where it starts and ends.
+    pub ends: [End; 2],
+    /// The parameter of the surface that is constant along it.
+    pub across: usize,
+}
+
+/// An end of a piece of a seam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum End {
+    /// It meets an edge.
+    Edge {
+        /// The side of the edge.
+        coedge: CoedgeId,
+        /// The parameter on the edge's curve.
+        t: f64,
+    },
+    /// A pole or an apex inside the face: the seam turns round there.
+    Pole(Point3<f64>),
+    /// Where the two seams of a torus cross inside the face.
+    Crossing,
+}
+
+/// A line of constant angle.
+struct Track {
+    walk: SurfacePath,
+    curve: Curve,
+    /// The curve's parameter at the start, and by the length of the walk.
+    start: f64,
+    by: f64,
+    course: Course,
+}
+
+/// What a track is at its ends.
+enum Course {
+    /// It closes.
+    Round,
+    /// It starts at a point of the surface, at which the face's boundary is not, and ends at another
+    /// one or beyond the face.
+    Open {
+        first: Option<f64>,
+        last: Option<f64>,
+    },
+}
+
+struct Faced<'a> {
+    brep: &'a Brep,
+    face: FaceId,
+    band: f64,
+    coedges: Vec<CoedgeId>,
+    /// How many coedges each loop has.
+    rings: Vec<usize>,
+    arcs: Vec<DirectedArc<'a>>,
+    samples: Samples,
+}
+
+impl Cut {
+    /// The cut of a face, of which `rings` are the loops without slits.
+    pub fn of(
+        brep: &Brep,
+        face: FaceId,
+        rings: &[Vec<CoedgeId>],
+        band: f64,
+    ) -> Result<Self, SeamError> {
+        let coedges: Vec<CoedgeId> = rings.iter().flatten().copied().collect();
+        let edges = coedges.iter().map(|c| brep.topology.coedge(*c).edge);
+        let faced = Faced {
+            brep,
+            face,
+            band,
+            arcs: coedges.iter().map(|c| DirectedArc::of(brep, *c)).collect(),
+            samples: Samples::of(brep, edges),
+            rings: rings.iter().map(Vec::len).collect(),
+            coedges,
+        };
+        faced.cut().ok_or_else(|| {
+            let place = faced.samples.points().next().copied();
+            let place = place.unwrap_or(brep.surface(face).frame().origin).into();
+            SeamError::Blocked { face, place }
+        })
+    }
+}
+
+impl Faced<'_> {
+    fn cut(&self) -> Option<Cut> {
+        let Surface::Sphere(sphere) = self.brep.surface(self.face) else {
+            return self.cut_of(*self.brep.surface(self.face));
+        };
+        let axes = axes(sphere, &self.samples, &self.circles());
+        let of_axis = |z: Vector3<f64>| self.cut_of(with_axis(sphere, z));
+        let mut cuts = axes.into_iter().take(AXES).map(of_axis);
+        let first = cuts.next()?;
+        // Where seams run from both poles to one loop, readers take them for none.
+        match first.as_ref().is_some_and(|cut| cut.seams.len() < 2) {
+            true => first,
+            false => least(std::iter::once(first).chain(cuts)),
+        }
+    }
+
+    /// The cut of a face whose parameters are those of a surface.
+    fn cut_of(&self, surface: Surface) -> Option<Cut> {
+        let starts = [0.0; 2];
+        let origin = surface.frame().origin;
+        let away = self.samples.points().map(|p| (p - origin).norm());
+        let whole = ParameterWindow {
+            surface,
+            starts,
+            reach: away.fold(0.0, f64::max),
+        };
+        if let Surface::Plane(_) = surface {
+            let seams = Vec::new();
+            return Some(Cut {
+                window: whole,
+                seams,
+            });
+        }
+        let candidates = self.samples.candidates(&whole, 0);
+        let around = |u: f64| {
+            let surface = turned(&surface, u);
+            let seams = self.seams(&surface, 0, 0.0)?;
+            let window = ParameterWindow { surface, ..whole };
+            Some(Cut { window, seams })
+        };
+        let found = candidates.into_iter().map(around);
+        let mut cut = match self.winds(&whole, 0) {
+            true => least(found.filter(cuts_something))?,
+            false => self.unless_parted(&whole, 0, least(found))?,
+        };
+        if let Surface::Torus(_) = surface {
+            let along = |v: f64| Some((v, self.seams(&cut.window.surface, 1, v)?));
+            let candidates = self.samples.candidates(&cut.window, 1);
+            let found = candidates.into_iter().map(|v| {
+                let (v, seams) = along(v)?;
+                let window = ParameterWindow {
+                    starts: [0.0, v],
+                    ..cut.window
+                };
+                Some(Cut { window, seams })
+            });
+            let other = self.unless_parted(&cut.window, 1, least(found))?;
+            cut.window = other.window;
+            cut.seams.extend(other.seams);
+            cut.part_at_crossing();
+        }
+        Some(cut)
+    }
+
+    /// Whether a loop goes around an angle of the surface, so that it closes only along a seam. A loop
+    /// through a pole, where there is no angle, does not tell.
+    fn winds(&self, window: &ParameterWindow, i: usize) -> bool {
+        // A torus' face that touches itself is closed by that, and goes around all the same.
+        if let Surface::Torus(_) = window.surface {
+            return false;
+        }
+        let mut senses = self
+            .coedges
+            .iter()
+            .map(|c| self.brep.topology.coedge(*c).sense);
+        let mut turns = self.samples.turns(window, i).into_iter();
+        self.rings.iter().any(|&count| {
+            let ring = turns.by_ref().take(count).zip(senses.by_ref());
+            let sum: f64 = ring.map(|(turn, sense)| turn * sense.sign::<f64>()).sum();
+            sum.abs() > 0.5 * TAU
+        })
+    }
+
+    /// A cut across an angle, or none where the face touches itself instead, so that it does not
+    /// close.
+    fn unless_parted(
+        &self,
+        window: &ParameterWindow,
+        across: usize,
+        cut: Option<Cut>,
+    ) -> Option<Cut> {
+        if cut.as_ref().is_some_and(|cut| cut.seams.is_empty()) {
+            return cut;
+        }
+        let values = self.samples.critical(window, across);
+        let mut windows = values.into_iter().map(|at| match across {
+            0 => ParameterWindow {
+                surface: turned(&window.surface, at),
+                ..*window
+            },
+            _ => ParameterWindow {
+                starts: [0.0, at],
+                ..*window
+            },
+        });
+        let parted = windows.find(|w| {
+            let tracks = self.tracks(&w.surface, across, w.starts[across]);
+            let first = tracks.first();
+            first.is_some_and(|t| self.is_parted(&w.surface, t))
+        });
+        match parted {
+            Some(window) => Some(Cut {
+                window,
+                seams: Vec::new(),
+            }),
+            None => cut,
+        }
+    }
+
+    /// Whether a track runs along edges, or passes vertices, wherever it is in the face.
+    fn is_parted(&self, surface: &Surface, track: &Track) -> bool {
+        let side = self.brep.sense(self.face);
+        let crossings = track.walk.crossings(surface, side, &self.arcs, self.band);
+        // Next to a vertex, and where edges touch, a passage says nothing.
+        let is_plain = |at: f64| {
+            let mut unclear = crossings
+                .iter()
+                .filter(|c| c.passage == CrossingSense::Unclear);
+            unclear.all(|c| (c.at - at).abs() > 2.0 * self.band)
+        };
+        if crossings.iter().any(|c| is_plain(c.at)) {
+            return false;
+        }
+        let parameter = |p: &Point3<f64>| track.curve.parameter(p);
+        let near = |p: &Point3<f64>| {
+            let on = track.curve.point(parameter(p));
+            (on - p).norm() <= self.band
+        };
+        let passed = crossings.iter().map(|c| match track.course {
+            Course::Round => (track.start + c.at * track.by).rem_euclid(TAU),
+            Course::Open { .. } => track.start + c.at * track.by,
+        });
+        let mut covered: Vec<[f64; 2]> = passed.map(|t| [t, t]).collect();
+        for arc in &self.arcs {
+            let [lo, hi] = arc.range;
+            let at = |part: f64| arc.curve.point(lo + part * (hi - lo));
+            if ![0.13, 0.37, 0.5, 0.81].iter().all(|part| near(&at(*part))) {
+                continue;
+            }
+            if (at(0.0) - at(1.0)).norm() <= self.band {
+                // All of a circle.
+                return true;
+            }
+            // The end that comes first, as the middle tells.
+            let [a, m, b] = [0.0, 0.5, 1.0].map(|part| parameter(&at(part)));
+            let (a, b) = match track.course {
+                Course::Open { .. } => (a.min(b), a.max(b)),
+                Course::Round if (m - a).rem_euclid(TAU) < (b - a).rem_euclid(TAU) => {
+                    (a, a + (b - a).rem_euclid(TAU))
+                }
+                Course::Round => (b, b + (a - b).rem_euclid(TAU)),
+            };
+            covered.push([a, b]);
+        }
+        if covered.is_empty() {
+            return false;
+        }
+        let poles = match track.course {
+            Course::Round => [None, None],
+            Course::Open { first, last } => [first, last],
+        };
+        covered.extend(poles.into_iter().flatten().map(|t| [t, t]));
+        covered.sort_by(|x, y| x[0].total_cmp(&y[0]));
+        let first = covered[0];
+        if let Course::Round = track.course {
+            covered.push(first.map(|t| t + TAU));
+        }
+        let mut end = first[1];
+        covered[1..].iter().all(|next| {
+            let gap = [end, next[0]];
+            end = end.max(next[1]);
+            // What is met in one place has its parameters apart by rounding.
+            let is_none = gap[1] - gap[0] <= 2.0 * self.band * track.by;
+            is_none || self.place_between(track, gap) == PointLocation::Outside
+        })
+    }
+
+    /// Where a track lies between two of its parameters; on the face's boundary only if several of its
+    /// points are.
+    fn place_between(&self, track: &Track, [a, b]: [f64; 2]) -> PointLocation {
+        let parts = [0.5, 0.31, 0.73].into_iter();
+        let mut places = parts.map(|part| self.place(&track.curve.point(a + part * (b - a))));
+        let clear = places.find(|place| *place != PointLocation::On);
+        clear.unwrap_or(PointLocation::On)
+    }
+
+    /// The pieces of a seam in the face, across the angle `across` at a value; none where that is not
+    /// plain.
+    fn seams(&self, surface: &Surface, across: usize, at: f64) -> Option<Vec<Seam>> {
+        let tracks = self.tracks(surface, across, at);
+        tracks.iter().find_map(|track| {
+            let pieces = self.pieces(surface, track)?;
+            let seam = |[a, b]: [(f64, End); 2]| Seam {
+                curve: track.curve.clone(),
+                range: [a.0, if b.0 > a.0 { b.0 } else { b.0 + TAU }],
+                ends: [a.1, b.1],
+                across,
+            };
+            Some(pieces.into_iter().map(seam).collect())
+        })
+    }
+
+    /// The line of a constant angle, from several starts if it closes.
+    fn tracks(&self, surface: &Surface, across: usize, at: f64) -> Vec<Track> {
+        let f = surface.frame();
+        match surface {
+            Surface::Plane(_) => Vec::new(),
+            Surface::Cylinder(s) => {
+                let heights = self.samples.points().map(|p| f.coordinates(p).z);
+                let lowest = heights.fold(f64::INFINITY, f64::min) - s.radius;
+                let from = f.point(s.radius, 0.0, lowest);
+                let course = Course::Open {
+                    first: None,
+                    last: None,
+                };
+                ruling(surface, from, course).into_iter().collect()
+            }
+            Surface::Cone(s) => {
+                // Where edges end at the apex, from above it.
+                let slants = self.samples.points().map(|p| (p - f.origin).norm());
+                let nearest = slants
+                    .filter(|d| *d > self.band)
+                    .fold(f64::INFINITY, f64::min);
+                let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.band;
+                let is_free = !self.samples.points().any(at_apex);
+                let slant = if is_free { 0.0 } else { 0.25 * nearest };
+                let from = f.point(slant * s.sin, 0.0, slant * s.cos);
+                let course = Course::Open {
+                    first: is_free.then_some(0.0),
+                    last: None,
+                };
+                ruling(surface, from, course).into_iter().collect()
+            }
+            Surface::Sphere(s) => meridian(surface, s.radius).into_iter().collect(),
+            Surface::Torus(s) => {
+                let window = ParameterWindow {
+                    surface: *surface,
+                    starts: [0.0; 2],
+                    reach: s.major + s.minor,
+                };
+                let mut from = self.samples.candidates(&window, 1 - across);
+                from.truncate(STARTS);
+                let tracks = from.into_iter().filter_map(|other| match across {
+                    0 => Some(Track {
+                        walk: SurfacePath::tube(s, &surface.point(at, other), Sense::Along),
+                        curve: tube(surface, s.major, s.minor),
+                        start: other,
+                        by: 1.0 / s.minor,
+                        course: Course::Round,
+                    }),
+                    _ => {
+                        let from = surface.point(other, at);
+                        let radius = s.major + s.minor * at.cos();
+                        let centre = f.origin + f.z * (s.minor * at.sin());
+                        let frame = f.at(centre);
+                        Some(Track {
+                            walk: SurfacePath::parallel(surface, &from, Sense::Along, self.band)?,
+                            curve: Curve::Circle(Circle { frame, radius }),
+                            start: other,
+                            by: 1.0 / radius,
+                            course: Course::Round,
+                        })
+                    }
+                });
+                tracks.collect()
+            }
+        }
+    }
+
+    /// The pieces of a track in the face: the curve's parameter at each end, and what is there.
+    fn pieces(&self, surface: &Surface, track: &Track) -> Option<Vec<[(f64, End); 2]>> {
+        let side = self.brep.sense(self.face);
+        let crossings = track.walk.crossings(surface, side, &self.arcs, self.band);
+        let mut stops: Vec<(CrossingSense, f64, End)> = Vec::new();
+        for c in &crossings {
+            let end = End::Edge {
+                coedge: self.coedges[c.arc],
+                t: c.t,
+            };
+            stops.push((c.passage, track.start + c.at * track.by, end));
+        }
+        // Where the face touches itself it is left before it is entered again.
+        for k in 1..stops.len() {
+            let (before, after) = (stops[k - 1], stops[k]);
+            let together = (after.1 - before.1).abs() <= self.band * track.by;
+            if together && (before.0, after.0) == (CrossingSense::Entering, CrossingSense::Leaving)
+            {
+                stops.swap(k - 1, k);
+            }
+        }
+        let starts_inside = match stops.first() {
+            Some((passage, ..)) => *passage == CrossingSense::Leaving,
+            None => self.holds(&track.walk.point(1.0 / track.by)),
+        };
+        match &track.course {
+            Course::Round if stops.is_empty() => {
+                let ends = [0.0, TAU].map(|on| (track.start + on, End::Crossing));
+                return Some(if starts_inside {
+                    vec![ends]
+                } else {
+                    Vec::new()
+                });
+            }
+            Course::Round => {
+                if starts_inside {
+                    stops.rotate_left(1);
+                }
+            }
+            Course::Open { first, last } => {
+                let pole = |t: f64| End::Pole(track.curve.point(t));
+                if starts_inside {
+                    let t = (*first)?;
+                    stops.insert(0, (CrossingSense::Entering, t, pole(t)));
+                }
+                if stops.len() % 2 == 1 {
+                    let t = (*last)?;
+                    stops.push((CrossingSense::Leaving, t, pole(t)));
+                }
+            }
+        }
+        let pieces = stops.chunks(2).map(|pair| match pair {
+            [
+                (CrossingSense::Entering, a, from),
+                (CrossingSense::Leaving, b, to),
+            ] => Some([(*a, *from), (*b, *to)]),
+            _ => None,
+        });
+        pieces.collect()
+    }
+
+    /// The axes of the circles that are edges.
+    fn circles(&self) -> Vec<Vector3<f64>> {
+        let axis = |arc: &DirectedArc<'_>| match arc.curve {
+            Curve::Circle(c) => Some(c.frame.z),
+            _ => None,
+        };
+        self.arcs.iter().filter_map(axis).collect()
+    }
+
+    /// Whether the face holds a point of its surface that no edge passes.
+    fn holds(&self, p: &Point3<f64>) -> bool {
+        self.place(p) == PointLocation::Inside
+    }
+
+    fn place(&self, p: &Point3<f64>) -> PointLocation {
+        let surface = self.brep.surface(self.face);
+        let (side, arcs) = (self.brep.sense(self.face), self.arcs.clone());
+        FaceLocator::new(surface, side, arcs, self.band).place(p)
+    }
+}
+
+/// From how many places a closed seam is tried.
+const STARTS: usize = 4;
+/// How many axes are tried for a sphere that is cut in pieces by the first.
+const AXES: usize = 16;
+
+fn cuts_something(cut: &Option<Cut>) -> bool {
+    cut.as_ref().is_some_and(|cut| !cut.seams.is_empty())
+}
+
+/// The cut that cuts least, the first of such; one that cuts nothing at once.
+fn least(cuts: impl Iterator<Item = Option<Cut>>) -> Option<Cut> {
+    let mut best: Option<Cut> = None;
+    for cut in cuts.flatten() {
+        if cut.seams.is_empty() {
+            return Some(cut);
+        }
+        if best
+            .as_ref()
+            .is_none_or(|b| cut.seams.len() < b.seams.len())
+        {
+            best = Some(cut);
+        }
+    }
+    best
+}
+
+fn ruling(surface: &Surface, from: Point3<f64>, course: Course) -> Option<Track> {
+    let walk = SurfacePath::ruling(surface, &from, 0.0, Sense::Along)?;
+    let direction = (walk.point(1.0) - from).normalize();
+    let line = Line {
+        origin: from,
+        direction,
+    };
+    Some(Track {
+        walk,
+        curve: Curve::Line(line),
+        start: 0.0,
+        by: 1.0,
+        course,
+    })
+}
+
+/// The half of a great circle at the angle zero, from pole to pole.
+fn meridian(surface: &Surface, radius: f64) -> Option<Track> {
+    let f = surface.frame();
+    let [south, equator] = [-FRAC_PI_2, 0.0].map(|v| surface.point(0.0, v));
+    let walk = SurfacePath::great_circle(&f.origin, &south, &equator)?.upto(0.5 * TAU * radius);
+    Some(Track {
+        walk,
+        curve: upright(f, f.origin, radius),
+        start: -FRAC_PI_2,
+        by: 1.0 / radius,
+        course: Course::Open {
+            first: Some(-FRAC_PI_2),
+            last: Some(FRAC_PI_2),
+        },
+    })
+}
+
+/// The circle about the tube at the angle zero.
+fn tube(surface: &Surface, major: f64, minor: f64) -> Curve {
+    let f = surface.frame();
+    upright(f, f.origin + f.x * major, minor)
+}
+
+/// A circle in the plane of x and the axis.
+fn upright(f: &Frame, origin: Point3<f64>, radius: f64) -> Curve {
+    let frame = Frame {
+        origin,
+        x: f.x,
+        y: f.z,
+        z: f.x.cross(&f.z),
+    };
+    Curve::Circle(Circle { frame, radius })
+}
+
+impl Cut {
+    /// Parts the pieces of both seams where they cross.
+    fn part_at_crossing(&mut self) {
+        let v = self.window.starts[1];
+        // Along the one seam the other angle is the curve's parameter.
+        let at = [v, 0.0];
+        let passes = |seam: &Seam| {
+            let [lo, hi] = seam.range;
+            let t = lo + (at[seam.across] - lo).rem_euclid(TAU);
+            (t < hi || seam.ends == [End::Crossing; 2]).then_some(t)
+        };
+        let both = |i: usize| {
+            self.seams
+                .iter()
+                .any(|s| s.across == i && passes(s).is_some())
+        };
+        if !(both(0) && both(1)) {
+            return;
+        }
+        let seams = std::mem::take(&mut self.seams);
+        for seam in seams {
+            let [lo, hi] = seam.range;
+            match passes(&seam) {
+                None => self.seams.push(seam),
+                Some(t) if seam.ends == [End::Crossing; 2] => self.seams.push(Seam {
+                    range: [t, t + TAU],
+                    ..seam
+                }),
+                Some(t) => {
+                    let [from, to] = seam.ends;
+                    self.seams.push(Seam {
+                        range: [lo, t],
+                        ends: [from, End::Crossing],
+                        ..seam.clone()
+                    });
+                    self.seams.push(Seam {
+                        range: [t, hi],
+                        ends: [End::Crossing, to],
+                        ..seam
+                    });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Edges so short that other kernels take their ends for one, drawn together to one vertex, and faces so
+//! narrow that their two edges become one.
+
+use super::TwoManifold;
+use nalgebra::Point3;
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::curve::Curve;
+
+/// An edge's ends are looked at between so many steps for how long it is.
+const STEPS: u32 = 16;
+
+impl TwoManifold<'_> {
+    /// Makes one vertex of the two at the ends of every edge no longer than `least`, and leaves the
+    /// edge out. Several that follow one another stay, where together they are longer, and so does the
+    /// last edge of a loop.
+    pub fn draw_together(&mut self, least: f64) {
+        let short: Vec<usize> = (0..self.edges.len())
+            .filter(|&e| {
+                let edge = &self.edges[e];
+                edge.ends[0] != edge.ends[1] && length(&edge.curve, edge.range) <= least
+            })
+            .collect();
+        for edge in short {
+            let [a, b] = self.edges[edge].ends;
+            let [p, q] = [a, b].map(|v| self.points[v]);
+            let is_alone = |ring: &[(usize, _)]| ring.iter().any(|h| h.0 == edge) && ring.len() < 3;
+            let mut rings = self.faces.iter().flat_map(|face| &face.loops);
+            if a == b || (p - q).norm() > least || rings.any(|ring| is_alone(ring)) {
+                continue;
+            }
+            self.points[a] = Point3::from((p.coords + q.coords) * 0.5);
+            for other in &mut self.edges {
+                for end in other.ends.iter_mut().filter(|end| **end == b) {
+                    *end = a;
+                }
+            }
+            for ring in self.faces.iter_mut().flat_map(|face| &mut face.loops) {
+                ring.retain(|half| half.0 != edge);
+            }
+        }
+    }
+}
+
+/// A half of an edge in a loop.
+type Half = (usize, Sense);
+
+impl TwoManifold<'_> {
+    /// Leaves out the faces between two edges that are no farther apart than `least`, which become one.
+    pub fn close_narrow(&mut self, least: f64) {
+        let mut closed = vec![false; self.faces.len()];
+        for face in 0..self.faces.len() {
+            let Some([kept, given_up]) = self.narrow(face, least) else {
+                continue;
+            };
+            let there = (given_up.0, given_up.1.reversed());
+            let others = self.faces.iter_mut().enumerate();
+            let others = others.filter(|(other, _)| *other != face && !closed[*other]);
+            let halves = others.flat_map(|(_, f)| f.loops.iter_mut().flatten());
+            if let Some(half) = halves.into_iter().find(|half| **half == there) {
+                *half = kept;
+                closed[face] = true;
+            }
+        }
+        self.leave_out(&closed);
+    }
+
+    /// The two halves around a narrow face.
+    fn narrow(&self, face: usize, least: f64) -> Option<[Half; 2]> {
+        let [ring] = &self.faces[face].loops[..] else {
+            return None;
+        };
+        let &[kept, given_up] = &ring[..] else {
+            return None;
+        };
+        let [a, b] = [kept, given_up].map(|half| &self.edges[half.0]);
+        let [lo, hi] = b.range;
+        let is_near = |k: u32| {
+            let p = b
+                .curve
+                .point(lo + (hi - lo) * (f64::from(k) / f64::from(STEPS)));
+            let on = a.curve.in_cycle(a.curve.parameter(&p), a.range[0]);
+            (a.curve.point(on.min(a.range[1])) - p).norm() <= least
+        };
+        let is_one = kept.0 != given_up.0 && (0..=STEPS).all(is_near);
+        is_one.then_some([kept, given_up])
+    }
+
+    /// Leaves out the faces that are marked.
+    fn leave_out(&mut self, marked: &[bool]) {
+        let mut place = Vec::with_capacity(marked.len());
+        let mut kept = 0;
+        for &is_out in marked {
+            place.push(kept);
+            kept += usize::from(!is_out);
+        }
+        let mut marks = marked.iter();
+        self.faces.retain(|_| marks.next() == Some(&false));
+        for faces in self.solids.iter_mut().flatten() {
+            faces.retain(|&face| !marked[face]);
+            faces.iter_mut().for_each(|face| *face = place[*face]);
+        }
+    }
+}
+
+/// How long a curve is over a range.
+pub(crate) fn length(curve: &Curve, [lo, hi]: [f64; 2]) -> f64 {
+    let at = |k: u32| curve.point(lo + (hi - lo) * (f64::from(k) / f64::from(STEPS)));
+    (0..STEPS).map(|k| (at(k + 1) - at(k)).norm()).sum()
+}

@@ -1,0 +1,85 @@
+//! The box of a boundary, to rounding.
+
+use super::Brep;
+use super::locate::{FaceLocator, PointLocation};
+use super::topology::FaceId;
+use crate::geometry::bounds::{Aabb, tight_bounds};
+use crate::geometry::surface::Surface;
+use crate::geometry::vector::direction;
+use crate::number::float::Float;
+use crate::number::predicates::ROUNDING;
+use nalgebra::Vector3;
+
+/// The box of a boundary: of its edges, and of its faces where they bulge beyond them.
+pub fn bounds<N: Float>(brep: &Brep<N>) -> Aabb {
+    let mut all = Aabb::EMPTY;
+    for e in brep.topology.edge_ids() {
+        all = all.hull(&tight_bounds(brep.curve(e), brep.range(e)));
+    }
+    for face in brep.topology.face_ids() {
+        all = all.hull(&bulge(brep, face, &all));
+    }
+    all
+}
+
+/// The box of a face: of its edges, and of the face where it bulges beyond them.
+pub(super) fn face_bounds<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
+    let edges = brep.topology.edges_of(face);
+    let edges = edges.fold(Aabb::EMPTY, |all, e| {
+        all.hull(&tight_bounds(brep.curve(e), brep.range(e)))
+    });
+    edges.hull(&bulge(brep, face, &edges))
+}
+
+/// The box of the points of a face whose normal is along an axis, where it bulges out of what is
+/// `known`, and of a cone's apex.
+fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
+    let surface = brep.surface(face);
+    let f = surface.frame();
+    let mut points = Vec::new();
+    for i in 0..3 {
+        let mut axis = Vector3::zeros();
+        axis[i] = N::ONE;
+        match surface {
+            Surface::Sphere(s) => {
+                points.extend([-N::ONE, N::ONE].map(|k| f.origin + axis * (k * s.radius)));
+            }
+            Surface::Torus(t) => {
+                // Of products, which keep their digits where the axis is nearly this one.
+                let across = f.z.cross(&axis.cross(&f.z));
+                let out = direction(&across).unwrap_or(f.x);
+                for (k, l) in [
+                    (-N::ONE, -N::ONE),
+                    (-N::ONE, N::ONE),
+                    (N::ONE, -N::ONE),
+                    (N::ONE, N::ONE),
+                ] {
+                    points.push(f.origin + out * (k * t.major) + axis * (l * t.minor));
+                }
+            }
+            Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {}
+        }
+    }
+    if let Surface::Cone(c) = surface {
+        points.push(c.frame.origin);
+    }
+    // Edges next to such a point say as much of the box, to rounding.
+    let rounding = ROUNDING * known.diagonal();
+    if rounding.is_finite() {
+        let known = known.grown(rounding);
+        points.retain(|p| !known.holds(p));
+    }
+    if points.is_empty() {
+        return Aabb::EMPTY;
+    }
+    // A band of nothing would miss boundaries by rounding. An apex may be far from the face.
+    let arcs = FaceLocator::of(brep, face, N::ZERO);
+    let around = match surface {
+        Surface::Cone(_) => Aabb::EMPTY,
+        _ => points.iter().fold(Aabb::EMPTY, |b, p| b.hull(&Aabb::of(p))),
+    };
+    let around = arcs.boxes().iter().fold(around, |a, b| a.hull(b));
+    let locator = FaceLocator::by_gaps(brep, face, N::of(around.diagonal()));
+    points.retain(|p| locator.place(p) != PointLocation::Outside);
+    points.iter().fold(Aabb::EMPTY, |b, p| b.hull(&Aabb::of(p)))
+}

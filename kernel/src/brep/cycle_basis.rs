@@ -1,0 +1,110 @@
+//! The cycles of an undirected graph by Welch's method (J. ACM 13(2), 1966): a spanning forest,
+//! and for each edge outside it the cycle that it closes.
+//!
+//! The loops of a face are found by the order of edges around vertices; here they are checked to
+//! be sums (modulo two) of such cycles. Gibbs (1969) showed Welch's ways to list all cycles from
+//! the basis to be wrong; the basis itself is sound, and all that is used.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+/// An edge of the graph between two vertices; an edge from a vertex to itself is a cycle.
+pub type GraphEdge = [usize; 2];
+
+/// A basis of the cycles: each a set of edges, by index.
+pub fn basis(links: &[GraphEdge]) -> Vec<BTreeSet<usize>> {
+    let forest = Forest::of(links);
+    let outside = (0..links.len()).filter(|e| !forest.edges.contains(e));
+    outside.map(|e| forest.closed_by(links, e)).collect()
+}
+
+/// Whether a set of edges is a sum of cycles.
+pub fn is_sum_of_cycles(links: &[GraphEdge], edges: &BTreeSet<usize>) -> bool {
+    let forest = Forest::of(links);
+    let mut sum = BTreeSet::new();
+    for &e in edges.iter().filter(|e| !forest.edges.contains(e)) {
+        for part in forest.closed_by(links, e) {
+            if !sum.remove(&part) {
+                sum.insert(part);
+            }
+        }
+    }
+    sum == *edges
+}
+
+/// A spanning forest: for each vertex the edge to its parent, and its depth.
+struct Forest {
+    edges: BTreeSet<usize>,
+    up: BTreeMap<usize, (usize, usize)>,
+    depth: BTreeMap<usize, usize>,
+}
+
+impl Forest {
+    fn of(links: &[GraphEdge]) -> Self {
+        let mut around: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (e, [a, b]) in links.iter().enumerate() {
+            around.entry(*a).or_default().push(e);
+            around.entry(*b).or_default().push(e);
+        }
+        let mut forest = Self {
+            edges: BTreeSet::new(),
+            up: BTreeMap::new(),
+            depth: BTreeMap::new(),
+        };
+        for &root in around.keys() {
+            if forest.depth.contains_key(&root) {
+                continue;
+            }
+            forest.depth.insert(root, 0);
+            let mut queue = VecDeque::from([root]);
+            while let Some(v) = queue.pop_front() {
+                for &e in &around[&v] {
+                    let [a, b] = links[e];
+                    let w = if a == v { b } else { a };
+                    if !forest.depth.contains_key(&w) {
+                        forest.depth.insert(w, forest.depth[&v] + 1);
+                        forest.up.insert(w, (v, e));
+                        forest.edges.insert(e);
+                        queue.push_back(w);
+                    }
+                }
+            }
+        }
+        forest
+    }
+
+    /// The cycle that an edge outside the forest closes.
+    fn closed_by(&self, links: &[GraphEdge], edge: usize) -> BTreeSet<usize> {
+        let [mut a, mut b] = links[edge];
+        let mut cycle = BTreeSet::from([edge]);
+        while a != b {
+            let deeper = if self.depth[&a] >= self.depth[&b] {
+                &mut a
+            } else {
+                &mut b
+            };
+            let (parent, e) = self.up[deeper];
+            cycle.insert(e);
+            *deeper = parent;
+        }
+        cycle
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_with_a_diagonal_has_two_cycles() {
+        let links = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]];
+        assert_eq!(basis(&links).len(), 2);
+        assert!(is_sum_of_cycles(&links, &BTreeSet::from([0, 1, 2, 3])));
+        assert!(is_sum_of_cycles(&links, &BTreeSet::from([0, 1, 4])));
+        assert!(!is_sum_of_cycles(&links, &BTreeSet::from([0, 1, 2])));
+    }
+
+    #[test]
+    fn an_edge_from_a_vertex_to_itself_is_a_cycle() {
+        assert_eq!(basis(&[[5, 5], [5, 6]]), vec![BTreeSet::from([0])]);
+    }
+}

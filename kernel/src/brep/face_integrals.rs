@@ -1,0 +1,326 @@
+//! Volume, area and centroid of the exact boundary.
+//!
+//! By the divergence theorem each is a sum over faces of ∫ g dA, and by Green's in the surface's
+//! parameters (u, v) a sum over edges: with G(u, v) = ∫ g |P_u × P_v| dv from a fixed v, the face
+//! gives −∮ G du. What a period or a pole adds is told by the area, which lies between nothing and
+//! the whole surface. Notation: P relative to a reference point, N the surface's normal, h = P·N.
+
+mod face;
+mod ground;
+mod outline;
+mod strip;
+
+use super::Brep;
+use super::topology::{FaceId, ShellId};
+use crate::geometry::bounds::Aabb;
+use crate::geometry::surface::Surface;
+use crate::geometry::vector::rounded;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
+use face::moments;
+use nalgebra::{Point3, Vector3};
+
+/// The mass properties of a body of density one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mass {
+    /// The volume, in cubic units.
+    pub volume: f64,
+    /// The area of the boundary, in square units.
+    pub area: f64,
+    /// The centroid; the reference point where the volume is zero.
+    pub centroid: Point3<f64>,
+}
+
+/// ∫ dA, ∫ h dA and ∫ h P dA over a face.
+type Moments<N> = [N; 5];
+
+/// What the faces of a boundary measure: once for all that is asked of them.
+#[derive(Clone, Debug)]
+pub struct FaceIntegrals<N: Float = f64> {
+    /// Amid all faces.
+    whole: Amid<N>,
+    /// Amid each shell, so that how far apart shells lie costs no digits.
+    shells: Vec<Amid<N>>,
+    /// The moments of each face, about the point amid its shell.
+    faces: Vec<Moments<N>>,
+}
+
+impl<N: Float> FaceIntegrals<N> {
+    /// The measures of the faces of a boundary, as far as doubles tell them.
+    pub fn of(brep: &Brep<N>) -> Self {
+        Self::with(brep, Care::Doubles)
+    }
+
+    fn with(brep: &Brep<N>, care: Care) -> Self {
+        let shells = brep.topology.shells.iter();
+        let shells: Vec<Amid<N>> = shells
+            .map(|shell| Amid::of(brep, shell.faces.iter().copied(), care))
+            .collect();
+        let about = |face| &shells[brep.topology.face(face).shell.index()];
+        let faces = brep.topology.face_ids();
+        Self {
+            whole: Amid::of(brep, brep.topology.face_ids(), care),
+            faces: faces.map(|face| moments(brep, face, about(face))).collect(),
+            shells,
+        }
+    }
+
+    /// The mass properties of the solid that the boundary encloses.
+    pub fn mass(&self, brep: &Brep<N>) -> Mass {
+        let (rough, noise) = self.summed_up(brep);
+        match N::IS_DOUBLE || (SLENDER * rough.volume).is_beyond(noise) {
+            true => rough,
+            false => Self::with(brep, Care::Digits).summed_up(brep).0,
+        }
+    }
+
+    /// The mass properties, and what rounding may make of the volume.
+    fn summed_up(&self, brep: &Brep<N>) -> (Mass, f64) {
+        let reference = self.whole.reference;
+        let (mut area, mut volume, mut first) = (N::ZERO, N::ZERO, Vector3::zeros());
+        for (shell, amid) in brep.topology.shells.iter().zip(&self.shells) {
+            let of = shell.faces.iter().map(|&f| (f, self.faces[f.index()]));
+            let m = shell_moments(brep, of);
+            let enclosed = m[1] / N::of(3.0);
+            area += m[0];
+            volume += enclosed;
+            first += (amid.reference - reference) * enclosed;
+            first += Vector3::new(m[2], m[3], m[4]) / N::of(4.0);
+        }
+        let centroid = if volume.is_exactly(N::ZERO) {
+            reference
+        } else {
+            reference + first / volume
+        };
+        let mass = Mass {
+            volume: volume.rounded(),
+            area: area.rounded(),
+            centroid: rounded(&centroid).into(),
+        };
+        let bulk = area * self.whole.size;
+        let noise = self.whole.noise(brep, brep.topology.face_ids(), bulk);
+        (mass, noise.rounded())
+    }
+
+    /// The signed volume that a shell encloses.
+    pub fn enclosed(&self, brep: &Brep<N>, shell: ShellId) -> ShellVolume<N> {
+        let faces = &brep.topology.shells[shell.index()].faces;
+        let amid = &self.shells[shell.index()];
+        let of = faces.iter().map(|&f| (f, self.faces[f.index()]));
+        let told = enclosed(brep, faces, shell_moments(brep, of), amid, self.whole.size);
+        match N::IS_DOUBLE || told.is_clear() {
+            true => told,
+            false => shell_volume(brep, faces, self.whole.size),
+        }
+    }
+
+    /// The areas of all faces, by id.
+    pub fn areas(&self, brep: &Brep<N>) -> Vec<FaceArea<N>> {
+        let covered = |face: FaceId, amid: &Amid<N>, area: N| {
+            let [floor, ..] = amid.floor(brep, face);
+            FaceArea {
+                area,
+                noise: N::of(NOISE) * floor,
+            }
+        };
+        let of_face = |face: FaceId| {
+            let shell = brep.topology.face(face).shell.index();
+            let told = covered(face, &self.shells[shell], self.faces[face.index()][0]);
+            if N::IS_DOUBLE || told.area.is_beyond(told.noise) {
+                return told;
+            }
+            let amid = Amid {
+                care: Care::Digits,
+                ..self.shells[shell]
+            };
+            covered(face, &amid, moments(brep, face, &amid)[0])
+        };
+        brep.topology.face_ids().map(of_face).collect()
+    }
+}
+
+/// Where the volume is at least so much more than what doubles may make of it, they tell it.
+const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;
+
+/// The signed volume that a shell encloses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShellVolume<N: Float = f64> {
+    /// The volume, negative for a void, in cubic units.
+    pub volume: N,
+    /// What rounding may make of it.
+    pub noise: N,
+}
+
+impl<N: Float> ShellVolume<N> {
+    /// Whether its sign is known.
+    pub fn is_clear(&self) -> bool {
+        self.volume.abs().is_beyond(self.noise)
+    }
+}
+
+/// How closely integrals are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Care {
+    /// As doubles tell them.
+    Doubles,
+    /// With more digits to far more than is told; as doubles tell them where there are no more.
+    Digits,
+    /// To the last digit.
+    Last,
+}
+
+impl Care {
+    /// What sums are known to, relative to their terms.
+    fn part<N: Float>(self) -> N {
+        match self {
+            Self::Doubles => N::of(f64::rules().settled / NOISE),
+            Self::Digits => N::rules().settled / N::of(NOISE),
+            Self::Last => N::ROUNDING,
+        }
+    }
+}
+
+/// How many times the rounding of its area times the part's size a volume may be off.
+const NOISE: f64 = 64.0;
+
+/// The size of a part, in terms of which its coordinates are rounded.
+pub fn size<N: Float>(brep: &Brep<N>) -> N {
+    Amid::of(brep, brep.topology.face_ids(), Care::Doubles).size
+}
+
+/// The signed volume that a shell encloses; `size` is that of the part.
+pub fn shell_volume<N: Float>(brep: &Brep<N>, faces: &[FaceId], size: N) -> ShellVolume<N> {
+    let told = |care| {
+        let amid = Amid::of(brep, faces.iter().copied(), care);
+        let of = faces.iter().map(|&f| (f, moments(brep, f, &amid)));
+        enclosed(brep, faces, shell_moments(brep, of), &amid, size)
+    };
+    let rough = told(Care::Doubles);
+    if N::IS_DOUBLE || rough.is_clear() {
+        return rough;
+    }
+    let fine = told(Care::Digits);
+    match fine.is_clear() {
+        true => fine,
+        false => told(Care::Last),
+    }
+}
+
+/// What is known of the volume of some faces by their moments.
+fn enclosed<N: Float>(
+    brep: &Brep<N>,
+    faces: &[FaceId],
+    [area, volume, ..]: Moments<N>,
+    amid: &Amid<N>,
+    size: N,
+) -> ShellVolume<N> {
+    ShellVolume {
+        volume: volume / N::of(3.0),
+        noise: amid.noise(brep, faces.iter().copied(), area * size),
+    }
+}
+
+/// The moments of a shell, by those of its faces: its area, and the others signed.
+fn shell_moments<N: Float>(
+    brep: &Brep<N>,
+    faces: impl Iterator<Item = (FaceId, Moments<N>)>,
+) -> Moments<N> {
+    let mut total = [N::ZERO; 5];
+    for (face, m) in faces {
+        let sign = brep.sense(face).sign::<N>();
+        total[0] += m[0];
+        for i in 1..5 {
+            total[i] += sign * m[i];
+        }
+    }
+    total
+}
+
+/// The area of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceArea<N: Float = f64> {
+    /// The area, in square units.
+    pub area: N,
+    /// What rounding may make of it.
+    pub noise: N,
+}
+
+/// A point amid some faces, relative to which sums do not cancel, and their size.
+#[derive(Clone, Debug)]
+struct Amid<N: Float = f64> {
+    reference: Point3<N>,
+    size: N,
+    /// How closely integrals are followed.
+    care: Care,
+}
+
+impl<N: Float> Amid<N> {
+    fn of(brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, care: Care) -> Self {
+        let (mut edges, mut all) = (Aabb::EMPTY, Aabb::EMPTY);
+        for face in faces {
+            edges = edges.hull(&box_of(brep, face));
+            // What bulges beyond its edges is of the size of its surface.
+            if let Surface::Sphere(_) | Surface::Torus(_) = brep.surface(face) {
+                all = all.hull(&Aabb::of(&brep.surface(face).frame().origin));
+            }
+        }
+        let size = N::of(all.hull(&edges).diagonal());
+        let reference = if size.is_finite() {
+            edges.centre().map(N::of)
+        } else {
+            Point3::origin()
+        };
+        Self {
+            reference,
+            size,
+            care,
+        }
+    }
+
+    /// What sums are known to, relative to their terms.
+    fn part(&self) -> N {
+        self.care.part()
+    }
+
+    /// What the volume of faces may be off, by their area times the size of the part. Where numbers
+    /// of more digits are asked about in doubles, that area may itself be next to nothing.
+    fn noise(&self, brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, bulk: N) -> N {
+        let by_area = self.part() * bulk;
+        let floors = match self.tells_in_doubles() {
+            true => faces.map(|face| self.floor(brep, face)[1]).sum(),
+            false => N::ZERO,
+        };
+        N::of(NOISE) * (by_area + floors)
+    }
+
+    /// Whether doubles tell for numbers of more digits.
+    fn tells_in_doubles(&self) -> bool {
+        !N::IS_DOUBLE && self.care == Care::Doubles
+    }
+
+    /// The errors of a face's moments that do not matter: what the rounding of its edges makes.
+    fn floor(&self, brep: &Brep<N>, face: FaceId) -> Moments<N> {
+        let along = N::of(box_of(brep, face).diagonal()).min(self.size);
+        let area = self.part() * self.size * along;
+        let (volume, first) = (area * self.size, area * self.size * self.size);
+        [area, volume, first, first, first]
+    }
+}
+
+/// A box amid a face: of its edges' ends and middles, or of the whole surface, where it has none.
+fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
+    let mut b = Aabb::EMPTY;
+    for edge in brep.topology.edges_of(face) {
+        let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
+        b = b.hull(&Aabb::of(&curve.point(lo)));
+        b = b.hull(&Aabb::of(&curve.point(N::HALF * (lo + hi))));
+    }
+    let surface = brep.surface(face);
+    let radius = match surface {
+        _ if !brep.topology.face(face).loops.is_empty() => return b,
+        Surface::Sphere(s) => s.radius,
+        Surface::Torus(t) => t.major + t.minor,
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => return b,
+    };
+    Aabb::of(&surface.frame().origin).grown(radius)
+}

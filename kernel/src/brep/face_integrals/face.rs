@@ -1,0 +1,363 @@
+//! The moments of a face.
+
+use super::ground::{Between, Ground, Middle};
+use super::outline::boundary_sum;
+use super::{Amid, Moments};
+use crate::brep::Brep;
+use crate::brep::arcs::Arcs;
+use crate::brep::locate::{FaceLocator, PointLocation};
+use crate::brep::surface_path::{DirectedArc, SurfacePath};
+use crate::brep::topology::{CoedgeId, FaceId, Sense};
+use crate::geometry::bounds;
+use crate::geometry::curve_plane::plane_roots;
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Cylinder, Plane, Sphere, Surface, Torus};
+use crate::geometry::vector::{Length, rounded};
+use crate::number::float::Float;
+use crate::number::predicates::{Compare, FINEST_RESOLUTION};
+use crate::number::quadrature::adaptive;
+use nalgebra::{Point3, Vector3};
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+
+/// What a face is measured by.
+pub(super) struct Density<'a, N: Float = f64> {
+    pub ground: Ground<N>,
+    /// The same in doubles, where these may tell.
+    pub doubles: Option<Ground>,
+    pub amid: &'a Amid<N>,
+    /// The errors that do not matter.
+    pub floor: Moments<N>,
+}
+
+impl<N: Float> Density<'_, N> {
+    /// Where the integral along v starts for a loop: amid its edges, so that what is the same on all
+    /// of them does not have to cancel.
+    pub fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
+        match &self.ground.surface {
+            // At the apex u leaps, where nothing may be between.
+            Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => self.ground.base,
+            _ => amid_edges(brep, &self.ground, coedges),
+        }
+    }
+
+    /// The integral over all that lies between two v.
+    pub fn between(&self, from: N, to: N) -> Moments<N> {
+        self.over([N::ZERO, N::TAU], [from, to])
+    }
+
+    /// The integral over a range of u and of v.
+    fn over(&self, [a, b]: [N; 2], range: [N; 2]) -> Moments<N> {
+        let between = Between {
+            ground: &self.ground,
+            range,
+            doubles: self.doubles.as_ref(),
+        };
+        adaptive(a, b, &self.floor, &between)
+    }
+}
+
+/// The moments of a face.
+pub(super) fn moments<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N> {
+    let coedges: Vec<CoedgeId> = brep.topology.coedges_of(face).collect();
+    let surface = convenient(brep, brep.surface(face), &coedges, &amid.reference);
+    let (base, middle) = match &surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => (N::ZERO, N::ZERO),
+        Surface::Sphere(_) => (-N::PI / N::TWO, N::ZERO),
+        Surface::Torus(t) => (-N::PI, opposite_parallel(brep, t, &coedges)),
+    };
+    let ground = Ground {
+        surface,
+        reference: amid.reference,
+        base,
+        middle: Middle::at(middle),
+    };
+    let d = Density {
+        doubles: amid.tells_in_doubles().then(|| ground.in_doubles()),
+        ground,
+        amid,
+        floor: amid.floor(brep, face),
+    };
+    match &surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
+            boundary_sum(brep, face, &d, &|_| Vec::new())
+        }
+        Surface::Sphere(s) => {
+            let sum = boundary_sum(brep, face, &d, &|_| Vec::new());
+            let whole = d.between(base, N::PI / N::TWO);
+            let opposite = s.frame.point(N::ZERO, N::ZERO, s.radius);
+            let holds = holds_far(brep, face, amid, sum[0] / whole[0], &opposite);
+            with_far(sum, whole, holds)
+        }
+        Surface::Torus(t) => torus_moments(brep, face, &coedges, t, &d),
+    }
+}
+
+/// The same surface in a frame by which it is well measured: its origin beside the reference, where
+/// it may be anywhere, so that a thin strip is not a difference of large coordinates; its poles clear
+/// of the edges.
+fn convenient<N: Float>(
+    brep: &Brep<N>,
+    surface: &Surface<N>,
+    coedges: &[CoedgeId],
+    reference: &Point3<N>,
+) -> Surface<N> {
+    let beside = |f: &Frame<N>, axes: &[Vector3<N>]| {
+        let along = |axis: &Vector3<N>| axis * axis.dot(&(reference - f.origin));
+        f.at(axes.iter().fold(f.origin, |o, axis| o + along(axis)))
+    };
+    match *surface {
+        Surface::Plane(s) => {
+            let frame = beside(&s.frame, &[s.frame.x, s.frame.y]);
+            Surface::Plane(Plane { frame })
+        }
+        Surface::Cylinder(s) => {
+            let frame = beside(&s.frame, &[s.frame.z]);
+            Surface::Cylinder(Cylinder { frame, ..s })
+        }
+        Surface::Sphere(s) => {
+            let frame = clear_axis(brep, &s, coedges);
+            Surface::Sphere(Sphere { frame, ..s })
+        }
+        other @ (Surface::Cone(_) | Surface::Torus(_)) => other,
+    }
+}
+
+/// Whether edges may pass through a point.
+fn reaches<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId], p: &Point3<N>) -> bool {
+    coedges.iter().any(|&c| {
+        let e = brep.topology.coedge(c).edge;
+        let around = bounds::bounds(brep.curve(e), brep.range(e));
+        around.grown(around.diagonal()).holds(p)
+    })
+}
+
+/// A v amid edges of a face.
+fn amid_edges<N: Float>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId]) -> N {
+    let middle = |&c: &CoedgeId| {
+        let e = brep.topology.coedge(c).edge;
+        let [lo, hi] = brep.range(e);
+        let [_, v] = ground.parameters(&brep.curve(e).point(N::HALF * (lo + hi)));
+        v
+    };
+    match coedges.len() {
+        0 => ground.base,
+        n => coedges.iter().map(middle).sum::<N>() / N::of(n as f64),
+    }
+}
+
+/// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
+/// the face's part of the whole surface all or nothing is missing, so its sign tells, unless next to
+/// nothing is left. Then walks do.
+fn holds_far<N: Float>(
+    brep: &Brep<N>,
+    face: FaceId,
+    amid: &Amid<N>,
+    part: N,
+    far: &Point3<N>,
+) -> Option<bool> {
+    if brep.topology.face(face).loops.is_empty() {
+        return Some(true);
+    }
+    if part.abs().is_beyond(N::of(FEW) * amid.part()) {
+        return Some(part.is_below_zero());
+    }
+    match FaceLocator::by_gaps(brep, face, amid.size).place(far) {
+        PointLocation::Inside => Some(true),
+        PointLocation::Outside => Some(false),
+        PointLocation::On => None,
+    }
+}
+
+/// Of areas below this part of the whole surface, in terms of rounding, the sign may be rounding.
+const FEW: f64 = 256.0;
+
+pub(super) fn add<N: Float>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// Points of the edges of a face, in doubles.
+fn samples<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId]) -> Vec<Point3<f64>> {
+    let of_edge = |&c: &CoedgeId| {
+        let edge = brep.topology.coedge(c).edge;
+        let curve = brep.curve(edge).in_doubles();
+        let [lo, hi] = brep.range(edge).map(N::rounded);
+        (0..=SAMPLES).map(move |i| curve.point(lo + (hi - lo) * f64::from(i) / f64::from(SAMPLES)))
+    };
+    coedges.iter().flat_map(of_edge).collect()
+}
+
+/// Into how many pieces an edge is divided for its points.
+const SAMPLES: u32 = 16;
+
+/// How many ways of cutting a face's surface open are compared.
+const WAYS: u32 = 12;
+
+/// The first of what is farthest from all the points of a face's edges.
+fn clearest<T>(ways: impl Iterator<Item = T>, clearance: impl Fn(&T) -> f64) -> Option<T> {
+    let ways = ways.map(|way| (clearance(&way), way));
+    let best = ways.reduce(|best, other| match other.0.is_beyond(best.0) {
+        true => other,
+        false => best,
+    });
+    best.map(|(_, way)| way)
+}
+
+/// A frame of a sphere whose poles keep clear of the edges.
+fn clear_axis<N: Float>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> Frame<N> {
+    let o: Point3<f64> = rounded(&s.frame.origin).into();
+    let points = samples(brep, coedges);
+    let axes = (0..WAYS).map(|k| {
+        let (z, a) = (
+            1.0 - f64::from(2 * k + 1) / f64::from(2 * WAYS),
+            2.4 * f64::from(k) + 0.3,
+        );
+        let across = (1.0 - z * z).sqrt();
+        Vector3::new(across * a.cos(), across * a.sin(), z)
+    });
+    let clearance = |axis: &Vector3<f64>| {
+        let sines = points.iter().map(|p| (p - o).unit().cross(axis).length());
+        sines.fold(1.0, f64::min)
+    };
+    match clearest(axes, clearance) {
+        Some(axis) => Frame::about(s.frame.origin, axis.map(N::of).unit()),
+        None => s.frame,
+    }
+}
+
+/// The v opposite to a parallel of a torus that keeps clear of the edges, as far as one may. Unless
+/// they are all on the other side that is not near the top or the bottom, where the parallel's plane
+/// touches the torus.
+fn opposite_parallel<N: Float>(brep: &Brep<N>, t: &Torus<N>, coedges: &[CoedgeId]) -> N {
+    let torus = Surface::Torus(*t).in_doubles();
+    let points = samples(brep, coedges).into_iter();
+    let angles: Vec<f64> = points.map(|p| torus.parameters(&p)[1]).collect();
+    let near = |v: f64| {
+        let off = angles.iter().map(|a| (a - v + PI).rem_euclid(TAU) - PI);
+        off.map(f64::abs).fold(0.0, f64::max)
+    };
+    if let Some(&amid) = angles.get(angles.len() / 2)
+        && near(amid).is_short_of(FRAC_PI_4)
+    {
+        return N::of(amid);
+    }
+    let step = TAU / f64::from(WAYS);
+    let opposites = (0..WAYS).map(|k| step * (f64::from(k) + 0.2));
+    let clearance = |v: &f64| {
+        let off = angles.iter().map(|a| (a - v).rem_euclid(TAU) - PI);
+        off.map(f64::abs).fold(PI, f64::min)
+    };
+    N::of(clearest(opposites, clearance).unwrap_or(step))
+}
+
+/// A torus is cut open along the parallel of its base: what of it lies in the face is part of the
+/// boundary of the opened face.
+fn torus_moments<N: Float>(
+    brep: &Brep<N>,
+    face: FaceId,
+    coedges: &[CoedgeId],
+    t: &Torus<N>,
+    d: &Density<'_, N>,
+) -> Moments<N> {
+    let side = brep.sense(face).sign::<N>();
+    let base = d.ground.base;
+    let Some(roots) = opening_passes(brep, coedges, t, d) else {
+        return [N::NAN; 5];
+    };
+    let cos = (d.ground.middle.angle + base).cos();
+    let mut sum = boundary_sum(brep, face, d, &|c| {
+        roots.get(&c).cloned().unwrap_or_default()
+    });
+    // Where edges pass the parallel: the u, and 1 where the face lies ahead, −1 where it lies behind.
+    let mut passes: Vec<(N, N)> = Vec::new();
+    for (&c, at) in &roots {
+        let coedge = brep.topology.coedge(c);
+        let curve = brep.curve(coedge.edge);
+        for &s in at {
+            let [u, _] = d.ground.parameters(&curve.point(s));
+            let rise = curve.derivative(s).dot(&t.frame.z) * cos;
+            let up = rise * side * coedge.sense.sign::<N>();
+            passes.push((u, if up.is_above_zero() { -N::ONE } else { N::ONE }));
+        }
+    }
+    let along = [base, base + N::TAU];
+    // What lies ahead of each up to one of them, whole turns apart: no order is asked, which edges on
+    // both of whose sides the face lies have none of.
+    if let Some(&(first, _)) = passes.first() {
+        for &(u, sign) in &passes {
+            sum = add(sum, d.over([u, first], along).map(|m| m * sign));
+        }
+        let turns: N = passes.iter().map(|&(_, sign)| sign).sum();
+        if !turns.is_exactly(N::ZERO) {
+            // A pass was not seen: nothing is known.
+            return [N::NAN; 5];
+        }
+    }
+    let whole = d.between(along[0], along[1]);
+    let u = amid_gap(passes.iter().map(|&(u, _)| u).collect());
+    let far = d.ground.surface.point(u, d.ground.middle.angle + base);
+    let holds = holds_far(brep, face, d.amid, sum[0] / whole[0], &far);
+    with_far(sum, whole, holds)
+}
+
+/// What the edges of a face of a closed surface tell, with the whole of that where the face holds what
+/// is far from them; no number where that is not known.
+fn with_far<N: Float>(sum: Moments<N>, whole: Moments<N>, holds: Option<bool>) -> Moments<N> {
+    match holds {
+        Some(true) => add(sum, whole),
+        Some(false) => sum,
+        None => [N::NAN; 5],
+    }
+}
+
+/// Where the edges of a torus's face pass the parallel at which it is opened: by coedge, the
+/// parameters; none where one does not plainly cross it.
+fn opening_passes<N: Float>(
+    brep: &Brep<N>,
+    coedges: &[CoedgeId],
+    t: &Torus<N>,
+    d: &Density<'_, N>,
+) -> Option<BTreeMap<CoedgeId, Vec<N>>> {
+    let angle = d.ground.middle.angle + d.ground.base;
+    let Middle { sin, cos, .. } = Middle::at(angle);
+    let frame = t.frame.at(t.frame.origin + t.frame.z * (t.minor * sin));
+    let plane = Plane { frame };
+    let start = d.ground.surface.point(N::ZERO, angle);
+    let opening = SurfacePath::parallel(&d.ground.surface, &start, Sense::Along, N::ZERO)?;
+    let directed = coedges.iter().map(|&c| DirectedArc::of(brep, c));
+    let arcs = Arcs::new(directed.collect(), N::ZERO);
+    // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
+    // that is told from it to rounding, or to the finest resolution.
+    let band = N::ROUNDING.max(N::of(FINEST_RESOLUTION)) * d.amid.size;
+    let mut passes: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
+    let mut plain = true;
+    for (i, &c) in coedges.iter().enumerate() {
+        let curve = arcs.all[i].curve;
+        for range in arcs.ranges(&opening, i, N::ZERO) {
+            plane_roots(curve, range, &plane, band, &mut |s, crosses| {
+                let q = t.frame.coordinates(&curve.point(s));
+                let outward = (q.x.hypot(q.y) - t.major) * cos;
+                if outward.is_above_zero() {
+                    plain &= crosses;
+                    passes.entry(c).or_default().push(s);
+                }
+            });
+        }
+    }
+    plain.then_some(passes)
+}
+
+/// An angle amid the widest gap between angles.
+fn amid_gap<N: Float>(mut angles: Vec<N>) -> N {
+    angles.sort_by(N::total_cmp);
+    let Some(&first) = angles.first() else {
+        return N::ZERO;
+    };
+    angles.push(first + N::TAU);
+    let gaps = angles.windows(2).map(|w| (w[0], w[1] - w[0]));
+    let widest = gaps.reduce(|best, gap| match gap.1.is_beyond(best.1) {
+        true => gap,
+        false => best,
+    });
+    widest.map_or(N::ZERO, |(from, gap)| from + N::HALF * gap)
+}

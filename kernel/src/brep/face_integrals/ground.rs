@@ -1,0 +1,134 @@
+//! What is integrated for a face: along its edges, and between two v; in doubles, too, where these may
+//! tell.
+
+use super::Moments;
+use super::strip::strip;
+use crate::geometry::curve::Curve;
+use crate::geometry::surface::Surface;
+use crate::geometry::vector::rounded;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
+use crate::number::quadrature::Integrand;
+use nalgebra::{Point3, Vector3};
+
+/// A surface with what its integrals along v start from.
+pub(super) struct Ground<N: Float = f64> {
+    pub surface: Surface<N>,
+    pub reference: Point3<N>,
+    /// The v at which the surface is cut open, or has a pole.
+    pub base: N,
+    /// From where the angle about a torus's tube is counted.
+    pub middle: Middle<N>,
+}
+
+/// An angle about a torus's tube, amid a face; a thin strip there is no difference of large angles.
+#[derive(Clone, Copy)]
+pub(super) struct Middle<N: Float = f64> {
+    pub angle: N,
+    pub sin: N,
+    pub cos: N,
+}
+
+impl<N: Float> Middle<N> {
+    pub fn at(angle: N) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { angle, sin, cos }
+    }
+
+    fn in_doubles(&self) -> Middle {
+        Middle {
+            angle: self.angle.rounded(),
+            sin: self.sin.rounded(),
+            cos: self.cos.rounded(),
+        }
+    }
+}
+
+impl<N: Float> Ground<N> {
+    /// The same in doubles.
+    pub fn in_doubles(&self) -> Ground {
+        Ground {
+            surface: self.surface.in_doubles(),
+            reference: rounded(&self.reference).into(),
+            base: self.base.rounded(),
+            middle: self.middle.in_doubles(),
+        }
+    }
+
+    /// The parameters of a point on the surface, the angle about a torus's tube between half a turn
+    /// before the middle and half a turn after it.
+    pub fn parameters(&self, p: &Point3<N>) -> [N; 2] {
+        let mut parameters = self.surface.parameters(p);
+        if let Surface::Torus(s) = &self.surface {
+            let q = s.frame.coordinates(p);
+            let (out, up) = (q.x.hypot(q.y) - s.major, q.z);
+            let Middle { sin, cos, .. } = self.middle;
+            parameters[1] = (up * cos - out * sin).atan2(out * cos + up * sin);
+        }
+        parameters
+    }
+
+    /// The integral along v at one u.
+    fn along(&self, u: N, range: [N; 2]) -> Moments<N> {
+        strip(&self.surface, &self.reference, u, self.middle.angle, range)
+    }
+
+    /// G du/dt and du/dt on an edge; G starts at `start`, and v is that next to `near`.
+    fn on_edge(&self, curve: &Curve<N>, t: N, [start, near]: [N; 2]) -> [N; 6] {
+        let j = curve.jet(t);
+        let p = Point3::new(j[0].v, j[1].v, j[2].v);
+        let f = self.surface.frame();
+        let q = f.coordinates(&p);
+        let d = f.components(&Vector3::new(j[0].d, j[1].d, j[2].d));
+        let [u, mut v] = self.parameters(&p);
+        let rate = match &self.surface {
+            Surface::Plane(_) => d.x,
+            _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
+        };
+        if let Surface::Torus(_) = self.surface {
+            v -= N::TAU * ((v - near) / N::TAU).round();
+        }
+        if rate.is_exactly(N::ZERO) || !rate.is_finite() {
+            return [N::ZERO; 6];
+        }
+        let [a, h, x, y, z] = self.along(u, [start, v]).map(|g| g * rate);
+        [a, h, x, y, z, rate]
+    }
+}
+
+/// What is integrated along an edge.
+pub(super) struct OnEdge<'a, N: Float> {
+    pub ground: &'a Ground<N>,
+    pub curve: &'a Curve<N>,
+    /// Where G starts, and a v on the edge.
+    pub from: [N; 2],
+    pub doubles: Option<(&'a Ground, &'a Curve)>,
+}
+
+impl<N: Float> Integrand<N, 6> for OnEdge<'_, N> {
+    fn at(&self, t: N) -> [N; 6] {
+        self.ground.on_edge(self.curve, t, self.from)
+    }
+
+    fn roughly(&self, t: f64) -> Option<[f64; 6]> {
+        let (ground, curve) = self.doubles?;
+        Some(ground.on_edge(curve, t, self.from.map(N::rounded)))
+    }
+}
+
+/// What is integrated over u between two v.
+pub(super) struct Between<'a, N: Float> {
+    pub ground: &'a Ground<N>,
+    pub range: [N; 2],
+    pub doubles: Option<&'a Ground>,
+}
+
+impl<N: Float> Integrand<N, 5> for Between<'_, N> {
+    fn at(&self, u: N) -> Moments<N> {
+        self.ground.along(u, self.range)
+    }
+
+    fn roughly(&self, u: f64) -> Option<Moments<f64>> {
+        Some(self.doubles?.along(u, self.range.map(N::rounded)))
+    }
+}

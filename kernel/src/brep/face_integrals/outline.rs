@@ -1,0 +1,110 @@
+//! Sums around the outline of a face, by Green's theorem.
+
+use super::Moments;
+use super::face::{Density, add};
+use super::ground::OnEdge;
+use crate::brep::Brep;
+use crate::brep::topology::{CoedgeId, FaceId};
+use crate::geometry::surface::Surface;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
+use crate::number::quadrature::adaptive;
+
+/// −∮ G du over the boundary of a face, each edge broken where `marks` says, and G counted from the
+/// base.
+pub(super) fn boundary_sum<N: Float>(
+    brep: &Brep<N>,
+    face: FaceId,
+    density: &Density<'_, N>,
+    marks: &dyn Fn(CoedgeId) -> Vec<N>,
+) -> Moments<N> {
+    let loops = brep.topology.face(face).loops.iter();
+    let rings = loops.map(|&l| &brep.topology.ring(l).coedges);
+    let sums: Vec<LoopSum<N>> = rings
+        .map(|ring| loop_sum(brep, ring, density, marks))
+        .collect();
+    let round = || sums.iter().filter(|s| !s.turns.is_exactly(N::ZERO));
+    let mut total = sums.iter().fold([N::ZERO; 5], |all, s| add(all, s.sum));
+    let mut count = |turns: N, from: N, to: N| {
+        if !turns.is_exactly(N::ZERO) {
+            total = add(total, density.between(from, to).map(|k| k * turns));
+        }
+    };
+    // From where the first of them starts: between loops that go round a thin strip to and fro the
+    // base is far, and would cancel.
+    if let Some(first) = round().next() {
+        for s in round().skip(1) {
+            count(s.turns, first.start, s.start);
+        }
+        let turns = round().map(|s| s.turns).sum();
+        count(turns, density.ground.base, first.start);
+    }
+    let side = brep.sense(face).sign::<N>();
+    total.map(|m| -side * m)
+}
+
+/// ∮ G du over a loop.
+struct LoopSum<N: Float> {
+    sum: Moments<N>,
+    /// The v from which G is counted.
+    start: N,
+    /// How often the loop goes round: so often what lies between the base and the start is to be
+    /// added.
+    turns: N,
+}
+
+/// ∮ G du over a loop, G counted from amid its edges.
+fn loop_sum<N: Float>(
+    brep: &Brep<N>,
+    coedges: &[CoedgeId],
+    density: &Density<'_, N>,
+    marks: &dyn Fn(CoedgeId) -> Vec<N>,
+) -> LoopSum<N> {
+    let [a, v, x, y, z] = density.floor;
+    let floor = [a, v, x, y, z, density.amid.part()];
+    let start = density.start(brep, coedges);
+    let mut total = [N::ZERO; 6];
+    for &c in coedges {
+        let coedge = brep.topology.coedge(c);
+        let curve = brep.curve(coedge.edge);
+        let rough = density
+            .doubles
+            .as_ref()
+            .map(|ground| (ground, curve.in_doubles()));
+        let [lo, hi] = brep.range(coedge.edge);
+        let mut breaks = curve.breaks(lo, hi);
+        breaks.extend(marks(c));
+        breaks.sort_by(N::total_cmp);
+        let sign = coedge.sense.sign::<N>();
+        // What does not matter is shared by the pieces; to doubles it is their rounding.
+        let floor = match N::IS_DOUBLE {
+            true => floor,
+            false => floor.map(|f| f / N::of(breaks.len() as f64)),
+        };
+        for pair in breaks.windows(2) {
+            // The middle tells on which side of a cut the piece lies.
+            let middle = curve.point(N::HALF * (pair[0] + pair[1]));
+            let [_, near] = density.ground.parameters(&middle);
+            let on_edge = OnEdge {
+                ground: &density.ground,
+                curve,
+                from: [start, near],
+                doubles: rough.as_ref().map(|(ground, curve)| (*ground, curve)),
+            };
+            let part = adaptive(pair[0], pair[1], &floor, &on_edge);
+            for (s, v) in total.iter_mut().zip(part) {
+                *s += sign * v;
+            }
+        }
+    }
+    let [a, v, x, y, z, way] = total;
+    let turns = match density.ground.surface {
+        Surface::Plane(_) => N::ZERO,
+        _ => (way / N::TAU).round(),
+    };
+    LoopSum {
+        sum: [a, v, x, y, z],
+        start,
+        turns,
+    }
+}

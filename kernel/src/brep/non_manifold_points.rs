@@ -1,0 +1,119 @@
+//! Where a boundary touches itself: a vertex with several fans of faces, and points at which a
+//! vertex, an edge or a face meets another edge or face inside it without an edge there.
+//!
+//! Every point that curves or surfaces share is known beforehand, with all surfaces through it.
+//! What is left to ask is which faces hold it inside.
+
+use super::Brep;
+use super::assemble::{BoundaryInput, Names};
+use super::locate::{Locator, PointLocation};
+use super::shells::Fans;
+use super::topology::{EdgeId, FaceId, NonManifoldPoint};
+use crate::number::float::Float;
+use crate::number::predicates::Predicates;
+use nalgebra::Point3;
+use std::collections::{HashMap, HashSet};
+
+/// The touches of a boundary, with their places.
+pub(super) fn touches<N: Float>(
+    brep: &Brep<N>,
+    raw: &BoundaryInput<N>,
+    names: &Names,
+    fans: &Fans,
+    judge: &Predicates,
+) -> Vec<(Point3<N>, NonManifoldPoint)> {
+    let edges = Edges::of(raw, names);
+    let faces = Faces::of(brep, judge.band());
+    let mut found = Vec::new();
+    for (point, at) in raw.points.iter().enumerate() {
+        let vertex = names.vertex_of.get(&point).copied();
+        let fans = vertex.map_or(0, |v| fans.at_vertex[v.index()]);
+        let edges_through = edges.through.get(&point).cloned().unwrap_or_default();
+        let bounded = fans + edges_through.len();
+        // A face with an edge at the point does not hold it inside.
+        let open = at.surfaces.iter().filter_map(|s| names.surface_of.get(s));
+        let open = open.filter(|&&s| !edges.bounding.contains(&(point, s)));
+        if bounded + open.clone().count() < 2 {
+            continue;
+        }
+        let held = open.filter_map(|&s| Some((s, faces.holding(s, &at.place)?)));
+        let (surfaces, faces): (Vec<usize>, Vec<FaceId>) = held.unzip();
+        if bounded + faces.len() < 2 {
+            continue;
+        }
+        // Next to a touch of two faces other points are on both, too, within the resolution.
+        let touching = |node: &[usize; 2]| {
+            let named = |s| {
+                names
+                    .surface_of
+                    .get(s)
+                    .is_some_and(|s| surfaces.contains(s))
+            };
+            node.iter().all(named)
+        };
+        if bounded == 0 && !at.nodes.iter().any(touching) {
+            continue;
+        }
+        let touch = NonManifoldPoint {
+            vertex,
+            fans,
+            edges: edges_through,
+            faces,
+        };
+        found.push((at.place, touch));
+    }
+    found
+}
+
+/// The edges at points.
+#[derive(Default)]
+struct Edges {
+    /// Those that run through a point.
+    through: HashMap<usize, Vec<EdgeId>>,
+    /// The points with the surfaces that have a face with an edge there.
+    bounding: HashSet<(usize, usize)>,
+}
+
+impl Edges {
+    fn of<N: Float>(raw: &BoundaryInput<N>, names: &Names) -> Self {
+        let mut found = Self::default();
+        for (id, edge) in raw.edges.iter().enumerate() {
+            for &point in &edge.passes {
+                let through = found.through.entry(point).or_default();
+                through.push(EdgeId(id as u32));
+            }
+            for &point in edge.ends.iter().flatten().chain(&edge.passes) {
+                for wing in &edge.wings {
+                    let surface = names.surface_of[&wing.surface];
+                    found.bounding.insert((point, surface));
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The faces of each surface.
+struct Faces<'a, N: Float = f64> {
+    of_surface: Vec<Vec<FaceId>>,
+    locator: Locator<'a, N>,
+}
+
+impl<'a, N: Float> Faces<'a, N> {
+    fn of(brep: &'a Brep<N>, band: N) -> Self {
+        let mut of_surface = vec![Vec::new(); brep.geometry.surfaces.len()];
+        for (patch, face) in brep.geometry.patches.iter().zip(brep.topology.face_ids()) {
+            of_surface[patch.surface].push(face);
+        }
+        Self {
+            of_surface,
+            locator: Locator::new(brep, band),
+        }
+    }
+
+    /// The face of a surface that holds a point of it inside.
+    fn holding(&self, surface: usize, p: &Point3<N>) -> Option<FaceId> {
+        let mut faces = self.of_surface[surface].iter().copied();
+        faces.find(|&face| self.locator.place(face, p) == PointLocation::Inside)
+    }
+}

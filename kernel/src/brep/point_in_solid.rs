@@ -1,0 +1,136 @@
+//! Whether shells hold a point: the parity of a line's crossings.
+
+use super::Brep;
+use super::bounding_box::face_bounds;
+use super::locate::{FaceLocator, PointLocation};
+use super::topology::FaceId;
+use crate::geometry::bounds::Aabb;
+use crate::geometry::curve::{Curve, Line};
+use crate::geometry::curve_surface::cut;
+use crate::geometry::vector::Length;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
+use crate::number::roots::{RootKind, Roots};
+use nalgebra::{Point3, Vector3};
+
+/// How many lines are tried before it is left open.
+const LINES: u32 = 64;
+
+/// Whether the solids hold a point that is not on the boundary; none where no ray from it crosses
+/// faces plainly, farther than `band` from their edges. That is no less than their places are rounded
+/// by.
+pub fn holds<N: Float>(brep: &Brep<N>, p: &Point3<N>, band: N) -> Option<bool> {
+    let faces: Vec<FaceId> = brep.topology.face_ids().collect();
+    Closed::of(brep, &faces, band).holds(p)
+}
+
+/// The faces of closed shells, with their boxes.
+pub(super) struct Closed<'a, N: Float> {
+    brep: &'a Brep<N>,
+    faces: Vec<(FaceId, Aabb)>,
+    /// The box of all.
+    pub bounds: Aabb,
+    band: N,
+}
+
+impl<'a, N: Float> Closed<'a, N> {
+    /// The faces, what lies within `band` of an edge being on it.
+    pub fn of(brep: &'a Brep<N>, faces: &[FaceId], band: N) -> Self {
+        let boxed = |&f: &FaceId| (f, face_bounds(brep, f).grown(band));
+        let faces: Vec<(FaceId, Aabb)> = faces.iter().map(boxed).collect();
+        let bounds = faces.iter().fold(Aabb::EMPTY, |all, f| all.hull(&f.1));
+        Self {
+            brep,
+            faces,
+            bounds,
+            band,
+        }
+    }
+
+    /// Whether they hold a point. Rays are tried until one crosses plainly.
+    fn holds(&self, p: &Point3<N>) -> Option<bool> {
+        let crossings = (0..LINES).find_map(|k| {
+            let ray = Line {
+                origin: *p,
+                direction: towards(k),
+            };
+            let [_, far] = self.reach(&ray);
+            self.crossings(&ray, [N::ZERO, far])
+        });
+        crossings.map(|all| all.len() % 2 == 1)
+    }
+
+    /// Whether they hold others that do not cross them, though they may touch them: the place
+    /// where a line crosses these tells, and where it crosses those beyond.
+    pub fn hold(&self, others: &Self) -> Option<bool> {
+        (0..LINES).find_map(|k| {
+            let line = others.line_across(k);
+            let range = others.reach(&line);
+            let at = *others.crossings(&line, range)?.first()?;
+            let [_, far] = self.reach(&line);
+            // Where the two touch it is not told.
+            let beyond = self.crossings(&line, [at - self.band, far])?;
+            let apart = beyond.iter().all(|t| t.is_beyond(at + self.band));
+            apart.then_some(beyond.len() % 2 == 1)
+        })
+    }
+
+    /// The k-th line through the box, which meets the faces or not: each at other depths beside
+    /// its middle.
+    fn line_across(&self, k: u32) -> Line<N> {
+        let b = self.faces[k as usize % self.faces.len()].1;
+        let part = |i: u32| N::of(0.5) + N::of(0.21) * (N::whole(k + 1) * N::whole(i + 2)).sin();
+        let at = |i: usize| {
+            let (lo, hi) = (N::of(b.min[i]), N::of(b.max[i]));
+            lo + (hi - lo) * part(i as u32)
+        };
+        Line {
+            origin: Point3::new(at(0), at(1), at(2)),
+            direction: towards(k),
+        }
+    }
+
+    /// The range of a line beyond which nothing is crossed.
+    fn reach(&self, line: &Line<N>) -> [N; 2] {
+        let away = (self.bounds.centre().map(N::of) - line.origin).length();
+        let length = N::TWO * (away + N::of(self.bounds.diagonal()));
+        [-length, length]
+    }
+
+    /// Where a line crosses the faces, in order; none where that is unclear.
+    fn crossings(&self, line: &Line<N>, range: [N; 2]) -> Option<Vec<N>> {
+        let mut crossed = Vec::new();
+        let curve = Curve::Line(*line);
+        for (face, around) in &self.faces {
+            if around.along(line, range).is_none() {
+                continue;
+            }
+            let Roots::At { roots, .. } = cut(&curve, range, self.brep.surface(*face), self.band)
+            else {
+                return None;
+            };
+            if roots.is_empty() {
+                continue;
+            }
+            let locator = FaceLocator::of(self.brep, *face, self.band);
+            for root in roots {
+                match locator.place(&curve.point(root.t)) {
+                    PointLocation::Outside => {}
+                    PointLocation::Inside if root.contact == RootKind::Simple => {
+                        crossed.push(root.t)
+                    }
+                    _ => return None,
+                }
+            }
+        }
+        crossed.sort_by(N::total_cmp);
+        Some(crossed)
+    }
+}
+
+/// The direction of the k-th line: none along an axis or a common diagonal.
+fn towards<N: Float>(k: u32) -> Vector3<N> {
+    let a = N::of(0.61) + N::of(2.4) * N::whole(k);
+    let rise = N::of(0.37) - N::of(0.21) * N::whole(k % 5);
+    Vector3::new(a.cos(), a.sin(), rise).unit()
+}

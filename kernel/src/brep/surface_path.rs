@@ -1,0 +1,468 @@
+//! Walks on a surface along plane sections of it, and the arcs they cross.
+//!
+//! A walk is a straight line of a plane, a ruling or a parallel of a cylinder or a cone, a great
+//! circle or a parallel of a sphere, or either circle of a torus. Each lies in a plane, so its
+//! crossings with an arc are the roots of that plane's distance along the arc; at the top of a torus,
+//! which the plane touches, those of the cylinder's through the walk. Notation: s is the length
+//! along the walk, D its direction, N the outward normal of the face, T the direction of an arc; the
+//! face lies to the left, towards N × T, so the walk enters the face where D·(N × T) > 0.
+
+mod reach;
+
+use super::Brep;
+use super::topology::{CoedgeId, Sense};
+use crate::geometry::bounds::Aabb;
+use crate::geometry::curve::{Circle, Curve};
+use crate::geometry::curve_plane::{line_meets, section_roots, surface_roots};
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
+use crate::geometry::torus_curve::TorusParameter;
+use crate::geometry::vector::Length;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
+use nalgebra::{Point3, Vector3};
+use reach::Reach;
+
+/// A piece of a face's boundary: the face lies to the left of its sense, seen from the side the
+/// face's outward normal points to.
+#[derive(Clone, Copy, Debug)]
+pub struct DirectedArc<'a, N: Float = f64> {
+    /// The curve.
+    pub curve: &'a Curve<N>,
+    /// The range of its parameter, increasing.
+    pub range: [N; 2],
+    /// Whether it is run along the curve's direction.
+    pub sense: Sense,
+}
+
+impl<'a, N: Float> DirectedArc<'a, N> {
+    /// A coedge of a boundary representation.
+    pub fn of(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
+        let coedge = brep.topology.coedge(coedge);
+        Self {
+            curve: brep.curve(coedge.edge),
+            range: brep.range(coedge.edge),
+            sense: coedge.sense,
+        }
+    }
+
+    /// Whether both are of one edge: if a face has two such arcs, it lies on both sides of the edge.
+    /// Several edges may be of one curve.
+    pub fn shares_edge(&self, other: &Self) -> bool {
+        std::ptr::eq(self.curve, other.curve) && self.range == other.range
+    }
+}
+
+/// What a walk does where it meets an arc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CrossingSense {
+    /// It goes into the face, from the arc's right to its left.
+    Entering,
+    /// It goes out of the face, from the arc's left to its right.
+    Leaving,
+    /// It touches the arc, runs along it, or passes an end of it within the resolution: take
+    /// another walk.
+    Unclear,
+}
+
+/// A meeting of a walk with an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathCrossing<N: Float = f64> {
+    /// The length along the walk from its start, in the part's unit.
+    pub at: N,
+    /// The index of the arc.
+    pub arc: usize,
+    /// The parameter on the arc's curve.
+    pub t: N,
+    /// What the walk does there.
+    pub passage: CrossingSense,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Track<N: Float = f64> {
+    Line(Vector3<N>),
+    /// About the frame's z axis, from its x axis, with the radius.
+    Circle(Frame<N>, N),
+}
+
+/// Which part of the plane section the walk is.
+#[derive(Clone, Copy, Debug)]
+enum Branch<N: Float = f64> {
+    Whole,
+    /// On this side of the plane through the point.
+    Half(Point3<N>, Vector3<N>),
+    /// The outer (+1) or inner (-1) of a torus's two circles at one height.
+    Parallel(Torus<N>, N),
+    /// A torus's circle next to its top (+1) or bottom (-1): of the two that the cylinder shares
+    /// with it, which stands upright on the walk.
+    Level(Cylinder<N>, N),
+}
+
+/// Next to the top of a torus, as a part of the tube's radius: there the two circles at one height
+/// are close to each other, those at one distance from the axis far apart.
+const TOP: f64 = 0.5;
+
+/// A walk on a surface from a point of it.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePath<N: Float = f64> {
+    /// Of the plane that the walk lies in.
+    normal: Vector3<N>,
+    start: Point3<N>,
+    track: Track<N>,
+    branch: Branch<N>,
+    length: N,
+    reach: Reach,
+}
+
+impl<N: Float> SurfacePath<N> {
+    fn new(
+        start: &Point3<N>,
+        normal: Vector3<N>,
+        track: Track<N>,
+        branch: Branch<N>,
+        length: N,
+    ) -> Self {
+        Self {
+            normal,
+            start: *start,
+            track,
+            branch,
+            length,
+            reach: Reach::of((start, &normal), &track, &branch, length),
+        }
+    }
+
+    /// A straight line without end in a plane, along the unit vector `direction`.
+    pub fn straight(plane: &Plane<N>, start: &Point3<N>, direction: Vector3<N>) -> Self {
+        let normal = direction.cross(&plane.frame.z).unit();
+        let track = Track::Line(direction);
+        Self::new(start, normal, track, Branch::Whole, N::INFINITY)
+    }
+
+    /// The great circle of a sphere from `start` towards `target`, once round; none where they
+    /// lie on one diameter.
+    pub fn great_circle(centre: &Point3<N>, start: &Point3<N>, target: &Point3<N>) -> Option<Self> {
+        let arm = start - centre;
+        let normal = arm.cross(&(target - centre));
+        let size = normal.length();
+        let clear = size.is_beyond(arm.length_squared() * N::ROUNDING.sqrt());
+        clear.then(|| Self::circle(start, *centre, normal / size, Branch::Whole))
+    }
+
+    fn circle(start: &Point3<N>, centre: Point3<N>, axis: Vector3<N>, branch: Branch<N>) -> Self {
+        let arm = start - centre;
+        let frame = Frame::toward(centre, axis, arm);
+        let radius = arm.length();
+        let track = Track::Circle(frame, radius);
+        Self::new(start, axis, track, branch, N::TAU * radius)
+    }
+
+    /// The parallel circle of a cylinder, a cone, a sphere or a torus through `start`, once round
+    /// in the given sense about the axis. None on the axis and on a plane.
+    pub fn parallel(
+        surface: &Surface<N>,
+        start: &Point3<N>,
+        sense: Sense,
+        band: N,
+    ) -> Option<Self> {
+        let f = surface.frame();
+        let q = f.coordinates(start);
+        let rho = q.x.hypot(q.y);
+        let branch = match surface {
+            Surface::Plane(_) => return None,
+            Surface::Torus(t) => {
+                let away = rho - t.major;
+                if away.is_within(N::of(TOP) * t.minor) {
+                    let upright = Cylinder {
+                        frame: *f,
+                        radius: rho,
+                    };
+                    Branch::Level(upright, q.z.signum())
+                } else {
+                    Branch::Parallel(*t, away.signum())
+                }
+            }
+            _ => Branch::Whole,
+        };
+        let centre = f.origin + f.z * q.z;
+        let is_off_axis = rho.is_beyond(band.max(N::ROUNDING * q.length()));
+        is_off_axis.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
+    }
+
+    /// The ruling of a cylinder or a cone through `start`, or at the angle `u` from a cone's apex,
+    /// without end; along the axis or, on a cylinder, against it.
+    pub fn ruling(surface: &Surface<N>, start: &Point3<N>, u: N, sense: Sense) -> Option<Self> {
+        let f = surface.frame();
+        let (sin, cos) = u.sin_cos();
+        Self::ruling_over(surface, start, f.x * cos + f.y * sin, sense)
+    }
+
+    /// The ruling of a cylinder or a cone through a point of it; on the axis, as the one at the
+    /// angle zero.
+    pub fn ruling_through(surface: &Surface<N>, start: &Point3<N>, sense: Sense) -> Option<Self> {
+        let f = surface.frame();
+        let q = f.coordinates(start);
+        let rho = q.x.hypot(q.y);
+        let radial = match rho.is_above_zero() {
+            true => f.x * (q.x / rho) + f.y * (q.y / rho),
+            false => f.x,
+        };
+        Self::ruling_over(surface, start, radial, sense)
+    }
+
+    /// The ruling over a unit vector across the axis.
+    fn ruling_over(
+        surface: &Surface<N>,
+        start: &Point3<N>,
+        radial: Vector3<N>,
+        sense: Sense,
+    ) -> Option<Self> {
+        let f = surface.frame();
+        let direction = match surface {
+            Surface::Cylinder(_) => f.z * sense.sign::<N>(),
+            Surface::Cone(c) => f.z * c.cos + radial * c.sin,
+            _ => return None,
+        };
+        let branch = Branch::Half(f.origin, radial);
+        let track = Track::Line(direction);
+        Some(Self::new(
+            start,
+            f.z.cross(&radial),
+            track,
+            branch,
+            N::INFINITY,
+        ))
+    }
+
+    /// The circle about the tube of a torus through `start`, once round with the angle about the
+    /// tube rising or falling.
+    pub fn tube(torus: &Torus<N>, start: &Point3<N>, sense: Sense) -> Self {
+        let f = &torus.frame;
+        let q = f.coordinates(start);
+        let radial = (f.x * q.x + f.y * q.y).unit();
+        let axis = radial.cross(&f.z) * sense.sign::<N>();
+        let centre = f.origin + radial * torus.major;
+        Self::circle(start, centre, axis, Branch::Half(f.origin, radial))
+    }
+
+    /// The walk from the same point that way round which leads to the side of `left` at `p`.
+    pub(super) fn toward(self, p: &Point3<N>, left: &Vector3<N>) -> Self {
+        if self.direction(p).dot(left).is_below_zero() {
+            self.reversed()
+        } else {
+            self
+        }
+    }
+
+    /// The walk from the same point the other way.
+    pub(super) fn reversed(self) -> Self {
+        let track = match self.track {
+            Track::Line(d) => Track::Line(-d),
+            Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),
+        };
+        Self::new(&self.start, self.normal, track, self.branch, self.length)
+    }
+
+    /// The same walk, no longer than `length`.
+    pub fn upto(self, length: N) -> Self {
+        let length = self.length.min(length);
+        Self::new(&self.start, self.normal, self.track, self.branch, length)
+    }
+
+    /// How long it is.
+    pub(super) fn length(&self) -> N {
+        self.length
+    }
+
+    /// Whether the walk ends where it starts.
+    pub(super) fn closes(&self) -> bool {
+        matches!(self.track, Track::Circle(_, radius) if self.length.reaches(N::TAU * radius))
+    }
+
+    /// The point at the length s.
+    pub fn point(&self, s: N) -> Point3<N> {
+        match self.track {
+            Track::Line(d) => self.start + d * s,
+            Track::Circle(ref f, r) => {
+                let (sin, cos) = (s / r).sin_cos();
+                f.point(r * cos, r * sin, N::ZERO)
+            }
+        }
+    }
+
+    /// The length at which the walk passes a point of it.
+    pub fn at(&self, p: &Point3<N>) -> N {
+        match self.track {
+            Track::Line(d) => (p - self.start).dot(&d),
+            Track::Circle(ref f, r) => {
+                let q = f.coordinates(p);
+                q.y.atan2(q.x).rem_euclid(N::TAU) * r
+            }
+        }
+    }
+
+    /// The unit direction at a point of the walk.
+    pub(super) fn direction(&self, p: &Point3<N>) -> Vector3<N> {
+        match self.track {
+            Track::Line(d) => d,
+            Track::Circle(ref f, _) => f.z.cross(&(p - f.origin)).unit(),
+        }
+    }
+
+    fn passes(&self, p: &Point3<N>, band: N) -> bool {
+        let inward = match &self.branch {
+            Branch::Whole => N::INFINITY,
+            Branch::Half(o, side) => (p - o).dot(side),
+            Branch::Parallel(t, side) => {
+                let q = t.frame.coordinates(p);
+                (q.x.hypot(q.y) - t.major) * *side
+            }
+            Branch::Level(c, side) => (p - c.frame.origin).dot(&c.frame.z) * *side,
+        };
+        let s = self.at(p);
+        inward.is_beyond(-band) && s.lies_between([-band, self.length + band])
+    }
+
+    /// Whether the walk may pass through a box.
+    pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: N) -> bool {
+        self.reach.may_meet(lo, hi, band.above())
+    }
+
+    /// [`Self::may_meet`] of a box.
+    pub fn may_meet_box(&self, b: &Aabb, band: N) -> bool {
+        self.may_meet(&b.min, &b.max, band)
+    }
+
+    /// The crossings with `arcs` on `surface`, in order; `side` tells whether the outward normal
+    /// of the face is the surface's own, `band` is the resolution.
+    pub fn crossings(
+        &self,
+        surface: &Surface<N>,
+        side: Sense,
+        arcs: &[DirectedArc<'_, N>],
+        band: N,
+    ) -> Vec<PathCrossing<N>> {
+        let mut found = Vec::new();
+        for (i, arc) in arcs.iter().enumerate() {
+            self.meet(
+                surface,
+                side,
+                arc,
+                &[arc.range],
+                band,
+                &mut |at, t, passage| {
+                    found.push(PathCrossing {
+                        at,
+                        arc: i,
+                        t,
+                        passage,
+                    });
+                },
+            );
+        }
+        found.sort_by(|a, b| a.at.total_cmp(&b.at));
+        found
+    }
+
+    /// Reports the crossings with one arc, of which only some ranges may be met: (length along the
+    /// walk, parameter, passage).
+    pub(super) fn meet(
+        &self,
+        surface: &Surface<N>,
+        side: Sense,
+        arc: &DirectedArc<'_, N>,
+        ranges: &[[N; 2]],
+        band: N,
+        found: &mut impl FnMut(N, N, CrossingSense),
+    ) {
+        let [lo, hi] = arc.range;
+        if !closes(arc) {
+            for t in [lo, hi] {
+                let p = arc.curve.point(t);
+                if self.off(&p).is_within(band) && self.passes(&p, band) {
+                    found(self.at(&p).max(N::ZERO), t, CrossingSense::Unclear);
+                }
+            }
+        }
+        let sign = arc.sense.sign::<N>() * side.sign::<N>();
+        let mut root = |t: N, plain: bool| {
+            let p = arc.curve.point(t);
+            if !self.passes(&p, band) {
+                return;
+            }
+            let s = self.at(&p);
+            let across = self.direction(&p).cross(&surface.normal(&p));
+            let turn = sign * across.dot(&arc.curve.tangent(t));
+            let at_end = s.is_at_most(band) || s.reaches(self.length - band);
+            let is_along = turn.is_nan() || turn.abs().is_short_of(N::ROUNDING.sqrt());
+            let passage = if !plain || at_end || is_along {
+                CrossingSense::Unclear
+            } else if turn.is_above_zero() {
+                CrossingSense::Entering
+            } else {
+                CrossingSense::Leaving
+            };
+            found(s.max(N::ZERO), t, passage);
+        };
+        if let Track::Line(d) = &self.track
+            && line_meets(arc.curve, arc.range, (&self.start, d), band, &mut root)
+        {
+            return;
+        }
+        if !ranges.is_empty()
+            && let Some(all) = self.met_on_torus(surface, arc.curve, band)
+        {
+            let all = all.into_iter().map(|t| arc.curve.in_cycle(t, lo));
+            return all
+                .filter(|t| t.lies_in(arc.range))
+                .for_each(|t| root(t, true));
+        }
+        for &range in ranges {
+            match self.branch {
+                Branch::Level(c, _) => {
+                    surface_roots(arc.curve, range, &Surface::Cylinder(c), band, &mut root);
+                }
+                _ => {
+                    let section = (&self.start, &self.normal);
+                    section_roots(arc.curve, range, section, band, &mut root);
+                }
+            }
+        }
+    }
+
+    /// Where a walk along a circle plainly crosses a curve through the angles of a torus, of the whole
+    /// curve: a circle of that torus, or of the curve's other surface. None where that is not plain,
+    /// and of other walks and curves.
+    fn met_on_torus(&self, surface: &Surface<N>, curve: &Curve<N>, band: N) -> Option<Vec<N>> {
+        let (Track::Circle(frame, radius), Curve::Toric(curve)) = (&self.track, curve) else {
+            return None;
+        };
+        if *surface != Surface::Torus(curve.torus) {
+            let (frame, radius) = (*frame, *radius);
+            return curve.across_circle(&Circle { frame, radius }, surface, band);
+        }
+        let [theta, phi] = surface.parameters(&self.start);
+        let (fixed, angle) = match self.branch {
+            Branch::Half(..) => (TorusParameter::Around, theta),
+            Branch::Parallel(..) | Branch::Level(..) => (TorusParameter::Tube, phi),
+            Branch::Whole => return None,
+        };
+        curve.across(fixed, angle, band)
+    }
+
+    /// The distance of a point from what cuts the walk out of its surface.
+    fn off(&self, p: &Point3<N>) -> N {
+        match self.branch {
+            Branch::Level(c, _) => Surface::Cylinder(c).distance(p),
+            _ => (p - self.start).dot(&self.normal),
+        }
+    }
+}
+
+/// Whether the arc runs over its whole closed curve.
+fn closes<N: Float>(arc: &DirectedArc<'_, N>) -> bool {
+    arc.curve.period().is_some_and(|period| {
+        let [lo, hi] = arc.range;
+        (hi - lo).reaches(period * (N::ONE - N::ROUNDING))
+    })
+}

@@ -1,0 +1,218 @@
+//! Which boxes a walk may pass through, in doubles for walks of any precision: what is beside by
+//! more than the resolution and rounding is passed over.
+
+use super::{Branch, Track};
+use crate::geometry::bounds::Aabb;
+use crate::geometry::vector::Length;
+use crate::number::float::Float;
+use crate::number::predicates::{Compare, ROUNDING};
+use nalgebra::{Point3, Vector3};
+
+/// A half-space: what lies above a plane through a point, by its unit normal.
+#[derive(Clone, Copy, Debug)]
+struct Above {
+    origin: Point3<f64>,
+    normal: Vector3<f64>,
+}
+
+/// The side of a torus's middle circle on which a walk is.
+#[derive(Clone, Copy, Debug)]
+struct Beside {
+    axis: Above,
+    major: f64,
+    side: f64,
+}
+
+/// What holds a walk.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// The plane that the walk lies in.
+    plane: Above,
+    half: Option<Above>,
+    beside: Option<Beside>,
+    /// A straight walk's start and direction, and its length.
+    line: Option<(Above, f64)>,
+    /// The box of a straight walk of a given length; else without bounds.
+    extent: Aabb,
+}
+
+/// A box by its middle and half of its sides.
+struct Middle {
+    centre: Point3<f64>,
+    half: Vector3<f64>,
+}
+
+impl Above {
+    fn of<N: Float>(origin: &Point3<N>, normal: &Vector3<N>) -> Self {
+        Self {
+            origin: origin.map(N::rounded),
+            normal: normal.map(N::rounded),
+        }
+    }
+
+    /// How far above the plane the middle of a box is, and by how much its corners may be nearer.
+    fn span(&self, b: &Middle) -> [f64; 2] {
+        let (n, h) = (self.normal.abs(), b.half);
+        let half = n.x * h.x + n.y * h.y + n.z * h.z;
+        let far = b.centre.coords.abs().sum() + self.origin.coords.abs().sum();
+        [
+            self.normal.dot(&(b.centre - self.origin)),
+            half + ROUNDING * far,
+        ]
+    }
+}
+
+impl Reach {
+    /// What holds a walk in the plane through its start with the given normal.
+    pub fn of<N: Float>(
+        (start, normal): (&Point3<N>, &Vector3<N>),
+        track: &Track<N>,
+        branch: &Branch<N>,
+        length: N,
+    ) -> Self {
+        let half = match branch {
+            Branch::Half(o, side) => Some(Above::of(o, side)),
+            Branch::Level(c, side) => Some(Above::of(&c.frame.origin, &(c.frame.z * *side))),
+            Branch::Whole | Branch::Parallel(..) => None,
+        };
+        let beside = match branch {
+            Branch::Parallel(t, side) => Some(Beside {
+                axis: Above::of(&t.frame.origin, &t.frame.z),
+                major: t.major.rounded(),
+                side: side.rounded(),
+            }),
+            Branch::Whole | Branch::Half(..) | Branch::Level(..) => None,
+        };
+        let (line, extent) = match track {
+            Track::Line(d) => {
+                let ends = Aabb::of(start).hull(&Aabb::of(&(start + d * length)));
+                let extent = if length.is_finite() { ends } else { Aabb::ALL };
+                (Some((Above::of(start, d), length.above())), extent)
+            }
+            Track::Circle(..) => (None, Aabb::ALL),
+        };
+        Self {
+            plane: Above::of(start, normal),
+            half,
+            beside,
+            line,
+            extent,
+        }
+    }
+
+    /// Whether the walk may pass through a box, or by it within the resolution.
+    pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: f64) -> bool {
+        let Aabb { min, max } = &self.extent;
+        let is_aside =
+            |i: usize| (lo[i] - band).is_beyond(max[i]) || (hi[i] + band).is_short_of(min[i]);
+        if (0..3).any(is_aside) {
+            return false;
+        }
+        let side = |i: usize, sign: f64| 0.5 * (hi[i] + sign * lo[i]);
+        let b = Middle {
+            centre: Point3::new(side(0, 1.0), side(1, 1.0), side(2, 1.0)),
+            half: Vector3::new(side(0, -1.0), side(1, -1.0), side(2, -1.0)),
+        };
+        let [mid, half] = self.plane.span(&b);
+        if mid.abs().is_beyond(half + band) {
+            return false;
+        }
+        let is_below = |plane: &Above| {
+            let [mid, half] = plane.span(&b);
+            mid.is_short_of(-half - band)
+        };
+        let is_off = |beside: &Beside| beside.is_off(&b, band);
+        if self.half.as_ref().is_some_and(is_below) || self.beside.as_ref().is_some_and(is_off) {
+            return false;
+        }
+        self.line.as_ref().is_none_or(|(along, length)| {
+            let [mid, half] = along.span(&b);
+            mid.reaches(-half - band) && (mid - half - band).is_at_most(*length)
+        })
+    }
+}
+
+impl Beside {
+    /// Whether a box is plainly on the other side.
+    fn is_off(&self, b: &Middle, band: f64) -> bool {
+        let arm = b.centre - self.axis.origin;
+        let [up, _] = self.axis.span(b);
+        let across = (arm - self.axis.normal * up).length();
+        let rounding = ROUNDING * (arm.length() + b.centre.coords.length());
+        let beyond = (across - self.major) * self.side;
+        beyond.is_short_of(-b.half.length() - band - rounding)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::brep::surface_path::SurfacePath;
+    use crate::brep::topology::Sense;
+    use crate::geometry::bounds::Aabb;
+    use crate::geometry::frame::Frame;
+    use crate::geometry::surface::{Cylinder, Surface, Torus};
+    use crate::number::extended::F237;
+    use crate::number::float::Float;
+    use nalgebra::Point3;
+
+    fn walks<N: Float>() -> Vec<SurfacePath<N>> {
+        let frame = Frame {
+            origin: Point3::new(N::of(1.1), N::of(-0.3), N::of(0.7)),
+            ..Frame::world()
+        };
+        let torus = Torus {
+            frame,
+            major: N::of(2.0),
+            minor: N::of(0.6),
+        };
+        let (ring, rod) = (
+            Surface::Torus(torus),
+            Cylinder {
+                frame,
+                radius: N::of(0.9),
+            },
+        );
+        let rod = Surface::Cylinder(rod);
+        let mut all = Vec::new();
+        for k in 0..12 {
+            let [u, v] = [0.4, 0.55].map(|step| N::of(step * f64::from(k)));
+            let p = ring.point(u, v);
+            all.push(SurfacePath::tube(&torus, &p, Sense::Along));
+            all.extend(SurfacePath::parallel(
+                &ring,
+                &p,
+                Sense::Against,
+                N::of(1e-11),
+            ));
+            let q = rod.point(u, v);
+            all.extend(
+                SurfacePath::ruling_through(&rod, &q, Sense::Along).map(|w| w.upto(N::of(3.0))),
+            );
+        }
+        all
+    }
+
+    fn holds<N: Float>() {
+        for walk in walks::<N>() {
+            let length = walk.length();
+            let mut passed_over = 0;
+            for k in 0..=100 {
+                let p = walk.point(length * N::of(f64::from(k) / 100.0));
+                assert!(
+                    walk.may_meet_box(&Aabb::of(&p), N::ZERO),
+                    "{walk:?} at {p:?}"
+                );
+                // Aside by more than the box is wide.
+                let aside = p.map(|x| x + N::of(0.1));
+                passed_over += u32::from(!walk.may_meet_box(&Aabb::of(&aside), N::of(1e-3)));
+            }
+            assert!(passed_over > 20, "{walk:?}");
+        }
+    }
+
+    #[test]
+    fn every_point_of_a_walk_is_met_and_what_is_aside_is_not() {
+        holds::<f64>();
+        holds::<F237>();
+    }
+}

@@ -1,0 +1,143 @@
+//! Bounds of the third derivatives over a cell of the two angles: near to where a function of one
+//! angle vanishes they are far smaller than over the whole torus.
+
+use super::{BivariateTrigPoly, Partials, basis, partials};
+use crate::number::float::Float;
+
+/// The degrees of the five functions.
+fn degree<N: Float>() -> [N; 5] {
+    [N::ZERO, N::ONE, N::ONE, N::TWO, N::TWO]
+}
+
+/// Bounds, over all angles, of each row's derivatives by the second angle: by their order, from
+/// none to four.
+#[derive(Clone, Debug)]
+pub struct Reaches<N: Float = f64>([[N; 5]; 5]);
+
+/// Bounds of |f_yyy|, |f_xyy|, |f_xxy| and |f_xxx| over a cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Thirds<N: Float = f64>(pub [N; 4]);
+
+/// The five functions' derivatives of the orders none to three.
+fn to_third<N: Float>(basis: &[[N; 5]; 3]) -> [[N; 5]; 4] {
+    let [_, c, s, c2, s2] = basis[1];
+    let four = N::of(4.0);
+    let third = [N::ZERO, -c, -s, -four * c2, -four * s2];
+    [basis[0], basis[1], basis[2], third]
+}
+
+/// Bounds of derivatives of the five functions within `half` of where they are given; `order` is
+/// theirs.
+fn within<N: Float>(row: &[N; 5], order: usize, half: N) -> [N; 5] {
+    let degree = degree::<N>();
+    std::array::from_fn(|i| {
+        let most = degree[i].powi(order as i32);
+        let most = if order == 0 { N::ONE } else { most };
+        (row[i].abs() + degree[i] * most * half).min(most)
+    })
+}
+
+impl<N: Float> BivariateTrigPoly<N> {
+    /// Bounds of the rows' derivatives by the second angle.
+    pub fn reaches(&self) -> Reaches<N> {
+        let reach = |row: &[N; 5], order: usize| -> N {
+            let power = |d: N| (0..order).fold(N::ONE, |p, _| p * d);
+            let terms = row.iter().zip(degree::<N>());
+            terms.map(|(c, d)| c.abs() * power(d)).sum()
+        };
+        let of = |order: usize| self.0.each_ref().map(|row| reach(row, order));
+        Reaches([0, 1, 2, 3, 4].map(of))
+    }
+
+    /// The value with its partial derivatives at the centre of a cell, and bounds of the third ones
+    /// over it; `half` are half its sides.
+    pub fn partials_about(
+        &self,
+        centre: [N; 2],
+        half: [N; 2],
+        reaches: &Reaches<N>,
+    ) -> (Partials<N>, Thirds<N>) {
+        let [bx, by] = centre.map(basis);
+        let (across, along) = (to_third(&bx), to_third(&by));
+        let rows: [[N; 5]; 4] = std::array::from_fn(|order| within(&across[order], order, half[0]));
+        // The terms of a row come together before their bound is taken: there most cancels.
+        let row = |order: usize, i: usize| {
+            let sum: N = (0..5).map(|j| self.0[i][j] * along[order][j]).sum();
+            let near = sum.abs() + half[1] * reaches.0[order + 1][i];
+            near.min(reaches.0[order][i])
+        };
+        let bound = |k: usize| (0..5).map(|i| rows[k][i] * row(3 - k, i)).sum();
+        let thirds = Thirds([0, 1, 2, 3].map(bound));
+        (partials(&self.0, &bx, &by), thirds)
+    }
+}
+
+impl<N: Float> Reaches<N> {
+    /// The same in doubles.
+    pub fn in_doubles(&self) -> Reaches {
+        Reaches(self.0.map(|row| row.map(N::rounded)))
+    }
+}
+
+impl<N: Float> Thirds<N> {
+    /// Bounds of |f_xx|, |f_xy| and |f_yy|'s changes over offsets of up to (hx, hy).
+    pub fn seconds(&self, [hx, hy]: [N; 2]) -> [N; 3] {
+        let [yyy, xyy, xxy, xxx] = self.0;
+        [
+            xxx * hx + xxy * hy,
+            xxy * hx + xyy * hy,
+            xyy * hx + yyy * hy,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// f = (1 + cos x)(2 - sin 2y) + 3 sin 2x cos y, by hand.
+    fn form() -> BivariateTrigPoly {
+        let mut f = BivariateTrigPoly::zero();
+        f.0[0][0] = 2.0;
+        f.0[0][4] = -1.0;
+        f.0[1][0] = 2.0;
+        f.0[1][4] = -1.0;
+        f.0[4][1] = 3.0;
+        f
+    }
+
+    fn thirds(x: f64, y: f64) -> [f64; 4] {
+        let (s2x, c2x, s2y, c2y) = (
+            (2.0 * x).sin(),
+            (2.0 * x).cos(),
+            (2.0 * y).sin(),
+            (2.0 * y).cos(),
+        );
+        [
+            8.0 * (1.0 + x.cos()) * c2y + 3.0 * s2x * y.sin(),
+            -4.0 * x.sin() * s2y - 6.0 * c2x * y.cos(),
+            2.0 * x.cos() * c2y + 12.0 * s2x * y.sin(),
+            x.sin() * (2.0 - s2y) - 24.0 * c2x * y.cos(),
+        ]
+    }
+
+    #[test]
+    fn thirds_hold_what_is_met_in_the_cell_and_shrink_with_it() {
+        let (f, reaches) = (form(), form().reaches());
+        for (i, half) in [1.0, 0.1, 1.0 / 1024.0].into_iter().enumerate() {
+            for k in 0..20 {
+                let (cx, cy) = (0.3 * f64::from(k), 1.7 * f64::from(k) + 0.1);
+                let half = [half, 0.5 * half];
+                let (_, Thirds(bounds)) = f.partials_about([cx, cy], half, &reaches);
+                for (a, b) in [(-1.0, -1.0), (-1.0, 1.0), (0.3, -0.7), (1.0, 1.0)] {
+                    let there = thirds(cx + a * half[0], cy + b * half[1]);
+                    for (bound, value) in bounds.iter().zip(there) {
+                        assert!(value.abs() <= bound * (1.0 + 1e-12) + 1e-12);
+                    }
+                }
+                let (_, Thirds(least)) = f.partials_about([cx, cy], [0.0; 2], &reaches);
+                assert!(i < 2 || bounds.iter().zip(least).all(|(b, l)| *b <= l + 0.5));
+            }
+        }
+    }
+}

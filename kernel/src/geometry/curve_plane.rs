@@ -1,0 +1,234 @@
+//! Where a curve meets a plane, or a line of its surface: in closed form where there is one.
+
+use super::curve::Curve;
+use super::curve_surface::cut;
+use super::frame::Frame;
+use super::quadric_curve::{QuadricCurve, Ruled, Sweep};
+use super::surface::{Plane, Surface};
+use crate::geometry::vector::Length;
+use crate::number::float::Float;
+use crate::number::roots::{RootKind, Roots};
+use nalgebra::{Point3, Vector3};
+
+/// Where a curve meets a plane, over a range: reports each parameter and whether the curve plainly
+/// crosses there. Lines and conics with an angle in closed form.
+pub fn plane_roots<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    plane: &Plane<N>,
+    band: N,
+    found: &mut impl FnMut(N, bool),
+) {
+    let section = (&plane.frame.origin, &plane.frame.z);
+    section_roots(curve, range, section, band, found);
+}
+
+/// The same for the plane through a point with a unit normal.
+pub(crate) fn section_roots<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    (o, n): (&Point3<N>, &Vector3<N>),
+    band: N,
+    found: &mut impl FnMut(N, bool),
+) {
+    let plane = || Plane {
+        frame: Frame::about(*o, *n),
+    };
+    match curve {
+        Curve::Line(c) => {
+            let height = (c.origin - o).dot(n);
+            line_roots(height, c.direction.dot(n), range, band, found);
+        }
+        Curve::Circle(c) => {
+            let k = [c.radius * c.frame.x.dot(n), c.radius * c.frame.y.dot(n)];
+            turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
+        }
+        Curve::Ellipse(c) => {
+            let k = [c.a * c.frame.x.dot(n), c.b * c.frame.y.dot(n)];
+            turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
+        }
+        Curve::Quartic(c) if through_axis(c, (o, n), band) => {
+            ruling_roots(c, range, n, band, found);
+        }
+        _ => surface_roots(curve, range, &Surface::Plane(plane()), band, found),
+    }
+}
+
+/// The same for any surface.
+pub(crate) fn surface_roots<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surface: &Surface<N>,
+    band: N,
+    found: &mut impl FnMut(N, bool),
+) {
+    match cut(curve, range, surface, band) {
+        Roots::Everywhere => found(N::HALF * (range[0] + range[1]), false),
+        Roots::At { roots, .. } => {
+            for r in roots {
+                found(r.t, r.contact == RootKind::Simple);
+            }
+        }
+    }
+}
+
+fn base_frame<N: Float>(curve: &QuadricCurve<N>) -> &Frame<N> {
+    match &curve.base {
+        Ruled::Cylinder(s) => &s.frame,
+        Ruled::Cone(s) => &s.frame,
+    }
+}
+
+/// Whether a plane goes through the axis of the surface whose rulings carry a curve.
+fn through_axis<N: Float>(
+    curve: &QuadricCurve<N>,
+    (o, n): (&Point3<N>, &Vector3<N>),
+    band: N,
+) -> bool {
+    let axis = base_frame(curve);
+    let away = (axis.origin - o).dot(n).abs();
+    n.dot(&axis.z).abs() <= N::ROUNDING && away <= band
+}
+
+/// Where a curve over the rulings of a surface meets a plane through their axis, with the normal
+/// `n`: on two rulings.
+fn ruling_roots<N: Float>(
+    curve: &QuadricCurve<N>,
+    [lo, hi]: [N; 2],
+    n: &Vector3<N>,
+    band: N,
+    found: &mut impl FnMut(N, bool),
+) {
+    let axis = base_frame(curve);
+    let u = (-n.dot(&axis.x)).atan2(n.dot(&axis.y));
+    let period = curve.period();
+    let mut within = |t: N, plain: bool| {
+        let t = period.map_or(t, |period| lo + (t - lo).rem_euclid(period));
+        if t >= lo && t <= hi {
+            found(t, plain);
+        }
+    };
+    for u in [u, u + N::HALF * N::TAU] {
+        match curve.sweep {
+            Sweep::Round { turns } => {
+                let first = lo + (u - lo).rem_euclid(N::TAU);
+                (0..turns.max(1)).for_each(|k| within(first + N::TAU * N::whole(k), true));
+            }
+            Sweep::Oval { mid, half } => {
+                let away = (u - mid + N::HALF * N::TAU).rem_euclid(N::TAU) - N::HALF * N::TAU;
+                // At the ends of the sweep the curve touches the ruling.
+                let end = if away < N::ZERO {
+                    N::ZERO
+                } else {
+                    N::HALF * N::TAU
+                };
+                let q = axis.coordinates(&curve.at(end).into());
+                if (away.abs() - half).abs() * q.x.hypot(q.y) <= band {
+                    within(end, false);
+                } else if away.abs() < half {
+                    let t = (-away / half).acos();
+                    within(t, true);
+                    within(N::TAU - t, true);
+                }
+            }
+        }
+    }
+}
+
+/// Zeros of height + slope t.
+fn line_roots<N: Float>(
+    height: N,
+    slope: N,
+    [lo, hi]: [N; 2],
+    band: N,
+    found: &mut impl FnMut(N, bool),
+) {
+    let (a, b) = (height + slope * lo, height + slope * hi);
+    if a.abs() <= band && b.abs() <= band {
+        found(N::HALF * (lo + hi), false);
+    } else if a * b <= N::ZERO {
+        found((-height / slope).clamp(lo, hi), true);
+    }
+}
+
+/// Zeros of c + k[0] cos t + k[1] sin t.
+fn turn_roots<N: Float>(
+    c: N,
+    k: [N; 2],
+    [lo, hi]: [N; 2],
+    band: N,
+    found: &mut impl FnMut(N, bool),
+) {
+    let size = k[0].hypot(k[1]);
+    let at = k[1].atan2(k[0]);
+    if size + c.abs() <= band {
+        return found(N::HALF * (lo + hi), false);
+    }
+    if c.abs() > size + band {
+        return;
+    }
+    let mut within = |t: N, plain: bool| {
+        let t = lo + (t - lo).rem_euclid(N::TAU);
+        if t <= hi {
+            found(t, plain);
+        }
+    };
+    if c.abs() >= size - band {
+        return within(
+            if c > N::ZERO {
+                at + N::TAU / N::TWO
+            } else {
+                at
+            },
+            false,
+        );
+    }
+    // The height that is missed is better known than its arc cosine near the top.
+    let half = ((size - c) * (size + c)).sqrt().atan2(-c);
+    within(at - half, true);
+    within(at + half, true);
+}
+
+/// Where a line on one of two quadrics, by a point and its unit direction, meets the curve they
+/// share over a range: where it meets the other one, a cylinder. Reports each parameter, and that
+/// the curve is crossed plainly; false where no more can be said in closed form.
+pub fn line_meets<N: Float>(
+    curve: &Curve<N>,
+    [lo, hi]: [N; 2],
+    (start, direction): (&Point3<N>, &Vector3<N>),
+    band: N,
+    found: &mut impl FnMut(N, bool),
+) -> bool {
+    let Curve::Quartic(quartic) = curve else {
+        return false;
+    };
+    let Ruled::Cylinder(s) = &quartic.base else {
+        return false;
+    };
+    let (q, w) = (s.frame.coordinates(start), s.frame.components(direction));
+    let a = w.x * w.x + w.y * w.y;
+    if a <= N::ROUNDING.sqrt() {
+        return false;
+    }
+    let b = q.x * w.x + q.y * w.y;
+    let rho = q.x.hypot(q.y);
+    let c = (rho - s.radius) * (rho + s.radius);
+    let radicand = b * b - a * c;
+    // Next to a touch the roots are not told from each other.
+    if radicand.abs() <= N::of(16.0) * s.radius * band * a {
+        return false;
+    }
+    if radicand < N::ZERO {
+        return true;
+    }
+    let k = -(b + radicand.sqrt().copysign(b));
+    for at in [k / a, c / k] {
+        let p = start + direction * at;
+        let t = curve.in_cycle(curve.parameter(&p), lo);
+        // Else on another branch.
+        if t >= lo && t <= hi && (curve.point(t) - p).length() <= N::of(64.0) * band {
+            found(t, true);
+        }
+    }
+    true
+}

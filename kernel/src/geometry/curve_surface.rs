@@ -1,0 +1,203 @@
+//! Where a curve meets a surface.
+
+use super::bounds::Aabb;
+use super::curve::Curve;
+use super::implicit_on_curve::ImplicitOnCurve;
+use super::surface::Surface;
+use super::vector::Length;
+use crate::number::f64_filter::F64Filter;
+use crate::number::float::Float;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{Function, Root, RootKind, Roots, isolate, isolate_closely, probes};
+use nalgebra::Point3;
+use std::borrow::Cow;
+
+/// How far above a surface a curve runs.
+struct Height<'a, N: Float = f64> {
+    curve: Cow<'a, Curve<N>>,
+    surface: Cow<'a, Surface<N>>,
+    /// The same of a line or circle, where coordinates may cancel by more than halving makes up for.
+    restriction: Option<ImplicitOnCurve<N>>,
+    /// The same in doubles, of one of more digits.
+    doubles: Option<Box<Height<'static>>>,
+}
+
+impl<'a, N: Float> Height<'a, N> {
+    fn of(curve: &'a Curve<N>, surface: &'a Surface<N>) -> Self {
+        let doubles = || Height::over(curve.in_doubles(), surface.in_doubles());
+        Self {
+            curve: Cow::Borrowed(curve),
+            surface: Cow::Borrowed(surface),
+            restriction: ImplicitOnCurve::of(curve, surface),
+            doubles: (!N::IS_DOUBLE).then(|| Box::new(doubles())),
+        }
+    }
+}
+
+impl Height<'static> {
+    fn over(curve: Curve, surface: Surface) -> Self {
+        Self {
+            restriction: ImplicitOnCurve::of(&curve, &surface),
+            curve: Cow::Owned(curve),
+            surface: Cow::Owned(surface),
+            doubles: None,
+        }
+    }
+}
+
+impl<N: Float> Function<N> for Height<'_, N> {
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
+        self.surface.level(self.curve.jet_over(t))
+    }
+
+    fn reach(&self, t: Interval<N>) -> Interval<N> {
+        match self.curve.box_over(t) {
+            Some(p) => {
+                let level = self.surface.level(p);
+                match &self.restriction {
+                    Some(own) => level.meet(own.level(t, &self.surface, p)),
+                    None => level,
+                }
+            }
+            None => Interval::ENTIRE,
+        }
+    }
+
+    fn roughly(&self, piece: [N; 2]) -> Option<F64Filter<'_>> {
+        let doubles = self.doubles.as_deref()?;
+        let away = |p: &Point3<N>| p.coords.length().rounded();
+        let size = away(&self.surface.frame().origin) + away(&self.curve.point(piece[0]));
+        Some(F64Filter::of(self, doubles, piece, f64::ROUNDING * size))
+    }
+
+    fn at(&self, t: N) -> Jet<N> {
+        self.surface.level(self.curve.jet(t))
+    }
+
+    fn value(&self, t: N) -> N {
+        self.surface.level(self.curve.point(t).into())
+    }
+}
+
+/// Where the curve, over `range` of its parameter, meets the surface: isolated parameters with
+/// their contact, or everywhere where it lies on the surface. `band` is the resolution.
+pub fn cut<N: Float>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, band: N) -> Roots<N> {
+    if lies_on(curve, range, surface, band) {
+        return Roots::Everywhere;
+    }
+    let breaks = curve.breaks(range[0], range[1]);
+    match isolate(&Height::of(curve, surface), &breaks, band) {
+        Roots::Everywhere => touching(range),
+        zeros => zeros,
+    }
+}
+
+/// Roots, and what is apart from zero by little: (parameter, value).
+pub type Met<N = f64> = (Vec<Root<N>>, Vec<(N, N)>);
+
+/// The same over a part of a curve that does not lie on the surface, however short: the roots, and
+/// all misses that are close calls.
+pub fn roots<N: Float>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, band: N) -> Met<N> {
+    if let Some(known) = rounded_roots(curve, range, surface, band) {
+        return known;
+    }
+    let breaks = curve.breaks(range[0], range[1]);
+    let zeros = match isolate_closely(&Height::of(curve, surface), &breaks, band) {
+        Roots::Everywhere => touching(range),
+        zeros => zeros,
+    };
+    match zeros {
+        Roots::At { roots, misses } => (roots, misses),
+        Roots::Everywhere => (Vec::new(), Vec::new()),
+    }
+}
+
+/// The same of a curve of more digits than doubles have: isolated in doubles, where these follow the
+/// curve far more closely than the band, and then with all digits.
+fn rounded_roots<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surface: &Surface<N>,
+    band: N,
+) -> Option<Met<N>> {
+    if N::IS_DOUBLE {
+        return None;
+    }
+    let rounded = curve.in_doubles();
+    let follows = |part: N| {
+        let t = range[0] + (range[1] - range[0]) * part;
+        let p = curve.point(t);
+        let away = (rounded.point(t.rounded()).map(N::of) - p).length();
+        let rounding = N::of(f64::ROUNDING) * p.coords.length();
+        (away + rounding) * N::of(FOLLOWING) <= band
+    };
+    if !probes().step_by(4).all(follows) {
+        return None;
+    }
+    let height = Height::of(curve, surface);
+    let ends = range.map(N::rounded);
+    let (found, misses) = roots(&rounded, ends, &surface.in_doubles(), band.rounded());
+    let settled = |t: f64| {
+        let mut t = N::of(t);
+        for _ in 0..STEPS {
+            let at = height.at(t);
+            t -= at.v / at.d;
+        }
+        t
+    };
+    let root = |r: Root| Root {
+        t: match r.contact {
+            RootKind::Simple => settled(r.t),
+            RootKind::Touching | RootKind::Inflected => N::of(r.t),
+        },
+        lo: N::of(r.lo),
+        hi: N::of(r.hi),
+        contact: r.contact,
+        margin: r.margin.map(N::of),
+    };
+    let misses = misses.into_iter().map(|(t, v)| (N::of(t), N::of(v)));
+    Some((found.into_iter().map(root).collect(), misses.collect()))
+}
+
+/// How many times nearer than the band doubles are to follow a curve.
+const FOLLOWING: f64 = 64.0;
+/// Newton's steps from the digits of a double to those of 237 bits.
+const STEPS: u32 = 3;
+
+/// One touching root over the whole range.
+fn touching<N: Float>([lo, hi]: [N; 2]) -> Roots<N> {
+    Roots::At {
+        roots: vec![Root {
+            t: N::HALF * (lo + hi),
+            lo,
+            hi,
+            contact: RootKind::Touching,
+            margin: Some(N::ZERO),
+        }],
+        misses: Vec::new(),
+    }
+}
+
+/// Whether a point of a box can be within `margin` of a surface, by its distance and by its level.
+pub fn comes_near<N: Float>(surface: &Surface<N>, b: &Aabb, margin: N) -> bool {
+    // The distance of a surface changes by no more than the way, which doubles tell to rounding.
+    let centre = b.centre();
+    let rounding = f64::ROUNDING * (centre.coords.norm() + b.diagonal());
+    let away = surface.distance(&centre.map(N::of)).abs();
+    if away > N::of(0.5 * b.diagonal() + rounding) + margin {
+        return false;
+    }
+    let level = surface.level([0, 1, 2].map(|i| Interval::new(N::of(b.min[i]), N::of(b.max[i]))));
+    level.lo <= margin && level.hi >= -margin
+}
+
+/// Whether the curve lies on the surface, within the band.
+pub fn lies_on<N: Float>(
+    curve: &Curve<N>,
+    [lo, hi]: [N; 2],
+    surface: &Surface<N>,
+    band: N,
+) -> bool {
+    probes().all(|part| surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band)
+}

@@ -1,0 +1,279 @@
+//! The curve in which two quadrics meet, by its parameterisation over the rulings of one of them.
+//!
+//! Notation: a cylinder is r(u) + w z, a cone's nappe (1/w) d(u) from its apex, u the angle. The
+//! other quadric, along a ruling, is k w^2 + 2 B(u) w + C(u) = 0 with constant k, B of degree one
+//! and C of degree two in (cos u, sin u). Hence w = (-B ± √Δ)/k with Δ = B^2 - k C; the real roots
+//! of Δ are where a ruling touches the other quadric, and a double root is a point where the curve
+//! crosses itself. The parameter t is such that √Δ is analytic in it: over an arc between two
+//! simple roots u = mid - half cos t, and √Δ changes sign with sin t; a double root is passed with
+//! a change of sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
+
+use super::surface::{Cone, Cylinder};
+use super::trigonometric::{Trig1, Trig2, trig1};
+use crate::number::analytic::{Analytic, harmonic};
+use crate::number::float::Float;
+
+/// The surface whose rulings carry the curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ruled<N: Float = f64> {
+    /// A cylinder; w is the height.
+    Cylinder(Cylinder<N>),
+    /// A cone's nappe; 1/w is the height above the apex.
+    Cone(Cone<N>),
+}
+
+/// How the angle u runs with the parameter t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sweep<N: Float = f64> {
+    /// u = t, closed after so many turns.
+    Round {
+        /// 1, or 2 where the curve closes after going round twice.
+        turns: u8,
+    },
+    /// u = mid - half cos t: there on one branch, back on the other.
+    Oval {
+        /// The middle of the arc of angles.
+        mid: N,
+        /// Half the arc.
+        half: N,
+    },
+}
+
+/// The other quadric along the rulings: k w^2 + 2 B(u) w + C(u).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Along<N: Float = f64> {
+    /// k.
+    pub lead: N,
+    /// B.
+    pub linear: Trig1<N>,
+    /// C, where k is so small beside B that -B and ±√Δ may cancel.
+    pub constant: Option<Trig2<N>>,
+}
+
+/// The part of B^2 that k C is no more than where digits would be lost.
+const CANCELLING: f64 = 1.0 / 256.0;
+
+impl<N: Float> Along<N> {
+    pub(super) fn new(lead: N, linear: Trig1<N>, constant: Trig2<N>) -> Self {
+        let size = |k: &[N]| k.iter().map(|c| c.abs()).sum::<N>();
+        let cancels = lead.abs() * size(&constant) <= N::of(CANCELLING) * size(&linear).powi(2);
+        Self {
+            lead,
+            linear,
+            constant: cancels.then_some(constant),
+        }
+    }
+
+    /// Δ, where its coefficients are known to be the given ones.
+    fn radicand<S: Analytic<Float = N>>(&self, whole: &Trig2<N>, u: S, at: (S, S)) -> S {
+        match &self.constant {
+            Some(constant) => {
+                trig1(&self.linear, at).square() - u.harmonic(constant, at).scale(self.lead)
+            }
+            None => u.harmonic(whole, at),
+        }
+    }
+
+    /// (-B + r)/k for a square root r of Δ, as (numerator, denominator): C/(-B - r) is the same.
+    fn quotient<S: Analytic<Float = N>>(&self, root: S, at: (S, S)) -> (S, S) {
+        let linear = trig1(&self.linear, at);
+        match &self.constant {
+            Some(constant) if root.is_like(linear) => (harmonic(constant, at), -(linear + root)),
+            _ => (root - linear, S::constant(self.lead)),
+        }
+    }
+}
+
+/// The height w over the angle u.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Height<N: Float = f64> {
+    /// (-B ± √Δ)/k with Δ positive everywhere.
+    Whole {
+        /// k, B and C.
+        along: Along<N>,
+        /// Δ.
+        radicand: Trig2<N>,
+        /// +1 or -1.
+        sign: N,
+    },
+    /// (-B + s √q)/k where s vanishes at the ends of the sweep and at `node`.
+    Deflated {
+        /// k, B and C.
+        along: Along<N>,
+        /// q, positive, of degree one.
+        rest: Trig1<N>,
+        /// Where the curve crosses itself.
+        node: Option<N>,
+        /// +1 or -1.
+        sign: N,
+    },
+    /// -C/(2 B): k = 0.
+    Rational {
+        /// B.
+        linear: Trig1<N>,
+        /// C.
+        constant: Trig2<N>,
+    },
+    /// The same with a common ruling divided out: both in half angles.
+    Cubic {
+        /// B / sin((u-u0)/2): cos(u/2), sin(u/2).
+        linear: [N; 2],
+        /// C / sin((u-u0)/2): cos(u/2), sin(u/2), cos(3u/2), sin(3u/2).
+        constant: [N; 4],
+    },
+}
+
+/// A branch of the intersection of two quadrics.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuadricCurve<N: Float = f64> {
+    /// The surface whose rulings carry it.
+    pub base: Ruled<N>,
+    /// The run of the angle.
+    pub sweep: Sweep<N>,
+    /// The height over the angle.
+    pub height: Height<N>,
+}
+
+impl<N: Float> QuadricCurve<N> {
+    /// The parameter's period, where the branch is closed: all but rational ones with a pole.
+    pub fn period(&self) -> Option<N> {
+        match (self.height, self.sweep) {
+            (Height::Rational { linear, .. }, _) => {
+                let [mean, cos, sin] = linear;
+                (mean.abs() > cos.hypot(sin)).then_some(N::TAU)
+            }
+            (Height::Cubic { .. }, _) => None,
+            (_, Sweep::Round { turns }) => Some(N::TAU * N::whole(turns)),
+            (_, Sweep::Oval { .. }) => Some(N::TAU),
+        }
+    }
+
+    /// The angle u at t.
+    pub fn angle<S: Analytic<Float = N>>(&self, t: S) -> S {
+        match self.sweep {
+            Sweep::Round { .. } => t,
+            Sweep::Oval { mid, half } => S::constant(mid) - t.sin_cos().1.scale(half),
+        }
+    }
+
+    /// The parameters over an angle, within one period of a closed branch; the end of the sweep that
+    /// is nearest where it does not reach the angle.
+    pub(super) fn parameters_of(&self, u: N) -> Vec<N> {
+        match self.sweep {
+            Sweep::Round { turns } => (0..turns.max(1))
+                .map(|turn| u.rem_euclid(N::TAU) + N::TAU * N::whole(turn))
+                .collect(),
+            Sweep::Oval { mid, half } => {
+                let away = (u - mid + N::PI).rem_euclid(N::TAU) - N::PI;
+                let t = (-away / half).clamp(-N::ONE, N::ONE).acos();
+                vec![t, N::TAU - t]
+            }
+        }
+    }
+
+    /// The parameters at which a curve of one point on each ruling passes the cone's apex: the zeros
+    /// of B, if it has any.
+    pub(super) fn apex_parameters(&self) -> Vec<N> {
+        match (self.base, self.height) {
+            (Ruled::Cone(_), Height::Rational { linear, .. }) => {
+                let [mean, cos, sin] = linear;
+                let (middle, size) = (sin.atan2(cos), cos.hypot(sin));
+                let level = -mean / size;
+                if level.abs() > N::ONE + N::HALF * N::of(DOUBLE) * N::of(DOUBLE) {
+                    return Vec::new();
+                }
+                let half = level.clamp(-N::ONE, N::ONE).acos();
+                let zeros = [middle - half, middle + half];
+                zeros.map(|u| u.rem_euclid(N::TAU)).to_vec()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether the curve turns back at t, at the apex: where B has a double zero.
+    pub(super) fn turns_back(&self, t: N) -> bool {
+        let zeros = self.apex_parameters();
+        let near = |u: &N| {
+            let away = (t - *u).rem_euclid(N::TAU);
+            away.min(N::TAU - away) < N::of(DOUBLE)
+        };
+        !zeros.is_empty() && zeros.iter().all(near)
+    }
+
+    /// The height as a quotient: (numerator, denominator) of w.
+    fn quotient<S: Analytic<Float = N>>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
+        match &self.height {
+            Height::Whole {
+                along,
+                radicand,
+                sign,
+            } => along.quotient(along.radicand(radicand, u, at).root().scale(*sign), at),
+            Height::Deflated {
+                along,
+                rest,
+                node,
+                sign,
+            } => {
+                let mut root = trig1(rest, at).root().scale(*sign);
+                if let Some(node) = node {
+                    root = root * (u - S::constant(*node)).times(0.5).sin_cos().0;
+                }
+                if let Sweep::Oval { half, .. } = self.sweep {
+                    root = root * oval_factor(t, half);
+                }
+                along.quotient(root, at)
+            }
+            Height::Rational { linear, constant } => {
+                (-harmonic(constant, at), trig1(linear, at).times(2.0))
+            }
+            Height::Cubic { linear, constant } => {
+                let (s1, c1) = u.times(0.5).sin_cos();
+                let (s3, c3) = u.times(1.5).sin_cos();
+                let numerator = c1.scale(constant[0])
+                    + s1.scale(constant[1])
+                    + c3.scale(constant[2])
+                    + s3.scale(constant[3]);
+                (
+                    -numerator,
+                    (c1.scale(linear[0]) + s1.scale(linear[1])).times(2.0),
+                )
+            }
+        }
+    }
+
+    /// The height w at t (for a cone, one over the height above the apex).
+    pub fn height_at<S: Analytic<Float = N>>(&self, t: S) -> S {
+        let u = self.angle(t);
+        let (n, d) = self.quotient(t, u, u.sin_cos());
+        n.over(d)
+    }
+
+    /// The point at t.
+    pub fn at<S: Analytic<Float = N>>(&self, t: S) -> [S; 3] {
+        let u = self.angle(t);
+        let (sin, cos) = u.sin_cos();
+        let (n, d) = self.quotient(t, u, (sin, cos));
+        match &self.base {
+            Ruled::Cylinder(s) => {
+                s.frame
+                    .world_of([cos.scale(s.radius), sin.scale(s.radius), n.over(d)])
+            }
+            Ruled::Cone(s) => {
+                let v = d.over(n);
+                let rho = v.scale(s.sin / s.cos);
+                s.frame.world_of([rho * cos, rho * sin, v])
+            }
+        }
+    }
+}
+
+/// Zeros within this part of a radian are one double zero.
+const DOUBLE: f64 = 1.0 / (1 << 20) as f64;
+
+/// √(sin((u-u0)/2) sin((u1-u)/2)) for u = mid - half cos t, analytic, with the sign of sin t.
+fn oval_factor<N: Float, S: Analytic<Float = N>>(t: S, half: N) -> S {
+    let (s, c) = t.times(0.5).sin_cos();
+    let a = s.square().scale(half).sinc();
+    let b = c.square().scale(half).sinc();
+    (s * c).scale(half) * (a * b).root()
+}

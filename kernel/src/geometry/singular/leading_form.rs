@@ -1,0 +1,430 @@
+//! The branches through a singular point, by the leading terms of F there (Arnold, Gusein-Zade and
+//! Varchenko, Singularities of Differentiable Maps I, 1985).
+//!
+//! Notation: s and y are the offsets of the running and of the other angle, F = Σ k_ij sⁱ yʲ.
+//!
+//! - Where all terms of a degree below n vanish, the leading form is that of degree n. Where its
+//!   real roots are simple, a smooth branch leaves in the direction of each: two for a node (A1),
+//!   one or three for D4, up to four for X9, none where the point stands alone.
+//! - Where the Hessian has rank one, F bends across one direction only. Along the curve y = Y(s) on
+//!   which F_y vanishes F is h(s), and F = k₀₂ (y - Y)² + h_k sᵏ to the least order: A_(k-1). For an
+//!   odd k a cusp, for an even one two branches that touch, or a single point.
+//!
+//! What vanishes is what stays within the band as far as the leading terms do. In the coordinates
+//! of a [`Chart`] these are G(0, κ), and the zone of the point is as far as G and G_κ are nowhere
+//! zero both: then every zero of G belongs to a branch that runs on to σ = 0.
+
+use super::{BranchTangent, SingularPoint, ZONE};
+use crate::geometry::bivariate_trig_poly::{BivariateTrigPoly, Partials};
+use crate::geometry::blow_up::{Chart, DEGREE, Taylor, Weights, sheared, taylor};
+use crate::geometry::torus_curve::TorusParameter;
+use crate::geometry::trace::{Tracer, deepest, near};
+use crate::number::analytic::Analytic;
+use crate::number::float::Float;
+use crate::number::interval::Interval;
+use crate::number::jet::Jet;
+use crate::number::roots::{RootKind, Roots, isolate};
+
+/// The orders of forms whose roots are told.
+const FORMS: [usize; 2] = [3, 4];
+/// The orders k to which F may vanish along the curve Y: beyond, the band is too wide.
+const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
+/// How far the leading terms lie above what is neglected where they leave the band.
+const LEAD: f64 = 4.0;
+/// How far the band lies above what Taylor's polynomials neglect.
+const WHOLE: f64 = 16.0;
+/// Newton's steps towards a degenerate point.
+const STEPS: usize = 12;
+/// The same from the digits of doubles on.
+const MORE_STEPS: usize = 4;
+/// How much farther off Taylor's terms may be in doubles than a form's value.
+const OFF: f64 = 1024.0;
+
+/// A critical point with a Hessian of rank two; none where no zone is plain.
+pub(super) fn plain<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
+    let at = tracer.form.partials(angles[0], angles[1]);
+    let crosses = at.xx * at.yy < at.xy * at.xy;
+    let directions = if crosses {
+        tangents(&at).into()
+    } else {
+        Vec::new()
+    };
+    fold(tracer, angles, 2, directions)
+}
+
+/// The degenerate point next to `start`, and how far from it F is within the band.
+pub(super) fn degenerate<N: Float>(
+    tracer: &Tracer<'_, N>,
+    start: [N; 2],
+) -> Option<(SingularPoint<N>, N)> {
+    let flat = || ORDERS.into_iter().find_map(|k| rank_one(tracer, start, k));
+    let crossing = || FORMS.into_iter().find_map(|n| multiple(tracer, start, n));
+    flat().or_else(crossing)
+}
+
+/// The directions in which an indefinite quadratic form vanishes.
+fn tangents<N: Float>(at: &Partials<N>) -> [[N; 2]; 2] {
+    let root = (at.xy * at.xy - at.xx * at.yy).max(N::ZERO).sqrt();
+    // a x² + 2 b x y + c y² = 0, in the form that does not cancel.
+    let q = if at.xy >= N::ZERO {
+        -at.xy - root
+    } else {
+        -at.xy + root
+    };
+    if q == N::ZERO {
+        return [[N::ONE, N::ZERO], [N::ZERO, N::ONE]];
+    }
+    [[q, at.xx], [at.yy, q]]
+}
+
+/// A kind of degenerate point.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// All terms of a degree below this vanish.
+    Multiple(usize),
+    /// The Hessian is of rank one, and F vanishes to this order along Y.
+    RankOne(usize),
+}
+
+impl Kind {
+    /// The step from p towards a point of the kind.
+    fn step<N: Float>(self, form: &BivariateTrigPoly<N>, p: [N; 2]) -> Option<[N; 2]> {
+        match self {
+            Self::Multiple(n) => toward_multiple(&taylor(form, p, TorusParameter::Around), n),
+            Self::RankOne(k) => Some(Sheet::at(form, p).step(form, p, k)),
+        }
+    }
+
+    /// Whether p is one as far as `band` tells.
+    fn is_at(self, form: &BivariateTrigPoly, p: [f64; 2], band: f64) -> bool {
+        match self {
+            Self::Multiple(n) => {
+                terms_vanish(&taylor(form, p, TorusParameter::Around), n, band).is_some()
+            }
+            Self::RankOne(k) => Sheet::at(form, p).vanishes(k, band).is_some(),
+        }
+    }
+
+    /// The place next to `start` where a point of the kind may be. Of a form of more digits it is
+    /// found in doubles first: what is none there, within what these are off, is none.
+    fn near<N: Float>(self, tracer: &Tracer<'_, N>, start: [N; 2]) -> Option<[N; 2]> {
+        let exactly = |p| self.step(tracer.form, p);
+        let Some((form, slop)) = tracer.rough() else {
+            return walk(start, STEPS, exactly);
+        };
+        let rough = walk(start.map(N::rounded), STEPS, |p| self.step(form, p))?;
+        let band = tracer.band.rounded().max(OFF * slop);
+        self.is_at(form, rough, band).then_some(())?;
+        walk(rough.map(N::of), MORE_STEPS, exactly)
+    }
+}
+
+/// Where a number of steps leads, unless that is far.
+fn walk<N: Float>(
+    start: [N; 2],
+    steps: usize,
+    step: impl Fn([N; 2]) -> Option<[N; 2]>,
+) -> Option<[N; 2]> {
+    let mut p = start;
+    for _ in 0..steps {
+        let step = step(p)?;
+        p = [p[0] + step[0], p[1] + step[1]];
+        if !near(&p, &start, N::of(ZONE)) {
+            return None;
+        }
+    }
+    Some(p)
+}
+
+/// The point at which all terms of a degree below n vanish, next to `start`.
+fn multiple<N: Float>(
+    tracer: &Tracer<'_, N>,
+    start: [N; 2],
+    n: usize,
+) -> Option<(SingularPoint<N>, N)> {
+    let p = Kind::Multiple(n).near(tracer, start)?;
+    let k = taylor(tracer.form, p, TorusParameter::Around);
+    let reach = terms_vanish(&k, n, tracer.band)?;
+    if !(reach < N::of(ZONE) && N::of(LEAD) * size(&k, n + 1) * reach <= size(&k, n)) {
+        return None;
+    }
+    let directions = roots_of_form(&k, n)?;
+    let point = fold(tracer, p, n, directions)?;
+    Some((point, reach))
+}
+
+/// The size of the terms of a degree.
+fn size<N: Float>(k: &Taylor<N>, degree: usize) -> N {
+    (0..=degree).map(|j| k[degree - j][j].abs()).sum()
+}
+
+/// Where the terms of degree n leave the band, if none of a lower degree does within that.
+fn terms_vanish<N: Float>(k: &Taylor<N>, n: usize, band: N) -> Option<N> {
+    let reach = (band / size(k, n)).rough_root(n as u32);
+    let vanish = (0..n).all(|d| size(k, d) * reach.powi(d as i32) <= band);
+    vanish.then_some(reach)
+}
+
+/// Gauss and Newton's step towards the point at which the terms of degree n - 1 vanish.
+fn toward_multiple<N: Float>(k: &Taylor<N>, n: usize) -> Option<[N; 2]> {
+    let (mut a, mut b, mut c) = (N::ZERO, N::ZERO, N::ZERO);
+    let mut right = [N::ZERO; 2];
+    for j in 0..n {
+        let i = n - 1 - j;
+        let by = [
+            N::of((i + 1) as f64) * k[i + 1][j],
+            N::of((j + 1) as f64) * k[i][j + 1],
+        ];
+        a += by[0] * by[0];
+        b += by[0] * by[1];
+        c += by[1] * by[1];
+        right[0] -= by[0] * k[i][j];
+        right[1] -= by[1] * k[i][j];
+    }
+    let det = a * c - b * b;
+    let step = [
+        (right[0] * c - right[1] * b) / det,
+        (right[1] * a - right[0] * b) / det,
+    ];
+    step.iter().all(|s| s.is_finite()).then_some(step)
+}
+
+/// The directions in which the terms of degree n vanish; none where two are one.
+fn roots_of_form<N: Float>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
+    let form = |angle: Interval<N>| {
+        let turn = Jet {
+            v: angle,
+            d: Interval::point(N::ONE),
+            dd: Interval::point(N::ZERO),
+        };
+        let (sin, cos) = turn.sin_cos();
+        // Horner's scheme, homogeneous.
+        let mut power = Jet::constant(N::ONE);
+        let mut sum = Jet::constant(N::ZERO);
+        for i in 0..=n {
+            sum = sum * sin + power.scale(k[i][n - i]);
+            power = power * cos;
+        }
+        sum
+    };
+    let size: N = (0..=n).map(|j| k[n - j][j].abs()).sum();
+    // Half a turn, from where no simple slope is.
+    let [from, to] = [N::of(ZONE), N::of(ZONE) + N::PI];
+    let Roots::At { roots, .. } = isolate(&form, &[from, to], size * N::ROUNDING) else {
+        return None;
+    };
+    let simple = roots.iter().all(|r| r.contact == RootKind::Simple);
+    let direction = |t: N| {
+        let (sin, cos) = t.sin_cos();
+        [cos, sin]
+    };
+    simple.then(|| roots.iter().map(|r| direction(r.t)).collect())
+}
+
+/// A point at which branches of different directions cross; none where no zone is plain.
+fn fold<N: Float>(
+    tracer: &Tracer<'_, N>,
+    angles: [N; 2],
+    n: usize,
+    directions: Vec<[N; 2]>,
+) -> Option<SingularPoint<N>> {
+    let weights = Weights {
+        run: 1,
+        rise: 1,
+        form: n,
+    };
+    let chart = |axis| Chart::new(tracer.form, angles, axis, &[], N::ONE, weights);
+    let charts = [TorusParameter::Around, TorusParameter::Tube].map(chart);
+    let holds =
+        |c: &Chart<N>, zone: N| is_whole(c, tracer.band, zone, N::ONE) && is_plain(c, zone, N::ONE);
+    let zone = zone(|zone| charts.iter().all(|c| holds(c, zone)))?;
+    let pass = |[x, y]: [N; 2]| {
+        let steep = y.abs() > x.abs();
+        BranchTangent {
+            chart: charts[usize::from(steep)].clone(),
+            kappa: if steep { x / y } else { y / x },
+        }
+    };
+    Some(SingularPoint {
+        angles,
+        passes: directions.into_iter().map(pass).collect(),
+        zone,
+    })
+}
+
+/// The greatest zone of which something holds.
+fn zone<N: Float>(holds: impl Fn(N) -> bool) -> Option<N> {
+    let zones = (0..deepest::<N>() as i32).map(|n| N::of(ZONE) * N::HALF.powi(n));
+    zones.into_iter().find(|&z| holds(z))
+}
+
+/// Whether Taylor's polynomial is F well within the band, for |σ| and |κ| up to the given ones.
+fn is_whole<N: Float>(chart: &Chart<N>, band: N, sigma: N, kappa: N) -> bool {
+    N::of(WHOLE) * chart.left(sigma, kappa) <= band
+}
+
+/// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
+fn is_plain<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
+    let run = Interval::new(-sigma, sigma);
+    let mut stack = vec![(Interval::new(-kappa, kappa), 0)];
+    while let Some((k, depth)) = stack.pop() {
+        let g = chart.partials_over(run, k);
+        if !(g.f.has_zero() && g.y.has_zero()) {
+            continue;
+        }
+        // Branches may be as close in κ as the digits tell.
+        if depth >= deepest::<N>() / 2 {
+            return false;
+        }
+        let middle = k.mid();
+        stack.push((Interval::new(k.lo, middle), depth + 1));
+        stack.push((Interval::new(middle, k.hi), depth + 1));
+    }
+    true
+}
+
+/// F next to a point at which it bends along the other angle more than along the running one.
+struct Sheet<N: Float = f64> {
+    axis: TorusParameter,
+    /// Y by the powers of s.
+    trend: Vec<N>,
+    /// k₀₂ of F by the powers of s and y - Y(s).
+    bend: N,
+    /// h by the powers of s.
+    along: Vec<N>,
+}
+
+impl<N: Float> Sheet<N> {
+    /// The sheet at a point next to which F_y vanishes; none where it nowhere does.
+    fn at(form: &BivariateTrigPoly<N>, p: [N; 2]) -> Self {
+        let at = form.partials(p[0], p[1]);
+        let axis = match at.yy.abs() >= at.xx.abs() {
+            true => TorusParameter::Around,
+            false => TorusParameter::Tube,
+        };
+        let mut k = taylor(form, p, axis);
+        let bend = k[0][2];
+        let mut trend = vec![N::ZERO; DEGREE];
+        // Each power of s is left in F_y by one term, which the shear by its own takes away.
+        for (i, y) in trend.iter_mut().enumerate().skip(1) {
+            let c = -N::HALF * k[i][1] / bend;
+            k = sheared(&k, i, c);
+            *y = c;
+        }
+        let along = k.iter().map(|row| row[0]).collect();
+        Self {
+            axis,
+            trend,
+            bend,
+            along,
+        }
+    }
+
+    /// Newton's step towards the point at which F vanishes to the order k along Y; the sheet is at p.
+    fn step(&self, form: &BivariateTrigPoly<N>, p: [N; 2], k: usize) -> [N; 2] {
+        let at = form.partials(p[0], p[1]);
+        let across = match self.axis {
+            TorusParameter::Around => at.y,
+            TorusParameter::Tube => at.x,
+        };
+        let s = -self.along[k - 1] / (N::of(k as f64) * self.along[k]);
+        let y = -N::HALF * across / self.bend + self.trend[1] * s;
+        match self.axis {
+            TorusParameter::Around => [s, y],
+            TorusParameter::Tube => [y, s],
+        }
+    }
+
+    /// Where the term of order k leaves the band, if none of a lower order does within that.
+    fn vanishes(&self, k: usize, band: N) -> Option<N> {
+        let reach = (band / self.along[k].abs()).rough_root(k as u32);
+        let vanish = (0..k).all(|j| self.along[j].abs() * reach.powi(j as i32) <= band);
+        vanish.then_some(reach)
+    }
+}
+
+/// The point of rank one next to `start` at which F vanishes to the order k along Y.
+fn rank_one<N: Float>(
+    tracer: &Tracer<'_, N>,
+    start: [N; 2],
+    k: usize,
+) -> Option<(SingularPoint<N>, N)> {
+    let p = Kind::RankOne(k).near(tracer, start)?;
+    let sheet = Sheet::at(tracer.form, p);
+    let reach = sheet.vanishes(k, tracer.band)?;
+    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::of(LEAD) * tracer.band
+        && reach < N::of(ZONE)
+        && N::of(LEAD) * sheet.along[k + 1].abs() * reach <= sheet.along[k].abs();
+    leads.then_some(())?;
+    Some((rank_one_branches(tracer, p, &sheet, k)?, reach))
+}
+
+/// The branches through a point of rank one; none where no zone is plain.
+fn rank_one_branches<N: Float>(
+    tracer: &Tracer<'_, N>,
+    angles: [N; 2],
+    sheet: &Sheet<N>,
+    k: usize,
+) -> Option<SingularPoint<N>> {
+    let form = tracer.form;
+    let odd = k % 2 == 1;
+    let weights = match odd {
+        true => Weights {
+            run: 2,
+            rise: k,
+            form: 2 * k,
+        },
+        false => Weights {
+            run: 1,
+            rise: k / 2,
+            form: k,
+        },
+    };
+    let ratio = sheet.along[k] / sheet.bend;
+    let kappa = ratio.abs().sqrt();
+    // Y as far as its terms weigh no more than κ.
+    let trend = &sheet.trend[1..=k / 2];
+    let chart = |side: N| Chart::new(form, angles, sheet.axis, trend, side, weights);
+    // A cusp lies where the second term has the other sign, and two branches do on both sides.
+    let side = if odd { -ratio.signum() } else { N::ONE };
+    let own = chart(side);
+    let other = odd.then(|| chart(-side));
+    let across = usize::from(sheet.axis == TorusParameter::Around);
+    let bend = form.derivative(across).derivative(across);
+    let zone = zone(|zone| {
+        let [x, y] = angles.map(|c| Interval::around(c, zone));
+        let sigma = if odd { zone.sqrt() } else { zone };
+        let kappa = N::TWO * kappa;
+        let holds =
+            |c: &Chart<N>| is_whole(c, tracer.band, sigma, kappa) && holds_both(c, sigma, kappa);
+        !bend.value(x, y).has_zero() && holds(&own) && other.iter().all(holds)
+    })?;
+    let kappas = match (odd, ratio < N::ZERO) {
+        (true, _) => vec![kappa],
+        (false, true) => vec![-kappa, kappa],
+        (false, false) => Vec::new(),
+    };
+    let pass = |kappa| BranchTangent {
+        chart: own.clone(),
+        kappa,
+    };
+    Some(SingularPoint {
+        angles,
+        passes: kappas.into_iter().map(pass).collect(),
+        zone,
+    })
+}
+
+/// Whether all that a function of one bend has of zeros over |σ| lies at less than |κ|, each on a
+/// branch through the point.
+fn holds_both<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
+    let run = Interval::new(-sigma, sigma);
+    let [low, high] = [-kappa, kappa].map(|k| chart.partials_over(run, Interval::point(k)));
+    let outside = |g: &Partials<Interval<N>>| !g.f.has_zero() && !g.y.has_zero();
+    outside(&low)
+        && outside(&high)
+        && (low.y.hi < N::ZERO) != (high.y.hi < N::ZERO)
+        && (low.f.hi < N::ZERO) == (high.f.hi < N::ZERO)
+        && (high.f.hi < N::ZERO) == (high.y.hi < N::ZERO)
+        && is_plain(chart, sigma, kappa)
+}

@@ -1,0 +1,561 @@
+//! How two surfaces lie to one another, as distances over the part's extent.
+//!
+//! A relation is written once, over any [`Enclosable`]: ranges in doubles first, exact coefficients with
+//! more bits where these do not tell. The constructions take the answers and work in doubles.
+//! Directions need not have length one.
+
+use super::intersect::RegionOfInterest;
+use super::surface::Surface;
+use crate::number::enclosable::Enclosable;
+use crate::number::float::Float;
+use crate::number::interval::Interval;
+use crate::number::predicates::CertifiedDistance;
+use crate::number::rational::Rational;
+use crate::number::rational_interval::RationalInterval;
+use crate::number::separation_bound::SeparationBound;
+
+/// What defines a surface, over some number type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coefficients<N> {
+    /// A point of the plane or of the cylinder's axis, the apex, the centre.
+    pub point: [N; 3],
+    /// The outward normal, or the axis, into the nappe of a cone; of any length. A sphere's is of no
+    /// account.
+    pub direction: [N; 3],
+    /// The radius; the tangent of a cone's half angle; the radius of a torus's spine. A plane's is
+    /// of no account.
+    pub size: N,
+    /// The radius of a torus's tube; of the others of no account.
+    pub tube: N,
+}
+
+impl<N> Coefficients<N> {
+    /// The same over another number type.
+    pub fn map<M>(&self, f: impl Fn(&N) -> M) -> Coefficients<M> {
+        Coefficients {
+            point: self.point.each_ref().map(&f),
+            direction: self.direction.each_ref().map(&f),
+            size: f(&self.size),
+            tube: f(&self.tube),
+        }
+    }
+}
+
+/// Where the numbers of a surface come from.
+#[derive(Clone, Copy)]
+enum Source<'a> {
+    /// They are exact.
+    Given,
+    /// They were rounded from these.
+    Rounded(&'a dyn Fn() -> Coefficients<Rational>),
+    /// A construction reckoned them.
+    Constructed,
+}
+
+/// A surface in doubles, with the way to its exact coefficients.
+#[derive(Clone, Copy)]
+pub struct Carrier<'a, N: Float = f64> {
+    /// The surface: its numbers are the exact ones, rounded.
+    pub surface: &'a Surface<N>,
+    source: Source<'a>,
+}
+
+impl<'a, N: Float> Carrier<'a, N> {
+    /// A surface whose doubles are exact.
+    pub fn given(surface: &'a Surface<N>) -> Self {
+        Self {
+            surface,
+            source: Source::Given,
+        }
+    }
+
+    /// A surface that was rounded from exact coefficients.
+    pub fn rounded(surface: &'a Surface<N>, exact: &'a dyn Fn() -> Coefficients<Rational>) -> Self {
+        Self {
+            surface,
+            source: Source::Rounded(exact),
+        }
+    }
+
+    /// A surface that a construction reckoned: how it lies is taken at its word, and not proven.
+    pub fn constructed(surface: &'a Surface<N>) -> Self {
+        Self {
+            surface,
+            source: Source::Constructed,
+        }
+    }
+
+    /// Ranges that hold the exact coefficients: every number of a surface is within a few units in
+    /// the last place of its length.
+    fn ranges(&self) -> Coefficients<Interval<N>> {
+        let near = |x: N, size: N| Interval::around(x, N::of(SLACK) * N::EPSILON * size);
+        numbers(
+            self.surface,
+            |x| near(x, Float::abs(x)),
+            |x| near(x, N::ONE),
+        )
+    }
+
+    /// The surface's own numbers.
+    pub fn numbers(&self) -> Coefficients<N> {
+        numbers(self.surface, |x| x, |x| x)
+    }
+
+    /// The exact coefficients, to be reckoned with to so many bits.
+    pub fn reckoned(&self, bits: usize) -> Coefficients<RationalInterval> {
+        self.exact()
+            .map(|c| RationalInterval::exact(c.clone(), bits))
+    }
+
+    fn exact(&self) -> Coefficients<Rational> {
+        let number = |x: N| x.exact().unwrap_or_default();
+        match self.source {
+            Source::Rounded(exact) => exact(),
+            Source::Given | Source::Constructed => numbers(self.surface, number, number),
+        }
+    }
+
+    fn is_constructed(&self) -> bool {
+        matches!(self.source, Source::Constructed)
+    }
+}
+
+/// How far a surface's numbers may lie from the exact ones, in units of the last place of what they
+/// measure.
+const SLACK: f64 = 8.0;
+
+/// The coefficients of a surface: `of` takes lengths, `along` the components of directions.
+fn numbers<N: Float, M>(
+    surface: &Surface<N>,
+    of: impl Fn(N) -> M,
+    along: impl Fn(N) -> M,
+) -> Coefficients<M> {
+    let frame = surface.frame();
+    let (size, tube) = match surface {
+        Surface::Plane(_) => (N::ZERO, N::ZERO),
+        Surface::Cylinder(c) => (c.radius, N::ZERO),
+        Surface::Cone(c) => (c.sin / c.cos, N::ZERO),
+        Surface::Sphere(s) => (s.radius, N::ZERO),
+        Surface::Torus(t) => (t.major, t.minor),
+    };
+    Coefficients {
+        point: <[N; 3]>::from(frame.origin).map(&of),
+        direction: <[N; 3]>::from(frame.z).map(&along),
+        size: of(size),
+        tube: of(tube),
+    }
+}
+
+/// What can be asked of two surfaces, each a distance. Angles are measured by how far they take two
+/// directions apart over the extent's radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PairMeasure {
+    /// How far two surfaces of one kind are apart over the extent: where it is zero they are one.
+    Apart,
+    /// How far two directions drift apart.
+    Drift,
+    /// How far a normal or an axis is from square to the other.
+    Lean,
+    /// Between the points: centres, apexes.
+    Between,
+    /// How far the second's point lies above the first, a plane.
+    Height,
+    /// How far the second's point lies from the axis of the first.
+    OffAxis,
+    /// Between two parallel axes, at the extent's centre.
+    BetweenAxes,
+    /// How far two axes are apart next to the extent's centre, whatever they lean.
+    OffLine,
+    /// The difference of the radii of two tubes.
+    Tubes,
+    /// The difference of the second's size and the radius of the first's tube.
+    SizeOfTube,
+    /// How far the outer (`true`) or the inner rim of a torus, the second, is from the size of the
+    /// first's tube.
+    RimOfTube(bool),
+    /// How far the second's point lies from the spine of a torus, the first.
+    OffSpine,
+    /// How far the second's axis is from running along the spine of a torus, the first, on which its
+    /// point lies.
+    AcrossSpine,
+    /// How far a plane is from touching a sphere: negative where it cuts it.
+    PlaneOnSphere,
+    /// How far a plane along a cylinder is from touching it.
+    PlaneOnCylinder,
+    /// How far a plane across a cylinder tilts the circle in which it cuts it.
+    PlaneAcrossCylinder,
+    /// How far a plane through a cone's apex is from touching it along a ruling.
+    PlaneOnRuling,
+    /// How far the nearer (`false`) or the farther ruling of a cone is from running along a plane.
+    PlaneAlongRuling(bool),
+    /// Two spheres: the gap between them.
+    SphereBesideSphere,
+    /// Two spheres: the gap by which one holds the other.
+    SphereInSphere,
+    /// Two parallel cylinders: the gap between them.
+    CylinderBesideCylinder,
+    /// Two parallel cylinders: the gap by which one holds the other.
+    CylinderInCylinder,
+    /// How far the second's point lies from the first, a cylinder, a sphere or a cone with both
+    /// nappes.
+    PointOnQuadric,
+    /// How far a plane's normal, or an axis, takes the rim of a torus, the first, off its plane.
+    Tilt,
+    /// How far a plane is from holding the axis of a torus, the first, at its rim.
+    Upright,
+    /// How far a plane through the centre of a torus, the first, is from touching it twice.
+    PlaneOnBothSides,
+    /// How far the profile of what is coaxial to a torus, the first, is from touching its tube: the
+    /// line of a plane, of a cylinder and of a cone.
+    LineOnTube,
+    /// Between the centres of the tube and of the coaxial sphere or the other tube, in the profile.
+    BetweenTubes,
+    /// The gap between the tube and the coaxial sphere or the other tube.
+    BesideTube,
+    /// The gap by which one of them holds the other.
+    InTube,
+}
+
+fn minus<R: Enclosable>(a: &[R; 3], b: &[R; 3]) -> [R; 3] {
+    [0, 1, 2].map(|i| a[i].clone() - b[i].clone())
+}
+
+fn dot<R: Enclosable>(a: &[R; 3], b: &[R; 3]) -> R {
+    let [x, y, z] = [0, 1, 2].map(|i| a[i].clone() * b[i].clone());
+    x + y + z
+}
+
+fn cross<R: Enclosable>(a: &[R; 3], b: &[R; 3]) -> [R; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i].clone() * b[j].clone() - a[j].clone() * b[i].clone())
+}
+
+fn norm<R: Enclosable>(a: &[R; 3]) -> R {
+    dot(a, a).sqrt()
+}
+
+/// Two coefficients and the extent.
+struct Over<R> {
+    a: Coefficients<R>,
+    b: Coefficients<R>,
+    centre: [R; 3],
+    radius: R,
+}
+
+impl<R: Enclosable> Over<R> {
+    /// The sine of the angle between the directions.
+    fn sine(&self) -> R {
+        let (a, b) = (&self.a.direction, &self.b.direction);
+        norm(&cross(a, b)).over(norm(a) * norm(b))
+    }
+
+    /// The cosine of the angle between the directions.
+    fn cosine(&self) -> R {
+        let (a, b) = (&self.a.direction, &self.b.direction);
+        dot(a, b).over(norm(a) * norm(b))
+    }
+
+    /// From the first's point to the second's.
+    fn away(&self) -> [R; 3] {
+        minus(&self.b.point, &self.a.point)
+    }
+
+    /// The component of a vector along the first's direction.
+    fn along(&self, v: &[R; 3]) -> R {
+        dot(v, &self.a.direction).over(norm(&self.a.direction))
+    }
+
+    /// The length of a vector across the first's direction.
+    fn across(&self, v: &[R; 3]) -> R {
+        norm(&cross(v, &self.a.direction)).over(norm(&self.a.direction))
+    }
+
+    /// The point of the second's axis at the height of the extent's centre over it.
+    fn foot(&self) -> [R; 3] {
+        let d = &self.b.direction;
+        let up = dot(&minus(&self.centre, &self.b.point), d).over(dot(d, d));
+        [0, 1, 2].map(|i| self.b.point[i].clone() + d[i].clone() * up.clone())
+    }
+
+    /// The distance of parallel axes, measured at the extent's centre.
+    fn between_axes(&self) -> R {
+        self.across(&minus(&self.foot(), &self.a.point))
+    }
+
+    /// The distance of the second's point from the first's spine.
+    fn off_spine(&self) -> R {
+        let away = self.away();
+        let (out, up) = (self.across(&away) - self.a.size.clone(), self.along(&away));
+        (out.clone() * out + up.clone() * up).sqrt()
+    }
+
+    /// The sine of the angle between the second's axis and the first's spine at the second's point.
+    fn across_spine(&self) -> R {
+        let along = cross(&self.a.direction, &self.away());
+        let d = &self.b.direction;
+        norm(&cross(&along, d)).over(norm(&along) * norm(d))
+    }
+
+    /// The sine and the cosine of a cone's half angle.
+    fn half_angle(tangent: &R) -> (R, R) {
+        let square = tangent.clone() * tangent.clone();
+        let cos = R::constant(1.0).over((R::constant(1.0) + square).sqrt());
+        (tangent.clone() * cos.clone(), cos)
+    }
+
+    /// The gap between two circles, the distance of their centres given.
+    fn beside(between: R, [r, s]: [R; 2]) -> R {
+        between - (r + s)
+    }
+
+    /// The gap by which one of two circles holds the other.
+    fn within(between: R, [r, s]: [R; 2]) -> R {
+        (r - s).abs() - between
+    }
+
+    fn sizes(&self) -> [R; 2] {
+        [self.a.size.clone(), self.b.size.clone()]
+    }
+
+    /// The radius of the torus, the first, with its tube.
+    fn rim(&self) -> R {
+        self.a.size.clone() + self.a.tube.clone()
+    }
+
+    /// The radius of the tube and that of the other circle in the profile.
+    fn profile<N: Float>(&self, other: &Surface<N>) -> [R; 2] {
+        let radius = match other {
+            Surface::Torus(_) => &self.b.tube,
+            _ => &self.b.size,
+        };
+        [self.a.tube.clone(), radius.clone()]
+    }
+
+    /// Between the centres of the tube and of the other circle in the profile.
+    fn between_tubes<N: Float>(&self, other: &Surface<N>) -> R {
+        let out = match other {
+            Surface::Torus(_) => self.a.size.clone() - self.b.size.clone(),
+            _ => self.a.size.clone(),
+        };
+        let up = self.along(&self.away());
+        (out.clone() * out + up.clone() * up).sqrt()
+    }
+
+    /// The distance of the tube's centre from the line of the other's profile.
+    fn line_on_tube<N: Float>(&self, other: &Surface<N>) -> R {
+        let up = self.along(&self.away());
+        let off = match other {
+            Surface::Cylinder(_) => self.b.size.clone() - self.a.size.clone(),
+            Surface::Cone(_) => {
+                let (sin, cos) = Self::half_angle(&self.b.size);
+                self.a.size.clone() * self.cosine() * cos + up * sin
+            }
+            _ => up,
+        };
+        off.abs() - self.a.tube.clone()
+    }
+
+    /// Two surfaces of the same kind.
+    fn apart<N: Float>(&self, kind: &Surface<N>) -> R {
+        let between = norm(&self.away());
+        let drift = self.sine() * self.radius.clone();
+        let sizes = (self.a.size.clone() - self.b.size.clone()).abs();
+        match kind {
+            Surface::Plane(_) => self.between_planes().abs() + drift,
+            Surface::Cylinder(_) => self.between_axes() + drift + sizes,
+            Surface::Cone(_) => between + drift + self.half_angles().abs(),
+            Surface::Sphere(_) => between + sizes,
+            Surface::Torus(_) => {
+                let tubes = (self.a.tube.clone() - self.b.tube.clone()).abs();
+                between + self.sine() * self.a.size.clone() + sizes + tubes
+            }
+        }
+    }
+
+    fn half_angles(&self) -> R {
+        let (sin, cos) = Self::half_angle(&self.a.size);
+        let (sine, cosine) = Self::half_angle(&self.b.size);
+        (sin * cosine - cos * sine) * self.radius.clone()
+    }
+
+    fn between_planes(&self) -> R {
+        let n = &self.a.direction;
+        let up = dot(&minus(&self.centre, &self.a.point), n).over(dot(n, n));
+        let foot = [0, 1, 2].map(|i| self.centre[i].clone() - n[i].clone() * up.clone());
+        dot(&minus(&foot, &self.b.point), &self.b.direction).over(norm(&self.b.direction))
+    }
+
+    /// The distance of two axes at the extent's centre, less what the way from there lets them
+    /// drift.
+    fn off_line(&self) -> R {
+        let away = self.away();
+        let to_centre = minus(&self.centre, &self.a.point);
+        let along = (self.along(&to_centre) - self.along(&away)).abs();
+        self.across(&away) - self.sine() * along
+    }
+
+    fn plane_on_ruling(&self) -> R {
+        let (sin, cos) = Self::half_angle(&self.b.size);
+        (self.cosine().abs() * cos - self.sine() * sin) * self.radius.clone()
+    }
+
+    fn plane_along_ruling(&self, far: bool) -> R {
+        let (sin, cos) = Self::half_angle(&self.b.size);
+        let (up, out) = (self.cosine() * cos, self.sine() * sin);
+        let rate = if far { up - out } else { up + out };
+        rate * self.radius.clone()
+    }
+
+    fn point_on_quadric<N: Float>(&self, quadric: &Surface<N>) -> R {
+        let away = self.away();
+        match quadric {
+            Surface::Sphere(_) => norm(&away) - self.a.size.clone(),
+            Surface::Cone(_) => {
+                let (sin, cos) = Self::half_angle(&self.a.size);
+                self.across(&away) * cos - self.along(&away).abs() * sin
+            }
+            _ => self.across(&away) - self.a.size.clone(),
+        }
+    }
+
+    fn distance<N: Float>(&self, relation: PairMeasure, [first, second]: [&Surface<N>; 2]) -> R {
+        let (a, b) = (&self.a, &self.b);
+        match relation {
+            PairMeasure::Apart => self.apart(first),
+            PairMeasure::Drift => self.sine() * self.radius.clone(),
+            PairMeasure::Lean => self.cosine() * self.radius.clone(),
+            PairMeasure::Between => norm(&self.away()),
+            PairMeasure::Height => self.along(&self.away()),
+            PairMeasure::OffAxis => self.across(&self.away()),
+            PairMeasure::BetweenAxes => self.between_axes(),
+            PairMeasure::OffLine => self.off_line(),
+            PairMeasure::Tubes => a.tube.clone() - b.tube.clone(),
+            PairMeasure::SizeOfTube => b.size.clone() - a.tube.clone(),
+            PairMeasure::RimOfTube(outer) => {
+                let rim = match outer {
+                    true => b.size.clone() + b.tube.clone(),
+                    false => b.size.clone() - b.tube.clone(),
+                };
+                rim - a.tube.clone()
+            }
+            PairMeasure::OffSpine => self.off_spine(),
+            PairMeasure::AcrossSpine => self.across_spine() * self.radius.clone(),
+            PairMeasure::PlaneOnSphere => self.along(&self.away()).abs() - b.size.clone(),
+            PairMeasure::PlaneOnCylinder => {
+                self.along(&minus(&self.foot(), &a.point)).abs() - b.size.clone()
+            }
+            PairMeasure::PlaneAcrossCylinder => self.sine() * b.size.clone(),
+            PairMeasure::PlaneOnRuling => self.plane_on_ruling(),
+            PairMeasure::PlaneAlongRuling(far) => self.plane_along_ruling(far),
+            PairMeasure::SphereBesideSphere => Self::beside(norm(&self.away()), self.sizes()),
+            PairMeasure::SphereInSphere => Self::within(norm(&self.away()), self.sizes()),
+            PairMeasure::CylinderBesideCylinder => Self::beside(self.between_axes(), self.sizes()),
+            PairMeasure::CylinderInCylinder => Self::within(self.between_axes(), self.sizes()),
+            PairMeasure::PointOnQuadric => self.point_on_quadric(first),
+            PairMeasure::Tilt => self.sine() * self.rim(),
+            PairMeasure::Upright => self.cosine() * self.rim(),
+            PairMeasure::PlaneOnBothSides => self.sine() * a.size.clone() - a.tube.clone(),
+            PairMeasure::LineOnTube => self.line_on_tube(second),
+            PairMeasure::BetweenTubes => self.between_tubes(second),
+            PairMeasure::BesideTube => {
+                Self::beside(self.between_tubes(second), self.profile(second))
+            }
+            PairMeasure::InTube => Self::within(self.between_tubes(second), self.profile(second)),
+        }
+    }
+}
+
+/// Two carriers over the part's extent.
+#[derive(Clone, Copy)]
+pub struct SurfacePair<'a, N: Float = f64> {
+    /// The first.
+    pub a: Carrier<'a, N>,
+    /// The second.
+    pub b: Carrier<'a, N>,
+    /// The extent.
+    pub extent: &'a RegionOfInterest<N>,
+}
+
+impl<'a, N: Float> SurfacePair<'a, N> {
+    /// Two carriers in the order in which relations name them.
+    pub fn new(a: Carrier<'a, N>, b: Carrier<'a, N>, extent: &'a RegionOfInterest<N>) -> Self {
+        Self { a, b, extent }
+    }
+
+    /// The two the other way round.
+    pub fn turned(&self) -> Self {
+        Self {
+            a: self.b,
+            b: self.a,
+            extent: self.extent,
+        }
+    }
+
+    /// How the two lie to one another, in doubles: enough to see that something is out of question.
+    pub fn estimate(&self, relation: PairMeasure) -> N {
+        let [a, b] = [&self.a, &self.b].map(|c| c.numbers());
+        How {
+            pair: *self,
+            relation,
+        }
+        .over(a, b, |x| x)
+    }
+
+    /// How the two lie to one another.
+    pub fn how(&self, relation: PairMeasure) -> impl CertifiedDistance + use<'a, N> {
+        How {
+            pair: *self,
+            relation,
+        }
+    }
+}
+
+/// A relation of a pair, to be measured.
+struct How<'a, N: Float> {
+    pair: SurfacePair<'a, N>,
+    relation: PairMeasure,
+}
+
+impl<N: Float> How<'_, N> {
+    fn over<R: Enclosable>(
+        &self,
+        a: Coefficients<R>,
+        b: Coefficients<R>,
+        of: impl Fn(N) -> R,
+    ) -> R {
+        let &RegionOfInterest { centre, radius } = self.pair.extent;
+        let over = Over {
+            a,
+            b,
+            centre: <[N; 3]>::from(centre).map(&of),
+            radius: of(radius),
+        };
+        over.distance(self.relation, [self.pair.a.surface, self.pair.b.surface])
+    }
+}
+
+impl<N: Float> CertifiedDistance for How<'_, N> {
+    fn range(&self) -> Interval {
+        let [a, b] = [&self.pair.a, &self.pair.b].map(Carrier::ranges);
+        self.over(a, b, Interval::point).in_doubles()
+    }
+
+    fn refined(&self, bits: usize) -> Option<RationalInterval> {
+        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.reckoned(bits));
+        let exact = |x: N| RationalInterval::exact(x.exact().unwrap_or_default(), bits);
+        Some(self.over(a, b, exact))
+    }
+
+    fn separation(&self) -> Option<usize> {
+        let carriers = [&self.pair.a, &self.pair.b];
+        if carriers.iter().any(|c| c.is_constructed()) {
+            return None;
+        }
+        let [a, b] = carriers.map(|c| c.exact().map(exact_separation));
+        let exact = |x: N| SeparationBound::exact(x.exact().unwrap_or_default());
+        self.over(a, b, exact).bits()
+    }
+}
+
+fn exact_separation(x: &Rational) -> SeparationBound {
+    SeparationBound::exact(x.clone())
+}

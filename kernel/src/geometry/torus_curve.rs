@@ -1,0 +1,458 @@
+//! Curves on a torus, through its two angles: where another surface meets it, and its limb.
+//!
+//! Notation: θ is the angle about the axis, φ about the tube; the curve is F(θ, φ) = 0 with F a
+//! [`BivariateTrigPoly`]. It is kept as a chain of segments, each a graph of one angle over the other inside a
+//! rectangle where the slope is bounded, so that every point is one well-conditioned root. Next to
+//! a singular point the graph is that of κ over σ in a [`Chart`].
+
+mod across;
+
+use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Section};
+use super::blow_up::{Chart, DEGREE};
+use super::surface::Torus;
+use crate::number::analytic::Analytic;
+use crate::number::bisection::bisect;
+use crate::number::float::Float;
+use crate::number::interval::Interval;
+use crate::number::jet::{Jet, JetScalar};
+use nalgebra::Point3;
+
+/// The angle that a segment runs along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TorusParameter {
+    /// θ, about the axis.
+    Around,
+    /// φ, about the tube.
+    Tube,
+}
+
+/// A graph of one angle over the other, or of κ over σ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorusCurveSegment<N: Float = f64> {
+    /// The angle that runs, or whose offset is a power of σ.
+    pub axis: TorusParameter,
+    /// Where it starts.
+    pub from: N,
+    /// Where it ends, on either side of `from`.
+    pub to: N,
+    /// The other angle at both ends.
+    pub ends: [N; 2],
+    /// The other angle's derivative at both ends.
+    pub slopes: [N; 2],
+    /// A bound of that derivative's absolute value.
+    pub steep: N,
+    /// The range of the other angle in which the graph is the only one.
+    pub bracket: [N; 2],
+    /// The chart of the segment's coordinates, an index into the curve's; else they are angles.
+    pub chart: Option<usize>,
+}
+
+/// A branch of F(θ, φ) = 0 on a torus; the parameter runs over one unit for each segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TorusCurve<N: Float = f64> {
+    /// The torus.
+    pub torus: Torus<N>,
+    /// F.
+    pub form: BivariateTrigPoly<N>,
+    /// F about its singular points, for each branch.
+    pub charts: Vec<Chart<N>>,
+    /// The chain.
+    pub segments: Vec<TorusCurveSegment<N>>,
+    /// Whether the last segment ends where the first begins.
+    pub closed: bool,
+}
+
+/// What a segment is solved by: F in its coordinates.
+#[derive(Clone, Copy)]
+enum Form<'a, N: Float = f64> {
+    Angles(&'a BivariateTrigPoly<N>, TorusParameter),
+    Chart(&'a Chart<N>),
+}
+
+/// F with the running coordinate fixed.
+enum Fixed<N: Float = f64> {
+    Angle(Section<N>),
+    Chart([N; DEGREE + 1]),
+}
+
+/// So many steps in doubles come to their rounding.
+const BEGUN: u32 = 6;
+
+impl<N: Float> Fixed<N> {
+    /// The sum of the absolute coefficients: what rounding is in proportion to.
+    fn size(&self) -> N {
+        match self {
+            Self::Angle(section) => section.size(),
+            Self::Chart(section) => section.iter().map(|c| c.abs()).sum(),
+        }
+    }
+
+    /// The first digits of a root, by Newton's steps in doubles, where there are more.
+    fn begun(&self, start: N) -> N {
+        if N::IS_DOUBLE {
+            return start;
+        }
+        let section: Fixed = match self {
+            Self::Angle(section) => Fixed::Angle(Section(section.0.map(N::rounded))),
+            Self::Chart(section) => Fixed::Chart(section.map(N::rounded)),
+        };
+        let mut y = start.rounded();
+        for _ in 0..BEGUN {
+            let [value, slope] = section.at(y);
+            y -= value / slope;
+        }
+        N::of(y)
+    }
+
+    /// The value and the derivative.
+    fn at(&self, y: N) -> [N; 2] {
+        match self {
+            Self::Angle(section) => section.at(y),
+            Self::Chart(section) => {
+                let step = |[v, d]: [N; 2], c: &N| [v * y + *c, d * y + v];
+                section.iter().rev().fold([N::ZERO; 2], step)
+            }
+        }
+    }
+}
+
+impl<N: Float> Form<'_, N> {
+    fn fixed(&self, x: N) -> Fixed<N> {
+        match self {
+            Self::Angles(form, axis) => {
+                Fixed::Angle(form.section(*axis == TorusParameter::Around, x))
+            }
+            Self::Chart(chart) => Fixed::Chart(chart.section(x)),
+        }
+    }
+
+    fn partials(&self, x: N, y: N) -> Partials<N> {
+        match self {
+            Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
+            Self::Chart(chart) => chart.partials(x, y),
+        }
+    }
+
+    fn partials_over(&self, x: Interval<N>, y: Interval<N>) -> Partials<Interval<N>> {
+        match self {
+            Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
+            Self::Chart(chart) => chart.partials_over(x, y),
+        }
+    }
+}
+
+/// The partial derivatives with the running angle as the first.
+fn run_along<S>(axis: TorusParameter, x: S, y: S, at: impl Fn(S, S) -> Partials<S>) -> Partials<S> {
+    match axis {
+        TorusParameter::Around => at(x, y),
+        TorusParameter::Tube => {
+            let p = at(y, x);
+            Partials {
+                x: p.y,
+                y: p.x,
+                xx: p.yy,
+                yy: p.xx,
+                ..p
+            }
+        }
+    }
+}
+
+impl<N: Float> TorusCurveSegment<N> {
+    /// The cubic through both ends with their slopes.
+    fn hermite(&self, x: N) -> N {
+        let length = self.to - self.from;
+        let [y0, y1] = self.ends;
+        if length == N::ZERO {
+            return y0;
+        }
+        let s = (x - self.from) / length;
+        let (m0, m1) = (self.slopes[0] * length, self.slopes[1] * length);
+        let (a, b) = (N::ONE - s, s);
+        y0 * a * a * (N::ONE + N::TWO * b) + y1 * b * b * (N::of(3.0) - N::TWO * b) + m0 * b * a * a
+            - m1 * a * b * b
+    }
+
+    /// Whether its ends are no farther apart than the bound of its slope allows, but for rounding.
+    pub fn keeps_its_slope(&self) -> bool {
+        let rise = (self.ends[1] - self.ends[0]).abs();
+        let run = (self.to - self.from).abs();
+        rise <= N::TWO * self.steep * run + N::TAU * N::ROUNDING
+    }
+
+    /// The same graph, run the other way.
+    pub fn reversed(&self) -> Self {
+        let flip = |[a, b]: [N; 2]| [b, a];
+        Self {
+            from: self.to,
+            to: self.from,
+            ends: flip(self.ends),
+            slopes: flip(self.slopes),
+            ..*self
+        }
+    }
+
+    /// The other angle over x.
+    fn solve(&self, form: Form<'_, N>, x: N) -> N {
+        let start = self.hermite(x);
+        let [lo, hi] = self.bracket;
+        let reach = self.steep.max(N::ONE) * (self.to - self.from).abs();
+        let (lo, hi) = (lo.max(start - reach), hi.min(start + reach));
+        let section = form.fixed(x);
+        let rounding = N::ROUNDING * section.size();
+        let begun = section.begun(start);
+        let mut y = match begun >= lo && begun <= hi {
+            true => begun,
+            false => start,
+        };
+        let mut last = N::INFINITY;
+        for _ in 0..12 {
+            let [value, slope] = section.at(y);
+            let step = value / slope;
+            let short = step.abs() <= N::TWO * N::EPSILON * (N::ONE + y.abs());
+            // A graph that leaves its cell by a side ends on it, or beyond it by rounding.
+            let next = (y - step).max(lo).min(hi);
+            if !step.is_finite() || (next == y && !short) {
+                break;
+            }
+            y = next;
+            // Next to a singular point only rounding is left of the value, and steps no longer
+            // get shorter.
+            let noise = value.abs() <= rounding && step.abs() >= N::HALF * last;
+            // Elsewhere each is in proportion to the square of the one before.
+            let ahead = step.abs() * (step / last).square();
+            let next_to_none = last.is_finite() && ahead <= N::EPSILON;
+            if noise || short || next_to_none {
+                return y;
+            }
+            last = step.abs();
+        }
+        // Newton left the cell: F is monotone across it, so halving finds the root.
+        let value = |y: N| section.at(y)[0];
+        let (flo, fhi) = (value(self.bracket[0]), value(self.bracket[1]));
+        if self.bracket[0].is_finite() && flo * fhi < N::ZERO {
+            return bisect(self.bracket[0], self.bracket[1], flo, value);
+        }
+        y
+    }
+
+    fn jet(&self, form: Form<'_, N>, x: N) -> [N; 3] {
+        let y = self.solve(form, x);
+        let p = form.partials(x, y);
+        let d = -p.x / p.y;
+        [y, d, -(p.xx + N::TWO * p.xy * d + p.yy * d * d) / p.y]
+    }
+
+    /// A range of the other angle over x, by the bound of its slope.
+    fn solution(&self, form: Form<'_, N>, x: Interval<N>) -> Interval<N> {
+        let m = x.mid();
+        let y = self.solve(form, m);
+        let slop = Interval::around(y, N::of(4.0) * N::EPSILON * (N::ONE + y.abs()));
+        slop + Interval::new(-self.steep, self.steep) * (x - Interval::point(m))
+    }
+
+    fn interval_jet(&self, form: Form<'_, N>, x: Interval<N>) -> [Interval<N>; 3] {
+        let m = x.mid();
+        let slop = self.solution(form, Interval::point(m));
+        let run = x - Interval::point(m);
+        let prior = Interval::new(-self.steep, self.steep);
+        let mut y = slop + prior * run;
+        let p = form.partials_over(x, y);
+        if p.y.has_zero() {
+            return [y, prior, Interval::ENTIRE];
+        }
+        let d = (-p.x.over(p.y)).meet(prior);
+        y = y.meet(slop + d * run);
+        let dd = -(p.xx + (p.xy * d).times(2.0) + p.yy * d.square()).over(p.y);
+        [y, d, dd]
+    }
+}
+
+impl<N: Float> TorusCurve<N> {
+    fn chart(&self, s: &TorusCurveSegment<N>) -> Option<&Chart<N>> {
+        s.chart.and_then(|c| self.charts.get(c))
+    }
+
+    fn form(&self, s: &TorusCurveSegment<N>) -> Form<'_, N> {
+        match self.chart(s) {
+            Some(chart) => Form::Chart(chart),
+            None => Form::Angles(&self.form, s.axis),
+        }
+    }
+
+    /// (θ, φ) of the coordinates of a segment.
+    fn unfolded<S: JetScalar<Float = N>>(
+        &self,
+        s: &TorusCurveSegment<N>,
+        run: Jet<S>,
+        other: Jet<S>,
+    ) -> [Jet<S>; 2] {
+        match self.chart(s) {
+            None => arrange(s.axis, run, other),
+            Some(chart) => {
+                let [x, y] = chart.offsets(run, other);
+                let [theta, phi] = chart.origin.map(Jet::constant);
+                let [x, y] = arrange(s.axis, x, y);
+                [theta + x, phi + y]
+            }
+        }
+    }
+
+    /// (θ, φ) at both ends of a segment, in its sense.
+    pub fn ends(&self, index: usize) -> [[N; 2]; 2] {
+        let s = &self.segments[index];
+        let at = |x: N, y: N| {
+            self.unfolded(s, Jet::constant(x), Jet::constant(y))
+                .map(|j| j.v)
+        };
+        [at(s.from, s.ends[0]), at(s.to, s.ends[1])]
+    }
+
+    /// The number of segments: the parameter's length.
+    pub fn length(&self) -> N {
+        N::of(self.segments.len() as f64)
+    }
+
+    fn locate(&self, t: N) -> (&TorusCurveSegment<N>, N) {
+        let n = self.segments.len();
+        let t = if self.closed {
+            t.rem_euclid(N::of(n as f64))
+        } else {
+            t.clamp(N::ZERO, N::of(n as f64))
+        };
+        let i = t.floor().index().min(n - 1);
+        (&self.segments[i], t - N::of(i as f64))
+    }
+
+    /// (θ, φ) at t with two derivatives by t.
+    pub fn angles(&self, t: N) -> [Jet<N>; 2] {
+        let (s, tau) = self.locate(t);
+        let length = s.to - s.from;
+        let x = s.from + tau * length;
+        let [y, d, dd] = s.jet(self.form(s), x);
+        let run = Jet {
+            v: x,
+            d: length,
+            dd: N::ZERO,
+        };
+        let other = Jet {
+            v: y,
+            d: d * length,
+            dd: dd * length * length,
+        };
+        self.unfolded(s, run, other)
+    }
+
+    /// (θ, φ) over an interval of t inside one segment, with two derivatives.
+    pub fn angles_over(&self, t: Interval<N>) -> [Jet<Interval<N>>; 2] {
+        let (s, tau) = self.locate(t.mid());
+        let length = s.to - s.from;
+        let base = t.mid() - tau;
+        let offset = t - Interval::point(base);
+        let x = Interval::point(s.from) + offset.scale(length);
+        let [y, d, dd] = s.interval_jet(self.form(s), x);
+        let run = Jet {
+            v: x,
+            d: Interval::point(length),
+            dd: Interval::point(N::ZERO),
+        };
+        let other = Jet {
+            v: y,
+            d: d.scale(length),
+            dd: dd.scale(length * length),
+        };
+        self.unfolded(s, run, other)
+    }
+
+    /// A range of the point at t.
+    pub fn box_at(&self, t: N) -> [Interval<N>; 3] {
+        let (s, tau) = self.locate(t);
+        let run = Interval::point(s.from) + Interval::point(tau).scale(s.to - s.from);
+        let other = s.solution(self.form(s), run);
+        let constant = |v| Jet {
+            v,
+            d: Interval::point(N::ZERO),
+            dd: Interval::point(N::ZERO),
+        };
+        let angles = self.unfolded(s, constant(run), constant(other));
+        self.lift(angles.map(|angle| angle.v))
+    }
+
+    /// The point with the given angles.
+    pub fn lift<S: Analytic<Float = N>>(&self, [theta, phi]: [S; 2]) -> [S; 3] {
+        let t = &self.torus;
+        let (st, ct) = theta.sin_cos();
+        let (sp, cp) = phi.sin_cos();
+        let rho = S::constant(t.major) + cp.scale(t.minor);
+        t.frame.world_of([rho * ct, rho * st, sp.scale(t.minor)])
+    }
+
+    /// Whether the curve turns back at t: whether a cusp is there.
+    pub fn turns_back(&self, t: N) -> bool {
+        let n = self.segments.len();
+        let near = t.rem_euclid(N::of(n as f64)).round();
+        let s = &self.segments[near.index() % n];
+        let at_cusp = |c: &Chart<N>| c.weights.run == 2 && s.from == N::ZERO;
+        let away = (t - near).rem_euclid(N::of(n as f64));
+        away.min(N::of(n as f64) - away) <= N::ROUNDING * N::of(n as f64)
+            && self.chart(s).is_some_and(at_cusp)
+    }
+
+    /// The parameter of the curve's point next to the angles (θ, φ).
+    pub fn parameter(&self, theta: N, phi: N) -> N {
+        let mut best = (N::INFINITY, N::ZERO);
+        for (i, s) in self.segments.iter().enumerate() {
+            let x = self.folded(s, theta, phi);
+            let length = s.to - s.from;
+            let tau = ((x - s.from) / length).clamp(N::ZERO, N::ONE);
+            let [a, b] = self.angles_on(s, tau);
+            let away = wrap(theta - a).hypot(wrap(phi - b));
+            if away < best.0 {
+                best = (away, N::of(i as f64) + tau);
+            }
+        }
+        best.1
+    }
+
+    /// The running coordinate of a segment at the angles (θ, φ).
+    fn folded(&self, s: &TorusCurveSegment<N>, theta: N, phi: N) -> N {
+        match self.chart(s) {
+            None => {
+                let [x, _] = arrange(s.axis, theta, phi);
+                let middle = N::HALF * (s.from + s.to);
+                middle + wrap(x - middle)
+            }
+            Some(chart) => {
+                let away = [theta - chart.origin[0], phi - chart.origin[1]].map(wrap);
+                let [x, y] = arrange(s.axis, away[0], away[1]);
+                chart.sigma(x, y)
+            }
+        }
+    }
+
+    /// The point at t.
+    pub fn point(&self, t: N) -> Point3<N> {
+        let (s, tau) = self.locate(t);
+        Point3::from(self.lift(self.angles_on(s, tau)))
+    }
+
+    /// (θ, φ) on a segment, at a part of its length.
+    fn angles_on(&self, s: &TorusCurveSegment<N>, tau: N) -> [N; 2] {
+        let x = s.from + tau * (s.to - s.from);
+        let y = s.solve(self.form(s), x);
+        let angles = self.unfolded::<N>(s, Jet::constant(x), Jet::constant(y));
+        angles.map(|angle| angle.v)
+    }
+}
+
+fn arrange<T>(axis: TorusParameter, run: T, other: T) -> [T; 2] {
+    match axis {
+        TorusParameter::Around => [run, other],
+        TorusParameter::Tube => [other, run],
+    }
+}
+
+/// The angle brought into [-pi, pi).
+pub fn wrap<N: Float>(angle: N) -> N {
+    (angle + N::PI).rem_euclid(N::TAU) - N::PI
+}

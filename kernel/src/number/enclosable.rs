@@ -1,0 +1,74 @@
+//! What the relations between surfaces are measured over: doubles for an estimate, intervals of
+//! doubles for the answer, enclosures with more bits where those do not tell.
+
+use super::analytic::Analytic;
+use super::float::Float;
+use super::interval::Interval;
+use super::rational_interval::RationalInterval;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A real number, or a range that is known to hold it.
+pub trait Enclosable:
+    Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// A double, exactly.
+    fn constant(x: f64) -> Self;
+    /// The quotient; everything where the divisor may be zero.
+    fn over(self, divisor: Self) -> Self;
+    /// The square root of the non-negative part.
+    fn sqrt(self) -> Self;
+    /// The absolute value.
+    fn abs(self) -> Self;
+}
+
+impl<N: Float> Enclosable for N {
+    fn constant(x: f64) -> Self {
+        N::of(x)
+    }
+    fn over(self, divisor: Self) -> Self {
+        self / divisor
+    }
+    fn sqrt(self) -> Self {
+        Analytic::root(self)
+    }
+    fn abs(self) -> Self {
+        Float::abs(self)
+    }
+}
+
+impl<N: Float> Enclosable for Interval<N> {
+    fn constant(x: f64) -> Self {
+        Self::point(N::of(x))
+    }
+    fn over(self, divisor: Self) -> Self {
+        Analytic::over(self, divisor)
+    }
+    fn sqrt(self) -> Self {
+        Analytic::root(self)
+    }
+    fn abs(self) -> Self {
+        match (self.lo >= N::ZERO, self.hi <= N::ZERO) {
+            (true, _) => self,
+            (_, true) => -self,
+            _ => Self {
+                lo: N::ZERO,
+                hi: self.magnitude(),
+            },
+        }
+    }
+}
+
+impl Enclosable for RationalInterval {
+    fn constant(x: f64) -> Self {
+        Self::of_double(x)
+    }
+    fn over(self, divisor: Self) -> Self {
+        self.quotient(divisor)
+    }
+    fn sqrt(self) -> Self {
+        self.root()
+    }
+    fn abs(self) -> Self {
+        self.magnitude()
+    }
+}

@@ -1,0 +1,210 @@
+use super::*;
+use crate::number::rational::{from_decimal, from_f64, to_f64};
+use proptest::prelude::*;
+
+fn near(a: F237, b: F237) -> bool {
+    Float::abs(a - b) <= Float::abs(b) * F237::ROUNDING
+}
+
+/// The sine and the cosine by Taylor's series in fractions.
+fn by_fractions(x: f64) -> (F237, F237) {
+    let x = from_f64(x).unwrap();
+    let (mut term, mut sums) = (Rational::ONE, [Rational::ZERO, Rational::ZERO]);
+    for n in 0..140_u8 {
+        let sign = if n % 4 < 2 { 1 } else { -1 };
+        sums[usize::from(n % 2)] += term.clone() * Rational::from(sign);
+        term = term * x.clone() / Rational::from(n + 1);
+    }
+    let [cos, sin] = sums;
+    (F237::nearest(&sin), F237::nearest(&cos))
+}
+
+#[test]
+fn sines_are_their_series() {
+    let eighth = std::f64::consts::FRAC_PI_4;
+    let turns = (-9..10).map(|k| f64::from(k) * eighth);
+    let beside = turns.flat_map(|x| [x, x.next_up(), x + 0.001, x - 0.0078]);
+    for x in beside.chain([1e-40, 0.3, 0.49, 1.0, -2.0, 6.0]) {
+        let (sin, cos) = F237::of(x).sin_cos();
+        let (s, c) = by_fractions(x);
+        assert!(near(sin, s), "{x} {sin:?} {s:?}");
+        assert!(near(cos, c), "{x} {cos:?} {c:?}");
+        let back = sin.atan2(cos);
+        let turned = F237::of(x) - F237::TAU * F237::of((x / std::f64::consts::TAU).round());
+        let apart = Float::abs(back - turned);
+        let off = Float::min(apart, Float::abs(apart - F237::TAU));
+        assert!(
+            off <= Float::abs(F237::of(x)) * F237::ROUNDING,
+            "{x} {back:?}"
+        );
+    }
+    // Far off, the library's.
+    let x = F237::of(123_456.75);
+    let y = F237::of(1_000_000.5);
+    for x in [x, y] {
+        let (sin, cos) = (F237(x.0.sin()), F237(x.0.cos()));
+        assert!(near(x.sin_cos().0, sin) && near(x.sin_cos().1, cos));
+    }
+}
+
+#[test]
+fn functions_have_all_digits() {
+    for x in [-3.7, -1e-20, 1e-9, 0.3, 1.0, 2.5, 40.0].map(F237::of) {
+        let (sin, cos) = x.sin_cos();
+        assert!(near(sin * sin + cos * cos, F237::ONE), "{x:?}");
+        assert!(near(x.sinh().asinh(), x), "{x:?}");
+        assert!(
+            near(x.sinh() * x.sinh() + F237::ONE, x.cosh() * x.cosh()),
+            "{x:?}"
+        );
+        assert!(near(sin.atan2(cos).sin(), sin), "{x:?}");
+    }
+    let x = F237::of(1.25);
+    assert!(near(x.acosh().cosh(), x));
+    assert!(near(
+        x.hypot(F237::of(3.0)) * x.hypot(F237::of(3.0)),
+        F237::of(10.5625)
+    ));
+    assert!(near(F237::of(-0.5).acos() * F237::of(3.0), F237::TAU));
+    let third = F237::nearest(&(Rational::ONE / Rational::from(3)));
+    assert!(near(third * F237::of(3.0), F237::ONE));
+}
+
+/// Where the functions of doubles and of wide numbers are held against each other: special
+/// values, and ordinary ones.
+const PLACES: [f64; 17] = [
+    0.0, 1e-300, 1e-20, 1e-9, 0.25, 0.5, 0.7, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 10.0, 700.0, 1e9,
+];
+
+fn agrees(a: F237, b: f64, about: (&str, f64, f64)) {
+    let off = (a.rounded() - b).abs();
+    assert!(
+        off <= 4.0 * f64::EPSILON * b.abs(),
+        "{about:?}: {} {b}",
+        a.rounded()
+    );
+}
+
+#[test]
+fn functions_of_one_number_are_those_of_doubles() {
+    for x in PLACES.into_iter().flat_map(|x| [x, -x]) {
+        let w = F237::of(x);
+        let about = |name| (name, x, 0.0);
+        agrees(w.sin(), x.sin(), about("sin"));
+        agrees(w.cos(), x.cos(), about("cos"));
+        agrees(w.sin_cos().0, x.sin(), about("sin of both"));
+        agrees(w.sin_cos().1, x.cos(), about("cos of both"));
+        agrees(w.atan(), x.atan(), about("atan"));
+        agrees(w.asinh(), x.asinh(), about("asinh"));
+        agrees(w.floor(), x.floor(), about("floor"));
+        agrees(w.ceil(), x.ceil(), about("ceil"));
+        agrees(w.round(), x.round(), about("round"));
+        agrees(w.fract(), x.fract(), about("fract"));
+        if x.abs() <= 700.0 {
+            agrees(w.sinh(), x.sinh(), about("sinh"));
+            agrees(w.cosh(), x.cosh(), about("cosh"));
+        }
+        if x.abs() <= 1.0 {
+            agrees(w.acos(), x.acos(), about("acos"));
+        }
+        if x >= 0.0 {
+            agrees(w.sqrt(), x.sqrt(), about("sqrt"));
+        }
+        if x >= 1.0 {
+            agrees(w.acosh(), x.acosh(), about("acosh"));
+        }
+    }
+}
+
+#[test]
+fn functions_of_two_numbers_are_those_of_doubles() {
+    let all = || PLACES.into_iter().flat_map(|x| [x, -x]);
+    for (x, y) in all().flat_map(|x| all().map(move |y| (x, y))) {
+        let (a, b) = (F237::of(x), F237::of(y));
+        agrees(a.atan2(b), x.atan2(y), ("atan2", x, y));
+        agrees(a.hypot(b), x.hypot(y), ("hypot", x, y));
+        agrees(Float::max(a, b), x.max(y), ("max", x, y));
+        agrees(Float::min(a, b), x.min(y), ("min", x, y));
+        if y != 0.0 && x.abs() < 1e3 && y.abs() > 1e-3 {
+            let most = 4.0 * f64::EPSILON * y.abs();
+            let off = (a.rem_euclid(b).rounded() - x.rem_euclid(y)).abs();
+            assert!(off <= most || y.abs() - off <= most, "rem_euclid {x} {y}");
+        }
+        assert_eq!(a < b, x < y);
+        assert_eq!(a == b, x == y);
+    }
+    for n in -5..6 {
+        agrees(
+            F237::of(1.75).powi(n),
+            1.75_f64.powi(n),
+            ("powi", 1.75, f64::from(n)),
+        );
+    }
+}
+
+#[test]
+fn small_angles_are_those_of_their_series() {
+    for n in [-7, -20, -60, -110, -119, -121, -400] {
+        let x = F237::of(1.3) * F237(f256::TWO).powi(n);
+        let x2 = x * x;
+        let terms = |first: i32| {
+            // The terms of a series of alternating powers over factorials.
+            let mut term = F237::ONE;
+            (0..20).fold(F237::ZERO, |sum, k| {
+                let now = sum + term;
+                let n = F237::whole(first + 2 * k);
+                term *= -x2 / ((n + F237::ONE) * (n + F237::TWO));
+                now
+            })
+        };
+        assert!(near(x.sin(), x * terms(1)), "sin {n}");
+        assert!(near(x.sin_cos().0, x * terms(1)), "sin {n}");
+        assert!(near(x.cos(), terms(0)), "cos {n}");
+        assert!(near((x.sin() / x.cos()).atan(), x), "atan {n}");
+        assert!(near(x.sin().atan2(x.cos()), x), "atan2 {n}");
+        assert!(near(x.sinh().asinh(), x), "asinh {n}");
+    }
+}
+
+#[test]
+fn sinc_is_smooth_where_its_series_ends() {
+    let [a, b] = [0.499_999_999_9, 0.500_000_000_1].map(F237::of);
+    for i in 0..2 {
+        // The mean of the derivative at both ends is the slope between, to the third order.
+        let rise = sinc_jet(b)[i] - sinc_jet(a)[i];
+        let mean = F237::HALF * (sinc_jet(a)[i + 1] + sinc_jet(b)[i + 1]);
+        let off = Float::abs(rise / (b - a) - mean);
+        assert!(off < F237::of(1e-18), "{off:?}");
+    }
+}
+
+#[test]
+fn doubles_bound_what_lies_between_them() {
+    let third = F237::ONE / F237::of(3.0);
+    assert_eq!(third.rounded(), 1.0 / 3.0);
+    assert!(F237::of(third.below()) < third && third < F237::of(third.above()));
+    assert_eq!(third.above(), third.below().next_up());
+    assert_eq!(F237::of(0.1).below(), 0.1);
+    assert_eq!(F237::of(0.1).above(), 0.1);
+    assert_eq!(F237::ZERO.rounded(), 0.0);
+    assert_eq!(F237::NEG_INFINITY.rounded(), f64::NEG_INFINITY);
+    assert!(F237::NAN.rounded().is_nan());
+}
+
+proptest! {
+    #[test]
+    fn a_double_survives(x in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
+        prop_assert_eq!(F237::of(x).rounded(), x);
+        prop_assert_eq!(F237::of(x).exact(), from_f64(x));
+    }
+
+    #[test]
+    fn a_rational_is_rounded_once(digits in "[1-9][0-9]{0,60}", e in -80i32..80) {
+        let exact = from_decimal(&format!("-{digits}e{e}")).unwrap();
+        let near = F237::nearest(&exact);
+        prop_assert_eq!(near.rounded(), to_f64(&exact));
+        let off = near.exact().unwrap() / exact - Rational::ONE;
+        let most = F237::EPSILON.exact().unwrap();
+        prop_assert!(-most.clone() <= off && off <= most);
+    }
+}

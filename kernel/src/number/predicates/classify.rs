@@ -1,0 +1,293 @@
+//! Who decides by the part's one resolution.
+
+use super::{CLOSE, CertifiedDistance, CloseCall, CoincidencePolicy, DecisionStats, Side};
+use crate::number::float::Float;
+use crate::number::rational::{Rational, from_f64};
+use crate::number::rational_interval::RationalInterval;
+use dashu::base::BitTest;
+use std::cell::RefCell;
+
+/// The precisions that are tried, in bits.
+const PRECISIONS: [usize; 4] = [128, 256, 512, 1024];
+
+/// Zeros that would take more bits are not proven.
+const PROVABLE: usize = 1 << 17;
+
+/// How a decision was reached.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Effort {
+    Filter,
+    MoreBits,
+    /// By the bits from which on it can be nothing but zero.
+    Proof,
+    /// A construction says so, which is proven where it is used.
+    Construction,
+    /// No more than that is known.
+    Assumption,
+}
+
+/// The side of a distance in [lo, hi], where the range tells: `band` and `below` are the two edges of
+/// the band.
+fn side_of<N: PartialOrd>(lo: N, hi: N, band: N, below: N) -> Option<Side> {
+    if lo > band {
+        Some(Side::Outside)
+    } else if hi < below {
+        Some(Side::Inside)
+    } else if lo >= below && hi <= band {
+        Some(Side::On)
+    } else {
+        None
+    }
+}
+
+/// The side of a distance within the band: on it only if it is zero, where that can be told.
+fn proven_side(distance: &impl CertifiedDistance) -> (Side, Effort) {
+    let Some(bits) = distance.separation() else {
+        return (Side::On, Effort::Construction);
+    };
+    if bits > PROVABLE {
+        return (Side::On, Effort::Assumption);
+    }
+    let bounds = distance.refined(bits + GUARD);
+    match bounds.as_ref().and_then(RationalInterval::ends) {
+        Some([lo, _]) if *lo > Rational::ZERO => (Side::Outside, Effort::MoreBits),
+        Some([_, hi]) if *hi < Rational::ZERO => (Side::Inside, Effort::MoreBits),
+        Some([lo, hi]) if is_below(&(hi - lo), bits) => (Side::On, Effort::Proof),
+        _ => (Side::On, Effort::Assumption),
+    }
+}
+
+/// Whether a number that is not negative is less than 2 to the power of -`bits`.
+fn is_below(x: &Rational, bits: usize) -> bool {
+    x.is_zero() || x.numerator().bit_len() + bits < x.denominator().bit_len()
+}
+
+/// The bits beyond a bound that rounding may take.
+const GUARD: usize = 128;
+
+/// Decides by the part's one resolution, and keeps count.
+#[derive(Debug)]
+pub struct Predicates {
+    band: f64,
+    zeros: CoincidencePolicy,
+    decisions: RefCell<DecisionStats>,
+    doubts: RefCell<Vec<CloseCall>>,
+}
+
+impl Predicates {
+    /// A judge whose resolution is `band`, a distance in the part's unit.
+    pub fn new(band: f64) -> Self {
+        Self {
+            band,
+            zeros: CoincidencePolicy::ByResolution,
+            decisions: RefCell::default(),
+            doubts: RefCell::default(),
+        }
+    }
+
+    /// A judge who has what lies within `band` proven to be zero.
+    pub fn exact(band: f64) -> Self {
+        Self {
+            zeros: CoincidencePolicy::Exact,
+            ..Self::new(band)
+        }
+    }
+
+    /// Whether zeros are proven.
+    pub fn proves(&self) -> bool {
+        self.zeros == CoincidencePolicy::Exact
+    }
+
+    /// The resolution, a distance in the part's unit.
+    pub fn band<N: Float>(&self) -> N {
+        N::of(self.band)
+    }
+
+    /// What is no further apart than this coincides, or is a close call: only what is further apart
+    /// need not be asked about.
+    pub fn reach<N: Float>(&self) -> N {
+        N::of(self.band * CLOSE)
+    }
+
+    /// The side on which the signed `distance` lies; `place` is where it was measured.
+    pub fn side(
+        &self,
+        question: &'static str,
+        distance: impl CertifiedDistance,
+        place: [f64; 3],
+    ) -> Side {
+        let (side, call) = self.decide(question, distance, place);
+        call.into_iter().for_each(|call| self.list(call));
+        side
+    }
+
+    /// The same of a point that the two things may have in common: it concerns nothing else.
+    pub fn contact(
+        &self,
+        question: &'static str,
+        distance: impl CertifiedDistance,
+        place: [f64; 3],
+    ) -> Side {
+        let (side, call) = self.decide(question, distance, place);
+        let local = |call| CloseCall {
+            local: true,
+            ..call
+        };
+        call.into_iter().for_each(|call| self.list(local(call)));
+        side
+    }
+
+    /// The side, and the close call that it may be, counted but not yet listed: for who knows
+    /// whether anything depends on it.
+    pub fn decide(
+        &self,
+        question: &'static str,
+        distance: impl CertifiedDistance,
+        place: [f64; 3],
+    ) -> (Side, Option<CloseCall>) {
+        let range = distance.range();
+        let (mut side, mut effort) = match side_of(range.lo, range.hi, self.band, -self.band) {
+            Some(side) => (side, Effort::Filter),
+            None => (self.refined_side(&distance), Effort::MoreBits),
+        };
+        if side == Side::On && self.proves() {
+            (side, effort) = proven_side(&distance);
+            if side != Side::On {
+                self.doubt(question, place, range.mid());
+            }
+        }
+        self.count(side, effort);
+        let distance = range.mid();
+        let size = distance.abs();
+        let is_close = size * CLOSE > self.band && size < self.reach();
+        let call = is_close.then_some(CloseCall {
+            question,
+            place,
+            distance,
+            local: false,
+        });
+        (side, call)
+    }
+
+    /// Lists a close call.
+    pub fn list(&self, call: CloseCall) {
+        self.decisions.borrow_mut().close_calls.push(call);
+    }
+
+    /// Another judge of the same resolution, who has decided nothing yet.
+    pub fn another(&self) -> Self {
+        Self {
+            zeros: self.zeros,
+            ..Self::new(self.band)
+        }
+    }
+
+    /// Notes what lies within the resolution and is proven to be apart.
+    pub fn doubt(&self, question: &'static str, place: [f64; 3], distance: f64) {
+        self.doubts.borrow_mut().push(CloseCall {
+            question,
+            place,
+            distance,
+            local: false,
+        });
+    }
+
+    /// The first of what lies within the resolution and is proven to be apart.
+    pub fn first_doubt(&self) -> Option<CloseCall> {
+        self.doubts.borrow().first().cloned()
+    }
+
+    /// Counts zeros that were proven.
+    pub fn count_proven(&self, zeros: u64) {
+        self.decisions.borrow_mut().exact += zeros;
+    }
+
+    /// Counts zeros of which no more is known than the resolution.
+    pub fn count_assumed(&self, zeros: u64) {
+        self.decisions.borrow_mut().coincident += zeros;
+    }
+
+    /// Takes over what another judge has counted, and gives the close calls, not yet listed.
+    pub fn take(&self, other: Self) -> Vec<CloseCall> {
+        self.doubts.borrow_mut().extend(other.doubts.into_inner());
+        let other = other.decisions.into_inner();
+        let mut decisions = self.decisions.borrow_mut();
+        decisions.filtered += other.filtered;
+        decisions.refined += other.refined;
+        decisions.exact += other.exact;
+        decisions.coincident += other.coincident;
+        other.close_calls
+    }
+
+    /// Whether two things `distance` apart coincide.
+    pub fn coincide(
+        &self,
+        question: &'static str,
+        distance: impl CertifiedDistance,
+        place: [f64; 3],
+    ) -> bool {
+        self.side(question, distance, place) == Side::On
+    }
+
+    /// The side by more bits. What cannot be told from the edge of the band lies on it, and
+    /// coincides.
+    fn refined_side(&self, distance: &impl CertifiedDistance) -> Side {
+        let Some(band) = from_f64(self.band) else {
+            return Side::On;
+        };
+        let below = -band.clone();
+        for bits in PRECISIONS {
+            let enclosure = distance.refined(bits);
+            let Some([lo, hi]) = enclosure.as_ref().and_then(RationalInterval::ends) else {
+                continue;
+            };
+            if let Some(side) = side_of(lo, hi, &band, &below) {
+                return side;
+            }
+        }
+        Side::On
+    }
+
+    /// Whether `distance` is within the band, without counting it: for searches that ask many
+    /// times before one decision is made.
+    pub fn within<N: Float>(&self, distance: N) -> bool {
+        distance.abs() <= self.band()
+    }
+
+    /// Whether a decision made on `distance` would be a close call, or coincide: for a search that
+    /// may look elsewhere.
+    pub fn is_close<N: Float>(&self, distance: N) -> bool {
+        distance.abs() < self.reach()
+    }
+
+    fn count(&self, side: Side, effort: Effort) {
+        let mut decisions = self.decisions.borrow_mut();
+        match (side, effort) {
+            (_, Effort::Construction) => {}
+            (_, Effort::Proof) => decisions.exact += 1,
+            (_, Effort::MoreBits) => decisions.refined += 1,
+            (Side::On, _) | (_, Effort::Assumption) => decisions.coincident += 1,
+            (_, Effort::Filter) => decisions.filtered += 1,
+        }
+    }
+
+    /// The decisions so far; the close calls of one question at one place stand once.
+    pub fn decisions(&self) -> DecisionStats {
+        let mut decisions = self.decisions.borrow().clone();
+        let mut kept: Vec<CloseCall> = Vec::new();
+        for call in decisions.close_calls {
+            let again = kept.iter().any(|k| {
+                k.question == call.question
+                    && k.place
+                        .iter()
+                        .zip(call.place)
+                        .all(|(a, b)| (a - b).abs() <= CLOSE * self.band)
+            });
+            if !again {
+                kept.push(call);
+            }
+        }
+        decisions.close_calls = kept;
+        decisions
+    }
+}

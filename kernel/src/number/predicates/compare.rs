@@ -1,0 +1,118 @@
+//! What is asked of one number, by those who decide.
+
+use crate::number::float::Float;
+
+/// The questions about a number that a construction reckoned: it is taken at its word, as the
+/// [`CertifiedDistance`](super::Distance) is that it makes.
+///
+/// What is not a number answers no to each of them.
+pub trait Compare: Float {
+    /// Whether it is greater than zero.
+    #[inline]
+    fn is_above_zero(self) -> bool {
+        self > Self::ZERO
+    }
+
+    /// Whether it is less than zero.
+    #[inline]
+    fn is_below_zero(self) -> bool {
+        self < Self::ZERO
+    }
+
+    /// Whether it is the very same number: a value that was handed on, or nothing left to divide by.
+    /// It says nothing of what coincides.
+    #[inline]
+    fn is_exactly(self, other: Self) -> bool {
+        self == other
+    }
+
+    /// Whether a distance, of either sign, is no more than `reach`.
+    #[inline]
+    fn is_within(self, reach: Self) -> bool {
+        self.abs() <= reach
+    }
+
+    /// Whether it is more than `limit`.
+    #[inline]
+    fn is_beyond(self, limit: Self) -> bool {
+        self > limit
+    }
+
+    /// Whether it is less than `limit`.
+    #[inline]
+    fn is_short_of(self, limit: Self) -> bool {
+        self < limit
+    }
+
+    /// Whether it is `limit` or more.
+    #[inline]
+    fn reaches(self, limit: Self) -> bool {
+        self >= limit
+    }
+
+    /// Whether it is `limit` or less.
+    #[inline]
+    fn is_at_most(self, limit: Self) -> bool {
+        self <= limit
+    }
+
+    /// Whether a parameter lies in a range, its ends included.
+    #[inline]
+    fn lies_in(self, [lo, hi]: [Self; 2]) -> bool {
+        lo <= self && self <= hi
+    }
+
+    /// Whether a parameter lies between the ends of a range.
+    #[inline]
+    fn lies_between(self, [lo, hi]: [Self; 2]) -> bool {
+        lo < self && self < hi
+    }
+}
+
+impl<N: Float> Compare for N {}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Side;
+    use super::*;
+    use crate::number::extended::F237;
+
+    fn all<N: Float>(x: N) -> [bool; 10] {
+        let (one, two) = (N::ONE, N::TWO);
+        [
+            x.is_above_zero(),
+            x.is_below_zero(),
+            x.is_exactly(one),
+            x.is_within(one),
+            x.is_beyond(one),
+            x.is_short_of(one),
+            x.reaches(one),
+            x.is_at_most(one),
+            x.lies_in([one, two]),
+            x.lies_between([one, two]),
+        ]
+    }
+
+    #[test]
+    fn what_is_not_a_number_answers_no() {
+        assert_eq!(all(f64::NAN), [false; 10]);
+        assert_eq!(all(F237::NAN), [false; 10]);
+        assert_eq!(Side::of(f64::NAN, 1.0), Side::On);
+    }
+
+    #[test]
+    fn a_limit_belongs_to_what_is_within_it() {
+        let is = |x: f64| {
+            assert_eq!(all(x), all(F237::of(x)));
+            let told = all(x).map(|yes| if yes { '1' } else { '0' });
+            told.into_iter().collect::<String>()
+        };
+        assert_eq!(is(-1.0), "0101010100");
+        assert_eq!(is(0.0), "0001010100");
+        assert_eq!(is(1.0), "1011001110");
+        assert_eq!(is(1.5), "1000101011");
+        assert_eq!(is(2.0), "1000101010");
+        let sides = [-1.5, -1.0, 1.0, 1.5].map(|x| Side::of(x, 1.0));
+        assert_eq!(sides, [Side::Inside, Side::On, Side::On, Side::Outside]);
+    }
+}

@@ -1,0 +1,49 @@
+//! Distances, and to how many digits they are known.
+
+use crate::number::float::Float;
+use crate::number::interval::Interval;
+use crate::number::rational::{Rational, to_f64};
+use crate::number::rational_interval::RationalInterval;
+use crate::number::separation_bound::SeparationBound;
+
+/// A signed distance between geometric things, in the part's unit.
+pub trait CertifiedDistance {
+    /// A certified range, in doubles.
+    fn range(&self) -> Interval;
+
+    /// A certified range reckoned to so many bits; none where no more is known.
+    fn refined(&self, bits: usize) -> Option<RationalInterval>;
+
+    /// The number of bits after the point from which on a distance that is still zero is zero; none
+    /// where no such bound is known.
+    fn separation(&self) -> Option<usize> {
+        None
+    }
+}
+
+/// A distance that is a construction's: taken at its word.
+impl<N: Float> CertifiedDistance for N {
+    fn range(&self) -> Interval {
+        Interval::point(self.rounded())
+    }
+
+    fn refined(&self, _bits: usize) -> Option<RationalInterval> {
+        None
+    }
+}
+
+/// A distance that is known without rounding.
+impl CertifiedDistance for &Rational {
+    fn range(&self) -> Interval {
+        let nearest = to_f64(self);
+        Interval::around(nearest, nearest.abs() * f64::EPSILON)
+    }
+
+    fn refined(&self, bits: usize) -> Option<RationalInterval> {
+        Some(RationalInterval::exact((*self).clone(), bits))
+    }
+
+    fn separation(&self) -> Option<usize> {
+        SeparationBound::exact((*self).clone()).bits()
+    }
+}

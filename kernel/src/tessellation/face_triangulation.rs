@@ -1,0 +1,509 @@
+//! A face in its chart: the chords of its edges as the constraints of a Delaunay triangulation.
+
+use super::Accuracy;
+use super::charts::{Chart, Seams, signed_turn};
+use super::chord_test::ChordTest;
+use super::edges::{Node, Polylines};
+use crate::brep::Brep;
+use crate::brep::topology::{EdgeId, FaceId, Sense};
+use crate::geometry::surface::{Surface, Torus};
+use crate::number::bisection::bisect;
+use nalgebra::{Point2, Point3};
+use spade::handles::FixedVertexHandle;
+use spade::{
+    ConstrainedDelaunayTriangulation, HasPosition, PositionInTriangulation, Triangulation,
+};
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::TAU;
+
+/// A chord of an edge: from the node at this place to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Chord {
+    edge: EdgeId,
+    first: usize,
+}
+
+/// Where an edge has to be divided, because a chord of it is in the way of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Division {
+    /// The edge.
+    pub edge: EdgeId,
+    /// The parameter.
+    pub t: f64,
+}
+
+/// A point in the chart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// Where it is.
+    pub at: Point2<f64>,
+    /// The index of its point.
+    pub point: u32,
+}
+
+impl Corner {
+    /// A corner; coordinates too small for the triangulation are zero.
+    pub fn new(at: Point2<f64>, point: u32) -> Self {
+        let at = spade::mitigate_underflow(spade::Point2::new(at.x, at.y));
+        Self {
+            at: Point2::new(at.x + 0.0, at.y + 0.0),
+            point,
+        }
+    }
+}
+
+impl HasPosition for Corner {
+    type Scalar = f64;
+    fn position(&self) -> spade::Point2<f64> {
+        spade::Point2::new(self.at.x, self.at.y)
+    }
+}
+
+/// A side from one corner to another, by their places in the triangulation.
+pub(super) type Side = (usize, usize);
+
+/// A face in its chart.
+pub(super) struct FaceTriangulation {
+    /// The triangulation.
+    pub net: ConstrainedDelaunayTriangulation<Corner>,
+    /// The sides that the face lies to the left of, as its loops run.
+    pub bounding: HashSet<Side>,
+    /// Sides along a seam, and the same sides beyond it, both with the chart to their left.
+    pub glued: HashMap<Side, Side>,
+    /// Triangles that are not in the chart, counterclockwise as it is, by their points.
+    pub cap: Vec<[u32; 3]>,
+    /// How many nodes each of its edges had.
+    built_of: Vec<(EdgeId, usize)>,
+}
+
+impl FaceTriangulation {
+    /// Whether no edge of the face was divided since.
+    pub fn is_current(&self, lines: &Polylines) -> bool {
+        let mut edges = self.built_of.iter();
+        edges.all(|&(edge, count)| lines.nodes(edge).len() == count)
+    }
+
+    /// The face in its chart, or where its edges have to be divided first.
+    pub fn of(
+        brep: &Brep,
+        face: FaceId,
+        chart: &Chart,
+        accuracy: &Accuracy,
+        lines: &mut Polylines,
+    ) -> Result<Self, Vec<Division>> {
+        if let Chart::Torus(torus, seams) = chart {
+            cut_at_seams(brep, face, &Surface::Torus(*torus), seams, lines);
+        }
+        // The triangles next to a chord need room.
+        let fit = ChordTest {
+            surface: brep.surface(face),
+            chart,
+            accuracy: &accuracy.part(0.5),
+        };
+        let mut builder = Builder::new(brep, face, fit, lines);
+        for (edge, sense) in runs(brep, face) {
+            builder.add(edge, sense);
+        }
+        builder.finish()
+    }
+}
+
+/// The edges of a face as its loops run along them.
+fn runs(brep: &Brep, face: FaceId) -> Vec<(EdgeId, Sense)> {
+    let t = &brep.topology;
+    t.coedges_of(face)
+        .map(|c| (t.coedge(c).edge, t.coedge(c).sense))
+        .collect()
+}
+
+/// An angle this near to a seam is on it.
+const ON_SEAM: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// Gives every edge of a face a node where it crosses a seam.
+fn cut_at_seams(
+    brep: &Brep,
+    face: FaceId,
+    surface: &Surface,
+    seams: &Seams,
+    lines: &mut Polylines,
+) {
+    for (edge, _) in runs(brep, face) {
+        let curve = brep.curve(edge);
+        let from_seam =
+            |i: usize, t: f64| signed_turn(surface.parameters(&curve.point(t))[i] - seams.at[i]);
+        for i in 0..2 {
+            let nodes = lines.nodes(edge).to_vec();
+            for pair in nodes.windows(2) {
+                let (a, b) = (pair[0].t, pair[1].t);
+                let (x, y) = (from_seam(i, a), from_seam(i, b));
+                let on = x.abs() < ON_SEAM || y.abs() < ON_SEAM;
+                // Opposite signs on the far side are no crossing.
+                if !on && x * y < 0.0 && (x - y).abs() < 0.5 * TAU {
+                    let t = bisect(a, b, x, |t| from_seam(i, t));
+                    lines.insert(brep, edge, t);
+                }
+            }
+        }
+    }
+}
+
+struct Builder<'a> {
+    fit: ChordTest<'a>,
+    brep: &'a Brep,
+    lines: &'a mut Polylines,
+    domain: FaceTriangulation,
+    /// The corners by their coordinates' bits: the triangulation would replace what is known there.
+    corners: HashMap<[u64; 2], FixedVertexHandle>,
+    /// The chords by their sides, either way.
+    chords: HashMap<Side, Chord>,
+    divisions: Vec<Division>,
+    /// Whether a seam runs through a node of another point.
+    crowded: bool,
+}
+
+impl<'a> Builder<'a> {
+    fn new(brep: &'a Brep, face: FaceId, fit: ChordTest<'a>, lines: &'a mut Polylines) -> Self {
+        let edges = runs(brep, face).into_iter().map(|r| r.0);
+        let built_of = edges.map(|e| (e, lines.nodes(e).len())).collect();
+        Self {
+            fit,
+            brep,
+            lines,
+            domain: FaceTriangulation {
+                net: ConstrainedDelaunayTriangulation::new(),
+                bounding: HashSet::new(),
+                glued: HashMap::new(),
+                cap: Vec::new(),
+                built_of,
+            },
+            corners: HashMap::new(),
+            chords: HashMap::new(),
+            divisions: Vec::new(),
+            crowded: false,
+        }
+    }
+
+    /// Adds the chords of an edge, run in a sense.
+    fn add(&mut self, edge: EdgeId, sense: Sense) {
+        let nodes = self.lines.nodes(edge).to_vec();
+        for (first, pair) in nodes.windows(2).enumerate() {
+            let chord = Chord { edge, first };
+            let [a, b] = self.places(edge, [pair[0], pair[1]]);
+            let ends = (self.corner(a, pair[0].point), self.corner(b, pair[1].point));
+            let (Some(from), Some(to)) = ends else {
+                self.halve(chord);
+                continue;
+            };
+            let side = match sense {
+                Sense::Along => (from.index(), to.index()),
+                Sense::Against => (to.index(), from.index()),
+            };
+            let points = [pair[0], pair[1]].map(|n| self.lines.points[n.point as usize]);
+            if self.fit.leaves([a, b], &points).is_some() {
+                self.halve(chord);
+            }
+            self.domain.bounding.insert(side);
+            self.constrain(from, to, chord);
+        }
+    }
+
+    /// Where the ends of a chord lie; on a torus as one sees them from its middle.
+    fn places(&self, edge: EdgeId, nodes: [Node; 2]) -> [Point2<f64>; 2] {
+        let mut ends = nodes.map(|n| self.fit.chart.map(&self.lines.points[n.point as usize]));
+        if let Chart::Torus(torus, _) = self.fit.chart {
+            let middle = 0.5 * (nodes[0].t + nodes[1].t);
+            let middle = self.fit.chart.map(&self.brep.curve(edge).point(middle));
+            for end in &mut ends {
+                *end = beside(torus, *end, &middle);
+            }
+        }
+        ends
+    }
+
+    /// The corner at a place of the chart; none where it is another point's.
+    fn corner(&mut self, at: Point2<f64>, point: u32) -> Option<FixedVertexHandle> {
+        let corner = Corner::new(at, point);
+        let name = [corner.at.x, corner.at.y].map(f64::to_bits);
+        if let Some(&known) = self.corners.get(&name) {
+            return (self.domain.net.vertex(known).data().point == point).then_some(known);
+        }
+        let corner = self.domain.net.insert(corner).ok()?;
+        self.corners.insert(name, corner);
+        Some(corner)
+    }
+
+    /// Makes a chord a constraint, or notes what is in its way.
+    fn constrain(&mut self, from: FixedVertexHandle, to: FixedVertexHandle, chord: Chord) {
+        let side = |a: usize, b: usize| (a.min(b), a.max(b));
+        let key = side(from.index(), to.index());
+        match self.chords.get(&key) {
+            // Both faces of a slit.
+            Some(known) if *known == chord => return,
+            Some(&known) => {
+                self.halve(known);
+                self.halve(chord);
+                return;
+            }
+            None => {}
+        }
+        let net = &self.domain.net;
+        let crossed = net.get_conflicting_edges_between_vertices(from, to);
+        let crossed: Vec<Side> = crossed
+            .map(|e| side(e.from().index(), e.to().index()))
+            .collect();
+        if !crossed.is_empty() {
+            for crossed in crossed {
+                match self.chords.get(&crossed) {
+                    Some(&other) => self.part(chord, other),
+                    // A part of a chord that runs through a corner.
+                    None => self.halve(chord),
+                }
+            }
+            return;
+        }
+        self.domain.net.add_constraint(from, to);
+        if self.domain.net.exists_constraint(from, to) {
+            self.chords.insert(key, chord);
+        } else {
+            // It runs through a corner.
+            self.halve(chord);
+        }
+    }
+
+    fn ends(&self, chord: Chord) -> [Node; 2] {
+        let nodes = self.lines.nodes(chord.edge);
+        [nodes[chord.first], nodes[chord.first + 1]]
+    }
+
+    fn halve(&mut self, chord: Chord) {
+        let [a, b] = self.ends(chord);
+        let t = 0.5 * (a.t + b.t);
+        let edge = chord.edge;
+        self.divisions.push(Division { edge, t });
+    }
+
+    /// Divides two chords that cross where the nodes of the other are: edges that run close
+    /// together part when their nodes are side by side.
+    fn part(&mut self, a: Chord, b: Chord) {
+        let before = self.divisions.len();
+        for (chord, other) in [(a, b), (b, a)] {
+            let curve = self.brep.curve(chord.edge);
+            let [start, end] = self.ends(chord).map(|n| n.t);
+            let margin = BESIDE * (end - start);
+            for node in self.ends(other) {
+                let t = curve.parameter(&self.lines.points[node.point as usize]);
+                let t = curve.in_cycle(t, start);
+                if start + margin < t && t < end - margin {
+                    let edge = chord.edge;
+                    self.divisions.push(Division { edge, t });
+                }
+            }
+        }
+        if self.divisions.len() == before {
+            self.halve(a);
+            self.halve(b);
+        }
+    }
+
+    fn finish(mut self) -> Result<FaceTriangulation, Vec<Division>> {
+        match self.fit.chart {
+            Chart::Torus(torus, seams) => self.add_seams(torus, seams),
+            Chart::Cone(..) | Chart::Sphere(_, _, None) => self.add_middle(),
+            Chart::Sphere(frame, radius, Some(cap)) => {
+                self.add_middle();
+                self.add_cap(frame.point(0.0, 0.0, *radius), *cap);
+            }
+            _ => {}
+        }
+        self.divide_split();
+        self.divide_around_corners();
+        if self.divisions.is_empty() && !self.crowded {
+            Ok(self.domain)
+        } else {
+            Err(self.divisions)
+        }
+    }
+
+    /// Adds the apex; or what lies opposite to the centre of the projection, lest triangles that are
+    /// small reach around the sphere. A chord through it serves as well.
+    fn add_middle(&mut self) {
+        let net = &self.domain.net;
+        let at_middle = |c: &Corner| {
+            c.at == Point2::origin() || self.fit.is_apex(&self.lines.points[c.point as usize])
+        };
+        let known = net.vertices().any(|v| at_middle(v.data()));
+        let on_chord = match net.locate(spade::Point2::new(0.0, 0.0)) {
+            PositionInTriangulation::OnEdge(edge) => net.is_constraint_edge(edge.as_undirected()),
+            _ => false,
+        };
+        if !known && !on_chord {
+            let middle = self.lines.add(self.fit.chart.lift(&Point2::origin()));
+            self.corner(Point2::origin(), middle);
+        }
+    }
+
+    /// Adds the rim of a cap about the centre of the projection, and the triangles of the cap.
+    fn add_cap(&mut self, centre: Point3<f64>, wide: f64) {
+        let centre = self.lines.add(centre);
+        let away = 1.0 / (0.5 * wide).tan();
+        let mut rim = Vec::new();
+        for k in 0..RIM {
+            let (sin, cos) = (TAU * f64::from(k) / f64::from(RIM)).sin_cos();
+            let at = Point2::new(away * cos, away * sin);
+            let point = self.lines.add(self.fit.chart.lift(&at));
+            let corner = self.corner(at, point);
+            self.crowded |= corner.is_none();
+            rim.extend(corner.map(|c| (c, point)));
+        }
+        for (k, &(from, a)) in rim.iter().enumerate() {
+            let (to, b) = rim[(k + 1) % rim.len()];
+            if self.domain.net.can_add_constraint(from, to) {
+                self.domain.net.add_constraint(from, to);
+            }
+            self.domain.cap.push([b, a, centre]);
+        }
+    }
+
+    /// Divides the chords that a corner added later lies on: the triangulation split them.
+    fn divide_split(&mut self) {
+        let vertex = FixedVertexHandle::from_index;
+        let net = &self.domain.net;
+        let split = |side: &Side| !net.exists_constraint(vertex(side.0), vertex(side.1));
+        let mut split: Vec<(Side, Chord)> = self
+            .chords
+            .iter()
+            .filter(|(side, _)| split(side))
+            .map(|(side, chord)| (*side, *chord))
+            .collect();
+        split.sort_unstable_by_key(|(side, _)| *side);
+        for (_, chord) in split {
+            self.halve(chord);
+        }
+    }
+
+    /// Divides the chords between which and their edges a corner lies: it would be on the wrong side
+    /// of the edge.
+    fn divide_around_corners(&mut self) {
+        let mut chords: Vec<(Side, Chord)> = self.chords.iter().map(|(s, c)| (*s, *c)).collect();
+        chords.sort_unstable_by_key(|(side, _)| *side);
+        for ((from, to), chord) in chords {
+            let vertex = FixedVertexHandle::from_index;
+            let net = &self.domain.net;
+            let Some(run) = net.get_edge_from_neighbors(vertex(from), vertex(to)) else {
+                continue;
+            };
+            let ends = [run.from().data().at, run.to().data().at];
+            let beside = [run, run.rev()].map(|side| Some(*side.opposite_vertex()?.data()));
+            for corner in beside.into_iter().flatten() {
+                self.divide_around(chord, ends, &corner);
+            }
+        }
+    }
+
+    fn divide_around(&mut self, chord: Chord, ends: [Point2<f64>; 2], corner: &Corner) {
+        let curve = self.brep.curve(chord.edge);
+        let [start, end] = self.ends(chord).map(|n| n.t);
+        let p = &self.lines.points[corner.point as usize];
+        let t = curve.in_cycle(curve.parameter(p), start);
+        if t <= start || t >= end {
+            return;
+        }
+        let mut on = self.fit.chart.map(&curve.point(t));
+        if let Chart::Torus(torus, _) = self.fit.chart {
+            on = beside(torus, on, &nalgebra::center(&ends[0], &ends[1]));
+        }
+        let height = |x: &Point2<f64>| (ends[1] - ends[0]).perp(&(x - ends[0]));
+        let (of_corner, of_edge) = (height(&corner.at), height(&on));
+        if of_corner * of_edge > 0.0 && of_corner.abs() < of_edge.abs() {
+            let margin = BESIDE * (end - start);
+            let apart = start + margin < t && t < end - margin;
+            let t = if apart { t } else { 0.5 * (start + end) };
+            let edge = chord.edge;
+            self.divisions.push(Division { edge, t });
+        }
+    }
+
+    /// Adds the corners along both seams, and tells which sides beyond them are the same.
+    fn add_seams(&mut self, torus: &Torus, seams: &Seams) {
+        let lengths = [TAU * torus.major, TAU * torus.minor];
+        let origin = Surface::Torus(*torus).point(seams.at[0], seams.at[1]);
+        let origin = self.lines.add(origin);
+        for i in 0..2 {
+            // Along the seam of the angle i the other angle runs.
+            let other = 1 - i;
+            let at = |along: f64, beyond: f64| {
+                let mut p = Point2::origin();
+                p[other] = along;
+                p[i] = beyond;
+                p
+            };
+            let mut marks = self.marks_along(i, lengths[other], seams.steps[other]);
+            for mark in &mut marks {
+                if mark.1.is_none() {
+                    let p = self.fit.chart.lift(&at(mark.0, 0.0));
+                    mark.1 = Some(self.lines.add(p));
+                }
+            }
+            marks.insert(0, (0.0, Some(origin)));
+            marks.push((lengths[other], Some(origin)));
+            let mut ends = [Vec::new(), Vec::new()];
+            for (along, point) in marks {
+                for (list, beyond) in ends.iter_mut().zip([0.0, lengths[i]]) {
+                    let corner = point.and_then(|p| self.corner(at(along, beyond), p));
+                    self.crowded |= corner.is_none();
+                    list.extend(corner.map(|c| c.index()));
+                }
+            }
+            let [near, far] = ends;
+            for (a, b) in near.windows(2).zip(far.windows(2)) {
+                // The chart lies to the left of what runs counterclockwise around it.
+                let (up, down) = ((b[0], b[1]), (a[1], a[0]));
+                let (left, right) = if i == 0 {
+                    (up, down)
+                } else {
+                    ((b[1], b[0]), (a[0], a[1]))
+                };
+                self.domain.glued.insert(left, right);
+                self.domain.glued.insert(right, left);
+            }
+        }
+    }
+
+    /// How far along a seam its points are, in order: those of edges that cross it, and steps between.
+    fn marks_along(&self, seam: usize, length: f64, steps: u32) -> Vec<(f64, Option<u32>)> {
+        let other = 1 - seam;
+        let corners = self.domain.net.vertices();
+        let crossing = corners.filter(|v| v.data().at[seam] == 0.0);
+        let mut marks: Vec<(f64, Option<u32>)> = crossing
+            .map(|v| (v.data().at[other], Some(v.data().point)))
+            .filter(|m| m.0 > 0.0 && m.0 < length)
+            .collect();
+        let step = length / f64::from(steps);
+        let known: Vec<f64> = marks.iter().map(|m| m.0).collect();
+        let between = (1..steps).map(|k| step * f64::from(k));
+        let clear = |x: &f64| known.iter().all(|y| (x - y).abs() > CROWDED * step);
+        marks.extend(between.filter(clear).map(|x| (x, None)));
+        marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+        marks
+    }
+}
+
+/// How many sides a cap has: its triangles have equal ones.
+const RIM: u32 = 6;
+
+/// Nodes this near to the end of a chord, as a part of it, are beside that end.
+const BESIDE: f64 = 1.0 / 16.0;
+
+/// A step along a seam this part of a step from a point of it is left out.
+const CROWDED: f64 = 0.4;
+
+/// A place of a torus's chart as seen from another next to it; on a seam exactly.
+fn beside(torus: &Torus, mut at: Point2<f64>, from: &Point2<f64>) -> Point2<f64> {
+    for (i, radius) in [torus.major, torus.minor].into_iter().enumerate() {
+        let length = TAU * radius;
+        if at[i] < ON_SEAM * radius || length - at[i] < ON_SEAM * radius {
+            at[i] = if from[i] > 0.5 * length { length } else { 0.0 };
+        }
+    }
+    at
+}

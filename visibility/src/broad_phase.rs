@@ -1,0 +1,158 @@
+//! The pairs of contours whose images may meet: boxes in an R-tree where there are many, long
+//! contours as chains of boxes.
+
+use crate::contour_arc::ContourArc;
+use crate::image_box::ImageBox;
+use crate::image_curve::{Basis, Image, flat_of};
+use crate::projection::Projection;
+use premio_kernel::number::predicates::Compare;
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
+use std::f64::consts::TAU;
+
+/// A link of a chain: its box in the image, and the strand it belongs to.
+type Link = (ImageBox, u32);
+
+/// So few links are swept in less time than a tree of them takes to build.
+const FEW: usize = 192;
+
+/// A contour is cut into links of about this part of the image's size.
+const LINKS: f64 = 24.0;
+
+/// The parameters at which the image of a conic runs along x or along y, those of a closed one in
+/// the turn that begins at `lo`.
+fn extremes(image: &Image, lo: f64) -> ([f64; 4], usize) {
+    let mut found = ([0.0; 4], 0);
+    let Image::Conic { basis, map, .. } = image else {
+        return found;
+    };
+    let within = |t: f64| match basis {
+        Basis::Circular => lo + (t - lo).rem_euclid(TAU),
+        _ => t,
+    };
+    let q = map.row(2).transpose();
+    for i in 0..2 {
+        let p = map.row(i).transpose();
+        let flat = Image::turns_of(*basis, &p, &q);
+        for t in flat.into_iter().flatten() {
+            found.0[found.1] = within(t);
+            found.1 += 1;
+        }
+    }
+    found
+}
+
+/// The boxes of the links of a strand, each about `step` long.
+fn links(
+    strand: &ContourArc<'_>,
+    projection: &Projection,
+    step: f64,
+    push: &mut impl FnMut(ImageBox),
+) {
+    if !strand.stretches.is_empty() {
+        return strand.stretches.iter().for_each(|s| push(s.bounds));
+    }
+    let [lo, hi] = strand.range;
+    let (turns, count) = extremes(&strand.image, lo);
+    let point = |t: f64| flat_of(projection, &strand.curve.point(t));
+    let chain = |[from, to]: [f64; 2], ends: [[f64; 2]; 2]| {
+        let mut b = ImageBox::EMPTY.with(ends[0]).with(ends[1]);
+        for &t in turns[..count].iter().filter(|t| t.lies_between([from, to])) {
+            b = b.with(point(t));
+        }
+        for &t in strand.turns.iter().filter(|t| t.lies_between([from, to])) {
+            b = b.with(point(t));
+        }
+        b
+    };
+    let whole = chain([lo, hi], [point(lo), point(hi)]);
+    let [w, h] = whole.sides();
+    let thick = match strand.image {
+        Image::Line { .. } => w.min(h),
+        _ => w.max(h),
+    };
+    let n = (thick / step).ceil().clamp(1.0, 4.0 * LINKS);
+    if n.is_at_most(1.0) {
+        return push(whole);
+    }
+    let mut from = (lo, point(lo));
+    for k in 1..=n as usize {
+        let t = lo + (hi - lo) * (k as f64 / n);
+        let to = (t, point(t));
+        push(chain([from.0, to.0], [from.1, to.1]));
+        from = to;
+    }
+}
+
+/// The pairs of strands whose images may meet, each once and in order; notes the hull of each
+/// strand's image. `near` is what counts as touching, as a distance in space.
+pub fn candidates(
+    strands: &mut [ContourArc<'_>],
+    projection: &Projection,
+    near: f64,
+) -> Vec<(u32, u32)> {
+    let mut part = ImageBox::EMPTY;
+    let mut least = f64::INFINITY;
+    for strand in &*strands {
+        for t in strand.range {
+            let p = strand.curve.point(t);
+            part = part.with(flat_of(projection, &p));
+            least = least.min(projection.homogeneous(&p).z);
+        }
+    }
+    let [w, h] = part.sides();
+    let step = w.max(h) / LINKS;
+    let grow = (near / least.max(near)).min(step);
+    let mut all: Vec<Link> = Vec::with_capacity(strands.len() * 2);
+    for (i, strand) in strands.iter_mut().enumerate() {
+        if matches!(strand.image, Image::Point) {
+            continue;
+        }
+        let mut hull = ImageBox::EMPTY;
+        links(strand, projection, step, &mut |b| {
+            let b = b.grown(grow);
+            hull = hull.hull(&b);
+            all.push((b, i as u32));
+        });
+        strand.hull = hull;
+    }
+    let mut pairs = if all.len() <= FEW {
+        few_meeting(&mut all)
+    } else {
+        many_meeting(&all)
+    };
+    let general = |s: &ContourArc<'_>| matches!(s.image, Image::General);
+    let own = strands.iter().enumerate().filter(|(_, s)| general(s));
+    pairs.extend(own.map(|(i, _)| (i as u32, i as u32)));
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// The pairs of strands whose links meet, by a sweep along x.
+fn few_meeting(links: &mut [Link]) -> Vec<(u32, u32)> {
+    links.sort_unstable_by(|(a, _), (b, _)| a.min[0].total_cmp(&b.min[0]));
+    let mut pairs = Vec::new();
+    for (k, (a, i)) in links.iter().enumerate() {
+        let beside = links[k + 1..].iter();
+        for (b, j) in beside.take_while(|(b, _)| b.min[0].is_at_most(a.max[0])) {
+            if i != j && a.meets(b) {
+                pairs.push((*i.min(j), *i.max(j)));
+            }
+        }
+    }
+    pairs
+}
+
+/// The same by an R-tree.
+fn many_meeting(links: &[Link]) -> Vec<(u32, u32)> {
+    let boxes = links.iter().map(|(b, i)| {
+        let corners = Rectangle::from_corners(b.min, b.max);
+        GeomWithData::new(corners, *i)
+    });
+    let tree = RTree::bulk_load(boxes.collect());
+    tree.intersection_candidates_with_other_tree(&tree)
+        .filter(|(a, b)| a.data < b.data)
+        .map(|(a, b)| (a.data, b.data))
+        .collect()
+}

@@ -1,0 +1,550 @@
+//! Contours before they are cut at junctions: edges, and limbs trimmed by their faces.
+
+use crate::contour::{Junction, JunctionKind};
+use crate::image_box::ImageBox;
+use crate::image_curve::{Image, flat_of};
+use crate::limb::{Limb, cusps, cutters, limbs, torus_limb_on};
+use crate::monotone_arc::MonotoneArc;
+use crate::projection::Projection;
+use crate::ray_casting::Scene;
+use nalgebra::Point3;
+use premio_kernel::brep::locate::PointLocation;
+use premio_kernel::brep::topology::{EdgeId, FaceId, Sense, VertexId};
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::curve_plane::plane_roots;
+use premio_kernel::geometry::curve_surface::cut;
+use premio_kernel::geometry::surface::{Surface, Torus};
+use premio_kernel::geometry::trace::Unresolved;
+use premio_kernel::number::predicates::Compare;
+use premio_kernel::number::roots::{Root, Roots};
+
+/// A clean passage behind another contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passing {
+    /// By how much the quantitative invisibility grows.
+    pub by: i32,
+    /// The face turned towards the eye that begins to hide.
+    pub entered: Option<FaceId>,
+    /// The face turned towards the eye that ceases to hide.
+    pub left: Option<FaceId>,
+    /// How far the other contour lies before this one, along the line of sight.
+    pub ahead: f64,
+    /// How far aside of the other contour this one gets, for each unit of its length.
+    pub aside: f64,
+}
+
+impl Passing {
+    /// The same on the way back.
+    pub fn reversed(&self) -> Self {
+        Self {
+            by: -self.by,
+            entered: self.left,
+            left: self.entered,
+            ..*self
+        }
+    }
+}
+
+/// What a split does to the quantitative invisibility along the strand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// It changes as the other contour says.
+    Pass(Passing),
+    /// What hides there has to be told by the faces at the junction, or counted anew.
+    Correct,
+}
+
+/// A point at which a strand is cut.
+#[derive(Clone, Copy, Debug)]
+pub struct Split {
+    /// The parameter.
+    pub t: f64,
+    /// The junction there.
+    pub junction: u32,
+    /// What happens to the quantitative invisibility.
+    pub change: Change,
+}
+
+/// A connected stretch of a contour before the near plane.
+#[derive(Debug)]
+pub struct ContourArc<'a> {
+    /// The curve in space.
+    pub curve: &'a Curve,
+    /// The range of its parameter.
+    pub range: [f64; 2],
+    /// Whether the range is a whole period.
+    pub closed: bool,
+    /// The junctions at both ends.
+    pub ends: [Option<u32>; 2],
+    /// The contour it belongs to.
+    pub contour: u32,
+    /// The edge it is of; none for a limb.
+    pub edge: Option<EdgeId>,
+    /// The faces along it, each with the sense in which its loop runs.
+    pub faces: Vec<(FaceId, Sense)>,
+    /// Whether it is a limb, of its only face.
+    pub limb: bool,
+    /// Its image.
+    pub image: Image,
+    /// Where the image turns back on itself.
+    pub turns: Vec<f64>,
+    /// The image in stretches, where it is neither a line nor a conic.
+    pub stretches: Vec<MonotoneArc>,
+    /// A box that holds the image.
+    pub hull: ImageBox,
+    /// Where it is cut, in no order.
+    pub splits: Vec<Split>,
+}
+
+impl ContourArc<'_> {
+    /// The junctions known on it, with their parameters.
+    pub fn junctions(&self) -> impl Iterator<Item = (u32, f64)> {
+        let ends = self.ends.iter().zip(self.range);
+        let ends = ends.filter_map(|(id, t)| id.map(|id| (id, t)));
+        ends.chain(self.splits.iter().map(|split| (split.junction, split.t)))
+    }
+
+    /// About how long the image is between the first and the last of some parameters.
+    pub fn length_between(&self, t: &[f64]) -> f64 {
+        let (Some(&lo), Some(&hi)) = (t.first(), t.last()) else {
+            return 0.0;
+        };
+        let within = self.stretches.iter();
+        within
+            .filter(|s| s.range[1].is_beyond(lo) && s.range[0].is_short_of(hi))
+            .map(|s| {
+                let [p, q] = s.ends;
+                (q[0] - p[0]).hypot(q[1] - p[1])
+            })
+            .sum()
+    }
+
+    /// The runs of stretches whose images may meet a box, each by its breaks.
+    pub fn runs_next_to(&self, hull: &ImageBox) -> Vec<Vec<f64>> {
+        let mut runs: Vec<Vec<f64>> = Vec::new();
+        for stretch in self.stretches.iter().filter(|s| s.bounds.meets(hull)) {
+            let [lo, hi] = stretch.range;
+            match runs.last_mut() {
+                Some(run) if run.last().is_some_and(|end| end.is_exactly(lo)) => run.push(hi),
+                _ => runs.push(vec![lo, hi]),
+            }
+        }
+        runs
+    }
+}
+
+/// What of the boundary a junction lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JunctionSupport {
+    /// A vertex.
+    Vertex(VertexId),
+    /// The inside of an edge.
+    Edge(EdgeId),
+    /// The inside of a face, or nothing shared.
+    Alone,
+}
+
+/// What is known of a junction, besides what the view reports.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    site: JunctionSupport,
+    /// Its image at depth one.
+    image: [f64; 2],
+    /// Whether another contour passes before it or next to it in the image.
+    crowded: bool,
+}
+
+/// All junctions.
+#[derive(Debug)]
+pub struct Junctions<'p> {
+    projection: &'p Projection,
+    /// By their ids.
+    pub list: Vec<Junction>,
+    /// By junction: what is known of it besides.
+    known: Vec<Known>,
+    vertices: Vec<Option<u32>>,
+}
+
+impl<'p> Junctions<'p> {
+    /// None yet, for a part with so many vertices.
+    pub fn new(projection: &'p Projection, vertices: usize) -> Self {
+        Self {
+            projection,
+            list: Vec::with_capacity(2 * vertices),
+            known: Vec::with_capacity(2 * vertices),
+            vertices: vec![None; vertices],
+        }
+    }
+
+    /// A new junction.
+    pub fn add(&mut self, kind: JunctionKind, site: JunctionSupport, p: &Point3<f64>) -> u32 {
+        let id = self.list.len() as u32;
+        self.list.push(Junction {
+            id,
+            kind,
+            point2: self.projection.project(p).into(),
+            point3: (*p).into(),
+            contours: Vec::new(),
+        });
+        self.known.push(Known {
+            site,
+            image: flat_of(self.projection, p),
+            crowded: false,
+        });
+        id
+    }
+
+    /// What a junction lies on.
+    pub fn site(&self, id: u32) -> JunctionSupport {
+        self.known[id as usize].site
+    }
+
+    /// Its image at depth one.
+    pub fn image(&self, id: u32) -> [f64; 2] {
+        self.known[id as usize].image
+    }
+
+    /// Its kind.
+    pub fn kind(&self, id: u32) -> JunctionKind {
+        self.list[id as usize].kind
+    }
+
+    /// Notes that another contour passes a junction in the image.
+    pub fn crowd(&mut self, id: u32) {
+        self.known[id as usize].crowded = true;
+    }
+
+    /// Whether another contour passes it in the image.
+    pub fn is_crowded(&self, id: u32) -> bool {
+        self.known[id as usize].crowded
+    }
+
+    /// The junction at a vertex.
+    pub fn vertex(&mut self, vertex: VertexId, p: &Point3<f64>) -> u32 {
+        if let Some(id) = self.vertices[vertex.index()] {
+            return id;
+        }
+        let id = self.add(JunctionKind::Vertex, JunctionSupport::Vertex(vertex), p);
+        self.vertices[vertex.index()] = Some(id);
+        id
+    }
+
+    /// The place of a junction.
+    pub fn point(&self, id: u32) -> Point3<f64> {
+        Point3::from(self.list[id as usize].point3)
+    }
+}
+
+/// A limb inside a face.
+#[derive(Debug)]
+pub struct LimbArc {
+    /// The curve.
+    pub curve: Curve,
+    /// The range of its parameter.
+    pub range: [f64; 2],
+    /// Whether the range is a whole period.
+    pub closed: bool,
+    /// The face.
+    pub face: FaceId,
+    /// The junctions at both ends.
+    pub ends: [Option<u32>; 2],
+    /// Cusps and nodes: parameter and junction.
+    pub marks: Vec<(f64, u32)>,
+}
+
+/// All limbs of a part, and where they end on its edges.
+#[derive(Debug)]
+pub struct LimbArcs {
+    /// The limbs.
+    pub arcs: Vec<LimbArc>,
+    /// By edge: parameter and junction of each limb's end on it.
+    pub on_edges: Vec<Vec<(f64, u32)>>,
+}
+
+/// What the point-like comparisons allow, in multiples of the resolution: positions come out of
+/// a few more operations than the distances that the resolution was applied to.
+const LOOSE: f64 = 16.0;
+
+/// Trims the limbs of every surface by the faces on it.
+pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<LimbArcs, Unresolved> {
+    let brep = scene.brep;
+    let mut known: Vec<Option<Vec<Limb>>> = vec![None; brep.geometry.surfaces.len()];
+    let mut trim = LimbTrimmer {
+        scene,
+        junctions,
+        found: LimbArcs {
+            arcs: Vec::new(),
+            on_edges: vec![Vec::new(); brep.topology.edges.len()],
+        },
+    };
+    for face in brep.topology.face_ids() {
+        let index = brep.geometry.patches[face.index()].surface;
+        let surface = &brep.geometry.surfaces[index];
+        if matches!(surface, Surface::Plane(_)) {
+            continue;
+        }
+        if known[index].is_none() {
+            known[index] = Some(limbs(
+                surface,
+                &scene.projection.sight,
+                scene.band,
+                scene.tilt,
+            )?);
+        }
+        if let Some(limbs) = &known[index] {
+            trim.face(face, limbs);
+        }
+    }
+    Ok(trim.found)
+}
+
+struct LimbTrimmer<'s, 'a, 'j, 'p> {
+    scene: &'s Scene<'a>,
+    junctions: &'j mut Junctions<'p>,
+    found: LimbArcs,
+}
+
+impl LimbTrimmer<'_, '_, '_, '_> {
+    fn face(&mut self, face: FaceId, limbs: &[Limb]) {
+        if limbs.is_empty() {
+            return;
+        }
+        let surface = self.scene.brep.surface(face);
+        let cutters = cutters(surface, &self.scene.projection.sight);
+        let mut ends: Vec<Vec<(f64, u32)>> = vec![Vec::new(); limbs.len()];
+        for edge in face_edges(self.scene, face) {
+            for t in self.meets(surface, (limbs, &cutters), edge) {
+                let p = self.scene.brep.curve(edge).point(t);
+                let met = limbs_through(limbs, &p, LOOSE * self.scene.band);
+                if met.is_empty() {
+                    continue;
+                }
+                let junction = self.end_on(edge, t, &p);
+                for which in met {
+                    ends[which].push((limbs[which].curve.parameter(&p), junction));
+                }
+            }
+        }
+        let mut apex = None;
+        for (limb, mut ends) in limbs.iter().zip(ends) {
+            if let Some(from) = limb.from {
+                let p = limb.curve.point(from);
+                let near = LOOSE * self.scene.band;
+                if ends.iter().all(|e| (e.0 - from).abs().is_beyond(near)) {
+                    let add = || {
+                        self.junctions
+                            .add(JunctionKind::Vertex, JunctionSupport::Alone, &p)
+                    };
+                    let id = *apex.get_or_insert_with(add);
+                    ends.push((from, id));
+                }
+            }
+            self.limb(face, limb, ends);
+        }
+    }
+
+    /// The parameters at which the limbs of a surface, and what cuts these out, meet an edge on it.
+    fn meets(
+        &self,
+        surface: &Surface,
+        (limbs, cutters): (&[Limb], &[Surface]),
+        edge: EdgeId,
+    ) -> Vec<f64> {
+        let mut found = Vec::new();
+        match surface {
+            Surface::Torus(s) if cutters.is_empty() => {
+                self.torus_meets(s, edge, limbs, &mut found);
+            }
+            _ => cutters
+                .iter()
+                .for_each(|cutter| self.cuts(cutter, edge, &mut found)),
+        }
+        found
+    }
+
+    /// The parameters at which a surface that cuts limbs out cuts an edge.
+    fn cuts(&self, cutter: &Surface, edge: EdgeId, found: &mut Vec<f64>) {
+        let (brep, band) = (self.scene.brep, self.scene.band);
+        let (curve, range) = (brep.curve(edge), brep.range(edge));
+        if runs_in(curve, range, cutter, band) {
+            return found.extend(range);
+        }
+        match cutter {
+            Surface::Plane(s) => plane_roots(curve, range, s, band, &mut |t, _| found.push(t)),
+            _ => {
+                if let Roots::At { roots, .. } = cut(curve, range, cutter, band) {
+                    found.extend(roots.iter().map(|r| r.t));
+                }
+            }
+        }
+        // A root at a vertex may be just beyond the ends of all its edges.
+        let met = |t: &f64| cutter.distance(&curve.point(*t)).is_within(band);
+        let open = brep.topology.edge(edge).ends.is_some();
+        found.extend(range.into_iter().filter(|t| open && met(t)));
+    }
+
+    /// The same on a torus: at the limbs' nodes, where an edge passes through one, which are known
+    /// better than where it meets the limbs.
+    fn torus_meets(&self, s: &Torus, edge: EdgeId, limbs: &[Limb], found: &mut Vec<f64>) {
+        let (brep, band) = (self.scene.brep, self.scene.band);
+        let (curve, range) = (brep.curve(edge), brep.range(edge));
+        let nodes = limbs
+            .iter()
+            .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
+        let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * band));
+        match torus_limb_on(s, &self.scene.projection.sight, curve, range, band) {
+            // Where the edge runs along one limb, others cross both there.
+            Roots::Everywhere => {
+                found.extend(range);
+                found.extend(nodes);
+            }
+            Roots::At { roots, .. } => {
+                let nodes: Vec<f64> = nodes.collect();
+                let place = |r: &Root| {
+                    let node = nodes.iter().find(|t| t.lies_in([r.lo, r.hi]));
+                    node.copied().unwrap_or(r.t)
+                };
+                found.extend(roots.iter().map(place));
+            }
+        }
+    }
+
+    /// The junction where a limb ends on an edge, shared by the faces on both sides.
+    fn end_on(&mut self, edge: EdgeId, t: f64, p: &Point3<f64>) -> u32 {
+        let brep = self.scene.brep;
+        let near = LOOSE * self.scene.band;
+        if let Some(ends) = brep.topology.edge(edge).ends {
+            for v in ends {
+                let q = brep.point(v);
+                if (q - p).norm().is_within(near) {
+                    return self.junctions.vertex(v, &q);
+                }
+            }
+        }
+        let curve = brep.curve(edge);
+        let known = self.found.on_edges[edge.index()]
+            .iter()
+            .find(|m| (curve.point(m.0) - p).norm().is_within(near));
+        if let Some(&(_, id)) = known {
+            return id;
+        }
+        let id = self
+            .junctions
+            .add(JunctionKind::Limb, JunctionSupport::Edge(edge), p);
+        self.found.on_edges[edge.index()].push((t, id));
+        id
+    }
+
+    /// Keeps the stretches of a limb between `ends` that lie in the face.
+    fn limb(&mut self, face: FaceId, limb: &Limb, mut ends: Vec<(f64, u32)>) {
+        let curve = &limb.curve;
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let near = LOOSE * self.scene.band;
+        let apart = |t: f64, s: f64| (curve.point(t) - curve.point(s)).norm();
+        ends.dedup_by(|b, a| a.1 == b.1 || apart(a.0, b.0).is_within(near));
+        let Some(period) = curve.period() else {
+            for pair in ends.windows(2) {
+                self.stretch(
+                    face,
+                    limb,
+                    [pair[0].0, pair[1].0],
+                    [pair[0].1, pair[1].1].map(Some),
+                );
+            }
+            return;
+        };
+        let Some(&(first, id)) = ends.first() else {
+            return self.stretch(face, limb, [0.0, period], [None, None]);
+        };
+        ends.push((first + period, id));
+        for pair in ends.windows(2) {
+            self.stretch(
+                face,
+                limb,
+                [pair[0].0, pair[1].0],
+                [pair[0].1, pair[1].1].map(Some),
+            );
+        }
+    }
+
+    fn stretch(&mut self, face: FaceId, limb: &Limb, range: [f64; 2], ends: [Option<u32>; 2]) {
+        let [lo, hi] = range;
+        let at = |part: f64| limb.curve.point(lo + (hi - lo) * part);
+        let locator = self.scene.locator.face(face);
+        // On the boundary means that the limb runs along an edge, which stands for it.
+        let inside = [0.5, 0.31, 0.73]
+            .iter()
+            .map(|&part| locator.place(&at(part)))
+            .find(|&place| place != PointLocation::On);
+        if inside != Some(PointLocation::Inside) {
+            return;
+        }
+        let mut arc = LimbArc {
+            curve: limb.curve.clone(),
+            range,
+            closed: ends == [None, None],
+            face,
+            ends,
+            marks: Vec::new(),
+        };
+        if let Surface::Torus(s) = self.scene.brep.surface(face) {
+            let sight = &self.scene.projection.sight;
+            for t in cusps(s, sight, &arc.curve, range, self.scene.band) {
+                let p = arc.curve.point(t);
+                let id = self
+                    .junctions
+                    .add(JunctionKind::Cusp, JunctionSupport::Alone, &p);
+                arc.marks.push((t, id));
+            }
+            for &t in &limb.nodes {
+                let t = arc
+                    .curve
+                    .period()
+                    .map_or(t, |p| lo + (t - lo).rem_euclid(p));
+                if t.lies_between(range) {
+                    let p = arc.curve.point(t);
+                    let id = self
+                        .junctions
+                        .add(JunctionKind::Node, JunctionSupport::Alone, &p);
+                    arc.marks.push((t, id));
+                }
+            }
+        }
+        self.found.arcs.push(arc);
+    }
+}
+
+/// Whether an edge lies in a surface throughout: no line or conic lies in a plane at three points
+/// only.
+fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
+    [0.0, 0.23, 0.51, 0.77, 1.0].iter().all(|part| {
+        let p = curve.point(lo + (hi - lo) * part);
+        surface.distance(&p).is_within(band)
+    })
+}
+
+/// The parameter of a point on an arc, within its range.
+fn on_arc(curve: &Curve, [lo, hi]: [f64; 2], p: &Point3<f64>, near: f64) -> Option<f64> {
+    let t = curve.in_cycle(curve.parameter(p), lo);
+    (t.is_at_most(hi) && (curve.point(t) - p).norm().is_within(near)).then_some(t)
+}
+
+/// The limbs through a point of one of them; the nearest where rounding has moved the point.
+fn limbs_through(limbs: &[Limb], p: &Point3<f64>, near: f64) -> Vec<usize> {
+    if limbs.len() <= 1 {
+        return (0..limbs.len()).collect();
+    }
+    let away = |limb: &Limb| (limb.curve.point(limb.curve.parameter(p)) - p).norm();
+    let far: Vec<f64> = limbs.iter().map(away).collect();
+    let least = far.iter().copied().fold(f64::INFINITY, f64::min);
+    let close = |i: &usize| far[*i].is_within(near.max(least));
+    (0..limbs.len()).filter(close).collect()
+}
+
+/// The edges of a face, each once.
+fn face_edges(scene: &Scene<'_>, face: FaceId) -> Vec<EdgeId> {
+    let mut edges: Vec<EdgeId> = scene.brep.topology.edges_of(face).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}

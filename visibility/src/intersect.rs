@@ -1,0 +1,483 @@
+//! Where two contours cross in the image.
+//!
+//! One contour's points are put into the other's cone of sight: a plane through the eye for a
+//! line, a quadric cone for a conic. Line and line, line and conic are closed forms; two conics
+//! give a polynomial of the fourth degree in the tangent of half the angle; other curves against
+//! these are isolated on their parameter, and two other curves as graphs over a direction.
+
+use crate::contour_arc::ContourArc;
+use crate::edgewise::Edgewise;
+use crate::image_curve::{Basis, Image, flat_of, line_on_conic};
+use crate::intersect_general::general_pair;
+use crate::monotone_arc::passes;
+use crate::polynomial::{QuarticPolynomial, crossings};
+use crate::projection::Projection;
+use crate::ray_casting::Scene;
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+use premio_kernel::number::analytic::{Analytic, dot};
+use premio_kernel::number::bisection::bisect;
+use premio_kernel::number::interval::Interval;
+use premio_kernel::number::predicates::{Compare, ROUNDING};
+use premio_kernel::number::roots::{Root, RootKind, Roots, isolate};
+use std::f64::consts::TAU;
+
+/// How two contours meet in the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Overlap {
+    /// In points only.
+    No,
+    /// They are on one curve.
+    Yes,
+}
+
+/// What the distances between contours in the image may be, in multiples of the resolution, for
+/// them to fall on one another.
+const LOOSE: f64 = 8.0;
+
+/// Places that tell whether a curve falls on a line or a conic.
+const PLACES: usize = 19;
+
+/// Curves on one another are together over more than the whole by this.
+const MOST: f64 = 64.0;
+
+/// A turn without meaning: conics of symmetric parts must not cross at the ends of the halves.
+const TURN: f64 = 0.618_033_988_749_894_9;
+
+/// Reports the crossings of two strands in the image: the parameters on both.
+pub fn cross(
+    a: &ContourArc<'_>,
+    b: &ContourArc<'_>,
+    projection: &Projection,
+    band: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let near = LOOSE * band;
+    match (&a.image, &b.image) {
+        (Image::Point, _) | (_, Image::Point) => Overlap::No,
+        (Image::Edgewise(on), _) => edgewise(on, a, b, band, found),
+        (_, Image::Edgewise(on)) => edgewise(on, b, a, band, &mut |s, t| found(t, s)),
+        (Image::General, Image::General) => general_pair(a, b, projection, band, found),
+        (Image::General, _) => general(a, b, projection, band, found),
+        (_, Image::General) => general(b, a, projection, band, &mut |s, t| found(t, s)),
+        (Image::Conic { .. }, Image::Conic { .. }) => conics(a, b, near, found),
+        (Image::Conic { .. }, _) => line_and_conic(b, a, near, &mut |s, t| found(t, s)),
+        (_, Image::Conic { .. }) => line_and_conic(a, b, near, found),
+        _ => lines(a, b, near, found),
+    }
+}
+
+/// The homogeneous image at a parameter.
+fn at(strand: &ContourArc<'_>, t: f64) -> Vector3<f64> {
+    match &strand.image {
+        Image::Line {
+            origin, direction, ..
+        } => origin + direction * t,
+        Image::Conic { basis, map, .. } | Image::Flat { basis, map, .. } => map * basis.at(t),
+        Image::Point | Image::Edgewise(_) | Image::General => Vector3::z(),
+    }
+}
+
+/// Both on lines.
+fn lines(
+    a: &ContourArc<'_>,
+    b: &ContourArc<'_>,
+    near: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let (Some(la), Some(lb)) = (a.image.line(), b.image.line()) else {
+        return Overlap::No;
+    };
+    let on = |s: &ContourArc<'_>, l: &Vector3<f64>| {
+        let [lo, hi] = s.range;
+        let most = near * l.x.hypot(l.y);
+        [lo, hi, 0.5 * (lo + hi)]
+            .iter()
+            .all(|t| l.dot(&at(s, *t)).is_within(most))
+    };
+    if on(a, lb) && on(b, la) {
+        return Overlap::Yes;
+    }
+    line_parameters(a, lb, &mut |t| {
+        let h = at(a, t);
+        b.image.parameters(&h, b.range, &mut |s| found(t, s));
+    });
+    Overlap::No
+}
+
+/// Where a strand on a line meets another line in the image.
+fn line_parameters(a: &ContourArc<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)) {
+    match &a.image {
+        Image::Line {
+            origin, direction, ..
+        } => {
+            let slope = l.dot(direction);
+            if !slope.is_exactly(0.0) {
+                found(-l.dot(origin) / slope);
+            }
+        }
+        Image::Flat { basis, map, .. } => {
+            line_on_conic(*basis, &map.tr_mul(l), a.range, found);
+        }
+        _ => {}
+    }
+}
+
+/// A conic in the image, by the map from its own basis: next to a circle seen almost edge-on the form
+/// in image coordinates has no digits left, and in the basis it is that of the unit circle.
+#[derive(Clone, Copy)]
+struct ConicImage<'x> {
+    basis: Basis,
+    map: &'x Matrix3<f64>,
+    inverse: &'x Matrix3<f64>,
+}
+
+impl<'x> ConicImage<'x> {
+    fn new(image: &'x Image) -> Option<Self> {
+        match image {
+            Image::Conic {
+                basis,
+                map,
+                inverse,
+                ..
+            } => Some(Self {
+                basis: *basis,
+                map,
+                inverse,
+            }),
+            _ => None,
+        }
+    }
+
+    /// Whether an image point is within `near` of it, as a distance in space, or as near as rounding
+    /// tells.
+    fn passes(&self, h: &Vector3<f64>, near: f64) -> bool {
+        let form = self.basis.conic();
+        let point = self.inverse * h;
+        let half_slope = form * point;
+        let polar = self.inverse.tr_mul(&half_slope);
+        let rounding = ROUNDING * half_slope.abs().dot(&(self.inverse.abs() * h.abs()));
+        let reach = 2.0 * (near * polar.x.hypot(polar.y) + rounding);
+        point.dot(&half_slope).is_within(reach)
+    }
+
+    /// The form of the points of another map that lie on it.
+    fn form_over(&self, map: &Matrix3<f64>) -> Matrix3<f64> {
+        let over = self.inverse * map;
+        over.tr_mul(&(self.basis.conic() * over))
+    }
+
+    /// The parameters at which it crosses a line; where it leaves the line's neighbourhood by no more
+    /// than `near` it only touches it.
+    fn crossings_with(&self, line: &Vector3<f64>, range: [f64; 2], near: f64) -> Vec<f64> {
+        let k = self.map.tr_mul(line);
+        let mut roots = Vec::new();
+        line_on_conic(self.basis, &k, range, &mut |t| roots.push(t));
+        let &[first, second] = &roots[..] else {
+            return roots;
+        };
+        let rise = |t: f64| k.dot(&self.basis.at(t)).abs();
+        let middle = 0.5 * (first + second);
+        let between = match self.basis {
+            // Both arcs that the line cuts off.
+            Basis::Circular => rise(middle).min(rise(middle + 0.5 * TAU)),
+            _ => rise(middle),
+        };
+        match between.is_within(near * line.x.hypot(line.y)) {
+            true => Vec::new(),
+            false => roots,
+        }
+    }
+}
+
+/// `a` is on a line.
+fn line_and_conic(
+    a: &ContourArc<'_>,
+    b: &ContourArc<'_>,
+    near: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let (Some(conic), Some(line)) = (ConicImage::new(&b.image), a.image.line()) else {
+        return Overlap::No;
+    };
+    for s in conic.crossings_with(line, b.range, near) {
+        let h = at(b, s);
+        a.image.parameters(&h, a.range, &mut |t| found(t, s));
+    }
+    Overlap::No
+}
+
+fn conics(
+    a: &ContourArc<'_>,
+    b: &ContourArc<'_>,
+    near: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    let (Some(first), Some(second)) = (ConicImage::new(&a.image), ConicImage::new(&b.image)) else {
+        return Overlap::No;
+    };
+    let [lo, hi] = a.range;
+    let touches = |t: f64| second.passes(&(first.map * first.basis.at(t)), near);
+    // Five points determine a conic.
+    let mut places = [0.03, 0.21, 0.47, 0.68, 0.91].iter();
+    if places.all(|part| touches(lo + (hi - lo) * part)) {
+        return Overlap::Yes;
+    }
+    let form = second.form_over(first.map);
+    conic_parameters(first.basis, &form, a.range, &|t, _| touches(t), &mut |t| {
+        let h = first.map * first.basis.at(t);
+        b.image.parameters(&h, b.range, &mut |s| found(t, s));
+    });
+    Overlap::No
+}
+
+/// Where b(t)ᵀ G b(t) changes its sign, over the range.
+fn conic_parameters(
+    basis: Basis,
+    g: &Matrix3<f64>,
+    [lo, hi]: [f64; 2],
+    touches: &impl Fn(f64, f64) -> bool,
+    found: &mut impl FnMut(f64),
+) {
+    match basis {
+        Basis::Circular => {
+            for half in 0..2 {
+                let turn = TURN + 0.5 * TAU * f64::from(half);
+                let spin = Rotation3::from_axis_angle(&Vector3::z_axis(), turn);
+                let g = spin.matrix().tr_mul(&(g * spin.matrix()));
+                // b = (1 - u², 2 u, 1 + u²) with u = tan(t/2).
+                let k = binary([1.0, 0.0, -1.0], [0.0, 2.0, 0.0], [1.0, 0.0, 1.0], &g);
+                let angle = |u: f64| turn + 2.0 * u.atan();
+                crossings(&k, [-1.0, 1.0], &|u, v| touches(angle(u), v), &mut |u| {
+                    found(lo + (angle(u) - lo).rem_euclid(TAU));
+                });
+            }
+        }
+        Basis::Graph(c) => {
+            let rest = [1.0, 2.0 * c.shear, c.curvature * c.flatness];
+            let k = binary([0.0, 0.0, 2.0 * c.curvature], [0.0, 2.0, 0.0], rest, g);
+            let ends = [lo, hi].map(|t| c.chord(t));
+            let t = |m: f64| c.end_of_chord(m).unwrap_or(f64::NAN);
+            crossings(&k, ends, &|m, v| touches(t(m), v), &mut |m| found(t(m)));
+        }
+        Basis::Hyperbolic => {
+            // 2 e b = (e² + 1, e² - 1, 2 e) with e = exp t.
+            let k = binary([1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 2.0, 0.0], g);
+            let ends = [lo.exp(), hi.exp()];
+            crossings(&k, ends, &|e, v| touches(e.ln(), v), &mut |e| found(e.ln()));
+        }
+    }
+}
+
+/// vᵀ G v for a vector of three quadratics.
+fn binary(x: [f64; 3], y: [f64; 3], z: [f64; 3], g: &Matrix3<f64>) -> QuarticPolynomial {
+    let v = [x, y, z];
+    let mut k = [0.0; 5];
+    for i in 0..3 {
+        for j in 0..3 {
+            for (m, p) in v[i].iter().enumerate() {
+                for (n, q) in v[j].iter().enumerate() {
+                    k[m + n] += g[(i, j)] * p * q;
+                }
+            }
+        }
+    }
+    k
+}
+
+/// A curve that is neither line nor conic against one that is.
+fn general(
+    a: &ContourArc<'_>,
+    b: &ContourArc<'_>,
+    projection: &Projection,
+    band: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    if falls_on(a, b, projection, LOOSE * band) {
+        return Overlap::Yes;
+    }
+    let middle = a.curve.point(0.5 * (a.range[0] + a.range[1]));
+    let middle = projection.homogeneous(&middle);
+    let image = |t: Interval| projection.homogeneous_over(a.curve.jet_over(t));
+    let solve = |breaks: &[f64]| match &b.image {
+        Image::Conic { basis, inverse, .. } => {
+            let scale = 0.5 / (least_slope(b, projection) * middle.z);
+            let form = basis.conic();
+            let f = |t: Interval| {
+                let h = image(t);
+                let p = [0, 1, 2].map(|i| dot(&inverse.row(i).transpose(), h));
+                let row = |i: usize| dot(&form.row(i).transpose(), p);
+                (p[0] * row(0) + p[1] * row(1) + p[2] * row(2)).scale(scale)
+            };
+            isolate(&f, breaks, band)
+        }
+        other => {
+            let line = other.line().copied().unwrap_or_else(Vector3::z);
+            let line = line / line.x.hypot(line.y);
+            isolate(&|t: Interval| dot(&line, image(t)), breaks, band)
+        }
+    };
+    let mut together = 0.0;
+    for breaks in a.runs_next_to(&b.hull) {
+        match solve(&breaks) {
+            Roots::Everywhere => together += a.length_between(&breaks),
+            Roots::At { roots, .. } => {
+                for r in &roots {
+                    let branch = |s: f64| Branch {
+                        a,
+                        b,
+                        projection,
+                        next_to: s,
+                    };
+                    let h = projection.homogeneous(&a.curve.point(r.t));
+                    b.image.parameters(&h, b.range, &mut |s| {
+                        let branch = branch(s);
+                        if let Some(t) = place_of(r, [a, b], |t| branch.ahead(t)) {
+                            found(t, branch.parameter(t).unwrap_or(s));
+                        }
+                    });
+                }
+            }
+        }
+    }
+    overlap_of(together, a)
+}
+
+/// The least slope of a conic's equation on a strand of it, at some of its points brought to depth
+/// one: by it a value is a distance from the conic, or more. Away from the conic the slope may
+/// vanish.
+fn least_slope(b: &ContourArc<'_>, projection: &Projection) -> f64 {
+    let Some(conic) = ConicImage::new(&b.image) else {
+        return 1.0;
+    };
+    let [lo, hi] = b.range;
+    let slopes = (0..=SLOPES).map(|k| {
+        let t = lo + (hi - lo) * f64::from(k) / f64::from(SLOPES);
+        let point = projection.homogeneous(&b.curve.point(t));
+        let form = conic.basis.conic();
+        let polar = conic.inverse.tr_mul(&(form * (conic.inverse * point)));
+        polar.x.hypot(polar.y) / point.z
+    });
+    slopes.fold(f64::INFINITY, f64::min)
+}
+
+/// At how many points, less one, a conic's slope is asked.
+const SLOPES: u32 = 8;
+
+/// Where a root on `a` is a crossing. One that only touches is where the curves meet in space, so
+/// that the other is in front from there on; else it is none. One that is not told from a junction
+/// of both is there: they touch, and its best place may be a long way off.
+pub fn place_of(
+    root: &Root,
+    [a, b]: [&ContourArc<'_>; 2],
+    ahead: impl Fn(f64) -> Option<f64>,
+) -> Option<f64> {
+    let within = |t: &f64| t.lies_in([root.lo, root.hi]);
+    let shared = |id: u32| b.junctions().any(|other| other.0 == id);
+    let mut known = a.junctions().filter(|(id, t)| within(t) && shared(*id));
+    if let Some((_, t)) = known.next() {
+        return Some(t);
+    }
+    if root.contact != RootKind::Touching {
+        return Some(root.t);
+    }
+    let (from, to) = (ahead(root.lo)?, ahead(root.hi)?);
+    let nearer = |t: f64| ahead(t).unwrap_or(from);
+    let changes = from.is_below_zero() != to.is_below_zero();
+    changes.then(|| bisect(root.lo, root.hi, from, nearer))
+}
+
+/// Where a line or conic `b` passes points of another curve `a` in the image, next to a parameter:
+/// one seen edge-on passes them twice.
+struct Branch<'x> {
+    a: &'x ContourArc<'x>,
+    b: &'x ContourArc<'x>,
+    projection: &'x Projection,
+    next_to: f64,
+}
+
+impl Branch<'_> {
+    /// The parameter on `b` of the point with the image of `a` at `t`.
+    fn parameter(&self, t: f64) -> Option<f64> {
+        let away = |s: f64| {
+            let away = (s - self.next_to).abs();
+            let period = self.b.curve.period();
+            period.map_or(away, |period| away.min(period - away))
+        };
+        let h = self.projection.homogeneous(&self.a.curve.point(t));
+        let mut nearest: Option<f64> = None;
+        self.b.image.parameters(&h, self.b.range, &mut |s| {
+            if nearest.is_none_or(|n| away(s).is_short_of(away(n))) {
+                nearest = Some(s);
+            }
+        });
+        nearest
+    }
+
+    /// How far `b` lies before the point of `a` there.
+    fn ahead(&self, t: f64) -> Option<f64> {
+        let p = self.a.curve.point(t);
+        let (v, _) = self.projection.towards_eye(&p);
+        let q = self.b.curve.point(self.parameter(t)?);
+        Some((q - p).dot(&v))
+    }
+}
+
+/// Whether the image of a curve lies on the line or conic of another: none of the kinds there are
+/// meets one in so many points otherwise.
+fn falls_on(a: &ContourArc<'_>, b: &ContourArc<'_>, projection: &Projection, near: f64) -> bool {
+    let [lo, hi] = a.range;
+    let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
+    (0..PLACES).all(|k| {
+        let h = projection.homogeneous(&a.curve.point(at(k)));
+        match (ConicImage::new(&b.image), b.image.line()) {
+            (Some(conic), _) => conic.passes(&h, near),
+            (_, Some(line)) => line.dot(&h).is_within(near * line.x.hypot(line.y)),
+            _ => false,
+        }
+    })
+}
+
+/// What being together over so much of the image of `a` means: next to a touch it is little.
+pub fn overlap_of(together: f64, a: &ContourArc<'_>) -> Overlap {
+    if (together * MOST).is_beyond(a.length_between(&a.range)) {
+        Overlap::Yes
+    } else {
+        Overlap::No
+    }
+}
+
+/// A curve on a surface seen edge-on against any other.
+fn edgewise(
+    on: &Edgewise,
+    a: &ContourArc<'_>,
+    b: &ContourArc<'_>,
+    band: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
+    if on.holds(b.curve, b.range, LOOSE * band) {
+        return Overlap::Yes;
+    }
+    for s in on.passed_by(b.curve, b.range, band) {
+        let p = b.curve.point(s);
+        on.parameters(a.curve, a.range, p, band, &mut |t| found(t, s));
+    }
+    Overlap::No
+}
+
+/// The parameters at which a strand's image passes that of a point, where it does.
+pub fn parameters_at(
+    strand: &ContourArc<'_>,
+    p: &Point3<f64>,
+    scene: &Scene<'_>,
+    found: &mut impl FnMut(f64),
+) {
+    let projection = scene.projection;
+    match &strand.image {
+        Image::Edgewise(on) => on.parameters(strand.curve, strand.range, *p, scene.band, found),
+        Image::General => {
+            let p = flat_of(projection, p);
+            passes(strand.curve, &strand.stretches, projection, p, found);
+        }
+        image => image.parameters(&projection.homogeneous(p), strand.range, found),
+    }
+}

@@ -1,0 +1,208 @@
+//! Where lines of sight meet whole surfaces.
+
+use crate::ray_casting::{OriginIncidence, Scene, SightLine};
+use nalgebra::Vector3;
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::{Surface, Torus};
+use premio_kernel::number::analytic::Analytic;
+use premio_kernel::number::interval::Interval;
+use premio_kernel::number::jet::Jet;
+use premio_kernel::number::predicates::{Compare, ROUNDING};
+use premio_kernel::number::roots::{RootKind, Roots, isolate};
+
+/// Up to four meetings of a line and a surface: distance, and whether it only touches.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Meetings {
+    pub(crate) at: [(f64, bool); 4],
+    pub(crate) count: usize,
+}
+
+impl Meetings {
+    fn push(&mut self, s: f64, touch: bool) {
+        if s.is_finite() && self.count < 4 {
+            self.at[self.count] = (s, touch);
+            self.count += 1;
+        }
+    }
+}
+
+impl Scene<'_> {
+    /// Where a line of sight meets the surface of a face, less what `own` says.
+    pub(crate) fn meetings(
+        &self,
+        ray: &SightLine,
+        surface: &Surface,
+        own: OriginIncidence,
+    ) -> Meetings {
+        let mut found = Meetings::default();
+        let f = surface.frame();
+        let q = f.coordinates(&ray.origin);
+        let w = f.components(&ray.towards);
+        match surface {
+            Surface::Plane(_) => {
+                if own == OriginIncidence::No && !self.edge_on(&f.origin, &f.z) {
+                    found.push(-q.z / w.z, false);
+                }
+            }
+            Surface::Cylinder(s) => {
+                let a = w.x * w.x + w.y * w.y;
+                let b = q.x * w.x + q.y * w.y;
+                let c = (q.x.hypot(q.y) - s.radius) * (q.x.hypot(q.y) + s.radius);
+                self.quadric([a, b, c], own, |_| 2.0 * s.radius, &mut found);
+            }
+            Surface::Sphere(s) => {
+                let b = q.dot(&w);
+                let c = (q.norm() - s.radius) * (q.norm() + s.radius);
+                self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, &mut found);
+            }
+            // Through the apex the line has a double root wherever it comes from.
+            Surface::Cone(_) if own == OriginIncidence::No && self.through_apex(&q, &w) => {
+                found.push(-q.dot(&w), true);
+            }
+            Surface::Cone(s) => {
+                let (k, m) = (s.cos * s.cos, s.sin * s.sin);
+                let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
+                let b = k * (q.x * w.x + q.y * w.y) - m * q.z * w.z;
+                let rho = q.x.hypot(q.y);
+                let c = (s.cos * rho - s.sin * q.z) * (s.cos * rho + s.sin * q.z);
+                let gradient = |t: f64| 2.0 * s.sin * (q.z + t * w.z).abs();
+                let mut both = Meetings::default();
+                self.quadric([a, b, c], own, gradient, &mut both);
+                for &(t, touch) in &both.at[..both.count] {
+                    if (q.z + t * w.z).reaches(0.0) {
+                        found.push(t, touch);
+                    }
+                }
+            }
+            Surface::Torus(s) => self.torus(s, &q, &w, own, ray.length, &mut found),
+        }
+        found
+    }
+
+    /// Whether a line passes the origin of its frame.
+    fn through_apex(&self, q: &Vector3<f64>, w: &Vector3<f64>) -> bool {
+        (q - w * q.dot(w)).norm().is_within(4.0 * self.band)
+    }
+
+    /// The roots of a s² + 2 b s + c; `gradient` is what turns the value into a distance.
+    fn quadric(
+        &self,
+        [a, b, c]: [f64; 3],
+        own: OriginIncidence,
+        gradient: impl Fn(f64) -> f64,
+        found: &mut Meetings,
+    ) {
+        // Along a ruling the line stays on the surface, or never meets it.
+        let flat = a.is_within(ROUNDING);
+        match own {
+            OriginIncidence::Tangent => {}
+            OriginIncidence::Through if flat => {}
+            OriginIncidence::Through => found.push(-2.0 * b / a, false),
+            OriginIncidence::No if flat => {
+                if b.abs().is_beyond(ROUNDING * c.abs().sqrt()) {
+                    found.push(-0.5 * c / b, false);
+                }
+            }
+            OriginIncidence::No => {
+                let at = -b / a;
+                let extremum = c - b * b / a;
+                if extremum.is_within(4.0 * self.band * gradient(at)) {
+                    return found.push(at, true);
+                }
+                let radicand = b * b - a * c;
+                if radicand.is_below_zero() {
+                    return;
+                }
+                let k = -(b + radicand.sqrt().copysign(b));
+                found.push(k / a, false);
+                found.push(c / k, false);
+            }
+        }
+    }
+
+    /// The roots of the torus's quartic (|q|² + R² - r²)² = 4 R² (x² + y²) along the line, less
+    /// the known ones.
+    fn torus(
+        &self,
+        s: &Torus,
+        q: &Vector3<f64>,
+        w: &Vector3<f64>,
+        own: OriginIncidence,
+        length: f64,
+        found: &mut Meetings,
+    ) {
+        // Beyond the tube's sphere there is nothing; the origin may be far away.
+        let reach = s.major + s.minor + 4.0 * self.band;
+        let nearest = -q.dot(w);
+        let half2 = reach * reach - (q + w * nearest).norm_squared();
+        if half2.is_at_most(0.0) {
+            return;
+        }
+        let (lo, hi) = (nearest - half2.sqrt(), nearest + half2.sqrt());
+        let (lo, hi) = (lo.max(0.0), hi.min(length));
+        if lo.reaches(hi) {
+            return;
+        }
+        let (major, minor) = (s.major, s.minor);
+        // s² + b s + c with c the value at the origin, then the quartic's coefficients.
+        let b = 2.0 * q.dot(w);
+        let c = q.norm_squared() + major * major - minor * minor;
+        let k = 4.0 * major * major;
+        let quartic = [
+            c * c - k * (q.x * q.x + q.y * q.y),
+            2.0 * b * c - 2.0 * k * (q.x * w.x + q.y * w.y),
+            b * b + 2.0 * c - k * (w.x * w.x + w.y * w.y),
+            2.0 * b,
+            1.0,
+        ];
+        let known = match own {
+            OriginIncidence::No => 0,
+            OriginIncidence::Through => 1,
+            OriginIncidence::Tangent => 2,
+        };
+        if known == 0 {
+            let q0 = [q.x, q.y, q.z];
+            let surface = Surface::Torus(Torus {
+                frame: Frame::world(),
+                ..*s
+            });
+            let f = |t: Interval| {
+                let p: [Jet<Interval>; 3] =
+                    std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
+                surface.level(p)
+            };
+            if self.isolated(&f, lo, hi, found) == Roots::Everywhere {
+                found.push(0.5 * (lo + hi), true);
+            }
+            return;
+        }
+        // The gradient of the quartic is 8 R r ρ; ρ is at least R - r.
+        let size = 8.0 * major * minor * (major - minor) / reach.powi(known as i32);
+        let rest = &quartic[known..];
+        let f = |t: Interval| {
+            let t = Jet::variable(t);
+            let zero = Jet::constant(0.0);
+            rest.iter()
+                .rev()
+                .fold(zero, |sum, &k| sum * t + Jet::constant(k))
+                .scale(1.0 / size)
+        };
+        self.isolated(&f, lo, hi, found);
+    }
+
+    fn isolated(
+        &self,
+        f: &impl Fn(Interval) -> Jet<Interval>,
+        lo: f64,
+        hi: f64,
+        found: &mut Meetings,
+    ) -> Roots {
+        let zeros = isolate(f, &[lo, hi], self.band);
+        if let Roots::At { roots, .. } = &zeros {
+            for r in roots {
+                found.push(r.t, r.contact == RootKind::Touching);
+            }
+        }
+        zeros
+    }
+}

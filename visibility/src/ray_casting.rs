@@ -1,0 +1,549 @@
+//! Lines of sight against the boundary: which faces lie between a point and the eye.
+//!
+//! A line of sight runs from the point towards the eye: P + s v, s > 0. A contour's own faces pass
+//! through P, so there the root s = 0 is divided out (twice where the line is tangent, on a limb),
+//! and never has to be told from zero.
+
+use crate::face_box::{FaceBox, Pierced, face_box};
+use crate::projection::{Projection, ViewRay};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::locate::{Locator, PointLocation};
+use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::number::predicates::{Compare, ROUNDING};
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
+use std::f64::consts::TAU;
+
+/// A line of sight from a point towards the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct SightLine {
+    /// The point.
+    pub origin: Point3<f64>,
+    /// The unit vector towards the eye.
+    pub towards: Vector3<f64>,
+    /// Where the line of sight ends: at the eye, or the near plane.
+    pub length: f64,
+}
+
+/// How a line of sight meets a surface through its origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OriginIncidence {
+    /// The origin is not known to be on the surface.
+    No,
+    /// The origin is on the surface.
+    Through,
+    /// The line is tangent to the surface at the origin.
+    Tangent,
+}
+
+/// A face on a line of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SightHit {
+    /// The distance from the origin of the line towards the eye.
+    pub at: f64,
+    /// The face.
+    pub face: FaceId,
+    /// Whether the face is turned towards the eye; so is one that is touched along its limb.
+    pub front: bool,
+    /// Whether the line passes through the inside of the face, neither along its limb nor on its
+    /// boundary.
+    pub plain: bool,
+}
+
+/// Which of the faces on a line of sight are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// All of them.
+    All,
+    /// Those turned towards the eye, and of the others those met on their boundary only: whether
+    /// the line passes through the inside of a face turned away does not count. Also those that
+    /// touch the origin, as not plain.
+    Hiding,
+}
+
+/// What a line of sight met.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Occluders {
+    /// How many faces turned towards the eye.
+    pub qi: u32,
+    /// Those nearest to the eye, the nearest first, as far as their order is known: at least one
+    /// if there are any.
+    pub order: Vec<FaceId>,
+    /// Whether all were met plainly.
+    pub plain: bool,
+}
+
+impl Occluders {
+    /// The face nearest to the eye.
+    pub fn occluder(&self) -> Option<FaceId> {
+        self.order.first().copied()
+    }
+
+    /// Whether the order of all faces is known.
+    pub fn is_whole(&self) -> bool {
+        self.order.len() as u32 == self.qi
+    }
+
+    /// The same with these faces between all others and the point, the nearest to the eye first.
+    pub fn before(&self, faces: &[FaceId]) -> Self {
+        let mut count = self.clone();
+        if count.is_whole() {
+            count.order.extend(faces);
+        }
+        count.qi += faces.len() as u32;
+        count
+    }
+
+    /// The same without these faces, which lie between all others and the point; none if they do
+    /// not.
+    pub fn beyond(&self, faces: &[FaceId]) -> Option<Self> {
+        let mut count = self.clone();
+        count.qi = count.qi.checked_sub(faces.len() as u32)?;
+        let kept = count.qi as usize;
+        if self.is_whole() && self.order[kept..] != *faces {
+            return None;
+        }
+        count.order.truncate(kept);
+        Some(count)
+    }
+}
+
+/// A face turned towards the eye, and how far it is.
+#[derive(Clone, Copy, Debug)]
+struct Layer {
+    at: f64,
+    face: FaceId,
+}
+
+/// How far aside of a contour its sides are looked at, in multiples of the resolution: beyond what
+/// counts as touching.
+const ASIDE: f64 = 64.0;
+/// How far apart on a line of sight faces that touch may be, in multiples of the resolution.
+const TOUCHING: f64 = 4.0;
+
+/// The directions in which a curve seen along `towards` has its two sides in the image; all around
+/// where it is seen end-on.
+fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
+    let across = along.cross(towards);
+    let size = across.norm();
+    if size.is_beyond(ROUNDING.sqrt()) {
+        return vec![across / size, -across / size];
+    }
+    let frame = Frame::about(Point3::origin(), *towards);
+    let turn = |k: u32| f64::from(k).mul_add(TAU / 8.0, 0.4).sin_cos();
+    (0..8)
+        .map(turn)
+        .map(|(sin, cos)| frame.x * cos + frame.y * sin)
+        .collect()
+}
+
+/// The boundary, ready for lines of sight.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    /// The part.
+    pub brep: &'a Brep,
+    /// The camera.
+    pub projection: &'a Projection,
+    /// Where points lie in faces.
+    pub locator: Locator<'a>,
+    /// The resolution.
+    pub band: f64,
+    /// The sine of the angle between parallel sight and a direction along which the whole part is no
+    /// longer in the image than the resolution.
+    pub tilt: f64,
+    tree: RTree<FaceBox>,
+    bounds: Aabb,
+}
+
+/// The box of boxes.
+fn hull(boxes: &[Aabb]) -> Aabb {
+    boxes.iter().fold(Aabb::EMPTY, |a, b| a.hull(b))
+}
+
+impl<'a> Scene<'a> {
+    /// The scene of a part seen by a camera; `band` is the resolution.
+    pub fn new(brep: &'a Brep, projection: &'a Projection, band: f64) -> Self {
+        let locator = Locator::new(brep, band);
+        let boxes: Vec<Aabb> = brep
+            .topology
+            .face_ids()
+            .map(|f| face_box(brep, &locator, f, band))
+            .collect();
+        let leaf = |(i, b): (usize, &Aabb)| {
+            GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
+        };
+        let tree = RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect());
+        let bounds = hull(&boxes);
+        let size = bounds.diagonal();
+        Self {
+            brep,
+            projection,
+            locator,
+            band,
+            tilt: (band / size).max(ROUNDING),
+            tree,
+            bounds,
+        }
+    }
+
+    /// The box of the whole part.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The line of sight from a point.
+    pub fn ray(&self, p: &Point3<f64>) -> SightLine {
+        let (towards, away) = self.projection.towards_eye(p);
+        let near = self.projection.near;
+        // What lies nearer than the near plane does not hide.
+        let rise = -towards.dot(&self.projection.axis());
+        let to_near = (self.projection.depth(p) - near) / rise;
+        let length = if near.is_finite() { to_near } else { away };
+        SightLine {
+            origin: *p,
+            towards,
+            length: length.min(away).max(0.0),
+        }
+    }
+
+    /// The faces whose boxes a line of sight passes.
+    pub(crate) fn passed(&self, ray: &SightLine) -> impl Iterator<Item = FaceId> {
+        let leaves = self.tree.locate_with_selection_function(Pierced::of(ray));
+        leaves.map(|leaf| leaf.data)
+    }
+
+    /// What is this near to the origin of a line of sight passes through it.
+    pub(crate) fn least(&self, own: OriginIncidence) -> f64 {
+        match own {
+            OriginIncidence::No => 4.0 * self.band,
+            OriginIncidence::Through | OriginIncidence::Tangent => 0.0,
+        }
+    }
+
+    /// The faces on a line of sight, with what `own` says about those through its origin; the
+    /// faces seen edge-on are passed over.
+    pub fn hits(
+        &self,
+        ray: &SightLine,
+        asked: Asked,
+        own: &impl Fn(FaceId) -> OriginIncidence,
+        report: &mut impl FnMut(SightHit),
+    ) {
+        for face in self.passed(ray) {
+            self.face_hits(ray, face, asked, own(face), report);
+        }
+    }
+
+    /// Whether any face is met plainly on a line of sight.
+    pub fn is_blocked(&self, ray: &SightLine, own: &impl Fn(FaceId) -> OriginIncidence) -> bool {
+        self.passed(ray).any(|face| {
+            let mut met = false;
+            self.face_hits(ray, face, Asked::All, own(face), &mut |hit| {
+                met |= hit.plain
+            });
+            met
+        })
+    }
+
+    fn face_hits(
+        &self,
+        ray: &SightLine,
+        face: FaceId,
+        asked: Asked,
+        own: OriginIncidence,
+        report: &mut impl FnMut(SightHit),
+    ) {
+        let surface = self.brep.surface(face);
+        let meetings = self.meetings(ray, surface, own);
+        let least = self.least(own);
+        for &(s, touch) in &meetings.at[..meetings.count] {
+            let p = ray.origin + ray.towards * s;
+            if asked == Asked::Hiding && s.abs().is_short_of(least) {
+                // Touched by another face, it may be this one that hides what is next to it.
+                if self.locator.place(face, &p) != PointLocation::Outside {
+                    report(SightHit {
+                        at: s,
+                        face,
+                        front: false,
+                        plain: false,
+                    });
+                }
+                continue;
+            }
+            if s.is_at_most(least) || s.reaches(ray.length) {
+                continue;
+            }
+            let front = touch || self.is_turned(face, &p, &ray.towards);
+            let locator = self.locator.face(face);
+            let place = match asked {
+                Asked::Hiding if !front && !locator.on_boundary(&p) => continue,
+                Asked::Hiding if !front => PointLocation::On,
+                _ => locator.place(&p),
+            };
+            if place == PointLocation::Outside {
+                continue;
+            }
+            report(SightHit {
+                at: s,
+                face,
+                front,
+                plain: !touch && place == PointLocation::Inside,
+            });
+        }
+    }
+
+    /// Whether a face is turned towards the eye at a point of it.
+    pub(crate) fn is_turned(&self, face: FaceId, p: &Point3<f64>, towards: &Vector3<f64>) -> bool {
+        let facing = self.brep.outward(face, p).dot(towards);
+        facing.is_above_zero()
+    }
+
+    /// Where the line of sight from `p` meets the whole surface of a face, before it.
+    pub fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
+        let ray = self.ray(p);
+        let meetings = self.meetings(&ray, self.brep.surface(face), OriginIncidence::No);
+        for &(s, _) in &meetings.at[..meetings.count] {
+            if s.is_above_zero() {
+                report(s);
+            }
+        }
+    }
+
+    /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
+    pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
+        match self.projection.sight {
+            ViewRay::Eye(e) => (e - origin).dot(normal).is_within(self.band),
+            ViewRay::Direction(d) => d.dot(normal).is_within(self.tilt),
+        }
+    }
+
+    /// The quantitative invisibility of a point of a curve with the unit tangent `along`: the faces
+    /// turned towards the eye on the open line of sight; `own` tells the faces through the point.
+    ///
+    /// A face that is met on its boundary or along its limb hides what is on one side of the curve
+    /// in the image, or on both; the curve is as hidden as its more hidden side.
+    pub fn count(
+        &self,
+        p: &Point3<f64>,
+        along: &Vector3<f64>,
+        own: &impl Fn(FaceId) -> OriginIncidence,
+    ) -> Occluders {
+        let ray = self.ray(p);
+        self.count_beside(&ray, &sides(&ray.towards, along), own)
+    }
+
+    /// The same for a point of an edge that is seen end-on, so that it has no two sides: as hidden as
+    /// it is on the side where it is hidden most. `inward` are directions into the material next to it,
+    /// where it lies behind the face in which it ends towards the eye, however sharp it is.
+    pub fn count_end_on(
+        &self,
+        p: &Point3<f64>,
+        inward: &[Vector3<f64>],
+        own: &impl Fn(FaceId) -> OriginIncidence,
+    ) -> Occluders {
+        let ray = self.ray(p);
+        let mut around = sides(&ray.towards, &ray.towards);
+        around.extend(inward);
+        self.count_beside(&ray, &around, own)
+    }
+
+    fn count_beside(
+        &self,
+        ray: &SightLine,
+        sides: &[Vector3<f64>],
+        own: &impl Fn(FaceId) -> OriginIncidence,
+    ) -> Occluders {
+        let (mut fronts, mut unclear): (Vec<SightHit>, Vec<SightHit>) = (Vec::new(), Vec::new());
+        self.hits(ray, Asked::Hiding, own, &mut |hit| {
+            if !hit.plain {
+                unclear.push(hit);
+            } else if hit.front {
+                fronts.push(hit);
+            }
+        });
+        fronts.sort_by(|a, b| b.at.total_cmp(&a.at));
+        if !unclear.iter().any(|hit| hit.front) {
+            return Occluders {
+                qi: fronts.len() as u32,
+                order: fronts.iter().map(|hit| hit.face).collect(),
+                plain: unclear.is_empty(),
+            };
+        }
+        let mut most: Vec<Layer> = Vec::new();
+        for side in sides {
+            let mut covered = self.layers_beside(ray, &unclear, own, side);
+            covered.extend(self.kept_beside(ray, &fronts, own, side));
+            if covered.len() > most.len() {
+                most = covered;
+            }
+        }
+        // What is met next to boundaries may be as near as the next: only the first is certain.
+        let first = most.iter().max_by(|a, b| a.at.total_cmp(&b.at));
+        Occluders {
+            qi: most.len() as u32,
+            order: first.map(|layer| layer.face).into_iter().collect(),
+            plain: false,
+        }
+    }
+
+    /// Those of the faces that are met plainly which are still met just aside: next to an edge one
+    /// face of it may begin where the other one ends.
+    fn kept_beside(
+        &self,
+        ray: &SightLine,
+        fronts: &[SightHit],
+        own: &impl Fn(FaceId) -> OriginIncidence,
+        side: &Vector3<f64>,
+    ) -> Vec<Layer> {
+        let kept = |hit: &&SightHit| {
+            let mut met = false;
+            let report = &mut |_, front| met |= front;
+            self.passed_beside(ray, hit, own(hit.face), side, report);
+            met
+        };
+        let layer = |&SightHit { at, face, .. }: &SightHit| Layer { at, face };
+        fronts.iter().filter(kept).map(layer).collect()
+    }
+
+    /// The faces turned towards the eye on the line of sight just aside, of those that the line of
+    /// sight itself does not meet plainly.
+    fn layers_beside(
+        &self,
+        ray: &SightLine,
+        unclear: &[SightHit],
+        own: &impl Fn(FaceId) -> OriginIncidence,
+        side: &Vector3<f64>,
+    ) -> Vec<Layer> {
+        let (mut layers, mut backs) = (Vec::new(), Vec::new());
+        for hit in unclear.iter().filter(|hit| hit.front) {
+            let face = hit.face;
+            self.passed_beside(ray, hit, own(face), side, &mut |at, front| match front {
+                true => layers.push((Layer { at, face }, hit)),
+                false => backs.push((at, hit)),
+            });
+        }
+        // A wedge of material, or of nothing, next to an edge is as thick here as the way aside.
+        let touched = |hit: &&SightHit| {
+            let reach = 2.0 * ASIDE * self.band;
+            layers.iter().any(|(l, _)| (l.at - hit.at).is_within(reach))
+        };
+        for hit in unclear.iter().filter(|hit| !hit.front).filter(touched) {
+            self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
+                if !front {
+                    backs.push((at, hit));
+                }
+            });
+        }
+        // Faces that touch are no further apart here than the resolution: there is no gap to see.
+        for (back, behind) in backs {
+            let touches = |(l, hit): &(Layer, &SightHit)| {
+                let near = (l.at - back).is_within(TOUCHING * self.band);
+                near && !self.meet_at_an_angle(ray, [hit, behind])
+            };
+            if let Some(i) = layers.iter().position(touches) {
+                layers.swap_remove(i);
+            }
+        }
+        layers.into_iter().map(|(layer, _)| layer).collect()
+    }
+
+    /// Whether two faces go apart where a line of sight meets them: however narrow the wedge between
+    /// them is, they are not one. Those that touch within the resolution may do so at an angle of
+    /// its root.
+    fn meet_at_an_angle(&self, ray: &SightLine, hits: [&SightHit; 2]) -> bool {
+        let normal = |hit: &SightHit| {
+            let p = ray.origin + ray.towards * hit.at;
+            self.brep.outward(hit.face, &p)
+        };
+        let [m, n] = hits.map(normal);
+        m.cross(&n).norm().is_beyond(ROUNDING.sqrt().sqrt())
+    }
+
+    /// Where the line of sight just aside of a hit passes the same face, and whether from its
+    /// front, there and not where the line of sight itself meets it elsewhere.
+    fn passed_beside(
+        &self,
+        ray: &SightLine,
+        hit: &SightHit,
+        own: OriginIncidence,
+        side: &Vector3<f64>,
+        report: &mut impl FnMut(f64, bool),
+    ) {
+        let surface = self.brep.surface(hit.face);
+        let beside = ray.origin + ray.towards * hit.at + side * (ASIDE * self.band);
+        let (towards, _) = self.projection.towards_eye(&beside);
+        let back = 2.0 * hit.at;
+        let parallel = SightLine {
+            origin: beside - towards * back,
+            towards,
+            length: f64::INFINITY,
+        };
+        let elsewhere = self.meetings(ray, surface, own);
+        let through = (own != OriginIncidence::No).then_some(0.0);
+        let known = |s: f64| {
+            let others = elsewhere.at[..elsewhere.count].iter().map(|m| m.0);
+            let away = (s - hit.at).abs();
+            others
+                .chain(through)
+                .all(|other| other.is_exactly(hit.at) || (s - other).abs().is_beyond(away))
+        };
+        let found = self.meetings(&parallel, surface, OriginIncidence::No);
+        for &(s, touch) in &found.at[..found.count] {
+            let at = s - back + hit.at;
+            // Behind the point nothing hides it.
+            if at.is_at_most(0.0) || !known(at) {
+                continue;
+            }
+            let p = parallel.origin + towards * s;
+            if self.locator.place(hit.face, &p) != PointLocation::Outside {
+                let front = touch || self.is_turned(hit.face, &p, &towards);
+                report(at, front);
+            }
+        }
+    }
+
+    /// Whether the eye of a perspective camera lies in the material.
+    pub fn eye_inside(&self) -> bool {
+        let ViewRay::Eye(eye) = self.projection.sight else {
+            return false;
+        };
+        let part = self.bounds();
+        if !part.holds(&eye) {
+            return false;
+        }
+        // Directions without a common pattern, until one meets every face plainly.
+        let mut votes = 0i32;
+        for k in 0..16u32 {
+            let a = f64::from(k) * 2.399_963_229_728_653 + 0.7;
+            let z = 0.9 - 1.7 * f64::from(k) / 15.0;
+            let rho = (1.0 - z * z).sqrt();
+            let ray = SightLine {
+                origin: eye,
+                towards: Vector3::new(rho * a.cos(), rho * a.sin(), z),
+                length: f64::INFINITY,
+            };
+            let (mut plain, mut nearest) = (true, (f64::INFINITY, true));
+            self.hits(&ray, Asked::All, &|_| OriginIncidence::No, &mut |hit| {
+                plain &= hit.plain;
+                if hit.at.is_short_of(nearest.0) {
+                    // A face turned towards where the line runs is left from inside.
+                    nearest = (hit.at, hit.front);
+                }
+            });
+            let inside = nearest.0.is_finite() && nearest.1;
+            if plain {
+                return inside;
+            }
+            votes += if inside { 1 } else { -1 };
+        }
+        votes > 0
+    }
+
+    /// Whether a face's outward normal is its surface's.
+    pub fn along(&self, face: FaceId) -> bool {
+        self.brep.sense(face) == Sense::Along
+    }
+}

@@ -1,0 +1,103 @@
+//! Parameters on strands, and the points where the boundary touches itself.
+
+use crate::contour::JunctionKind;
+use crate::contour_arc::{Change, ContourArc, JunctionSupport, Junctions, Split};
+use crate::ray_casting::Scene;
+use premio_kernel::number::predicates::Compare;
+
+/// Distances between points found on two ways, in multiples of the resolution.
+const LOOSE: f64 = 8.0;
+
+/// A parameter on a strand: within it, or at one of its ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Settled {
+    /// The parameter.
+    pub t: f64,
+    /// Whether it is an end, within the slack.
+    pub at_end: bool,
+}
+
+/// The parameter as one of the strand, or at its end where it is no further than `near` beyond; none
+/// where it is.
+pub fn settle(strand: &ContourArc<'_>, t: f64, near: f64) -> Option<Settled> {
+    let [lo, hi] = strand.range;
+    let t = match strand.curve.period() {
+        Some(period) => {
+            let t = lo + (t - lo).rem_euclid(period);
+            // Just before the start is nearer to the start than to the end.
+            if !strand.closed && (t - hi).is_beyond(lo + period - t) {
+                t - period
+            } else {
+                t
+            }
+        }
+        None => t,
+    };
+    if strand.closed {
+        return Some(Settled { t, at_end: false });
+    }
+    let slack = near / strand.curve.speed(t);
+    if t.is_short_of(lo - slack) || t.is_beyond(hi + slack) || t.is_nan() {
+        return None;
+    }
+    let at_end = t.is_at_most(lo + slack) || t.reaches(hi - slack);
+    Some(Settled {
+        t: t.clamp(lo, hi),
+        at_end,
+    })
+}
+
+/// Of the parameters of one point of a closed curve, the one nearest to `t`.
+pub fn nearest_turn(strand: &ContourArc<'_>, from: f64, t: f64) -> f64 {
+    match strand.curve.period() {
+        Some(period) if strand.closed => from + ((t - from) / period).round() * period,
+        _ => from,
+    }
+}
+
+/// Splits the strands that meet where the boundary touches itself: which is in front may change
+/// there, also for those that fall on one another in the image.
+pub fn split_at_touches(
+    strands: &mut [ContourArc<'_>],
+    scene: &Scene<'_>,
+    junctions: &mut Junctions<'_>,
+) {
+    let near = LOOSE * scene.band;
+    let (topology, geometry) = (&scene.brep.topology, &scene.brep.geometry);
+    for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
+        let within = |strand: &ContourArc<'_>| match strand.edge {
+            Some(edge) => touch.edges.contains(&edge),
+            None => strand.faces.iter().any(|f| touch.faces.contains(&f.0)),
+        };
+        let meeting = |strand: &ContourArc<'_>| {
+            let at = settle(strand, strand.curve.parameter(place), near)?;
+            let met = (strand.curve.point(at.t) - place).norm().is_within(near);
+            met.then_some(at)
+        };
+        let all = strands.iter_mut().filter(|strand| within(strand));
+        let met: Vec<_> = all.filter_map(|s| Some((meeting(s)?, s))).collect();
+        // Limbs that end there, at an apex, may hide one that passes.
+        if met.len() < if touch.fans > 0 { 1 } else { 2 } {
+            continue;
+        }
+        let passing = met.into_iter().filter(|(at, _)| !at.at_end);
+        let passing: Vec<_> = passing.collect();
+        if passing.is_empty() {
+            continue;
+        }
+        let junction = match touch.vertex {
+            Some(vertex) => junctions.vertex(vertex, place),
+            None => junctions.add(JunctionKind::T, JunctionSupport::Alone, place),
+        };
+        junctions.crowd(junction);
+        for (at, strand) in passing {
+            let contours = &mut junctions.list[junction as usize].contours;
+            contours.push(strand.contour);
+            strand.splits.push(Split {
+                t: at.t,
+                junction,
+                change: Change::Correct,
+            });
+        }
+    }
+}

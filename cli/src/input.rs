@@ -47,7 +47,7 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<Part, Fail
         exact: options.exact,
     };
     let digits = match options.unfiltered {
-        true => Arithmetic::Many,
+        true => Arithmetic::Extended,
         false => Arithmetic::Filtered,
     };
     let part = evaluated(name, format, written, digits, voice)?;
@@ -152,8 +152,8 @@ const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do n
     the boundary is known, but no view of it is reckoned with more digits";
 
 /// The resolution for views of a part.
-pub fn resolution_of_views(part: &Part) -> Result<f64, Failure> {
-    let resolution = part.evaluation.resolution_of_views();
+pub fn view_resolution(part: &Part) -> Result<f64, Failure> {
+    let resolution = part.evaluation.view_resolution();
     resolution.ok_or_else(|| Failure::limit(format!("{}: {UNSEEN}", part.name)))
 }
 

@@ -131,7 +131,7 @@ impl<T> SetupFile<T> {
     }
 
     fn bare<'p>(&self, part: &'p Part) -> Result<Subject<'p>, Failure> {
-        let band = input::resolution_of_views(part)?;
+        let band = input::view_resolution(part)?;
         let subject = Subject::new(&part.evaluation.brep, band);
         subject.map_err(|error| self.failure(part, &error.into()))
     }

@@ -102,7 +102,7 @@ impl<'c> ArcMaker<'c> {
         let junction = before
             .end
             .and_then(|id| self.contours.junctions.get(id as usize));
-        if junction.is_some_and(|j| j.kind == JunctionKind::Turn) {
+        if junction.is_some_and(|j| j.kind == JunctionKind::ImageTurn) {
             return true;
         }
         let t = before.t[1];

@@ -37,8 +37,8 @@ impl Layer {
     pub fn from_contour(contour: &Contour) -> Self {
         match (contour.kind, contour.smooth) {
             (ContourKind::Limb, _) => Self::Limb,
-            (ContourKind::Boundary, true) => Self::Smooth,
-            (ContourKind::Boundary, false) => Self::Boundary,
+            (ContourKind::Edge, true) => Self::Smooth,
+            (ContourKind::Edge, false) => Self::Boundary,
         }
     }
 

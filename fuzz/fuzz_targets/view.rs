@@ -14,7 +14,7 @@ fuzz_target!(|bytes: &[u8]| {
     let Some(camera) = part.camera(&sight) else {
         return;
     };
-    let Some(resolution) = part.evaluation.resolution_of_views() else {
+    let Some(resolution) = part.evaluation.view_resolution() else {
         return;
     };
     let Ok(seen) = contours(&part.evaluation.brep, &camera, resolution) else {

@@ -151,7 +151,7 @@ fn wavefront(text: &str, count: usize) {
 }
 
 fn drawings(part: &Part, sight: &Sight, name: &str) {
-    let Some(resolution) = part.evaluation.resolution_of_views() else {
+    let Some(resolution) = part.evaluation.view_resolution() else {
         return;
     };
     let Some(camera) = part.camera(sight) else {

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::intersect::{
-    Branch, RegionOfInterest, SurfaceIntersection, coincidence, meet,
+    Branch, RegionOfInterest, SurfaceIntersection, coincidence, intersect,
 };
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::geometry::surface_pair::Carrier;
@@ -141,11 +141,11 @@ fn check(seed: u64, grid: bool) {
         centre: Point3::origin(),
         radius: 12.0,
     };
-    let judge = Predicates::new(1e-10);
-    if coincidence(Carrier::given(&a), Carrier::given(&b), &extent, &judge).is_some() {
+    let predicates = Predicates::new(1e-10);
+    if coincidence(Carrier::given(&a), Carrier::given(&b), &extent, &predicates).is_some() {
         return;
     }
-    let meeting = match meet(Carrier::given(&a), Carrier::given(&b), &extent, &judge) {
+    let meeting = match intersect(Carrier::given(&a), Carrier::given(&b), &extent, &predicates) {
         Ok(m) => m,
         Err(e) if grid && REFUSED.contains(&seed) => {
             let _ = e;
@@ -222,7 +222,7 @@ fn pairs_on_a_grid_meet_in_all_their_curves() {
 /// How far the parts of the named pairs reach.
 const REACH: f64 = 10.0;
 
-fn judge() -> Predicates {
+fn predicates() -> Predicates {
     Predicates::new(1e-11 * REACH)
 }
 
@@ -232,7 +232,7 @@ fn met(a: &Surface, b: &Surface) -> SurfaceIntersection {
         centre: Point3::origin(),
         radius: REACH,
     };
-    meet(Carrier::given(a), Carrier::given(b), &extent, &judge()).expect("they meet")
+    intersect(Carrier::given(a), Carrier::given(b), &extent, &predicates()).expect("they meet")
 }
 
 /// The torus touches the cone's other nappe, close to the apex: no point of the cone.
@@ -259,7 +259,7 @@ fn no_node_lies_on_the_other_nappe() {
     for node in &meeting.nodes {
         let away = [torus, cone].map(|s| s.distance(&node.point).abs());
         assert!(
-            away.iter().all(|&d| judge().within(d)),
+            away.iter().all(|&d| predicates().within(d)),
             "{node:?} lies {away:?} off"
         );
     }

@@ -60,10 +60,10 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
             Carrier::rounded(&s, &of_sphere),
             &EXTENT,
         );
-        let judge = Predicates::new(to_f64(&band));
+        let predicates = Predicates::new(to_f64(&band));
         let touch = pair.how(PairMeasure::PlaneOnSphere);
-        assert_eq!(judge.side("plane on sphere", touch, [0.0; 3]), side);
-        let decisions = judge.decisions();
+        assert_eq!(predicates.classify("plane on sphere", touch, [0.0; 3]), side);
+        let decisions = predicates.decisions();
         assert_eq!((decisions.filtered, decisions.coincident), (0, 0));
         assert_eq!(decisions.refined, 1);
         assert_eq!(decisions.close_calls.len(), 1);

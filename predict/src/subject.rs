@@ -37,7 +37,7 @@ pub struct Subject<'a> {
     pub radius: f64,
     /// By face: f, the part of the hemisphere over it that the part itself does not block, weighted
     /// by the cosine (Cook and Torrance 1982), on the average over the face.
-    pub openness: Vec<f64>,
+    pub unblocked_fraction: Vec<f64>,
 }
 
 impl<'a> Subject<'a> {
@@ -52,9 +52,9 @@ impl<'a> Subject<'a> {
             band,
             centre: hull.centre(),
             radius: 0.5 * hull.diagonal(),
-            openness: vec![1.0; brep.topology.faces.len()],
+            unblocked_fraction: vec![1.0; brep.topology.faces.len()],
         };
-        subject.openness = openness(&subject);
+        subject.unblocked_fraction = unblocked_fraction(&subject);
         Ok(subject)
     }
 
@@ -66,7 +66,7 @@ impl<'a> Subject<'a> {
 }
 
 /// By face: the part of the hemisphere that is open.
-fn openness(subject: &Subject<'_>) -> Vec<f64> {
+fn unblocked_fraction(subject: &Subject<'_>) -> Vec<f64> {
     let count = subject.brep.topology.faces.len();
     let away = Vector3::z() * (4.0 * subject.radius);
     let eye = Camera::orthographic(subject.centre + away, subject.centre, Vector3::y());

@@ -12,7 +12,7 @@ use premio_verify::trial::message;
 use premio_visibility::contour::{Contour, ContourPiece};
 use premio_visibility::invisibility::Method;
 use premio_visibility::projection::Projection;
-use premio_visibility::view::contours_by;
+use premio_visibility::view::contours_with;
 use premio_visibility::{Camera, Contours, contours};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
@@ -91,7 +91,7 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     }
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(depth.rays);
-    let drawn = evaluation.resolution_of_views().is_some();
+    let drawn = evaluation.view_resolution().is_some();
     if drawn && !depth.views.is_empty() && report.holds() {
         let all = views::around(&evaluation.bounds);
         let cast = Cast::of(&evaluation);
@@ -131,8 +131,8 @@ fn before(cast: &Cast, evaluation: &Evaluation, name: &str, camera: &Camera) -> 
 
 /// Where the invisibility that is carried along contours is not what is counted piece by piece.
 pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Option<String> {
-    let of = |method| contours_by(&evaluation.brep, camera, evaluation.resolution, method).ok();
-    let (carried, counted) = (of(Method::Carried)?, of(Method::Counted)?);
+    let of = |method| contours_with(&evaluation.brep, camera, evaluation.resolution, method).ok();
+    let (carried, counted) = (of(Method::Propagated)?, of(Method::Recounted)?);
     let pieces = |seen: &Contours| -> Vec<usize> {
         let each = seen.contours.iter();
         each.map(|c| c.pieces.len()).collect()

@@ -259,7 +259,7 @@ fn unlike(
 fn the_same_with_no_decision_in_doubles() {
     let Some(folder) = corpus() else { return };
     let many = EvaluationOptions {
-        digits: Arithmetic::Many,
+        digits: Arithmetic::Extended,
         ..EvaluationOptions::default()
     };
     let complaints = unlike(&folder, many, &[], |known| {

@@ -75,7 +75,7 @@ fn evaluated(tree: &Tree, zeros: CoincidencePolicy) -> Evaluation {
 /// What is not as it should be where no decision is made in doubles.
 fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
     let many = EvaluationOptions {
-        digits: Arithmetic::Many,
+        digits: Arithmetic::Extended,
         ..EvaluationOptions::default()
     };
     let plain = evaluated(tree, CoincidencePolicy::ByResolution);
@@ -126,7 +126,7 @@ fn a_curve_through_an_apex_has_no_other_start() {
 fn faults(name: &str, tree: &Tree) -> Vec<String> {
     if REFUSED.iter().any(|(case, _)| *case == name) {
         return match asked(tree, CoincidencePolicy::Exact) {
-            Err(EvaluationError::Vague { .. } | EvaluationError::Unsound(_)) => Vec::new(),
+            Err(EvaluationError::IllConditioned { .. } | EvaluationError::InvalidBoundary(_)) => Vec::new(),
             Err(error) => vec![format!("{name}: {error}")],
             Ok(_) => vec![format!("{name} is no longer refused")],
         };
@@ -255,7 +255,7 @@ fn what_is_nearly_zero_is_refused() {
             };
             match evaluate(&part.tree, &options) {
                 Ok(known) => assert!(told && known.decisions.coincident == 0, "{pair} {gap}"),
-                Err(EvaluationError::Doubt { .. }) => assert!(!told, "{pair} {gap}"),
+                Err(EvaluationError::UnprovenCoincidence { .. }) => assert!(!told, "{pair} {gap}"),
                 Err(error) => panic!("{pair} {gap}: {error}"),
             }
         }

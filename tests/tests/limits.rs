@@ -30,7 +30,7 @@ fn more_places_than_the_limit_are_refused_by_name() {
     };
     for most in [0, 10, 30, 50] {
         let refused = within(most).unwrap_err();
-        let is_named = matches!(&refused, EvaluationError::Large { most: told } if *told == most);
+        let is_named = matches!(&refused, EvaluationError::EntityLimit { most: told } if *told == most);
         assert!(is_named, "{refused}");
         assert!(refused.to_string().contains(&most.to_string()));
     }

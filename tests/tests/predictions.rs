@@ -145,7 +145,7 @@ fn regions_of_named_cases_show_what_rays_meet() {
         let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
             continue;
         };
-        let Some(band) = part.resolution_of_views() else {
+        let Some(band) = part.view_resolution() else {
             continue;
         };
         let Ok(subject) = Subject::new(&part.brep, band) else {

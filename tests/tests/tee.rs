@@ -8,7 +8,7 @@ use premio_csg::tree::Tree;
 use premio_tests::parts::tee;
 use premio_verify::checks::Checker;
 use premio_visibility::invisibility::Method;
-use premio_visibility::view::contours_by;
+use premio_visibility::view::contours_with;
 use premio_visibility::{Camera, contours};
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -101,8 +101,8 @@ fn examine(name: &str, json: &Value) -> Vec<f64> {
                 wrong.push(check.to_string());
             }
         }
-        let seen = |method| contours_by(&part.brep, &camera, part.resolution, method).unwrap();
-        let (a, b) = (seen(Method::Carried), seen(Method::Counted));
+        let seen = |method| contours_with(&part.brep, &camera, part.resolution, method).unwrap();
+        let (a, b) = (seen(Method::Propagated), seen(Method::Recounted));
         for (a, b) in a.contours.iter().zip(&b.contours) {
             let differ = a.pieces.iter().zip(&b.pieces).any(|(a, b)| a.qi != b.qi);
             if differ {

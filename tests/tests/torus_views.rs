@@ -9,7 +9,7 @@ use premio_csg::reader::{Format, ReadOptions, read};
 use premio_visibility::contour::{ContourKind, Contours, JunctionKind};
 use premio_visibility::invisibility::Method;
 use premio_visibility::projection::{Projection, ViewRay};
-use premio_visibility::view::contours_by;
+use premio_visibility::view::contours_with;
 use premio_visibility::{Camera, contours};
 use std::f64::consts::TAU;
 
@@ -191,7 +191,7 @@ impl Tally {
             Ok(seen) => seen,
             Err(error) => return self.wrong.push(format!("{name}: {error}")),
         };
-        let again = contours_by(&part.brep, camera, part.resolution, Method::Counted).unwrap();
+        let again = contours_with(&part.brep, camera, part.resolution, Method::Recounted).unwrap();
         for (a, b) in seen.contours.iter().zip(&again.contours) {
             let qi = |c: &premio_visibility::contour::Contour| {
                 c.pieces.iter().map(|p| p.qi).collect::<Vec<_>>()
@@ -387,8 +387,8 @@ fn a_cusp_on_an_edge_is_no_fold() {
     let centre = Point3::new(0.125, 0.0, 0.0);
     let eye = centre + Vector3::new(-1.0, 1.0, -1.0);
     let camera = Camera::orthographic(eye, centre, Vector3::z()).unwrap();
-    for method in [Method::Carried, Method::Counted] {
-        let seen = contours_by(&part.brep, &camera, part.resolution, method).unwrap();
+    for method in [Method::Propagated, Method::Recounted] {
+        let seen = contours_with(&part.brep, &camera, part.resolution, method).unwrap();
         // The edge on the equator, which the face and the tube bound: of its half towards (0, 0, 1/2)
         // both are seen, and nothing of the ring is on the line of sight.
         let on_equator = |p: &Point3<f64>| p.x.abs() < 1e-9 && (p.y.hypot(p.z) - 0.5).abs() < 1e-9;

@@ -299,7 +299,7 @@ fn measures(evaluation: &Evaluation) -> Measures {
 /// Where the boundary is another with no decision made in doubles.
 fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &Terms) -> Option<Fault> {
     let unfiltered = EvaluationOptions {
-        digits: Arithmetic::Many,
+        digits: Arithmetic::Extended,
         ..options(terms)
     };
     let fault = |text| Fault {

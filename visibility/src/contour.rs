@@ -14,7 +14,8 @@ pub const SCHEMA: &str = "premio.contours/1";
 #[serde(rename_all = "lowercase")]
 pub enum ContourKind {
     /// An edge of the part (definition 4.1 of the paper).
-    Boundary,
+    #[serde(rename = "boundary")]
+    Edge,
     /// A curve along which the line of sight touches the part (definition 4.2): inside a face, or
     /// along a smooth edge whose faces are turned differently.
     Limb,
@@ -33,11 +34,14 @@ pub enum JunctionKind {
     /// A limb ends on the boundary of its face.
     Limb,
     /// A limb crosses itself in space.
-    Node,
+    #[serde(rename = "node")]
+    SelfCrossing,
     /// The image of the curve turns back on itself.
-    Turn,
+    #[serde(rename = "turn")]
+    ImageTurn,
     /// The near plane cuts the contour.
-    Cut,
+    #[serde(rename = "cut")]
+    NearPlane,
 }
 
 /// A point where pieces of contours end.

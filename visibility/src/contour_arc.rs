@@ -505,7 +505,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
                     let p = arc.curve.point(t);
                     let id = self
                         .junctions
-                        .add(JunctionKind::Node, JunctionSupport::Alone, &p);
+                        .add(JunctionKind::SelfCrossing, JunctionSupport::Alone, &p);
                     arc.marks.push((t, id));
                 }
             }

@@ -16,9 +16,9 @@ use premio_kernel::number::predicates::{Compare, ROUNDING};
 pub enum Method {
     /// Counted once for each connected part of the contours, and carried on from there.
     #[default]
-    Carried,
+    Propagated,
     /// Counted for every piece.
-    Counted,
+    Recounted,
 }
 
 /// Distances between points found on two ways, in multiples of the resolution.
@@ -181,8 +181,8 @@ pub fn pieces(
     let chains: Vec<Chain> = cut.map(|s| Chain::of(s, junctions, near)).collect();
     let strands = &*strands;
     let carried = match method {
-        Method::Carried => Carrying::new(scene, strands, &chains, junctions).counts(),
-        Method::Counted => None,
+        Method::Propagated => Carrying::new(scene, strands, &chains, junctions).counts(),
+        Method::Recounted => None,
     };
     let counted = || {
         let all = strands.iter().zip(&chains);

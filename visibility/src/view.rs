@@ -54,11 +54,11 @@ pub enum ViewError {
 
 /// The contours of a part seen by a camera; `band` is the part's resolution.
 pub fn contours(brep: &Brep, camera: &Camera, band: f64) -> Result<Contours, ViewError> {
-    contours_by(brep, camera, band, Method::Carried)
+    contours_with(brep, camera, band, Method::Propagated)
 }
 
 /// The same with the choice of how quantitative invisibility is found.
-pub fn contours_by(
+pub fn contours_with(
     brep: &Brep,
     camera: &Camera,
     band: f64,
@@ -216,11 +216,11 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                 marks: limbs.on_edges[edge.index()].clone(),
             };
             if !entity.smooth {
-                self.edge(whole, ContourKind::Boundary, false);
+                self.edge(whole, ContourKind::Edge, false);
                 continue;
             }
             for (part, kind) in self.smooth_parts(whole, edge) {
-                self.edge(part, kind, kind == ContourKind::Boundary);
+                self.edge(part, kind, kind == ContourKind::Edge);
             }
         }
     }
@@ -238,7 +238,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
     fn smooth_parts(&self, whole: Source<'a>, edge: EdgeId) -> Vec<(Source<'a>, ContourKind)> {
         let kind = |range: [f64; 2]| match is_limb(self.scene, edge, range) {
             true => ContourKind::Limb,
-            false => ContourKind::Boundary,
+            false => ContourKind::Edge,
         };
         let mut stops: Vec<(f64, Option<u32>)> = Vec::new();
         let [lo, hi] = whole.range;
@@ -343,7 +343,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             let p = source.curve.point(t);
             (
                 t,
-                Some(junctions.add(JunctionKind::Cut, JunctionSupport::Alone, &p)),
+                Some(junctions.add(JunctionKind::NearPlane, JunctionSupport::Alone, &p)),
             )
         });
         for part in source.cut(stops.collect()) {
@@ -409,7 +409,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                 let p = source.curve.point(t);
                 let junction = self
                     .junctions
-                    .add(JunctionKind::Turn, JunctionSupport::Alone, &p);
+                    .add(JunctionKind::ImageTurn, JunctionSupport::Alone, &p);
                 splits.push(Split {
                     t,
                     junction,

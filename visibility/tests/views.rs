@@ -13,7 +13,7 @@ use premio_visibility::contour::{ContourKind, Contours, JunctionKind};
 use premio_visibility::invisibility::Method;
 use premio_visibility::projection::Projection;
 use premio_visibility::ray_casting::{OriginIncidence, Scene};
-use premio_visibility::view::{ViewError, contours, contours_by};
+use premio_visibility::view::{ViewError, contours, contours_with};
 use premio_visibility::{Camera, camera::CameraError};
 use proptest::prelude::*;
 
@@ -302,8 +302,8 @@ fn crowd() -> Brep {
 }
 
 fn compare(brep: &Brep, camera: &Camera) {
-    let carried = contours_by(brep, camera, BAND, Method::Carried).unwrap();
-    let counted = contours_by(brep, camera, BAND, Method::Counted).unwrap();
+    let carried = contours_with(brep, camera, BAND, Method::Propagated).unwrap();
+    let counted = contours_with(brep, camera, BAND, Method::Recounted).unwrap();
     for (a, b) in carried.contours.iter().zip(&counted.contours) {
         assert_eq!(a.pieces.len(), b.pieces.len());
         for (p, q) in a.pieces.iter().zip(&b.pieces) {
@@ -402,7 +402,7 @@ fn what_lies_behind_the_eye_is_cut_at_the_near_plane() {
     let cuts = c
         .junctions
         .iter()
-        .filter(|j| j.kind == JunctionKind::Cut)
+        .filter(|j| j.kind == JunctionKind::NearPlane)
         .count();
     assert!(cuts >= 4);
     for contour in &c.contours {

@@ -59,7 +59,7 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
     let part = input::part(&options.description, session)?;
     let (subject, finishes) = file.subject(&part, &setups.conditions)?;
     file.check_places(&subject, session)?;
-    let judge = Judge {
+    let predicates = Judge {
         subject: &subject,
         finishes: &finishes,
         setups,
@@ -70,7 +70,7 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
     };
     let pool = pool(options.threads)?;
     let keep = usize::from(options.top).max(1);
-    let (scored, seen) = pool.install(|| scores(&judge, keep, voice));
+    let (scored, seen) = pool.install(|| scores(&predicates, keep, voice));
     let tried = setups.len();
     let Some(first) = scored.first().cloned() else {
         let name = options.setups.display();
@@ -79,18 +79,18 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
         )));
     };
     let working = voice.working("moving the best setup");
-    let best = judge.refined(first, STEP, &mut Memory::default());
+    let best = predicates.refined(first, STEP, &mut Memory::default());
     drop(working);
     let mut all = vec![best];
     all.extend(scored.into_iter().take(usize::from(options.top)));
     let advice = Advice {
         schema: SCHEMA,
-        goal: judge.goal,
+        goal: predicates.goal,
         tried,
         unseen: tried - seen,
         best: all
             .iter()
-            .map(|one| advised(&judge, one, &all[0].1))
+            .map(|one| advised(&predicates, one, &all[0].1))
             .collect(),
     };
     let to = options.output.path();
@@ -104,18 +104,18 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
 const BATCH: usize = 256;
 
 /// The best of all setups, the best first, and in how many something is seen.
-fn scores(judge: &Judge<'_>, keep: usize, voice: Voice) -> (Vec<(Placing, Score)>, usize) {
-    let count = judge.setups.len();
+fn scores(predicates: &Judge<'_>, keep: usize, voice: Voice) -> (Vec<(Placing, Score)>, usize) {
+    let count = predicates.setups.len();
     let bar = voice.progress(count as u64);
     let (mut best, mut seen) = (Vec::new(), 0);
     for from in (0..count).step_by(BATCH) {
         let each = (from..(from + BATCH).min(count)).into_par_iter();
         let scored: Vec<Option<(Placing, Score)>> = each
             .map_init(Memory::default, |memory, i| {
-                let [view, light] = judge.setups.directions(i);
+                let [view, light] = predicates.setups.directions(i);
                 let view = view.unwrap_or_else(Vector3::x);
                 let placing = Placing { view, light };
-                let score = judge.score(&placing, memory);
+                let score = predicates.score(&placing, memory);
                 bar.inc(1);
                 score.ok().map(|score| (placing, score))
             })
@@ -124,18 +124,18 @@ fn scores(judge: &Judge<'_>, keep: usize, voice: Voice) -> (Vec<(Placing, Score)
         best.extend(scored.into_iter().flatten());
         seen += best.len() - before;
         // The sort is stable: of equals the first setup is the better one.
-        best.sort_by(|a, b| judge.value(&b.1).total_cmp(&judge.value(&a.1)));
+        best.sort_by(|a, b| predicates.value(&b.1).total_cmp(&predicates.value(&a.1)));
         best.truncate(keep);
     }
     bar.finish_and_clear();
     (best, seen)
 }
 
-fn advised(judge: &Judge<'_>, (placing, score): &(Placing, Score), best: &Score) -> Advised {
+fn advised(predicates: &Judge<'_>, (placing, score): &(Placing, Score), best: &Score) -> Advised {
     let Setup { camera, lights, .. } =
-        judge
+        predicates
             .setups
-            .looking(placing.view, placing.light, 0, judge.subject);
+            .looking(placing.view, placing.light, 0, predicates.subject);
     let likely = |chance: &f64| *chance >= 0.5;
     let lost = best.chances.iter().filter(|(source, chance)| {
         likely(chance) && !score.chances.get(source).is_some_and(likely)

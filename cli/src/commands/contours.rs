@@ -46,7 +46,7 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), Failure> {
 
 /// What a camera sees; `given` is how it was given, where that was not by the name of a view.
 fn seen(part: &Part, camera: &Camera, given: Option<&Given<'_>>) -> Result<Contours, Failure> {
-    let resolution = input::resolution_of_views(part)?;
+    let resolution = input::view_resolution(part)?;
     let failed = |error: ViewError| {
         let beyond = || Failure::limit(format!("{}: {error}", part.name));
         let refused = given.and_then(|given| given.refused(&error));

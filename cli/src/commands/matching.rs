@@ -143,7 +143,7 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
         Some(path) => crate::setup::detector(path, session)?,
         None => known.unwrap_or_else(detector),
     };
-    let band = input::resolution_of_views(&described)?;
+    let band = input::view_resolution(&described)?;
     if described.evaluation.brep.topology.faces.is_empty() {
         return Err(Failure::input(format!(
             "{name}: the part is empty: there is nothing to be found"

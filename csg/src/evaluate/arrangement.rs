@@ -13,7 +13,7 @@ use crate::tree::Tree;
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::bounds::{Aabb, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
-use premio_kernel::geometry::intersect::{Branch, RegionOfInterest, meet};
+use premio_kernel::geometry::intersect::{Branch, RegionOfInterest, intersect};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::surface_pair::Carrier;
 use premio_kernel::number::float::Float;
@@ -94,16 +94,16 @@ pub(super) fn arrange<'t, N: Float>(
     tree: &'t Tree,
     solids: &HalfSpaceModel<N>,
     extent: &RegionOfInterest<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
     most: usize,
 ) -> Result<(Arrangement<N>, Vec<Source<'t>>), EvaluationError> {
     let Merged {
         carriers,
         sources,
         sides,
-    } = merge(tree, solids, extent, judge);
+    } = merge(tree, solids, extent, predicates);
     // Faces that nearly meet are asked, too: a close call is listed on either side of the band.
-    let reach = judge.reach();
+    let reach = predicates.reach();
     let tree = tree_of(solids, 0..solids.all.len(), reach);
     let mut found = Arrangement {
         carriers,
@@ -113,16 +113,16 @@ pub(super) fn arrange<'t, N: Float>(
         calls: Vec::new(),
         tree,
     };
-    let mut corners = VertexMerger::new(judge.band());
+    let mut corners = VertexMerger::new(predicates.band());
     for (pair, supports) in found.pairs(solids, reach, most)? {
-        found.add_pair(pair, &supports, &sources, extent, judge, &mut corners)?;
+        found.add_pair(pair, &supports, &sources, extent, predicates, &mut corners)?;
         bounded(found.meetings.len(), most)?;
     }
-    found.settle_contacts(judge);
+    found.settle_contacts(predicates);
     let mut later = Later::default();
     let mut entities = found.meetings.len();
     for i in 0..found.meetings.len() {
-        found.cut_meeting(i, solids, judge, &mut corners, &mut later);
+        found.cut_meeting(i, solids, predicates, &mut corners, &mut later);
         entities += found.meetings[i].cuts.len();
         bounded(entities, most)?;
     }
@@ -130,11 +130,11 @@ pub(super) fn arrange<'t, N: Float>(
     // The best known first: the others are put where they are.
     later.wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
     for w in &later.wide {
-        found.place_wide(w, judge, &mut corners);
+        found.place_wide(w, predicates, &mut corners);
     }
     found.calls.append(&mut corners.calls);
     found.corners = corners.all;
-    found.share_corners(judge);
+    found.share_corners(predicates);
     for m in &mut found.meetings {
         m.order_cuts();
     }
@@ -157,7 +157,7 @@ fn tree_of<N: Float>(
 /// An error where more is kept than the limit.
 fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
     match entities > most {
-        true => Err(EvaluationError::Large { most }),
+        true => Err(EvaluationError::EntityLimit { most }),
         false => Ok(()),
     }
 }
@@ -229,32 +229,32 @@ impl<N: Float> Arrangement<N> {
         supports: &[Aabb],
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
-        judge: &Predicates,
+        predicates: &Predicates,
         corners: &mut VertexMerger<N>,
     ) -> Result<(), EvaluationError> {
         let exact = [a, b].map(|c| move || sources[c].exact());
         let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
-        let own = judge.another();
-        let met = meet(carrier(a, 0), carrier(b, 1), extent, &own)?;
-        for call in judge.take(own) {
+        let own = predicates.another();
+        let met = intersect(carrier(a, 0), carrier(b, 1), extent, &own)?;
+        for call in predicates.take(own) {
             match call.local {
                 true => self.calls.push((call, Between::Carriers([a, b]))),
-                false => judge.list(call),
+                false => predicates.list(call),
             }
         }
         let mut kept: Vec<Vec<usize>> = Vec::new();
         for branch in &met.branches {
-            kept.push(self.add_branch(a, b, branch, supports, judge));
+            kept.push(self.add_branch(a, b, branch, supports, predicates));
         }
         for node in &met.nodes {
             if node.on.is_empty() && !supports.iter().any(|s| s.holds(&node.point)) {
                 continue;
             }
-            let vertex = corners.at(&node.point, &[a, b], judge);
+            let vertex = corners.at(&node.point, &[a, b], predicates);
             for &(branch, t) in &node.on {
                 for &m in &kept[branch] {
                     let [lo, hi] = self.meetings[m].range;
-                    let band = judge.band::<N>();
+                    let band = predicates.band::<N>();
                     if t.lies_in([lo - band, hi + band]) {
                         let t = t.clamp(lo, hi);
                         self.meetings[m].cuts.push(Cut { t, vertex });
@@ -272,7 +272,7 @@ impl<N: Float> Arrangement<N> {
         b: usize,
         branch: &Branch<N>,
         supports: &[Aabb],
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Vec<usize> {
         let ranges = match &branch.curve {
             Curve::Line(line) => clipped(line, branch.range, supports),
@@ -284,7 +284,7 @@ impl<N: Float> Arrangement<N> {
             let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
             if !supports
                 .iter()
-                .any(|s| common(s, &b3.grown(judge.band::<N>())).is_some())
+                .any(|s| common(s, &b3.grown(predicates.band::<N>())).is_some())
             {
                 continue;
             }

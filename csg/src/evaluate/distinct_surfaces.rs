@@ -40,7 +40,7 @@ pub(super) fn merge<'t, N: Float>(
     tree: &'t Tree,
     solids: &HalfSpaceModel<N>,
     extent: &RegionOfInterest<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Merged<'t, N> {
     let placed: Vec<&PlacedPrimitive> = tree.leaves().map(|leaf| leaf.1).collect();
     // Equal surfaces have nearly the same point next to the extent's centre: sorted by it, only
@@ -61,7 +61,7 @@ pub(super) fn merge<'t, N: Float>(
         }
     }
     list.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let window = N::of(4.0) * judge.reach::<N>() + N::ROUNDING * extent.radius;
+    let window = N::of(4.0) * predicates.reach::<N>() + N::ROUNDING * extent.radius;
     let mut sides: Vec<Vec<(usize, Sense)>> = solids
         .all
         .iter()
@@ -82,7 +82,7 @@ pub(super) fn merge<'t, N: Float>(
             let met = || sources[c].exact();
             let a = Carrier::rounded(&carriers[c], &met);
             let b = Carrier::rounded(&side.surface, &exact);
-            coincidence(a, b, extent, judge).map(|sense| (c, sense))
+            coincidence(a, b, extent, predicates).map(|sense| (c, sense))
         });
         sides[i][k] = known.unwrap_or_else(|| {
             carriers.push(side.surface);

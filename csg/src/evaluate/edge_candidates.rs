@@ -31,9 +31,9 @@ type Name = (Option<usize>, Option<[usize; 2]>);
 
 pub(super) fn pieces<N: Float>(
     arrangement: &Arrangement<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Vec<EdgeCandidate<N>> {
-    let homes = homes(arrangement, judge);
+    let homes = homes(arrangement, predicates);
     let mut all: Vec<EdgeCandidate<N>> = Vec::new();
     // Two pieces that run over the same points share their ends, and a home or, where the curves
     // are one within the resolution only, two carriers.
@@ -44,7 +44,7 @@ pub(super) fn pieces<N: Float>(
                 meeting: index,
                 range,
                 ends,
-                carriers: arrangement.holding(m, range, ends, judge),
+                carriers: arrangement.holding(m, range, ends, predicates),
                 tangent: m.tangent.clone(),
             };
             if piece.carriers.len() > 2 {
@@ -57,7 +57,7 @@ pub(super) fn pieces<N: Float>(
                     let other: &EdgeCandidate<N> = &all[i];
                     let curve = &arrangement.meetings[other.meeting].curve;
                     (homes[other.meeting] == home || other.shares_two(&piece))
-                        && passes(curve, other.range, &middle, judge)
+                        && passes(curve, other.range, &middle, predicates)
                 });
                 if let Some(i) = same {
                     all[i].add(&piece);
@@ -79,7 +79,7 @@ pub(super) fn pieces<N: Float>(
 
 /// For each meeting the first one on the same curve. Of the copies found from several pairs of
 /// carriers each is clipped to faces of its own pair, and knows only the carriers near these.
-fn homes<N: Float>(arrangement: &Arrangement<N>, judge: &Predicates) -> Vec<usize> {
+fn homes<N: Float>(arrangement: &Arrangement<N>, predicates: &Predicates) -> Vec<usize> {
     let mut homes: Vec<usize> = (0..arrangement.meetings.len()).collect();
     let mut by_pair: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
     for (i, m) in arrangement.meetings.iter().enumerate() {
@@ -92,7 +92,7 @@ fn homes<N: Float>(arrangement: &Arrangement<N>, judge: &Predicates) -> Vec<usiz
                 let list = by_pair.entry([a, b]).or_default();
                 for &j in list.iter() {
                     let (p, q) = (first_home(&homes, i), first_home(&homes, j));
-                    if p != q && same_curve(&arrangement.meetings[j], m, judge) {
+                    if p != q && same_curve(&arrangement.meetings[j], m, predicates) {
                         homes[p.max(q)] = p.min(q);
                     }
                 }
@@ -115,7 +115,7 @@ fn first_home(homes: &[usize], mut i: usize) -> usize {
 fn same_curve<N: Float>(
     a: &IntersectionCurve<N>,
     b: &IntersectionCurve<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> bool {
     let (long, short) = match a.bounds.diagonal().is_beyond(b.bounds.diagonal()) {
         true => (a, b),
@@ -124,13 +124,13 @@ fn same_curve<N: Float>(
     let [lo, hi] = long.range;
     [N::ONE, N::TWO].iter().all(|&part| {
         let p = long.curve.point(lo + (hi - lo) * part / N::of(3.0));
-        is_same_place(&short.curve.point(short.curve.parameter(&p)), &p, judge)
+        is_same_place(&short.curve.point(short.curve.parameter(&p)), &p, predicates)
     })
 }
 
 /// Whether points of curves that may be one are: there, or far apart.
-fn is_same_place<N: Float>(p: &Point3<N>, q: &Point3<N>, judge: &Predicates) -> bool {
-    let reach = N::of(SAME) * judge.band::<N>();
+fn is_same_place<N: Float>(p: &Point3<N>, q: &Point3<N>, predicates: &Predicates) -> bool {
+    let reach = N::of(SAME) * predicates.band::<N>();
     (p - q).length().is_within(reach)
 }
 
@@ -146,14 +146,14 @@ impl<N: Float> Arrangement<N> {
         m: &IntersectionCurve<N>,
         range: [N; 2],
         ends: Option<[usize; 2]>,
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Vec<usize> {
         let mut carriers = m.carriers.clone();
         let Some([a, b]) = ends.map(|ends| ends.map(|v| &self.corners[v])) else {
             return carriers;
         };
         let is_on = |corner: &VertexCandidate<N>, c: usize| {
-            corner.is_on(c) || judge.within(self.carriers[c].distance(&corner.point))
+            corner.is_on(c) || predicates.within(self.carriers[c].distance(&corner.point))
         };
         let mut either = [&a.carriers[..], &b.carriers].concat();
         either.sort_unstable();
@@ -162,7 +162,7 @@ impl<N: Float> Arrangement<N> {
             !m.carriers.contains(&c)
                 && is_on(a, c)
                 && is_on(b, c)
-                && lies_on(&m.curve, range, &self.carriers[c], judge.band())
+                && lies_on(&m.curve, range, &self.carriers[c], predicates.band())
         });
         carriers.extend(held);
         carriers.sort_unstable();
@@ -241,8 +241,8 @@ fn spans<N: Float>(m: &IntersectionCurve<N>) -> Vec<([N; 2], Option<[usize; 2]>)
 }
 
 /// Whether a curve passes through a point within a range.
-fn passes<N: Float>(curve: &Curve<N>, range: [N; 2], p: &Point3<N>, judge: &Predicates) -> bool {
+fn passes<N: Float>(curve: &Curve<N>, range: [N; 2], p: &Point3<N>, predicates: &Predicates) -> bool {
     let t = curve.in_cycle(curve.parameter(p), range[0]);
     // Two pieces between the same corners in the same carriers are one or far apart.
-    t.lies_in(range) && is_same_place(&curve.point(t), p, judge)
+    t.lies_in(range) && is_same_place(&curve.point(t), p, predicates)
 }

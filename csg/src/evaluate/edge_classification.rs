@@ -56,7 +56,7 @@ struct Classifier<'a, N: Float = f64> {
     solids: &'a HalfSpaceModel<N>,
     arrangement: &'a Arrangement<N>,
     membership: &'a Membership<'a>,
-    judge: &'a Predicates,
+    predicates: &'a Predicates,
 }
 
 /// Where to look at a piece, as fractions of its range; the later ones are for when a surface
@@ -71,13 +71,13 @@ pub(super) fn boundary<N: Float>(
         solids,
         arrangement,
         membership,
-        judge,
+        predicates,
     } = *concern;
     let classifier = Classifier {
         solids,
         arrangement,
         membership,
-        judge,
+        predicates,
     };
     let mut edges: Vec<(EdgeCandidate<N>, Vec<FaceUse>)> = Vec::new();
     for piece in pieces {
@@ -130,7 +130,7 @@ impl<N: Float> Classifier<'_, N> {
             if !look.may_have_faces() {
                 return Ok(Vec::new());
             }
-            let clear = !self.judge.is_close(look.margin);
+            let clear = !self.predicates.is_close(look.margin);
             if best.as_ref().is_none_or(|(_, b)| look.is_clearer_than(b)) {
                 best = Some((t, look));
             }
@@ -145,7 +145,7 @@ impl<N: Float> Classifier<'_, N> {
         // decides. Where it comes nearest was asked when the curve was cut, and of its corners.
         let spot = Spot {
             arrangement: self.arrangement,
-            judge: self.judge,
+            predicates: self.predicates,
             piece,
             point: curve.point(t),
             tangent: curve.tangent(t),
@@ -252,7 +252,7 @@ impl<N: Float> Classifier<'_, N> {
         let (m, n) = (normal(&a), normal(&b));
         let tangent = told
             || self
-                .judge
+                .predicates
                 .within(m.cross(&n).length() * piece.reach(self.arrangement));
         tangent && m.dot(&n).is_above_zero()
     }
@@ -292,7 +292,7 @@ impl<N: Float> Classifier<'_, N> {
             if !look.may_have_faces() {
                 return Ok(None);
             }
-            let clear = !self.judge.is_close(look.margin);
+            let clear = !self.predicates.is_close(look.margin);
             if best.as_ref().is_none_or(|(_, b)| look.is_clearer_than(b)) {
                 best = Some((p, look));
             }
@@ -303,9 +303,9 @@ impl<N: Float> Classifier<'_, N> {
         let Some((p, look)) = best else {
             return Ok(None);
         };
-        if self.judge.within(look.margin) {
+        if self.predicates.within(look.margin) {
             let place = rounded(&p);
-            return Err(EvaluationError::Closed { place });
+            return Err(EvaluationError::UndecidedClosedFace { place });
         }
         let held = |side: Sense| {
             let near = look.near.iter();

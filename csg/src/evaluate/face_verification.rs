@@ -48,7 +48,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
     }
 
     fn witness<'a>(&self, brep: &'a Brep<N>, face: FaceId) -> Option<FaceVerifier<'a, N>> {
-        let band = self.judge.band::<N>();
+        let band = self.predicates.band::<N>();
         let locator = FaceLocator::of(brep, face, band);
         let point = locator.interior(N::TWO * N::of(STEP) * band)?;
         let surface = brep.surface(face);
@@ -93,7 +93,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
     }
 
     fn beside(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Beside {
-        let step = N::of(STEP) * self.judge.band::<N>();
+        let step = N::of(STEP) * self.predicates.band::<N>();
         let places = [-step, step].map(|away| surface.distance(&(at.point + at.normal * away)));
         let holds = places.map(N::is_below_zero);
         let is_near = places.iter().any(|d| d.is_within(N::HALF * step));
@@ -142,17 +142,17 @@ mod tests {
     fn is_contradicted(tree: &Tree, joined: &Tree) -> bool {
         let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
         let solids = HalfSpaceModel::<f64>::of(tree);
-        let judge = Predicates::new(known.resolution);
+        let predicates = Predicates::new(known.resolution);
         let extent = RegionOfInterest {
             centre: solids.bounds.centre(),
             radius: 0.75 * solids.bounds.diagonal(),
         };
-        let arranged = arrange(tree, &solids, &extent, &judge, MOST_ENTITIES);
+        let arranged = arrange(tree, &solids, &extent, &predicates, MOST_ENTITIES);
         let concern = CloseCallFilter {
             solids: &solids,
             arrangement: &arranged.unwrap().0,
             membership: &Membership::new(joined),
-            judge: &judge,
+            predicates: &predicates,
         };
         concern.contradiction(&known.brep).is_some()
     }

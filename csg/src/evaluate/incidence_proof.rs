@@ -48,21 +48,21 @@ pub(super) fn prove<N: Float>(
     arrangement: &Arrangement<N>,
     pieces: &[EdgeCandidate<N>],
     sources: &[Source<'_>],
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<(), EvaluationError> {
     let forms = Forms::of(&arrangement.carriers, sources);
     for corner in &arrangement.corners {
         let (point, carriers) = (corner.point, &corner.carriers);
-        let incidence = Incidence::of(&forms, carriers, &point, judge);
+        let incidence = Incidence::of(&forms, carriers, &point, predicates);
         if !incidence.is_plain() {
-            let reach = judge.band::<N>() / N::of(FINEST_RESOLUTION.sqrt());
-            incidence.settle("point on surfaces", None, (&point, reach), judge)?;
+            let reach = predicates.band::<N>() / N::of(FINEST_RESOLUTION.sqrt());
+            incidence.settle("point on surfaces", None, (&point, reach), predicates)?;
         }
     }
     for piece in pieces {
         if piece.carriers.len() > 2 || !piece.tangent.is_empty() {
             let curve = &arrangement.meetings[piece.meeting].curve;
-            Holding::of(&forms, curve, piece).settle(judge)?;
+            Holding::of(&forms, curve, piece).settle(predicates)?;
         }
     }
     Ok(())
@@ -83,14 +83,14 @@ impl<'f> Incidence<'f> {
         forms: &'f Forms<'_, N>,
         carriers: &[usize],
         place: &Point3<N>,
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Self {
         let levels: Vec<&Polynomial> = carriers.iter().map(|&c| forms.level(c)).collect();
         let mut dependences = Vec::new();
         let mut normals: Vec<(usize, Vector3<N>)> = Vec::new();
         for (i, &c) in carriers.iter().enumerate() {
             match &forms.carriers[c] {
-                Surface::Cone(cone) if is_there(&(cone.frame.origin - place), judge) => {
+                Surface::Cone(cone) if is_there(&(cone.frame.origin - place), predicates) => {
                     dependences.extend(levels[i].gradient());
                 }
                 surface => normals.push((i, surface.normal(place))),
@@ -130,7 +130,7 @@ impl<'f> Incidence<'f> {
         question: &'static str,
         cut: Option<&Polynomial>,
         (place, reach): (&Point3<N>, N),
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Result<(), EvaluationError> {
         let vanishing = || self.levels.iter().copied().chain(&self.dependences);
         let mut defining: Vec<Polynomial> = vanishing().chain(cut).cloned().collect();
@@ -145,7 +145,7 @@ impl<'f> Incidence<'f> {
             defining.extend(deflated(&defining, place));
         }
         let Some(mut point) = point else {
-            judge.count_assumed(vanishing().count() as u64);
+            predicates.count_assumed(vanishing().count() as u64);
             return Ok(());
         };
         for p in vanishing()
@@ -153,11 +153,11 @@ impl<'f> Incidence<'f> {
             .collect::<Vec<_>>()
         {
             match point.is_zero_of(p) {
-                ZeroTest::Zero => judge.count_proven(1),
-                ZeroTest::Open => judge.count_assumed(1),
+                ZeroTest::Zero => predicates.count_proven(1),
+                ZeroTest::Open => predicates.count_assumed(1),
                 ZeroTest::Apart => {
                     let place = rounded(place);
-                    return Err(EvaluationError::Doubt { question, place });
+                    return Err(EvaluationError::UnprovenCoincidence { question, place });
                 }
             }
         }
@@ -175,8 +175,8 @@ fn is_flat<N: Float>(angle: N) -> bool {
 }
 
 /// The same of the way to a point.
-fn is_there<N: Float>(way: &Vector3<N>, judge: &Predicates) -> bool {
-    judge.within(way.length() * N::of(FINEST_RESOLUTION.sqrt()))
+fn is_there<N: Float>(way: &Vector3<N>, predicates: &Predicates) -> bool {
+    predicates.within(way.length() * N::of(FINEST_RESOLUTION.sqrt()))
 }
 
 /// The carriers of a piece of a curve are to hold it.
@@ -209,7 +209,7 @@ impl<'f, N: Float> Holding<'f, N> {
         }
     }
 
-    fn settle(&self, judge: &Predicates) -> Result<(), EvaluationError> {
+    fn settle(&self, predicates: &Predicates) -> Result<(), EvaluationError> {
         let [lo, hi] = self.piece.range;
         let curve = self.curve;
         let step = (hi - lo) / N::whole(self.points + 1);
@@ -218,14 +218,14 @@ impl<'f, N: Float> Holding<'f, N> {
             let t = lo + step * (N::whole(k) + N::of(ASIDE));
             let place = curve.point(t);
             let next = curve.point(t + step);
-            let incidence = Incidence::of(self.forms, &self.piece.carriers, &place, judge);
+            let incidence = Incidence::of(self.forms, &self.piece.carriers, &place, predicates);
             let way = (next - place).length();
             let Some(cut) = across(&place, &curve.tangent(t), way) else {
-                judge.count_assumed(incidence.levels.len() as u64);
+                predicates.count_assumed(incidence.levels.len() as u64);
                 continue;
             };
             let near = (&place, N::HALF * way);
-            incidence.settle("curve on surfaces", Some(&cut), near, judge)?;
+            incidence.settle("curve on surfaces", Some(&cut), near, predicates)?;
         }
         Ok(())
     }

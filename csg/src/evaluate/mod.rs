@@ -68,7 +68,7 @@ pub enum Arithmetic {
     #[default]
     Filtered,
     /// In 237 bits: no decision is made in doubles.
-    Many,
+    Extended,
 }
 
 /// The default limit on curves and points of curves between the surfaces of a part.
@@ -105,7 +105,7 @@ enum Told {
 impl Evaluation {
     /// The resolution for views of the boundary, which are reckoned in doubles; none where doubles do
     /// not tell the boundary: rounded to them, surfaces may lie on one another that do not.
-    pub fn resolution_of_views(&self) -> Option<f64> {
+    pub fn view_resolution(&self) -> Option<f64> {
         self.plain
     }
 
@@ -196,7 +196,7 @@ pub enum EvaluationError {
     Intersection(#[from] IntersectionError),
     /// The sheets around an edge could not be put in order.
     #[error("the faces around an edge near ({:.6}, {:.6}, {:.6}) cannot be told apart", place[0], place[1], place[2])]
-    Sheets {
+    AmbiguousEdgeOrder {
         /// Near where.
         place: [f64; 3],
     },
@@ -205,7 +205,7 @@ pub enum EvaluationError {
         "whether the sphere or torus near ({:.6}, {:.6}, {:.6}) is a face cannot be told: all over it other surfaces are within the resolution",
         place[0], place[1], place[2]
     )]
-    Closed {
+    UndecidedClosedFace {
         /// A point of it.
         place: [f64; 3],
     },
@@ -217,7 +217,7 @@ pub enum EvaluationError {
         "what meets near ({:.6}, {:.6}, {:.6}) is known to {distance:.1e} only, and the resolution is {resolution:.1e}: surfaces lie nearly along one another there",
         place[0], place[1], place[2]
     )]
-    Vague {
+    IllConditioned {
         /// Near where.
         place: [f64; 3],
         /// How far apart is what should be one, in the part's unit.
@@ -230,7 +230,7 @@ pub enum EvaluationError {
         "the apex of the frustum near ({:.6}, {:.6}, {:.6}) is {away:.1e} away: rounding moves its walls by more than the resolution",
         place[0], place[1], place[2]
     )]
-    Taper {
+    NearCylinder {
         /// Near where.
         place: [f64; 3],
         /// How far away the apex is, in the part's unit.
@@ -241,7 +241,7 @@ pub enum EvaluationError {
         "{question} near ({:.6}, {:.6}, {:.6}): they are apart, by less than 237 bits tell",
         place[0], place[1], place[2]
     )]
-    Doubt {
+    UnprovenCoincidence {
         /// What was asked.
         question: &'static str,
         /// Near where.
@@ -254,7 +254,7 @@ pub enum EvaluationError {
     #[error(
         "the part, of size {size:.3e}, lies up to {far:.3e} from the origin: its coordinates are rounded by more than a millionth of its size"
     )]
-    Far {
+    TooFarFromOrigin {
         /// The greatest coordinate.
         far: f64,
         /// The diagonal of its box.
@@ -274,13 +274,13 @@ pub enum EvaluationError {
     },
     /// There are more pairs of faces that may meet, or curves and points in which they do, than are kept.
     #[error("the faces of the part meet in more than {most} places: the limit")]
-    Large {
+    EntityLimit {
         /// The limit.
         most: usize,
     },
     /// The boundary breaks one of its own rules: something was told wrongly, and it would be wrong.
     #[error("the boundary that was found is unsound: {0}")]
-    Unsound(Violation),
+    InvalidBoundary(Violation),
     /// The tree itself contradicts a face: something was told wrongly, and it would be wrong.
     #[error(
         "the boundary that was found has a face near ({:.6}, {:.6}, {:.6}) where the description has none",
@@ -297,15 +297,15 @@ impl EvaluationError {
     fn is_of_doubles(&self) -> bool {
         match self {
             Self::Intersection(_)
-            | Self::Sheets { .. }
-            | Self::Closed { .. }
+            | Self::AmbiguousEdgeOrder { .. }
+            | Self::UndecidedClosedFace { .. }
             | Self::Assembly(_)
-            | Self::Vague { .. }
-            | Self::Unsound(_)
+            | Self::IllConditioned { .. }
+            | Self::InvalidBoundary(_)
             | Self::Contradiction { .. }
-            | Self::Taper { .. }
+            | Self::NearCylinder { .. }
             | Self::Resolution { .. } => true,
-            Self::Size | Self::Far { .. } | Self::Doubt { .. } | Self::Large { .. } => false,
+            Self::Size | Self::TooFarFromOrigin { .. } | Self::UnprovenCoincidence { .. } | Self::EntityLimit { .. } => false,
         }
     }
 }
@@ -321,7 +321,7 @@ const FEW: usize = 64;
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     match (options.zeros, options.digits) {
         (CoincidencePolicy::Exact, _) => return Ok(seen(tree, options, finely(tree, options)?)),
-        (_, Arithmetic::Many) => return Ok(seen(tree, options, widely(tree, options)?)),
+        (_, Arithmetic::Extended) => return Ok(seen(tree, options, widely(tree, options)?)),
         (_, Arithmetic::Filtered) => {}
     }
     match evaluated::<f64>(tree, options) {
@@ -407,11 +407,11 @@ fn evaluated<N: Float>(
         return Err(EvaluationError::Size);
     }
     let resolution = resolution_of::<N>(&solids.bounds, options)?;
-    let judge = match options.zeros {
+    let predicates = match options.zeros {
         CoincidencePolicy::Exact => Predicates::exact(resolution),
         CoincidencePolicy::ByResolution => Predicates::new(resolution),
     };
-    let straight = near_cylinders::without(tree, &judge);
+    let straight = near_cylinders::without(tree, &predicates);
     let (tree, solids) = match &straight {
         Some(tree) => (tree, halfspaces::HalfSpaceModel::of(tree)),
         None => (tree, solids),
@@ -420,43 +420,43 @@ fn evaluated<N: Float>(
         centre: solids.bounds.centre().map(N::of),
         radius: N::of(0.75 * size),
     };
-    near_cylinders::check(&solids, &extent, &judge)?;
+    near_cylinders::check(&solids, &extent, &predicates)?;
     let most = options.entities.unwrap_or(MOST_ENTITIES);
-    let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &judge, most)?;
-    let pieces = edge_candidates::pieces(&arrangement, &judge);
-    if judge.proves() {
-        incidence_proof::prove(&arrangement, &pieces, &sources, &judge)?;
-        if let Some(doubt) = judge.first_doubt() {
+    let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &predicates, most)?;
+    let pieces = edge_candidates::pieces(&arrangement, &predicates);
+    if predicates.is_exact() {
+        incidence_proof::prove(&arrangement, &pieces, &sources, &predicates)?;
+        if let Some(doubt) = predicates.first_unproven() {
             let (question, place) = (doubt.question, doubt.place);
-            return Err(EvaluationError::Doubt { question, place });
+            return Err(EvaluationError::UnprovenCoincidence { question, place });
         }
     }
     let concern = relevance::CloseCallFilter {
         solids: &solids,
         arrangement: &arrangement,
         membership: &membership::Membership::new(tree),
-        judge: &judge,
+        predicates: &predicates,
     };
     concern.list();
-    vanished::list(tree, &judge);
+    vanished::list(tree, &predicates);
     let raw = edge_classification::boundary(&concern, pieces)?;
-    let brep = assemble(raw, &judge)?;
+    let brep = assemble(raw, &predicates)?;
     let band = N::of(resolution);
     let measures = FaceIntegrals::of(&brep);
     if let Some(broken) = check(&brep, &measures, band).into_iter().next() {
         return Err(match worst_gap(&brep, band) {
-            Some((place, distance)) => EvaluationError::Vague {
+            Some((place, distance)) => EvaluationError::IllConditioned {
                 place: rounded(&place),
                 distance: distance.rounded(),
                 resolution,
             },
-            None => EvaluationError::Unsound(broken),
+            None => EvaluationError::InvalidBoundary(broken),
         });
     }
     if let Some(place) = concern.contradiction(&brep) {
         return Err(EvaluationError::Contradiction { place });
     }
-    let decisions = judge.decisions();
+    let decisions = predicates.decisions();
     Ok(Evaluated {
         brep,
         measures,
@@ -477,7 +477,7 @@ fn resolution_of<N: Float>(
     let far = far.fold(size, |far, x| far.max(x.abs()));
     let (least, most) = (N::ROUNDING.rounded() * far, COARSEST * size);
     if least.is_beyond(size * FARTHEST) {
-        return Err(EvaluationError::Far { far, size });
+        return Err(EvaluationError::TooFarFromOrigin { far, size });
     }
     let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
     let resolution = options.resolution.unwrap_or((relative * size).max(least));

@@ -13,18 +13,18 @@ use premio_kernel::number::rational::{Rational, to_f64};
 
 /// The tree with cylinders for the frustums whose radii are equal within the resolution; none where
 /// there is none.
-pub(super) fn without(tree: &Tree, judge: &Predicates) -> Option<Tree> {
-    tree.with_primitives(|placed| straight(placed, judge))
+pub(super) fn without(tree: &Tree, predicates: &Predicates) -> Option<Tree> {
+    tree.with_primitives(|placed| straight(placed, predicates))
 }
 
-fn straight(placed: &PlacedPrimitive, judge: &Predicates) -> Option<Primitive> {
+fn straight(placed: &PlacedPrimitive, predicates: &Predicates) -> Option<Primitive> {
     let Primitive::Frustum { base, top, height } = &placed.primitive else {
         return None;
     };
     let origin = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
     let place = placed.motion.apply_point(&origin).each_ref().map(to_f64);
     let taper = base - top;
-    let equal = judge.coincide("radii of a frustum", &taper, place);
+    let equal = predicates.coincide("radii of a frustum", &taper, place);
     equal.then(|| Primitive::Cylinder {
         radius: (base + top) / Rational::from(2),
         height: height.clone(),
@@ -36,14 +36,14 @@ fn straight(placed: &PlacedPrimitive, judge: &Predicates) -> Option<Primitive> {
 pub(super) fn check<N: Float>(
     solids: &HalfSpaceModel<N>,
     extent: &RegionOfInterest<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<(), EvaluationError> {
     for side in solids.all.iter().flat_map(|solid| &solid.sides) {
         if let Surface::Cone(cone) = &side.surface {
             let away = (cone.frame.origin - extent.centre).length();
             let moved = N::of(ROUNDINGS) * N::EPSILON * away;
-            if moved.is_beyond(judge.band()) {
-                return Err(EvaluationError::Taper {
+            if moved.is_beyond(predicates.band()) {
+                return Err(EvaluationError::NearCylinder {
                     place: side.bounds.centre().into(),
                     away: away.rounded(),
                 });

@@ -55,7 +55,7 @@ const SHALLOW: f64 = 1.0 / (1 << 8) as f64;
 /// A point of a piece, from which its carriers are seen.
 pub(super) struct Spot<'a, N: Float = f64> {
     pub arrangement: &'a Arrangement<N>,
-    pub judge: &'a Predicates,
+    pub predicates: &'a Predicates,
     pub piece: &'a EdgeCandidate<N>,
     pub point: Point3<N>,
     /// Of the piece, a unit vector.
@@ -121,7 +121,7 @@ impl<N: Float> Spot<'_, N> {
         for pair in sheets.windows(2) {
             let gap = (pair[1].bend - pair[0].bend).abs() * reach * reach;
             is_tied |= pair[0].angle.is_exactly(pair[1].angle)
-                && self.judge.side("sheets that touch", gap, rounded(p)) == Side::On;
+                && self.predicates.classify("sheets that touch", gap, rounded(p)) == Side::On;
         }
         if is_tied {
             self.settle(&mut sheets)?;
@@ -152,7 +152,7 @@ impl<N: Float> Spot<'_, N> {
             let both = [a, b].map(|s| self.piece.carriers[s.carrier]);
             if a.carrier == b.carrier || !is_shallow {
                 Some(false)
-            } else if is_one && self.is_told_to_touch(both) && !self.judge.within(gap) {
+            } else if is_one && self.is_told_to_touch(both) && !self.predicates.within(gap) {
                 Some(gap.is_above_zero())
             } else {
                 self.lies_beyond([a, b], is_one)
@@ -165,7 +165,7 @@ impl<N: Float> Spot<'_, N> {
                     Some(true) => sheets.swap(i, i + 1),
                     Some(false) => break,
                     None => {
-                        return Err(EvaluationError::Sheets {
+                        return Err(EvaluationError::AmbiguousEdgeOrder {
                             place: rounded(&self.point),
                         });
                     }
@@ -187,7 +187,7 @@ impl<N: Float> Spot<'_, N> {
             let q = q - first.normal(&q) * first.distance(&q);
             -out * second.distance(&q)
         };
-        let band = self.judge.band::<N>();
+        let band = self.predicates.band::<N>();
         let rounding = N::ROUNDING * (reach + self.point.coords.length());
         let steps = std::iter::successors(Some(band), |step| Some(N::TWO * *step));
         let mut offsets = steps
@@ -214,8 +214,8 @@ impl<N: Float> Spot<'_, N> {
         }
         let sine = axis.direction.cross(direction).length();
         let bend = (rise(&axis.direction) - axis.rise).abs();
-        self.judge.within(sine * self.piece.reach(self.arrangement))
-            || self.judge.within(sine * sine / (N::TWO * bend))
+        self.predicates.within(sine * self.piece.reach(self.arrangement))
+            || self.predicates.within(sine * sine / (N::TWO * bend))
     }
 
     /// Whether two carriers touch all along the piece, by the curve in which they meet.

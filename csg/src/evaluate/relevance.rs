@@ -36,7 +36,7 @@ pub(super) struct CloseCallFilter<'a, N: Float = f64> {
     pub solids: &'a HalfSpaceModel<N>,
     pub arrangement: &'a Arrangement<N>,
     pub membership: &'a Membership<'a>,
-    pub judge: &'a Predicates,
+    pub predicates: &'a Predicates,
 }
 
 impl<N: Float> CloseCallFilter<'_, N> {
@@ -45,7 +45,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
     pub fn list(&self) {
         for (call, between) in &self.arrangement.calls {
             if self.concerns(call.place, between) {
-                self.judge.list(call.clone());
+                self.predicates.list(call.clone());
             }
         }
         for corner in &self.arrangement.corners {
@@ -60,7 +60,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
         for s in self.arrangement.tree.locate_all_at_point(place) {
             for (side, &(c, _)) in self.sides(s.data) {
                 let distance = side.surface.distance(&corner.point);
-                if self.judge.is_close(distance) && !corner.is_on(c) {
+                if self.predicates.is_close(distance) && !corner.is_on(c) {
                     beside.push((c, distance));
                 }
             }
@@ -74,7 +74,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
             return;
         }
         for (_, distance) in beside.into_iter().filter(|(c, _)| has(c)) {
-            self.judge.side("point beside surface", distance, place);
+            self.predicates.classify("point beside surface", distance, place);
         }
     }
 
@@ -104,7 +104,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
     fn carriers(&self, place: [f64; 3]) -> Vec<usize> {
         let p = Point3::from(place.map(N::of));
         // Both of what a close call lies between are within its distance of the place.
-        let margin = N::TWO * self.judge.reach::<N>();
+        let margin = N::TWO * self.predicates.reach::<N>();
         let [lo, hi] = [-margin, margin].map(|by| rounded(&(p + Vector3::repeat(by))));
         let around = AABB::from_corners(lo, hi);
         let (mut held, mut open) = (Vec::new(), Vec::new());

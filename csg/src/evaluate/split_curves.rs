@@ -50,7 +50,7 @@ impl<N: Float> Arrangement<N> {
         &mut self,
         index: usize,
         solids: &HalfSpaceModel<N>,
-        judge: &Predicates,
+        predicates: &Predicates,
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
     ) {
@@ -60,7 +60,7 @@ impl<N: Float> Arrangement<N> {
         for s in self.tree.locate_in_envelope_intersecting(around) {
             for (k, side) in solids.all[s.data].sides.iter().enumerate() {
                 let c = self.sides[s.data][k].0;
-                let face = side.bounds.grown(judge.reach::<N>());
+                let face = side.bounds.grown(predicates.reach::<N>());
                 if !m.carriers.contains(&c) && common(&face, &m.bounds).is_some() {
                     near.push((c, face));
                 }
@@ -71,7 +71,7 @@ impl<N: Float> Arrangement<N> {
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for faces in near.chunk_by(|a, b| a.0 == b.0) {
-            match self.cuts_by(index, faces, &known, judge, corners, later) {
+            match self.cuts_by(index, faces, &known, predicates, corners, later) {
                 Some(found) => cuts.extend(found),
                 None => holding.push(faces[0].0),
             }
@@ -88,24 +88,24 @@ impl<N: Float> Arrangement<N> {
         index: usize,
         faces: &[(usize, Aabb)],
         known: &[Cut<N>],
-        judge: &Predicates,
+        predicates: &Predicates,
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
     ) -> Option<Vec<Cut<N>>> {
         let c = faces[0].0;
         let m = &self.meetings[index];
-        let mut cuts = self.special_points(index, c, known, judge, corners);
+        let mut cuts = self.special_points(index, c, known, predicates, corners);
         let special: Vec<(N, Point3<N>)> = cuts
             .iter()
             .map(|s| (s.t, corners.all[s.vertex].point))
             .collect();
         let at_special = |p: &Point3<N>| {
             let mut points = special.iter().map(|s| s.1);
-            points.any(|s| (s - p).length().is_within(judge.reach()))
+            points.any(|s| (s - p).length().is_within(predicates.reach()))
         };
-        let (roots, misses) = m.meet(&self.carriers[c], faces, judge)?;
+        let (roots, misses) = m.meet(&self.carriers[c], faces, predicates)?;
         let mut note = |question, distance, p: &Point3<N>| {
-            let (_, call) = judge.decide(question, distance, rounded(p));
+            let (_, call) = predicates.decide(question, distance, rounded(p));
             let call = call.map(|call| (call, Between::Curve(index, c)));
             later.calls.extend(call);
         };
@@ -120,9 +120,9 @@ impl<N: Float> Arrangement<N> {
             let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).length());
             let mut reach = ends[0].max(ends[1]);
             if r.contact == RootKind::Touching {
-                reach = reach.max(m.touching_length(r.t, &self.carriers[c], judge));
+                reach = reach.max(m.touching_length(r.t, &self.carriers[c], predicates));
             }
-            if reach.is_beyond(judge.reach()) {
+            if reach.is_beyond(predicates.reach()) {
                 later.wide.push(Wide {
                     meeting: index,
                     carrier: c,
@@ -134,13 +134,13 @@ impl<N: Float> Arrangement<N> {
             let all = [m.carriers[0], m.carriers[1], c];
             let plain = r.contact == RootKind::Simple;
             let p = if plain {
-                self.polished(p, all, judge)
+                self.polished(p, all, predicates)
             } else {
                 p
             };
             cuts.push(Cut {
                 t: r.t,
-                vertex: corners.at(&p, &all, judge),
+                vertex: corners.at(&p, &all, predicates),
             });
         }
         for (t, value) in misses {
@@ -156,7 +156,7 @@ impl<N: Float> Arrangement<N> {
     pub(super) fn place_wide(
         &mut self,
         w: &Wide<N>,
-        judge: &Predicates,
+        predicates: &Predicates,
         corners: &mut VertexMerger<N>,
     ) {
         let m = &self.meetings[w.meeting];
@@ -167,8 +167,8 @@ impl<N: Float> Arrangement<N> {
             (p - middle).length().is_within(w.reach)
                 && all
                     .iter()
-                    .all(|&c| judge.within(self.carriers[c].distance(&p)))
-                && judge.within((m.curve.point(m.curve.parameter(&p)) - p).length())
+                    .all(|&c| predicates.within(self.carriers[c].distance(&p)))
+                && predicates.within((m.curve.point(m.curve.parameter(&p)) - p).length())
         };
         let away = |v: &usize| (corners.all[*v].point - middle).length();
         let best = (0..corners.all.len())
@@ -178,13 +178,13 @@ impl<N: Float> Arrangement<N> {
             Some(v) => {
                 let p = corners.all[v].point;
                 // A curve may pass its corner twice: only elsewhere its parameter is asked for.
-                let t = match judge.within((p - middle).length()) {
+                let t = match predicates.within((p - middle).length()) {
                     true => w.t,
                     false => in_range(&m.curve, m.range, m.curve.parameter(&p)),
                 };
-                (t, corners.at(&p, &all, judge))
+                (t, corners.at(&p, &all, predicates))
             }
-            None => (w.t, corners.at(&middle, &all, judge)),
+            None => (w.t, corners.at(&middle, &all, predicates)),
         };
         self.meetings[w.meeting].cuts.push(Cut { t, vertex });
     }
@@ -197,7 +197,7 @@ impl<N: Float> Arrangement<N> {
         index: usize,
         carrier: usize,
         known: &[Cut<N>],
-        judge: &Predicates,
+        predicates: &Predicates,
         corners: &mut VertexMerger<N>,
     ) -> Vec<Cut<N>> {
         let m = &self.meetings[index];
@@ -205,21 +205,21 @@ impl<N: Float> Arrangement<N> {
         let mut special: Vec<Cut<N>> = Vec::new();
         for cut in known {
             let p = corners.all[cut.vertex].point;
-            if judge.within(surface.distance(&p)) {
-                let vertex = corners.at(&p, &[carrier], judge);
+            if predicates.within(surface.distance(&p)) {
+                let vertex = corners.at(&p, &[carrier], predicates);
                 special.push(Cut { vertex, ..*cut });
             }
         }
         if let Surface::Cone(cone) = surface {
             let apex = cone.frame.origin;
-            if m.bounds.grown(judge.band::<N>()).holds(&apex) {
+            if m.bounds.grown(predicates.band::<N>()).holds(&apex) {
                 let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
                 let away = (m.curve.point(t) - apex).length();
-                if t.lies_in(m.range) && judge.within(away) {
+                if t.lies_in(m.range) && predicates.within(away) {
                     let all = [m.carriers[0], m.carriers[1], carrier];
                     special.push(Cut {
                         t,
-                        vertex: corners.at(&apex, &all, judge),
+                        vertex: corners.at(&apex, &all, predicates),
                     });
                 }
             }
@@ -229,7 +229,7 @@ impl<N: Float> Arrangement<N> {
 
     /// The common point of three surfaces next to `p`, by Newton's steps where they are well
     /// apart in direction: of surfaces that touch within the resolution steps may lead anywhere.
-    fn polished(&self, p: Point3<N>, all: [usize; 3], judge: &Predicates) -> Point3<N> {
+    fn polished(&self, p: Point3<N>, all: [usize; 3], predicates: &Predicates) -> Point3<N> {
         let mut q = p;
         for _ in 0..2 {
             let rows = all.map(|c| self.carriers[c].normal(&q));
@@ -243,7 +243,7 @@ impl<N: Float> Arrangement<N> {
                 None => return p,
             }
         }
-        match judge.within((q - p).length()) {
+        match predicates.within((q - p).length()) {
             true => q,
             false => p,
         }
@@ -251,7 +251,7 @@ impl<N: Float> Arrangement<N> {
 
     /// Makes every curve know the corners that its carriers know, and every corner the carriers of the
     /// curves that pass it: each cut was found by two of them and a third.
-    pub(super) fn share_corners(&mut self, judge: &Predicates) {
+    pub(super) fn share_corners(&mut self, predicates: &Predicates) {
         let mut by_pair: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
         for (i, m) in self.meetings.iter().enumerate() {
             for (k, &a) in m.carriers.iter().enumerate() {
@@ -274,7 +274,7 @@ impl<N: Float> Arrangement<N> {
                 ask.sort_unstable();
                 ask.dedup();
                 ask.retain(|i| !asked.contains(i));
-                if !self.pass_all(&ask, v, judge) {
+                if !self.pass_all(&ask, v, predicates) {
                     break;
                 }
                 asked.extend(ask);
@@ -283,13 +283,13 @@ impl<N: Float> Arrangement<N> {
     }
 
     /// Makes curves know a corner that they pass; whether it knows another carrier by them.
-    fn pass_all(&mut self, meetings: &[usize], v: usize, judge: &Predicates) -> bool {
+    fn pass_all(&mut self, meetings: &[usize], v: usize, predicates: &Predicates) -> bool {
         let corner = &mut self.corners[v];
         let known = corner.carriers.len();
         for &i in meetings {
             let m = &mut self.meetings[i];
-            if m.bounds.grown(judge.band::<N>()).holds(&corner.point) {
-                m.pass(v, &corner.point, judge);
+            if m.bounds.grown(predicates.band::<N>()).holds(&corner.point) {
+                m.pass(v, &corner.point, predicates);
             }
             if m.cuts.iter().any(|cut| cut.vertex == v) {
                 corner.carriers.extend(&m.carriers);
@@ -311,16 +311,16 @@ impl<N: Float> IntersectionCurve<N> {
         &self,
         surface: &Surface<N>,
         faces: &[(usize, Aabb)],
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Option<Met<N>> {
-        let band = judge.band();
+        let band = predicates.band();
         if lies_on(&self.curve, self.range, surface, band) {
             return None;
         }
         let mut all = Met::default();
         let near = |b: &Aabb| {
             faces.iter().any(|(_, face)| common(face, b).is_some())
-                && comes_near(surface, b, judge.reach())
+                && comes_near(surface, b, predicates.reach())
         };
         let mut parts = self.parts.as_slice();
         while let Some(first) = parts.iter().position(|p| near(&p.1)) {
@@ -337,11 +337,11 @@ impl<N: Float> IntersectionCurve<N> {
 
     /// How far from a point where the curve touches a surface it leaves that by more than the
     /// resolution, to a factor of two.
-    fn touching_length(&self, t: N, surface: &Surface<N>, judge: &Predicates) -> N {
+    fn touching_length(&self, t: N, surface: &Surface<N>, predicates: &Predicates) -> N {
         let length = self.range[1] - self.range[0];
         let leaves = |step: &N| {
             let sides = [t - *step, t + *step].map(|t| surface.distance(&self.curve.point(t)));
-            step.reaches(length) || !sides.iter().any(|&away| judge.within(away))
+            step.reaches(length) || !sides.iter().any(|&away| predicates.within(away))
         };
         let mut steps =
             std::iter::successors(Some(length * N::ROUNDING), |step| Some(N::TWO * *step));
@@ -363,7 +363,7 @@ impl<N: Float> IntersectionCurve<N> {
 
     /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, and
     /// a quartic that runs into an apex, where it has no direction, at its ends, too.
-    fn pass(&mut self, vertex: usize, p: &Point3<N>, judge: &Predicates) {
+    fn pass(&mut self, vertex: usize, p: &Point3<N>, predicates: &Predicates) {
         let [lo, hi] = self.range;
         let t = in_range(&self.curve, self.range, self.curve.parameter(p));
         let runs_into = matches!(self.curve, Curve::Quartic(_)) || self.curve.period().is_some();
@@ -378,7 +378,7 @@ impl<N: Float> IntersectionCurve<N> {
                 .cuts
                 .iter()
                 .any(|c| c.vertex == vertex && (!opened || is_one_pass(c.t, t)));
-            let on = t.lies_in([lo, hi]) && judge.within((self.curve.point(t) - p).length());
+            let on = t.lies_in([lo, hi]) && predicates.within((self.curve.point(t) - p).length());
             if on && !known {
                 self.cuts.push(Cut { t, vertex });
             }

@@ -15,7 +15,7 @@ use premio_kernel::number::roots::probes;
 
 impl<N: Float> Arrangement<N> {
     /// Puts contacts along curves where other curves run inside their strips.
-    pub(super) fn settle_contacts(&mut self, judge: &Predicates) {
+    pub(super) fn settle_contacts(&mut self, predicates: &Predicates) {
         let mut settled = vec![false; self.meetings.len()];
         for i in 0..self.meetings.len() {
             let contact = &self.meetings[i];
@@ -28,7 +28,7 @@ impl<N: Float> Arrangement<N> {
             }
             let nearest = (0..self.meetings.len())
                 .filter(|&j| !settled[j])
-                .filter_map(|j| Some((self.strip(both, i, j, judge)?, j)))
+                .filter_map(|j| Some((self.strip(both, i, j, predicates)?, j)))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, j)) = nearest {
                 self.meetings[j].tangent.push(both);
@@ -46,7 +46,7 @@ impl<N: Float> Arrangement<N> {
         both: [usize; 2],
         contact: usize,
         other: usize,
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Option<N> {
         let (contact, other) = (&self.meetings[contact], &self.meetings[other]);
         let third = both.map(|c| !other.carriers.contains(&c));
@@ -55,7 +55,7 @@ impl<N: Float> Arrangement<N> {
         }
         let carriers = both.map(|c| &self.carriers[c]);
         let missing = carriers[usize::from(third[1])];
-        if !lies_on(&other.curve, other.range, missing, judge.band()) {
+        if !lies_on(&other.curve, other.range, missing, predicates.band()) {
             return None;
         }
         let mut width: N = N::ZERO;
@@ -63,17 +63,17 @@ impl<N: Float> Arrangement<N> {
         for part in probes().chain([N::ZERO, N::ONE]) {
             let t = lo + (hi - lo) * part;
             let p = contact.curve.point(t);
-            let aside = other.beside(&p, judge.reach())? - p;
+            let aside = other.beside(&p, predicates.reach())? - p;
             let along = aside.dot(&contact.curve.tangent(t)).abs();
             let middle = p + aside * N::HALF;
-            let inside = carriers.iter().all(|s| judge.within(s.distance(&middle)));
-            let across = aside.length() + judge.reach::<N>();
+            let inside = carriers.iter().all(|s| predicates.within(s.distance(&middle)));
+            let across = aside.length() + predicates.reach::<N>();
             if !inside || (N::TWO * along).is_beyond(across) {
                 return None;
             }
             width = width.max(aside.length());
         }
-        (!judge.within(width)).then_some(width)
+        (!predicates.within(width)).then_some(width)
     }
 }
 

@@ -9,11 +9,11 @@ use premio_kernel::number::predicates::{CloseCall, Compare, Predicates};
 use premio_kernel::number::rational::{Rational, to_f64};
 
 /// Lists the primitives whose thickness is close to the resolution.
-pub(super) fn list(tree: &Tree, judge: &Predicates) {
+pub(super) fn list(tree: &Tree, predicates: &Predicates) {
     for (_, placed) in tree.leaves() {
         let thickness = thickness(&placed.primitive);
-        if judge.is_close(thickness) {
-            judge.list(CloseCall {
+        if predicates.is_close(thickness) {
+            predicates.list(CloseCall {
                 question: "opposite faces of a primitive",
                 place: middle(placed),
                 distance: thickness,

@@ -54,8 +54,8 @@ impl<N: Float> VertexMerger<N> {
     }
 
     /// The corner at `p`, which the given carriers define, or are known to pass through.
-    pub fn at(&mut self, p: &Point3<N>, carriers: &[usize], judge: &Predicates) -> usize {
-        let v = self.found(p, carriers, judge);
+    pub fn at(&mut self, p: &Point3<N>, carriers: &[usize], predicates: &Predicates) -> usize {
+        let v = self.found(p, carriers, predicates);
         let corner = &mut self.all[v];
         for &c in carriers {
             if let Err(at) = corner.carriers.binary_search(&c) {
@@ -69,10 +69,10 @@ impl<N: Float> VertexMerger<N> {
     }
 
     /// The corner that coincides with `p`, or a new one.
-    fn found(&mut self, p: &Point3<N>, carriers: &[usize], judge: &Predicates) -> usize {
+    fn found(&mut self, p: &Point3<N>, carriers: &[usize], predicates: &Predicates) -> usize {
         let new = self.all.len();
-        if let Some((d, v)) = self.nearest(p, judge.reach()) {
-            let (side, call) = judge.decide("point on point", d, rounded(p));
+        if let Some((d, v)) = self.nearest(p, predicates.reach()) {
+            let (side, call) = predicates.decide("point on point", d, rounded(p));
             let one = side == Side::On;
             let between = match one {
                 true => Between::CornerAndPoint(v, carriers.to_vec()),

@@ -82,13 +82,13 @@ pub struct BoundaryInput<N: Float = f64> {
 pub enum AssemblyError {
     /// The coedges of a face do not close at a vertex.
     #[error("the boundary of a face is open at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
-    Open {
+    OpenLoop {
         /// The vertex.
         place: [f64; 3],
     },
     /// The edges of a face around a vertex cannot be put in order.
     #[error("the edges around ({:.9}, {:.9}, {:.9}) cannot be told apart", place[0], place[1], place[2])]
-    Order {
+    AmbiguousVertex {
         /// The vertex.
         place: [f64; 3],
     },
@@ -97,13 +97,13 @@ pub enum AssemblyError {
     Region(#[from] RegionError),
     /// A shell encloses no volume that is told from rounding.
     #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume that is told from rounding", place[0], place[1], place[2])]
-    Flat {
+    ZeroVolumeShell {
         /// A point of it.
         place: [f64; 3],
     },
     /// It is not told which solid a void lies in.
     #[error("it cannot be told which solid holds the void at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
-    Homeless {
+    OrphanVoid {
         /// A point of the void's boundary.
         place: [f64; 3],
     },
@@ -150,7 +150,7 @@ type End = (usize, bool);
 
 struct Assembler<'a, N: Float = f64> {
     raw: &'a BoundaryInput<N>,
-    judge: &'a Predicates,
+    predicates: &'a Predicates,
     halves: Vec<Half>,
     /// Where the halves of each edge begin.
     first: Vec<usize>,
@@ -160,16 +160,16 @@ struct Assembler<'a, N: Float = f64> {
 /// The boundary representation with the given edges.
 pub fn assemble<N: Float>(
     raw: BoundaryInput<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<Brep<N>, AssemblyError> {
-    let mut assembler = Assembler::new(&raw, judge);
+    let mut assembler = Assembler::new(&raw, predicates);
     assembler.link()?;
     let rings = assembler.rings();
     let faces = assembler.faces(&rings)?;
     let (mut brep, names) = assembler.brep(&rings, &faces);
     let fans = fans(&brep.topology, &names.partner);
-    bind_shells(&mut brep, &fans, judge)?;
-    for (place, touch) in touches(&brep, &raw, &names, &fans, judge) {
+    bind_shells(&mut brep, &fans, predicates)?;
+    for (place, touch) in touches(&brep, &raw, &names, &fans, predicates) {
         brep.geometry.touches.push(place);
         brep.topology.touches.push(touch);
     }
@@ -194,7 +194,7 @@ struct Region {
 }
 
 impl<'a, N: Float> Assembler<'a, N> {
-    fn new(raw: &'a BoundaryInput<N>, judge: &'a Predicates) -> Self {
+    fn new(raw: &'a BoundaryInput<N>, predicates: &'a Predicates) -> Self {
         let mut halves = Vec::new();
         let mut first = Vec::new();
         for (edge, e) in raw.edges.iter().enumerate() {
@@ -204,7 +204,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         let next = vec![usize::MAX; halves.len()];
         Self {
             raw,
-            judge,
+            predicates,
             halves,
             first,
             next,
@@ -235,7 +235,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         }
         for ((vertex, group), [into, out]) in meeting {
             if into.len() != out.len() {
-                return Err(AssemblyError::Open {
+                return Err(AssemblyError::OpenLoop {
                     place: rounded(&self.raw.points[vertex].place),
                 });
             }
@@ -274,7 +274,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         followers.sort_unstable();
         followers.dedup();
         if followers.len() != into.len() {
-            return Err(AssemblyError::Order {
+            return Err(AssemblyError::AmbiguousVertex {
                 place: rounded(&self.raw.points[vertex].place),
             });
         }
@@ -301,7 +301,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         while let Some(at) = bundles.iter().position(|b| b.len() > 1) {
             let parts = self.told_apart(&v, &frame, &bundles[at]);
             if parts.len() < 2 {
-                return Err(AssemblyError::Order { place: rounded(&v) });
+                return Err(AssemblyError::AmbiguousVertex { place: rounded(&v) });
             }
             bundles.splice(at..=at, parts);
         }
@@ -322,7 +322,7 @@ impl<'a, N: Float> Assembler<'a, N> {
                 let d = frame.components(&(p - v));
                 (d.y.atan2(d.x), end)
             };
-            let least = self.judge.band::<N>() / radius * clear + N::ROUNDING;
+            let least = self.predicates.band::<N>() / radius * clear + N::ROUNDING;
             let bundles = bundled(ends.iter().map(angle).collect(), least);
             if bundles.len() > best.len() {
                 best = bundles;
@@ -338,7 +338,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         let s = &self.raw.surfaces[surface];
         let normal = match s {
             // At the apex the rulings are ordered around the axis.
-            Surface::Cone(c) if self.judge.within((v - c.frame.origin).length()) => -c.frame.z,
+            Surface::Cone(c) if self.predicates.within((v - c.frame.origin).length()) => -c.frame.z,
             _ => s.normal(v),
         };
         Frame::about(*v, normal * outward.sign::<N>())
@@ -416,7 +416,7 @@ impl<'a, N: Float> Assembler<'a, N> {
                 .map(|&r| rings[r].iter().map(|&h| self.arc(h)).collect())
                 .collect();
             let surface = &self.raw.surfaces[group.0];
-            for region in regions(surface, group.1, &arcs, self.judge.band())? {
+            for region in regions(surface, group.1, &arcs, self.predicates.band())? {
                 let rings = region.loops.iter().map(|&k| list[k]).collect();
                 faces.push(Region {
                     group,

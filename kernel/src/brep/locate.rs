@@ -59,7 +59,7 @@ enum Outcome {
 }
 
 impl<'a, N: Float> FaceLocator<'a, N> {
-    /// A locator for the region of `surface` that `arcs` bound; `side` tells whether the outward
+    /// A locator for the region of `surface` that `arcs` bound; `classify` tells whether the outward
     /// normal of the face is the surface's own, `band` is the resolution.
     pub fn new(
         surface: &'a Surface<N>,

@@ -20,10 +20,10 @@ pub(super) fn touches<N: Float>(
     raw: &BoundaryInput<N>,
     names: &Names,
     fans: &Fans,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Vec<(Point3<N>, NonManifoldPoint)> {
     let edges = Edges::of(raw, names);
-    let faces = Faces::of(brep, judge.band());
+    let faces = Faces::of(brep, predicates.band());
     let mut found = Vec::new();
     for (point, at) in raw.points.iter().enumerate() {
         let vertex = names.vertex_of.get(&point).copied();

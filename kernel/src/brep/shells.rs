@@ -102,7 +102,7 @@ pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
 pub(super) fn bind_shells<N: Float>(
     brep: &mut Brep<N>,
     fans: &Fans,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<(), AssemblyError> {
     for (f, &s) in fans.shell_of.iter().enumerate() {
         brep.topology.faces[f].shell = ShellId(s as u32);
@@ -128,7 +128,7 @@ pub(super) fn bind_shells<N: Float>(
         brep.topology.shells[s].solid = id;
     }
     outer.sort_by(|&a, &b| volumes[a].total_cmp(&volumes[b]));
-    for (void, home) in homes(brep, &voids, &outer, judge)? {
+    for (void, home) in homes(brep, &voids, &outer, predicates)? {
         let solid = brep.topology.shells[home].solid;
         brep.topology.shells[void].solid = solid;
         let shells = &mut brep.topology.solids[solid.index()].shells;
@@ -150,7 +150,7 @@ fn name_shells<N: Float>(
         let void = members.len() > 1 && {
             let enclosed = shell_volume(brep, faces, size);
             if !enclosed.is_clear() {
-                return Err(AssemblyError::Flat {
+                return Err(AssemblyError::ZeroVolumeShell {
                     place: rounded(&point_of(brep, faces[0])),
                 });
             }
@@ -173,7 +173,7 @@ fn homes<N: Float>(
     brep: &Brep<N>,
     voids: &[usize],
     outer: &[usize],
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<Vec<(usize, usize)>, AssemblyError> {
     if let [only] = outer {
         return Ok(voids.iter().map(|&void| (void, *only)).collect());
@@ -183,14 +183,14 @@ fn homes<N: Float>(
     }
     let closed = |shell: usize| {
         let faces = &brep.topology.shells[shell].faces;
-        Closed::of(brep, faces, judge.band())
+        Closed::of(brep, faces, predicates.band())
     };
     let around: Vec<Closed<'_, N>> = outer.iter().map(|&s| closed(s)).collect();
     let home_of = |void: usize| {
         let place = || rounded(&point_of(brep, brep.topology.shells[void].faces[0]));
         let hollow = closed(void);
         let fits = |k: &usize| {
-            let b = around[*k].bounds.grown(judge.band::<N>());
+            let b = around[*k].bounds.grown(predicates.band::<N>());
             b.encloses(&hollow.bounds)
         };
         let mut may: Vec<usize> = (0..outer.len()).filter(fits).collect();
@@ -200,10 +200,10 @@ fn homes<N: Float>(
             match around[k].hold(&hollow) {
                 Some(true) => return Ok((void, outer[k])),
                 Some(false) => {}
-                None => return Err(AssemblyError::Homeless { place: place() }),
+                None => return Err(AssemblyError::OrphanVoid { place: place() }),
             }
         }
-        let last = last.ok_or_else(|| AssemblyError::Homeless { place: place() });
+        let last = last.ok_or_else(|| AssemblyError::OrphanVoid { place: place() });
         Ok((void, outer[last?]))
     };
     voids.iter().map(|&void| home_of(void)).collect()

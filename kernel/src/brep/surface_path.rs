@@ -333,7 +333,7 @@ impl<N: Float> SurfacePath<N> {
         self.may_meet(&b.min, &b.max, band)
     }
 
-    /// The crossings with `arcs` on `surface`, in order; `side` tells whether the outward normal
+    /// The crossings with `arcs` on `surface`, in order; `classify` tells whether the outward normal
     /// of the face is the surface's own, `band` is the resolution.
     pub fn crossings(
         &self,

@@ -71,7 +71,7 @@ pub struct Radiance {
 pub struct Shading<'s> {
     stage: &'s Stage<'s>,
     finishes: &'s Finishes,
-    openness: &'s [f64],
+    unblocked_fraction: &'s [f64],
     ambient: f64,
     background: f64,
     /// Levels for each unit of radiance on the optical axis.
@@ -102,7 +102,7 @@ impl<'s> Shading<'s> {
         Ok(Self {
             stage,
             finishes,
-            openness: &stage.subject.openness,
+            unblocked_fraction: &stage.subject.unblocked_fraction,
             ambient: conditions.ambient,
             background: conditions.background,
             gain: conditions.sensor.gain(strength),
@@ -121,7 +121,7 @@ impl<'s> Shading<'s> {
     ) -> Radiance {
         let material = self.finishes.by_face[face.index()];
         let normal = self.stage.subject.brep.outward(face, p);
-        let around = self.ambient * self.surfaces[material].ambient() * self.openness[face.index()];
+        let around = self.ambient * self.surfaces[material].ambient() * self.unblocked_fraction[face.index()];
         let mut all = Radiance {
             total: around,
             specular: 0.0,

@@ -260,7 +260,7 @@ impl<'a> Checker<'a> {
                 detail,
             }]
         };
-        let Some(resolution) = self.evaluation.resolution_of_views() else {
+        let Some(resolution) = self.evaluation.view_resolution() else {
             let refused = "refused: surfaces lie closer together than doubles tell";
             return failed(Finding::Holds, refused.to_owned());
         };

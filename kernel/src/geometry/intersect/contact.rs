@@ -128,16 +128,16 @@ pub(super) fn meridian<N: Float>(t: &Torus<N>, theta: N) -> Circle<N> {
 pub(super) fn contacts<N: Float>(
     t: &Torus<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Vec<Contact<N>> {
     let mut all = Vec::new();
-    all.extend(equal_tubes(t, pair, judge).map(Contact::Meridian));
+    all.extend(equal_tubes(t, pair, predicates).map(Contact::Meridian));
     if let Surface::Torus(o) = pair.b.surface {
-        if ring_on_tube(pair, judge).is_some() {
+        if ring_on_tube(pair, predicates).is_some() {
             let q = t.frame.coordinates(&o.frame.origin);
             all.push(Contact::Meridian(q.y.atan2(q.x)));
         }
-        if let Some(outer) = ring_on_tube(&pair.turned(), judge) {
+        if let Some(outer) = ring_on_tube(&pair.turned(), predicates) {
             all.push(Contact::Rim(if outer { N::ZERO } else { N::PI }));
         }
     }
@@ -146,9 +146,9 @@ pub(super) fn contacts<N: Float>(
 
 /// Whether a torus, the second, touches the tube of the first with its outer (`true`) or its inner
 /// rim all round.
-fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, judge: &Predicates) -> Option<bool> {
+fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) -> Option<bool> {
     let at = place(&pair.b.surface.frame().origin);
-    let coincide = |question, relation| judge.coincide(question, pair.how(relation), at);
+    let coincide = |question, relation| predicates.coincide(question, pair.how(relation), at);
     let outer = [true, false].into_iter();
     let mut outer = outer.filter(|&o| coincide("rim on tube", PairMeasure::RimOfTube(o)));
     let outer = outer.next()?;
@@ -159,7 +159,7 @@ fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, judge: &Predicates) -> Opti
 
 /// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
 /// the tube, a straight pipe or another bend that continues it.
-fn equal_tubes<N: Float>(t: &Torus<N>, pair: &SurfacePair<'_, N>, judge: &Predicates) -> Option<N> {
+fn equal_tubes<N: Float>(t: &Torus<N>, pair: &SurfacePair<'_, N>, predicates: &Predicates) -> Option<N> {
     let (other, extent) = (pair.b.surface, pair.extent);
     let f = other.frame();
     let radii = match other {
@@ -167,14 +167,14 @@ fn equal_tubes<N: Float>(t: &Torus<N>, pair: &SurfacePair<'_, N>, judge: &Predic
         Surface::Torus(_) => PairMeasure::Tubes,
         Surface::Plane(_) | Surface::Cone(_) => return None,
     };
-    if !judge.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
+    if !predicates.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
         return None;
     }
     let centre = match other {
         Surface::Cylinder(_) => f.origin + f.z * (t.frame.origin - f.origin).dot(&f.z),
         Surface::Torus(u) => {
             let away = t.frame.origin - f.origin;
-            common_spine_point(t, u, &away, judge)?
+            common_spine_point(t, u, &away, predicates)?
         }
         _ => f.origin,
     };
@@ -184,7 +184,7 @@ fn equal_tubes<N: Float>(t: &Torus<N>, pair: &SurfacePair<'_, N>, judge: &Predic
         minor: N::ZERO,
         ..*t
     });
-    if !judge.within(spine.distance(&centre)) {
+    if !predicates.within(spine.distance(&centre)) {
         return None;
     }
     let tangent = t.frame.y * theta.cos() - t.frame.x * theta.sin();
@@ -196,7 +196,7 @@ fn equal_tubes<N: Float>(t: &Torus<N>, pair: &SurfacePair<'_, N>, judge: &Predic
             f.z.cross(&out)
         }
     };
-    judge
+    predicates
         .within(tangent.cross(&along).length() * extent.radius)
         .then_some(theta)
 }
@@ -206,12 +206,12 @@ fn common_spine_point<N: Float>(
     t: &Torus<N>,
     u: &Torus<N>,
     away: &Vector3<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Option<Point3<N>> {
     // Touching circles: the common tangent is perpendicular to both radii, so the point lies on
     // the line through both centres' feet; try the points of t's spine in u's plane and back.
     let normal = t.frame.z.cross(&u.frame.z);
-    let candidates: Vec<Point3<N>> = if judge.within(normal.length() * t.major) {
+    let candidates: Vec<Point3<N>> = if predicates.within(normal.length() * t.major) {
         let d = away - t.frame.z * t.frame.z.dot(away);
         let dir = direction(&d)?;
         [N::ONE, -N::ONE]
@@ -231,5 +231,5 @@ fn common_spine_point<N: Float>(
     });
     candidates
         .into_iter()
-        .find(|p| judge.within(spine.distance(p)))
+        .find(|p| predicates.within(spine.distance(p)))
 }

@@ -107,46 +107,46 @@ impl<N: Float> SurfaceIntersection<N> {
     }
 
     /// Adds a node at a point, with its parameter on each branch that passes it.
-    fn cross_at(&mut self, point: Point3<N>, judge: &Predicates) {
+    fn cross_at(&mut self, point: Point3<N>, predicates: &Predicates) {
         let on = self.branches.iter().enumerate();
         let on = on.map(|(i, branch)| (i, branch.curve.parameter(&point)));
         let passed =
-            |&(i, t): &(usize, N)| judge.within((self.branches[i].curve.point(t) - point).length());
+            |&(i, t): &(usize, N)| predicates.within((self.branches[i].curve.point(t) - point).length());
         let on = on.filter(passed).collect();
         self.nodes.push(Node { point, on });
     }
 }
 
 /// The curves in which two distinct surfaces meet within the extent.
-pub fn meet<N: Float>(
+pub fn intersect<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,
     extent: &RegionOfInterest<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     use Surface as S;
     let pair = SurfacePair::new(a, b, extent);
     let turned = pair.turned();
     Ok(match (a.surface, b.surface) {
-        (S::Plane(p), S::Plane(q)) => plane::plane_plane(p, q, &pair, judge),
-        (S::Plane(p), S::Sphere(s)) => plane::plane_sphere(p, s, &pair, judge),
-        (S::Sphere(s), S::Plane(p)) => plane::plane_sphere(p, s, &turned, judge),
-        (S::Plane(p), S::Cylinder(c)) => plane::plane_cylinder(p, c, &pair, judge),
-        (S::Cylinder(c), S::Plane(p)) => plane::plane_cylinder(p, c, &turned, judge),
-        (S::Plane(p), S::Cone(c)) => plane::plane_cone(p, c, &pair, judge),
-        (S::Cone(c), S::Plane(p)) => plane::plane_cone(p, c, &turned, judge),
-        (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, &pair, judge),
-        (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, &pair, judge)?,
-        (S::Torus(t), _) => torus::torus_with(t, &pair, judge)?,
-        (_, S::Torus(t)) => torus::torus_with(t, &turned, judge)?,
-        _ => quadric::quadric_quadric(&pair, judge)?,
+        (S::Plane(p), S::Plane(q)) => plane::plane_plane(p, q, &pair, predicates),
+        (S::Plane(p), S::Sphere(s)) => plane::plane_sphere(p, s, &pair, predicates),
+        (S::Sphere(s), S::Plane(p)) => plane::plane_sphere(p, s, &turned, predicates),
+        (S::Plane(p), S::Cylinder(c)) => plane::plane_cylinder(p, c, &pair, predicates),
+        (S::Cylinder(c), S::Plane(p)) => plane::plane_cylinder(p, c, &turned, predicates),
+        (S::Plane(p), S::Cone(c)) => plane::plane_cone(p, c, &pair, predicates),
+        (S::Cone(c), S::Plane(p)) => plane::plane_cone(p, c, &turned, predicates),
+        (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, &pair, predicates),
+        (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, &pair, predicates)?,
+        (S::Torus(t), _) => torus::torus_with(t, &pair, predicates)?,
+        (_, S::Torus(t)) => torus::torus_with(t, &turned, predicates)?,
+        _ => quadric::quadric_quadric(&pair, predicates)?,
     })
 }
 
 /// Whether the axes of two carriers are one line within the band.
-fn same_line<N: Float>(pair: &SurfacePair<'_, N>, place: [f64; 3], judge: &Predicates) -> bool {
-    judge.coincide("axes side by side", pair.how(PairMeasure::Drift), place)
-        && judge.coincide("axis on axis", pair.how(PairMeasure::OffLine), place)
+fn same_line<N: Float>(pair: &SurfacePair<'_, N>, place: [f64; 3], predicates: &Predicates) -> bool {
+    predicates.coincide("axes side by side", pair.how(PairMeasure::Drift), place)
+        && predicates.coincide("axis on axis", pair.how(PairMeasure::OffLine), place)
 }
 
 /// Whether two surfaces coincide over the extent: `Along` with the same side inside, `Against`
@@ -155,7 +155,7 @@ pub fn coincidence<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,
     extent: &RegionOfInterest<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Option<Sense> {
     let kinds = [a, b].map(|c| c.surface.kind());
     let against = a.surface.frame().z.dot(&b.surface.frame().z) < N::ZERO;
@@ -164,11 +164,11 @@ pub fn coincidence<N: Float>(
     }
     let pair = SurfacePair::new(a, b, extent);
     // Most pairs are far apart: only what could matter is put to the judge.
-    if pair.estimate(PairMeasure::Apart) > N::TWO * judge.reach() {
+    if pair.estimate(PairMeasure::Apart) > N::TWO * predicates.reach() {
         return None;
     }
     let place = place(&a.surface.frame().origin);
-    if !judge.coincide("surface on surface", pair.how(PairMeasure::Apart), place) {
+    if !predicates.coincide("surface on surface", pair.how(PairMeasure::Apart), place) {
         return None;
     }
     Some(if against && kinds[0] == SurfaceKind::Plane {

@@ -19,12 +19,12 @@ pub(super) fn plane_plane<N: Float>(
     p: &Plane<N>,
     q: &Plane<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let mut meeting = SurfaceIntersection::nothing();
     let across = p.frame.z.cross(&q.frame.z);
     let at = place(&p.frame.origin);
-    if judge.coincide("plane along plane", pair.how(PairMeasure::Drift), at) {
+    if predicates.coincide("plane along plane", pair.how(PairMeasure::Drift), at) {
         return meeting;
     }
     let direction = across.unit();
@@ -46,11 +46,11 @@ pub(super) fn plane_sphere<N: Float>(
     p: &Plane<N>,
     s: &Sphere<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let h = height(p, &s.frame.origin);
     let foot = s.frame.origin - p.frame.z * h;
-    match judge.contact(
+    match predicates.classify_at_point(
         "plane on sphere",
         pair.how(PairMeasure::PlaneOnSphere),
         place(&foot),
@@ -78,13 +78,13 @@ pub(super) fn plane_cylinder<N: Float>(
     p: &Plane<N>,
     c: &Cylinder<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
     let mut meeting = SurfaceIntersection::nothing();
     let at = place(&c.frame.origin);
-    if judge.coincide("plane along axis", pair.how(PairMeasure::Lean), at) {
+    if predicates.coincide("plane along axis", pair.how(PairMeasure::Lean), at) {
         // The axis is parallel to the plane.
         let along = (pair.extent.centre - c.frame.origin).dot(&z);
         let middle = c.frame.origin + z * along;
@@ -97,7 +97,7 @@ pub(super) fn plane_cylinder<N: Float>(
                 direction: z,
             })
         };
-        match judge.side(
+        match predicates.classify(
             "plane on cylinder",
             pair.how(PairMeasure::PlaneOnCylinder),
             place(&foot),
@@ -115,7 +115,7 @@ pub(super) fn plane_cylinder<N: Float>(
     }
     let centre = c.frame.origin - z * (height(p, &c.frame.origin) / cos);
     let tilt = pair.how(PairMeasure::PlaneAcrossCylinder);
-    if judge.coincide("plane across axis", tilt, at) {
+    if predicates.coincide("plane across axis", tilt, at) {
         let frame = c.frame.at(centre);
         meeting.add(
             Curve::Circle(Circle {
@@ -187,13 +187,13 @@ pub(super) fn plane_cone<N: Float>(
     p: &Plane<N>,
     c: &Cone<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let apex = c.frame.origin;
     let h = height(p, &apex);
-    match judge.contact("apex on plane", pair.how(PairMeasure::Height), place(&apex)) {
-        Side::On => plane_through_apex(p, c, pair, judge),
-        _ => plane_beside_apex(p, c, h, pair, judge),
+    match predicates.classify_at_point("apex on plane", pair.how(PairMeasure::Height), place(&apex)) {
+        Side::On => plane_through_apex(p, c, pair, predicates),
+        _ => plane_beside_apex(p, c, h, pair, predicates),
     }
 }
 
@@ -201,7 +201,7 @@ fn plane_through_apex<N: Float>(
     p: &Plane<N>,
     c: &Cone<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let apex = c.frame.origin;
     let n = c.frame.components(&p.frame.z);
@@ -237,7 +237,7 @@ fn plane_through_apex<N: Float>(
             }
         }
     };
-    match judge.side(
+    match predicates.classify(
         "plane along a cone's ruling",
         pair.how(PairMeasure::PlaneOnRuling),
         place(&apex),
@@ -260,7 +260,7 @@ fn plane_beside_apex<N: Float>(
     c: &Cone<N>,
     h: N,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let (n, z) = (p.frame.z, c.frame.z);
     let cos = n.dot(&z);
@@ -269,7 +269,7 @@ fn plane_beside_apex<N: Float>(
     // The semi-latus rectum of every section is the apex's distance times tan.
     let rectum = h.abs() * tan;
     let at = place(&c.frame.origin);
-    if judge.coincide("plane across axis", pair.how(PairMeasure::Drift), at) {
+    if predicates.coincide("plane across axis", pair.how(PairMeasure::Drift), at) {
         let up = -h / cos;
         if up > N::ZERO {
             let frame = c.frame.at(c.frame.origin + z * up);
@@ -291,7 +291,7 @@ fn plane_beside_apex<N: Float>(
     let vertex = |i: usize| c.frame.origin - rulings[i] * (h / rates[i]);
     let parallel = [false, true].map(|far| {
         let along = pair.how(PairMeasure::PlaneAlongRuling(far));
-        judge.coincide("ruling along plane", along, at)
+        predicates.coincide("ruling along plane", along, at)
     });
     if let Some(i) = parallel.iter().position(|&p| p) {
         if -h / rates[1 - i] > N::ZERO {

@@ -18,23 +18,23 @@ use nalgebra::Vector3;
 
 pub(super) fn quadric_quadric<N: Float>(
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     use Surface as S;
     let turned = pair.turned();
     match (pair.a.surface, pair.b.surface) {
         (S::Cylinder(c), S::Cylinder(d)) => {
             let at = place(&c.frame.origin);
-            if judge.coincide("axes side by side", pair.how(PairMeasure::Drift), at) {
-                return Ok(parallel_cylinders(c, d, pair, judge));
+            if predicates.coincide("axes side by side", pair.how(PairMeasure::Drift), at) {
+                return Ok(parallel_cylinders(c, d, pair, predicates));
             }
-            over_rulings(pair, judge)
+            over_rulings(pair, predicates)
         }
-        (S::Cylinder(_), _) => over_rulings(pair, judge),
-        (_, S::Cylinder(_)) => over_rulings(&turned, judge),
-        (S::Cone(c), S::Cone(_)) => cones(c, pair, judge),
-        (S::Cone(_), _) => over_rulings(pair, judge),
-        (_, S::Cone(_)) => over_rulings(&turned, judge),
+        (S::Cylinder(_), _) => over_rulings(pair, predicates),
+        (_, S::Cylinder(_)) => over_rulings(&turned, predicates),
+        (S::Cone(c), S::Cone(_)) => cones(c, pair, predicates),
+        (S::Cone(_), _) => over_rulings(pair, predicates),
+        (_, S::Cone(_)) => over_rulings(&turned, predicates),
         _ => Ok(SurfaceIntersection::nothing()),
     }
 }
@@ -43,7 +43,7 @@ fn parallel_cylinders<N: Float>(
     c: &Cylinder<N>,
     d: &Cylinder<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let extent = pair.extent;
     let z = c.frame.z;
@@ -52,7 +52,7 @@ fn parallel_cylinders<N: Float>(
     let away = q - p;
     let dist = away.length();
     let mut meeting = SurfaceIntersection::nothing();
-    if judge.coincide(
+    if predicates.coincide(
         "axis on axis",
         pair.how(PairMeasure::BetweenAxes),
         place(&p),
@@ -69,7 +69,7 @@ fn parallel_cylinders<N: Float>(
         })
     };
     let foot = p + axis * x;
-    let side = |gap| judge.side("cylinder along cylinder", pair.how(gap), place(&foot));
+    let side = |gap| predicates.classify("cylinder along cylinder", pair.how(gap), place(&foot));
     let outer = side(PairMeasure::CylinderBesideCylinder);
     match (outer, side(PairMeasure::CylinderInCylinder)) {
         (Side::On, _) => meeting.add(line(p + axis * r), true, extent),
@@ -88,17 +88,17 @@ fn parallel_cylinders<N: Float>(
 fn cones<N: Float>(
     c: &Cone<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let at = place(&c.frame.origin);
-    if judge.contact("apex on apex", pair.how(PairMeasure::Between), at) == Side::On {
-        return Ok(common_apex(c, pair.b.surface, pair.extent, judge));
+    if predicates.classify_at_point("apex on apex", pair.how(PairMeasure::Between), at) == Side::On {
+        return Ok(common_apex(c, pair.b.surface, pair.extent, predicates));
     }
     let turned = pair.turned();
-    if holds_apex(&turned, judge) && !holds_apex(pair, judge) {
-        return over_rulings(&turned, judge);
+    if holds_apex(&turned, predicates) && !holds_apex(pair, predicates) {
+        return over_rulings(&turned, predicates);
     }
-    over_rulings(pair, judge)
+    over_rulings(pair, predicates)
 }
 
 /// Two cones with one apex meet in common rulings.
@@ -106,7 +106,7 @@ fn common_apex<N: Float>(
     c: &Cone<N>,
     other: &Surface<N>,
     extent: &RegionOfInterest<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let mut meeting = SurfaceIntersection::touch(c.frame.origin);
     let m = c.sin / c.cos;
@@ -122,7 +122,7 @@ fn common_apex<N: Float>(
     let breaks: Vec<N> = (0..=8)
         .map(|i| N::of(0.1) + N::TAU * N::whole(i) / N::of(8.0))
         .collect();
-    let Roots::At { roots, .. } = isolate(&|t| along(Jet::variable(t)), &breaks, judge.band())
+    let Roots::At { roots, .. } = isolate(&|t| along(Jet::variable(t)), &breaks, predicates.band())
     else {
         return meeting;
     };
@@ -161,18 +161,18 @@ fn common_apex<N: Float>(
 /// second, over the second's, each of which has one point of the curve but the apex.
 fn over_rulings<N: Float>(
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    match over_first(pair, judge) {
-        Err(IntersectionError::Cusp { .. }) if holds_apex(pair, judge) => {
-            over_first(&pair.turned(), judge)
+    match over_first(pair, predicates) {
+        Err(IntersectionError::Cusp { .. }) if holds_apex(pair, predicates) => {
+            over_first(&pair.turned(), predicates)
         }
         known => known,
     }
 }
 
 /// Whether the pair's second is a cone whose apex lies on the first.
-fn holds_apex<N: Float>(pair: &SurfacePair<'_, N>, judge: &Predicates) -> bool {
+fn holds_apex<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) -> bool {
     let Surface::Cone(cone) = pair.b.surface else {
         return false;
     };
@@ -180,12 +180,12 @@ fn holds_apex<N: Float>(pair: &SurfacePair<'_, N>, judge: &Predicates) -> bool {
         pair.how(PairMeasure::PointOnQuadric),
         place(&cone.frame.origin),
     );
-    judge.contact("apex on quadric", away, at) == Side::On
+    predicates.classify_at_point("apex on quadric", away, at) == Side::On
 }
 
 fn over_first<N: Float>(
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let base = match pair.a.surface {
         Surface::Cylinder(c) => Ruled::Cylinder(*c),
@@ -199,14 +199,14 @@ fn over_first<N: Float>(
         // The other surface holds the direction of the rulings: a cone with a ruling along them. The
         // axis of a cylinder is not parallel to them, however little.
         Ruled::Cylinder(_) => {
-            let along = judge.within(rulings.lead * pair.extent.radius);
+            let along = predicates.within(rulings.lead * pair.extent.radius);
             along && !matches!(pair.b.surface, Surface::Cylinder(_))
         }
-        Ruled::Cone(_) => holds_apex(&pair.turned(), judge),
+        Ruled::Cone(_) => holds_apex(&pair.turned(), predicates),
     };
     if is_single {
-        rulings.single(judge)
+        rulings.single(predicates)
     } else {
-        rulings.double(judge)
+        rulings.double(predicates)
     }
 }

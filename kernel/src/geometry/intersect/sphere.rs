@@ -13,13 +13,13 @@ pub(super) fn sphere_sphere<N: Float>(
     s: &Sphere<N>,
     t: &Sphere<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
     let away = t.frame.origin - s.frame.origin;
     let d = away.length();
     let (r, q) = (s.radius, t.radius);
     let at = place(&s.frame.origin);
-    if judge.coincide("centre on centre", pair.how(PairMeasure::Between), at) {
+    if predicates.coincide("centre on centre", pair.how(PairMeasure::Between), at) {
         return SurfaceIntersection::nothing();
     }
     let axis = away / d;
@@ -28,7 +28,7 @@ pub(super) fn sphere_sphere<N: Float>(
     // Apart outside, or one within the other: both gaps are negative where they meet.
     let beside = s.frame.origin + axis * r;
     let within = s.frame.origin + axis * r.copysign(r - q);
-    let side = |gap, at| judge.contact("sphere on sphere", pair.how(gap), place(at));
+    let side = |gap, at| predicates.classify_at_point("sphere on sphere", pair.how(gap), place(at));
     let outer = side(PairMeasure::SphereBesideSphere, &beside);
     match (outer, side(PairMeasure::SphereInSphere, &within)) {
         (Side::On, _) => SurfaceIntersection::touch(beside),

@@ -20,12 +20,12 @@ pub(super) fn torus_torus<N: Float>(
     t: &Torus<N>,
     o: &Torus<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     if o.major + o.minor < t.major + t.minor {
-        torus_with(o, &pair.turned(), judge)
+        torus_with(o, &pair.turned(), predicates)
     } else {
-        torus_with(t, pair, judge)
+        torus_with(t, pair, predicates)
     }
 }
 
@@ -33,21 +33,21 @@ pub(super) fn torus_torus<N: Float>(
 pub(super) fn torus_with<N: Float>(
     t: &Torus<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let (other, extent) = (pair.b.surface, pair.extent);
-    if let Some(meeting) = coaxial(t, pair, judge) {
+    if let Some(meeting) = coaxial(t, pair, predicates) {
         return Ok(meeting);
     }
     if let Surface::Plane(p) = other
-        && let Some(meeting) = central_plane(t, p, pair, judge)
+        && let Some(meeting) = central_plane(t, p, pair, predicates)
     {
         return Ok(meeting);
     }
-    let contacts = contacts(t, pair, judge);
+    let contacts = contacts(t, pair, predicates);
     let whole = form(t, other);
     let rest = contacts.iter().fold(whole, |f, c| c.divided_out(&f));
-    let mut meeting = traced(t, other, &rest, judge)?;
+    let mut meeting = traced(t, other, &rest, predicates)?;
     for contact in &contacts {
         // What else lies on the contact circle is a singular point of the whole.
         let shared = contacts.iter().filter_map(|c| contact.crossing(c));
@@ -89,13 +89,13 @@ fn traced<N: Float>(
     t: &Torus<N>,
     other: &Surface<N>,
     form: &BivariateTrigPoly<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    let traced = trace(t, form, judge.band())?;
+    let traced = trace(t, form, predicates.band())?;
     let mut meeting = SurfaceIntersection::nothing();
     for [theta, phi] in &traced.close {
         let p = Surface::Torus(*t).point(*theta, *phi);
-        judge.contact("torus touches surface", other.distance(&p), place(&p));
+        predicates.classify_at_point("torus touches surface", other.distance(&p), place(&p));
     }
     // The form knows both nappes of a cone: each branch is cut to the one that is meant.
     let mut parts: Vec<Vec<(usize, [N; 2])>> = Vec::new();
@@ -104,7 +104,7 @@ fn traced<N: Float>(
         let toric = Curve::Toric(Box::new(branch));
         let passes = singular.iter_mut().flat_map(|s| &mut s.on);
         let mut passes: Vec<&mut N> = passes.filter(|on| on.0 == b).map(|on| &mut on.1).collect();
-        let curve = match circle_of(&toric, t, other, judge) {
+        let curve = match circle_of(&toric, t, other, predicates) {
             Some(circle) => {
                 for at in &mut passes {
                     **at = circle.parameter(&toric.point(**at));
@@ -116,8 +116,8 @@ fn traced<N: Float>(
         let passes: Vec<N> = passes.into_iter().map(|at| *at).collect();
         let whole = [N::ZERO, curve.period().unwrap_or(N::ZERO)];
         let mut kept = Vec::new();
-        for range in nappe_parts(&curve, whole, other, judge.band()) {
-            let range = range.map(|end| at_pass(&curve, end, &passes, judge));
+        for range in nappe_parts(&curve, whole, other, predicates.band()) {
+            let range = range.map(|end| at_pass(&curve, end, &passes, predicates));
             kept.push((meeting.branches.len(), range));
             let (curve, closed) = (curve.clone(), range == whole);
             meeting.branches.push(Branch {
@@ -131,7 +131,7 @@ fn traced<N: Float>(
     }
     for s in singular {
         let point = Surface::Torus(*t).point(s.angles[0], s.angles[1]);
-        if matches!(other, Surface::Cone(_)) && !judge.within(other.distance(&point)) {
+        if matches!(other, Surface::Cone(_)) && !predicates.within(other.distance(&point)) {
             continue;
         }
         let mut on = Vec::new();
@@ -147,7 +147,7 @@ fn traced<N: Float>(
         meeting.nodes.push(Node { point, on });
     }
     if let Surface::Cone(c) = other
-        && judge.within(Surface::Torus(*t).distance(&c.frame.origin))
+        && predicates.within(Surface::Torus(*t).distance(&c.frame.origin))
     {
         meeting.nodes.push(Node {
             point: c.frame.origin,
@@ -163,19 +163,19 @@ fn circle_of<N: Float>(
     branch: &Curve<N>,
     t: &Torus<N>,
     other: &Surface<N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Option<Curve<N>> {
     let period = branch.period()?;
     let [a, b, c] =
         [N::ZERO, N::ONE, N::TWO].map(|third| branch.point(third * period / N::of(3.0)));
     let circle = Curve::Circle(Circle::through(&a, &b, &c)?);
-    let on = |s: &Surface<N>| lies_on(&circle, [N::ZERO, N::TAU], s, judge.band());
+    let on = |s: &Surface<N>| lies_on(&circle, [N::ZERO, N::TAU], s, predicates.band());
     (on(&Surface::Torus(*t)) && on(other)).then_some(circle)
 }
 
 /// The end of a part of a closed curve, or the singular point there: next to one, rounding is all
 /// that tells where the curve leaves a nappe.
-fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], judge: &Predicates) -> N {
+fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], predicates: &Predicates) -> N {
     let there = curve.point(end);
     let near = passes.iter().map(|&at| {
         let turns = curve
@@ -183,7 +183,7 @@ fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], judge: &Predicates)
             .map_or(N::ZERO, |period| period * ((end - at) / period).round());
         at + turns
     });
-    near.filter(|&at| judge.within((curve.point(at) - there).length()))
+    near.filter(|&at| predicates.within((curve.point(at) - there).length()))
         .min_by(|a, b| (*a - end).abs().total_cmp(&(*b - end).abs()))
         .unwrap_or(end)
 }
@@ -192,15 +192,15 @@ fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], judge: &Predicates)
 fn coaxial<N: Float>(
     t: &Torus<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Option<SurfaceIntersection<N>> {
     let other = pair.b.surface;
     let f = other.frame();
     let at = place(&t.frame.origin);
     let is_coaxial = match other {
-        Surface::Plane(_) => judge.coincide("plane across axis", pair.how(PairMeasure::Tilt), at),
-        Surface::Sphere(_) => judge.coincide("centre on axis", pair.how(PairMeasure::OffAxis), at),
-        _ => same_line(pair, at, judge),
+        Surface::Plane(_) => predicates.coincide("plane across axis", pair.how(PairMeasure::Tilt), at),
+        Surface::Sphere(_) => predicates.coincide("centre on axis", pair.how(PairMeasure::OffAxis), at),
+        _ => same_line(pair, at, predicates),
     };
     if !is_coaxial {
         return None;
@@ -211,7 +211,7 @@ fn coaxial<N: Float>(
         tube: Vector2::new(t.major, N::ZERO),
         radius: t.minor,
         pair,
-        judge,
+        predicates,
     };
     let points = match other {
         Surface::Plane(_) => profile.line(&Vector2::new(N::ZERO, up), &Vector2::x()),
@@ -241,15 +241,15 @@ struct Profile<'a, N: Float = f64> {
     tube: Vector2<N>,
     radius: N,
     pair: &'a SurfacePair<'a, N>,
-    judge: &'a Predicates,
+    predicates: &'a Predicates,
 }
 
 impl<N: Float> Profile<'_, N> {
     fn side(&self, question: &'static str, relation: PairMeasure, at: &Vector2<N>) -> Side {
         let f = self.pair.a.surface.frame();
         let at = f.point(at.x, N::ZERO, at.y);
-        self.judge
-            .side(question, self.pair.how(relation), place(&at))
+        self.predicates
+            .classify(question, self.pair.how(relation), place(&at))
     }
 
     /// Where the line of a plane, a cylinder or a cone meets the circle, and whether it touches.
@@ -300,16 +300,16 @@ fn central_plane<N: Float>(
     t: &Torus<N>,
     p: &Plane<N>,
     pair: &SurfacePair<'_, N>,
-    judge: &Predicates,
+    predicates: &Predicates,
 ) -> Option<SurfaceIntersection<N>> {
     let (n, extent) = (p.frame.z, pair.extent);
     let at = place(&t.frame.origin);
     let height = pair.turned().how(PairMeasure::Height);
-    if !judge.coincide("centre on plane", height, at) {
+    if !predicates.coincide("centre on plane", height, at) {
         return None;
     }
     let mut meeting = SurfaceIntersection::nothing();
-    if judge.coincide("axis in plane", pair.how(PairMeasure::Upright), at) {
+    if predicates.coincide("axis in plane", pair.how(PairMeasure::Upright), at) {
         let q = t.frame.components(&n);
         let theta = q.y.atan2(q.x) + N::TAU / N::of(4.0);
         for theta in [theta, theta + N::TAU / N::TWO] {
@@ -320,7 +320,7 @@ fn central_plane<N: Float>(
     let across = n.cross(&t.frame.z);
     let slope = across.length();
     let gap = pair.how(PairMeasure::PlaneOnBothSides);
-    if !judge.coincide("plane touching a torus twice", gap, at) {
+    if !predicates.coincide("plane touching a torus twice", gap, at) {
         return None;
     }
     let axis = across / slope;
@@ -338,7 +338,7 @@ fn central_plane<N: Float>(
     let reach = ((t.major - t.minor) * (t.major + t.minor)).sqrt();
     let up = n.cross(&axis);
     for side in [-N::ONE, N::ONE] {
-        meeting.cross_at(t.frame.origin + up * (side * reach), judge);
+        meeting.cross_at(t.frame.origin + up * (side * reach), predicates);
     }
     Some(meeting)
 }

@@ -94,7 +94,7 @@ impl Predicates {
     }
 
     /// Whether zeros are proven.
-    pub fn proves(&self) -> bool {
+    pub fn is_exact(&self) -> bool {
         self.zeros == CoincidencePolicy::Exact
     }
 
@@ -110,7 +110,7 @@ impl Predicates {
     }
 
     /// The side on which the signed `distance` lies; `place` is where it was measured.
-    pub fn side(
+    pub fn classify(
         &self,
         question: &'static str,
         distance: impl CertifiedDistance,
@@ -122,7 +122,7 @@ impl Predicates {
     }
 
     /// The same of a point that the two things may have in common: it concerns nothing else.
-    pub fn contact(
+    pub fn classify_at_point(
         &self,
         question: &'static str,
         distance: impl CertifiedDistance,
@@ -150,10 +150,10 @@ impl Predicates {
             Some(side) => (side, Effort::Filter),
             None => (self.refined_side(&distance), Effort::MoreBits),
         };
-        if side == Side::On && self.proves() {
+        if side == Side::On && self.is_exact() {
             (side, effort) = proven_side(&distance);
             if side != Side::On {
-                self.doubt(question, place, range.mid());
+                self.record_unproven(question, place, range.mid());
             }
         }
         self.count(side, effort);
@@ -183,7 +183,7 @@ impl Predicates {
     }
 
     /// Notes what lies within the resolution and is proven to be apart.
-    pub fn doubt(&self, question: &'static str, place: [f64; 3], distance: f64) {
+    pub fn record_unproven(&self, question: &'static str, place: [f64; 3], distance: f64) {
         self.doubts.borrow_mut().push(CloseCall {
             question,
             place,
@@ -193,7 +193,7 @@ impl Predicates {
     }
 
     /// The first of what lies within the resolution and is proven to be apart.
-    pub fn first_doubt(&self) -> Option<CloseCall> {
+    pub fn first_unproven(&self) -> Option<CloseCall> {
         self.doubts.borrow().first().cloned()
     }
 
@@ -226,7 +226,7 @@ impl Predicates {
         distance: impl CertifiedDistance,
         place: [f64; 3],
     ) -> bool {
-        self.side(question, distance, place) == Side::On
+        self.classify(question, distance, place) == Side::On
     }
 
     /// The side by more bits. What cannot be told from the edge of the band lies on it, and

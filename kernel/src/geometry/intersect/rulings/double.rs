@@ -21,20 +21,20 @@ impl<N: Float> Rulings<'_, N> {
     /// k ≠ 0: two points on each ruling where Δ > 0.
     pub(in crate::geometry::intersect) fn double(
         &self,
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Result<SurfaceIntersection<N>, IntersectionError> {
         let mut meeting = SurfaceIntersection::nothing();
-        if let Some(root) = self.square_root(judge) {
-            self.add_conics(&root, judge, &mut meeting);
+        if let Some(root) = self.square_root(predicates) {
+            self.add_conics(&root, predicates, &mut meeting);
         } else {
-            self.add_quartic(judge, &mut meeting)?;
+            self.add_quartic(predicates, &mut meeting)?;
         }
-        self.add_apexes(judge, &mut meeting);
+        self.add_apexes(predicates, &mut meeting);
         Ok(meeting)
     }
 
     /// The s of degree one with Δ = s², if within the band there is one.
-    fn square_root(&self, judge: &Predicates) -> Option<Trig1<N>> {
+    fn square_root(&self, predicates: &Predicates) -> Option<Trig1<N>> {
         let [a0, c1, s1, c2, s2] = self.radicand;
         let rho = (N::TWO * c2.hypot(s2)).sqrt();
         let noise = (N::ROUNDING * self.scale).sqrt();
@@ -49,7 +49,7 @@ impl<N: Float> Rulings<'_, N> {
             let middle = trig1(&self.linear, u.sin_cos());
             vec![(s - middle) / self.lead, (-s - middle) / self.lead]
         };
-        let is_one = self.conics_hold_all(&root) && self.meets_in_conics(judge, both);
+        let is_one = self.conics_hold_all(&root) && self.meets_in_conics(predicates, both);
         is_one.then_some(root)
     }
 
@@ -73,7 +73,7 @@ impl<N: Float> Rulings<'_, N> {
     fn add_conics(
         &self,
         root: &Trig1<N>,
-        judge: &Predicates,
+        predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
         let w = |sign: N| {
@@ -87,31 +87,31 @@ impl<N: Float> Rulings<'_, N> {
             .filter(|(_, m)| self.is_on_base(*m))
             .map(|(u, m)| apart(self.other, &self.world(u, m)))
             .reduce(N::max);
-        if gap.is_some_and(|g| judge.within(g)) {
-            return self.add_conic(&w(N::ZERO), true, judge, meeting);
+        if gap.is_some_and(|g| predicates.within(g)) {
+            return self.add_conic(&w(N::ZERO), true, predicates, meeting);
         }
-        self.add_conic(&w(N::ONE), false, judge, meeting);
-        self.add_conic(&w(-N::ONE), false, judge, meeting);
+        self.add_conic(&w(N::ONE), false, predicates, meeting);
+        self.add_conic(&w(-N::ONE), false, predicates, meeting);
         // Where they cross, s vanishes.
         let whole = [root[0], root[1], root[2], N::ZERO, N::ZERO];
         for (u, _) in zeros_of(&whole) {
             let m = self.middle(u);
             let p = self.world(u, m);
-            if self.is_on_base(m) && judge.within(self.other.distance(&p)) {
-                meeting.cross_at(p, judge);
+            if self.is_on_base(m) && predicates.within(self.other.distance(&p)) {
+                meeting.cross_at(p, predicates);
             }
         }
     }
 
     fn add_quartic(
         &self,
-        judge: &Predicates,
+        predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) -> Result<(), IntersectionError> {
-        let structure = self.structure(judge)?;
+        let structure = self.structure(predicates)?;
         for &u in &structure.isolated {
             let p = self.world(u, self.middle(u));
-            if self.is_on_base(self.middle(u)) && judge.within(self.other.distance(&p)) {
+            if self.is_on_base(self.middle(u)) && predicates.within(self.other.distance(&p)) {
                 meeting.nodes.push(Node {
                     point: p,
                     on: Vec::new(),
@@ -175,7 +175,7 @@ impl<N: Float> Rulings<'_, N> {
             curves.push((make(Sweep::Oval { mid, half }, height), at));
         }
         for (quartic, nodes) in curves {
-            self.add_clipped(quartic, &nodes, judge, meeting);
+            self.add_clipped(quartic, &nodes, predicates, meeting);
         }
         Ok(())
     }
@@ -185,7 +185,7 @@ impl<N: Float> Rulings<'_, N> {
         &self,
         q: QuadricCurve<N>,
         nodes: &[(N, N)],
-        judge: &Predicates,
+        predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
         let curve = Curve::Quartic(Box::new(q));
@@ -195,7 +195,7 @@ impl<N: Float> Rulings<'_, N> {
             ranges = self.nappe_ranges(&q, period);
         }
         for r in ranges {
-            for range in self.on_other_nappe(&curve, r, judge) {
+            for range in self.on_other_nappe(&curve, r, predicates) {
                 let closed = range == [N::ZERO, period];
                 let index = meeting.branches.len();
                 meeting.branches.push(Branch {
@@ -213,7 +213,7 @@ impl<N: Float> Rulings<'_, N> {
                     let known = meeting
                         .nodes
                         .iter_mut()
-                        .find(|n| judge.within((n.point - point).length()));
+                        .find(|n| predicates.within((n.point - point).length()));
                     match known {
                         Some(node) => node.on.push((index, t)),
                         None => meeting.nodes.push(Node {
@@ -264,18 +264,18 @@ impl<N: Float> Rulings<'_, N> {
     }
 
     /// The zeros of Δ by kind.
-    fn structure(&self, judge: &Predicates) -> Result<Structure<N>, IntersectionError> {
+    fn structure(&self, predicates: &Predicates) -> Result<Structure<N>, IntersectionError> {
         let slope = harmonic_slope(&self.radicand);
         let flat = slope.iter().map(|c| c.abs()).sum::<N>() <= N::ROUNDING * self.scale;
         let extrema = if flat { Vec::new() } else { zeros_of(&slope) };
         let mut out = Structure::default();
         if extrema.is_empty() {
-            out.positive = self.state(N::ZERO, judge) == Side::Inside;
+            out.positive = self.state(N::ZERO, predicates) == Side::Inside;
             return Ok(out);
         }
         let states: Vec<(N, Side)> = extrema
             .iter()
-            .map(|&(u, _)| (u, self.state(u, judge)))
+            .map(|&(u, _)| (u, self.state(u, predicates)))
             .collect();
         let n = states.len();
         let mut roots: Vec<(N, bool)> = Vec::new();

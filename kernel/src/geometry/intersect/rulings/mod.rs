@@ -158,7 +158,7 @@ impl<'a, N: Float> Rulings<'a, N> {
 
     /// Whether Δ is positive, zero or negative at an angle, decided as the signed distance of the
     /// ruling from the other surface.
-    fn state(&self, u: N, judge: &Predicates) -> Side {
+    fn state(&self, u: N, predicates: &Predicates) -> Side {
         let w = self.middle(u);
         if !self.is_on_base(w) {
             // The decision concerns the other nappe or lies far off: the plain sign will do.
@@ -174,7 +174,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         } else {
             distance
         };
-        judge.contact("ruling on quadric", signed, place(&self.world(u, w)))
+        predicates.classify_at_point("ruling on quadric", signed, place(&self.world(u, w)))
     }
 
     /// The planar conic w = plane(u), where it lies on the base and on the other surface.
@@ -182,7 +182,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         &self,
         w: &Trig1<N>,
         tangent: bool,
-        judge: &Predicates,
+        predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
         let surface = surface_of(&self.base);
@@ -198,7 +198,7 @@ impl<'a, N: Float> Rulings<'a, N> {
             }
         };
         let size = normal.length();
-        if size * self.reach() * self.reach() < offset.abs() * judge.band() {
+        if size * self.reach() * self.reach() < offset.abs() * predicates.band() {
             return;
         }
         let n = frame.vector(&(normal / size));
@@ -210,11 +210,11 @@ impl<'a, N: Float> Rulings<'a, N> {
         let carriers = [&section, &surface].map(Carrier::constructed);
         let pair = SurfacePair::new(carriers[0], carriers[1], self.extent);
         let part = match &self.base {
-            Ruled::Cylinder(s) => plane_cylinder(&plane, s, &pair, judge),
-            Ruled::Cone(s) => plane_cone(&plane, s, &pair, judge),
+            Ruled::Cylinder(s) => plane_cylinder(&plane, s, &pair, predicates),
+            Ruled::Cone(s) => plane_cone(&plane, s, &pair, predicates),
         };
         for branch in part.branches {
-            for range in self.on_other_nappe(&branch.curve, branch.range, judge) {
+            for range in self.on_other_nappe(&branch.curve, branch.range, predicates) {
                 let closed = branch.closed && range == branch.range;
                 meeting.branches.push(Branch {
                     range,
@@ -227,12 +227,12 @@ impl<'a, N: Float> Rulings<'a, N> {
     }
 
     /// The parts of a curve that lie on the other surface's own nappe, where it is a cone.
-    fn on_other_nappe(&self, curve: &Curve<N>, range: [N; 2], judge: &Predicates) -> Vec<[N; 2]> {
-        nappe_parts(curve, range, self.other, judge.band())
+    fn on_other_nappe(&self, curve: &Curve<N>, range: [N; 2], predicates: &Predicates) -> Vec<[N; 2]> {
+        nappe_parts(curve, range, self.other, predicates.band())
     }
 
     /// Whether the heights that `conics` gives over each ruling lie on the other surface.
-    fn meets_in_conics(&self, judge: &Predicates, conics: impl Fn(N) -> Vec<N>) -> bool {
+    fn meets_in_conics(&self, predicates: &Predicates, conics: impl Fn(N) -> Vec<N>) -> bool {
         let mut worst: N = N::ZERO;
         let mut asked = false;
         for u in asked_rulings() {
@@ -242,15 +242,15 @@ impl<'a, N: Float> Rulings<'a, N> {
             }
         }
         let o = surface_of(&self.base).frame().origin;
-        asked && judge.coincide("quadrics meeting in conics", worst, place(&o))
+        asked && predicates.coincide("quadrics meeting in conics", worst, place(&o))
     }
 
     /// The apexes through which branches pass: singular points.
-    fn add_apexes(&self, judge: &Predicates, meeting: &mut SurfaceIntersection<N>) {
+    fn add_apexes(&self, predicates: &Predicates, meeting: &mut SurfaceIntersection<N>) {
         let surface = surface_of(&self.base);
         for (s, o) in [(&surface, self.other), (self.other, &surface)] {
             if let Surface::Cone(c) = s
-                && judge.within(o.distance(&c.frame.origin))
+                && predicates.within(o.distance(&c.frame.origin))
             {
                 meeting.nodes.push(Node {
                     point: c.frame.origin,

@@ -15,11 +15,11 @@ impl<N: Float> Rulings<'_, N> {
     /// k = 0: one point on each ruling, w = -C/(2B).
     pub(in crate::geometry::intersect) fn single(
         &self,
-        judge: &Predicates,
+        predicates: &Predicates,
     ) -> Result<SurfaceIntersection<N>, IntersectionError> {
         let mut meeting = SurfaceIntersection::nothing();
-        let shared = self.shared_ruling(judge);
-        let tangent = shared.is_some_and(|u0| self.touches_along(u0, judge));
+        let shared = self.shared_ruling(predicates);
+        let tangent = shared.is_some_and(|u0| self.touches_along(u0, predicates));
         let height = match shared {
             Some(u0) if tangent => self.without_contact(u0),
             Some(u0) => {
@@ -36,21 +36,21 @@ impl<N: Float> Rulings<'_, N> {
             sweep: Sweep::Round { turns: 1 },
             height,
         };
-        match self.single_conic(judge) {
-            Some(w) => self.add_conic(&w, false, judge, &mut meeting),
-            None => self.add_single(quartic, shared, judge, &mut meeting),
+        match self.single_conic(predicates) {
+            Some(w) => self.add_conic(&w, false, predicates, &mut meeting),
+            None => self.add_single(quartic, shared, predicates, &mut meeting),
         }
         if let Some(u0) = shared {
-            self.add_shared(u0, &quartic, tangent, judge, &mut meeting);
+            self.add_shared(u0, &quartic, tangent, predicates, &mut meeting);
         }
-        self.add_apexes(judge, &mut meeting);
+        self.add_apexes(predicates, &mut meeting);
         Ok(meeting)
     }
 
     /// w = -C/(2B) where that is of degree one: a planar conic.
-    fn single_conic(&self, judge: &Predicates) -> Option<Trig1<N>> {
+    fn single_conic(&self, predicates: &Predicates) -> Option<Trig1<N>> {
         let w = divide(&self.constant, &self.linear).map(|q| -N::HALF * q);
-        self.meets_in_conics(judge, |u| vec![trig1(&w, u.sin_cos())])
+        self.meets_in_conics(predicates, |u| vec![trig1(&w, u.sin_cos())])
             .then_some(w)
     }
 
@@ -59,13 +59,13 @@ impl<N: Float> Rulings<'_, N> {
         &self,
         quartic: QuadricCurve<N>,
         shared: Option<N>,
-        judge: &Predicates,
+        predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
         let whole = [N::ZERO, N::TAU];
         for range in self.bounded_ranges(&quartic, shared, self.reach()) {
             let curve = Curve::Quartic(Box::new(quartic));
-            for range in self.on_other_nappe(&curve, range, judge) {
+            for range in self.on_other_nappe(&curve, range, predicates) {
                 let branch = Branch {
                     curve: curve.clone(),
                     range,
@@ -78,13 +78,13 @@ impl<N: Float> Rulings<'_, N> {
     }
 
     /// The ruling that lies on both surfaces, where k = 0: a common zero of B and C.
-    fn shared_ruling(&self, judge: &Predicates) -> Option<N> {
+    fn shared_ruling(&self, predicates: &Predicates) -> Option<N> {
         if let Ruled::Cylinder(_) = self.base {
             let Surface::Cone(c) = self.other else {
                 return None;
             };
             let f = surface_of(&self.base);
-            if !judge.within(f.distance(&c.frame.origin)) {
+            if !predicates.within(f.distance(&c.frame.origin)) {
                 return None;
             }
             let q = f.frame().coordinates(&c.frame.origin);
@@ -97,12 +97,12 @@ impl<N: Float> Rulings<'_, N> {
         let w = N::ONE / q.z;
         let u = q.y.atan2(q.x);
         let u = if q.z < N::ZERO { u + N::PI } else { u };
-        let on = judge.within(apart(&surface_of(&self.base), &c.frame.origin));
+        let on = predicates.within(apart(&surface_of(&self.base), &c.frame.origin));
         (w.is_finite() && on).then_some(u)
     }
 
     /// Whether the surfaces touch all along the ruling u0 that lies on both.
-    fn touches_along(&self, u0: N, judge: &Predicates) -> bool {
+    fn touches_along(&self, u0: N, predicates: &Predicates) -> bool {
         let surface = surface_of(&self.base);
         let Surface::Cone(cone) = self.other else {
             return false;
@@ -116,7 +116,7 @@ impl<N: Float> Rulings<'_, N> {
         let axis = cone.frame.z;
         let normal = (axis - along * axis.dot(&along)).unit();
         let drift = surface.normal(&p).cross(&normal).length() * self.extent.radius;
-        judge.coincide("tangent along a ruling", drift, place(&p))
+        predicates.coincide("tangent along a ruling", drift, place(&p))
     }
 
     /// w = -C/(2B), where both have a double zero at u0: that is of degree one.
@@ -197,7 +197,7 @@ impl<N: Float> Rulings<'_, N> {
         u0: N,
         q: &QuadricCurve<N>,
         tangent: bool,
-        judge: &Predicates,
+        predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
         let surface = surface_of(&self.base);
@@ -221,7 +221,7 @@ impl<N: Float> Rulings<'_, N> {
         } else {
             lo
         };
-        for range in self.on_other_nappe(&curve, [lo, hi], judge) {
+        for range in self.on_other_nappe(&curve, [lo, hi], predicates) {
             let branch = Branch {
                 curve: curve.clone(),
                 range,
@@ -234,7 +234,7 @@ impl<N: Float> Rulings<'_, N> {
         let is_near = (crossing - self.extent.centre).length() <= self.extent.radius;
         // It may lie on the other nappe of either.
         let mut both = [&surface, self.other].into_iter();
-        if is_near && both.all(|s| judge.within(s.distance(&crossing))) {
+        if is_near && both.all(|s| predicates.within(s.distance(&crossing))) {
             meeting.nodes.push(Node {
                 point: crossing,
                 on: Vec::new(),

@@ -43,7 +43,7 @@ type FileId = PathBuf;
 
 impl Files {
     /// The files of a command.
-    pub fn of(command: &Command) -> Self {
+    pub fn new(command: &Command) -> Self {
         let mut files = Self::default();
         match command {
             Command::Info(options) => files.reads_part(&options.description),

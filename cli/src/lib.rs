@@ -36,12 +36,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(arguments) => arguments,
         Err(message) => return Voice::guessed(&arguments).usage(&message),
     };
-    let voice = Voice::of(arguments.json);
+    let voice = Voice::new(arguments.json);
     let session = Session {
         voice,
         limits: arguments.limits,
     };
-    if let Err(failure) = Files::of(&arguments.command).check() {
+    if let Err(failure) = Files::new(&arguments.command).check() {
         return voice.fail(failure);
     }
     let outcome = match &arguments.command {

@@ -172,7 +172,7 @@ pub struct TouchRelation {
 
 impl ObjectModel {
     /// The model of a boundary.
-    pub fn of(brep: &Brep) -> Self {
+    pub fn new(brep: &Brep) -> Self {
         Self {
             schema: SCHEMA,
             objects: objects(brep),

@@ -39,7 +39,7 @@ impl Gradient {
             Mask::Roberts => self.by_diagonals(grey, inner),
             Mask::Prewitt => self.by_differences(grey, inner, 1.0),
             Mask::Sobel => self.by_differences(grey, inner, 2.0),
-            Mask::Gaussian { .. } => self.by_gaussian(&Taps::of(mask), grey, domain, inner),
+            Mask::Gaussian { .. } => self.by_gaussian(&Taps::new(mask), grey, domain, inner),
         }
         for run in runs(inner, self.width) {
             let (x, y) = (&mut self.x[run.clone()], &mut self.y[run.clone()]);
@@ -119,7 +119,7 @@ struct Taps {
 }
 
 impl Taps {
-    fn of(mask: Mask) -> Self {
+    fn new(mask: Mask) -> Self {
         let Mask::Gaussian { sigma } = mask else {
             return Self {
                 weights: vec![1.0],
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_ramp_has_its_slope() {
-        let ramp = Grey::of(30, 25, |x, y| 3.0 * x as f32 - 2.0 * y as f32);
+        let ramp = Grey::new(30, 25, |x, y| 3.0 * x as f32 - 2.0 * y as f32);
         for mask in MASKS {
             let (gradient, inner) = gradient(mask, &ramp);
             assert!(inner.len() > 30);
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_step_is_steepest_beside_it() {
-        let step = Grey::of(30, 25, |x, _| if x < 15 { 0.0 } else { 8.0 });
+        let step = Grey::new(30, 25, |x, _| if x < 15 { 0.0 } else { 8.0 });
         for mask in MASKS {
             let (gradient, _) = gradient(mask, &step);
             let row = &gradient.x[12 * 30..13 * 30];
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn what_is_no_number_has_no_gradient() {
         for bad in [f32::NAN, f32::INFINITY, f32::MAX] {
-            let spoilt = Grey::of(9, 9, |x, y| if (x, y) == (4, 4) { bad } else { 1.0 });
+            let spoilt = Grey::new(9, 9, |x, y| if (x, y) == (4, 4) { bad } else { 1.0 });
             for mask in MASKS {
                 let (gradient, inner) = gradient(mask, &spoilt);
                 for i in runs(&inner, 9).flatten() {

@@ -13,7 +13,7 @@ pub struct Grey {
 
 impl Grey {
     /// The image whose level at column x and row y a function tells.
-    pub fn of(width: usize, height: usize, level: impl Fn(usize, usize) -> f32) -> Self {
+    pub fn new(width: usize, height: usize, level: impl Fn(usize, usize) -> f32) -> Self {
         let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         Self {
             width,

@@ -29,7 +29,7 @@ pub(super) struct Links {
 
 /// Links the pixels found, and takes spurs away from them.
 pub(super) fn link(work: &mut Workspace) -> Links {
-    let links = Links::of(work);
+    let links = Links::new(work);
     let spurs = links.spurs();
     if spurs.is_empty() {
         return links;
@@ -39,12 +39,12 @@ pub(super) fn link(work: &mut Workspace) -> Links {
     }
     let marks = &work.marks;
     work.found.retain(|&place| marks[place as usize] != 0);
-    Links::of(work)
+    Links::new(work)
 }
 
 impl Links {
     /// Marks each pixel with its number from one, and collects its neighbours.
-    fn of(work: &mut Workspace) -> Self {
+    fn new(work: &mut Workspace) -> Self {
         for (number, &place) in work.found.iter().enumerate() {
             work.marks[place as usize] = number as u32 + 1;
         }

@@ -8,7 +8,7 @@ const FINE: usize = 8;
 /// An anti-aliased picture: level 200 where a point is inside, and 50 elsewhere.
 fn draw(width: usize, height: usize, inside: impl Fn(f64, f64) -> bool) -> Grey {
     let place = |pixel: usize, k: usize| pixel as f64 - 0.5 + (k as f64 + 0.5) / FINE as f64;
-    Grey::of(width, height, |x, y| {
+    Grey::new(width, height, |x, y| {
         let row = |j| {
             (0..FINE)
                 .filter(|&i| inside(place(x, i), place(y, j)))
@@ -101,7 +101,7 @@ fn a_step_is_found_between_pixels() {
                 thinning,
                 ..Detector::default()
             };
-            let found = detect(&detector, &Grey::of(40, 30, |x, _| 100.0 * level(x)));
+            let found = detect(&detector, &Grey::new(40, 30, |x, _| 100.0 * level(x)));
             assert!(found.pixels.len() >= 18, "{mask:?}");
             for p in &found.pixels {
                 let off = (p.at[0] - edge).abs();
@@ -293,7 +293,7 @@ fn weak_pixels_are_kept_by_strong_ones() {
         20..40 => 60.0 - y as f32,
         _ => 60.0 - y as f32 + 12.0,
     };
-    let grey = Grey::of(60, 50, level);
+    let grey = Grey::new(60, 50, level);
     let count = |low| {
         let detector = Detector {
             threshold: 20.0,
@@ -309,12 +309,12 @@ fn weak_pixels_are_kept_by_strong_ones() {
 
 #[test]
 fn gaps_are_joined_up_to_a_width() {
-    let grey = Grey::of(80, 30, |x, y| {
+    let grey = Grey::new(80, 30, |x, y| {
         let missing = (40..43).contains(&x);
         if y < 15 || missing { 50.0 } else { 150.0 }
     });
     let chains = |gap, known: &dyn Fn(usize, usize) -> bool| {
-        let plain = Grey::of(80, 30, |_, y| if y < 15 { 50.0 } else { 150.0 });
+        let plain = Grey::new(80, 30, |_, y| if y < 15 { 50.0 } else { 150.0 });
         let mask: Vec<bool> = (0..80 * 30).map(|i| known(i % 80, i / 80)).collect();
         let domain = PixelMask::of_mask(80, 30, &mask);
         let detector = Detector {
@@ -407,7 +407,7 @@ fn nothing_crashes() {
             .into_iter()
             .flat_map(|m| [Thinning::NonMaximum, Thinning::Shrink].map(|t| (m, t)))
         {
-            let mut grey = Grey::of(width, height, |_, _| 0.0);
+            let mut grey = Grey::new(width, height, |_, _| 0.0);
             for level in &mut grey.levels {
                 let value = noise(&mut seed);
                 *level = if value > 0.99 {
@@ -443,7 +443,7 @@ fn what_is_no_detector_does_not_crash() {
     };
     let found = Detector::default().detect(&grey, &PixelMask::full(3, 3));
     assert_eq!(found, Detection::default());
-    let flat = Grey::of(40, 40, |x, y| (x + 2 * y) as f32);
+    let flat = Grey::new(40, 40, |x, y| (x + 2 * y) as f32);
     let wrong = Detector {
         threshold: f64::NAN,
         gap: f64::NAN,

@@ -274,7 +274,7 @@ type Bands = BTreeMap<i32, [f64; 2]>;
 
 impl Sheet {
     /// Views on a paper. A view without a name among them stands alone.
-    pub fn of(
+    pub fn new(
         views: Vec<(Option<StandardView>, Drawing)>,
         options: SheetOptions,
     ) -> Result<Self, SheetError> {
@@ -500,7 +500,7 @@ mod tests {
     #[test]
     fn views_stand_where_the_angle_has_them() {
         for (angle, side) in [(Angle::First, -1.0), (Angle::Third, 1.0)] {
-            let sheet = Sheet::of(views(), options(angle)).unwrap();
+            let sheet = Sheet::new(views(), options(angle)).unwrap();
             let [front, top, right] = ["front", "top", "right"].map(|n| place(&sheet, n));
             assert_eq!(front.x, top.x);
             assert_eq!(front.y, right.y);
@@ -512,14 +512,14 @@ mod tests {
     /// 390 mm have room for 100 mm and three gaps of 12 mm 3.5 times, 253 mm for 60 mm 3.6 times.
     #[test]
     fn the_scale_is_the_greatest_with_room() {
-        let sheet = Sheet::of(views(), options(Angle::First)).unwrap();
+        let sheet = Sheet::new(views(), options(Angle::First)).unwrap();
         assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("2:1"));
         assert_eq!(sheet.factor, 2.0);
         let metres = SheetOptions {
             unit: Unit::Metre,
             ..options(Angle::First)
         };
-        let sheet = Sheet::of(views(), metres.clone()).unwrap();
+        let sheet = Sheet::new(views(), metres.clone()).unwrap();
         assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("1:500"));
         let too_large = SheetOptions {
             scale: Some(Scale {
@@ -528,7 +528,7 @@ mod tests {
             }),
             ..metres
         };
-        let error = Sheet::of(views(), too_large).unwrap_err();
+        let error = Sheet::new(views(), too_large).unwrap_err();
         assert!(matches!(error, SheetError::Room { width, .. } if width == 536.0));
     }
 
@@ -539,7 +539,7 @@ mod tests {
             extent: [Point2::new(1000.0, 0.0), Point2::new(1100.0, 10.0)],
             ..drawing(0.0, 0.0)
         };
-        let sheet = Sheet::of(vec![(None, beside)], options(Angle::First)).unwrap();
+        let sheet = Sheet::new(vec![(None, beside)], options(Angle::First)).unwrap();
         assert_eq!(sheet.factor, 2.0);
         let middle = sheet.views[0].at.x + 1050.0 * sheet.factor;
         assert_eq!(middle, (FILING + 410.0) / 2.0);
@@ -563,7 +563,7 @@ mod tests {
     #[test]
     fn what_has_no_size_has_no_scale() {
         let point = vec![(Some(StandardView::Front), drawing(0.0, 0.0))];
-        let error = Sheet::of(point, options(Angle::First)).unwrap_err();
+        let error = Sheet::new(point, options(Angle::First)).unwrap_err();
         assert_eq!(error, SheetError::Size { size: 0.0 });
     }
 }

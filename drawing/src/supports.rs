@@ -59,7 +59,7 @@ fn grouped<'c>(arcs: &[RankedArc<'c>], tolerance: f64) -> Vec<Group<'c>> {
         hosts.dedup();
         hosts.retain(|&g| groups[g].support.holds(&ranked.arc, tolerance));
         let Some((&host, others)) = hosts.split_first() else {
-            if let Some(support) = Support::of(&ranked.arc) {
+            if let Some(support) = Support::new(&ranked.arc) {
                 groups.push(Group {
                     support,
                     longest: index,
@@ -117,7 +117,7 @@ impl<'c> Group<'c> {
 const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 impl Support {
-    fn of(arc: &ImageArc<'_>) -> Option<Self> {
+    fn new(arc: &ImageArc<'_>) -> Option<Self> {
         match arc {
             ImageArc::Segment([a, b]) => Some(Self::Line {
                 origin: *a,

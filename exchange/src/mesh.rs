@@ -82,7 +82,7 @@ pub enum MeshError {
 
 impl Facets {
     /// The triangles of a boundary; `band` is the part's resolution.
-    pub fn of(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Self, MeshError> {
+    pub fn new(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Self, MeshError> {
         if brep.topology.solids.is_empty() {
             return Err(MeshError::Empty);
         }

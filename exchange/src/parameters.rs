@@ -50,7 +50,7 @@ impl ParameterWindow {
     }
 
     /// The parameters of a point, in the window; on the axis the angle is not a number.
-    pub fn of(&self, p: &Point3<f64>) -> Point2<f64> {
+    pub fn parameters_at(&self, p: &Point3<f64>) -> Point2<f64> {
         let q = self.surface.frame().coordinates(p);
         let [u, v] = self.surface.parameters(p);
         let on_axis = q.x.hypot(q.y) <= AXIS * self.reach;

@@ -96,8 +96,8 @@ pub enum SeamError {
 
 impl<'a> TwoManifold<'a> {
     /// The boundary with seams; `band` is the part's resolution.
-    pub fn of(brep: &'a Brep, band: f64) -> Result<Self, SeamError> {
-        let pairs = pairs::Pairs::of(brep);
+    pub fn new(brep: &'a Brep, band: f64) -> Result<Self, SeamError> {
+        let pairs = pairs::Pairs::new(brep);
         if let Some(edge) = pairs.crack(brep) {
             let [lo, hi] = brep.range(edge);
             let place = brep.curve(edge).point(0.5 * (lo + hi)).into();
@@ -106,7 +106,7 @@ impl<'a> TwoManifold<'a> {
         let cuts: Result<Vec<seams::Cut>, SeamError> = brep
             .topology
             .face_ids()
-            .map(|face| seams::Cut::of(brep, face, &pairs.rings[face.index()], band))
+            .map(|face| seams::Cut::new(brep, face, &pairs.rings[face.index()], band))
             .collect();
         loops::seamed(brep, &pairs, &cuts?)
     }

@@ -29,7 +29,7 @@ fn facets(part: &Evaluation, deviation: f64) -> Result<Facets, MeshError> {
         deviation,
         angle: 0.3,
     };
-    Facets::of(&part.brep, &accuracy, part.resolution)
+    Facets::new(&part.brep, &accuracy, part.resolution)
 }
 
 /// Every side is a side of one triangle, and the other way round of one other.
@@ -108,7 +108,7 @@ fn a_coarse_ring_is_closed() {
                 deviation,
                 angle: 2.0,
             };
-            let facets = Facets::of(&part.brep, &accuracy, part.resolution).unwrap();
+            let facets = Facets::new(&part.brep, &accuracy, part.resolution).unwrap();
             assert!(is_closed(&facets), "{text}: {deviation}");
         }
     }

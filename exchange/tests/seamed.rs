@@ -129,7 +129,7 @@ fn is_sound(name: &str, seamed: &TwoManifold<'_>) {
 fn seams_are_as_few_as_can_be() {
     for (name, text, expected) in PARTS {
         let known = part(text);
-        let seamed = TwoManifold::of(&known.brep, known.resolution).unwrap();
+        let seamed = TwoManifold::new(&known.brep, known.resolution).unwrap();
         is_sound(name, &seamed);
         let found = [seamed.faces.len(), seamed.edges.len(), vertices(&seamed)];
         assert_eq!(found, *expected, "{name}");
@@ -152,7 +152,7 @@ fn seams_that_meet_where_a_closed_edge_starts_leave_no_short_edge() {
             for turn in ["ROTX", "ROTY"] {
                 let name = format!("A = {solid} AT ({turn}={degrees})");
                 let known = part(&name);
-                let seamed = TwoManifold::of(&known.brep, known.resolution).unwrap();
+                let seamed = TwoManifold::new(&known.brep, known.resolution).unwrap();
                 is_sound(&name, &seamed);
             }
         }
@@ -165,7 +165,7 @@ fn seams_keep_the_characteristic() {
     for (name, text, _) in PARTS {
         let known = part(text);
         let topology = &known.brep.topology;
-        let seamed = TwoManifold::of(&known.brep, known.resolution).unwrap();
+        let seamed = TwoManifold::new(&known.brep, known.resolution).unwrap();
         let holes: usize = seamed.faces.iter().map(|f| f.loops.len() - 1).sum();
         let cells = (vertices(&seamed) + seamed.faces.len()) as i64;
         let euler = cells - (seamed.edges.len() + holes) as i64;
@@ -180,7 +180,7 @@ fn seams_keep_the_characteristic() {
 fn a_wall_without_thickness_is_refused() {
     let known = part("A = WED(X=4, Y=4, Z=4) DIF BLO(X=1, Y=2, Z=1) AT (MOVX=1, MOVY=1, MOVZ=1)");
     assert_eq!(known.brep.topology.edges_of_many_faces(), 1);
-    let error = TwoManifold::of(&known.brep, known.resolution).unwrap_err();
+    let error = TwoManifold::new(&known.brep, known.resolution).unwrap_err();
     assert_eq!(
         error,
         SeamError::Crack {

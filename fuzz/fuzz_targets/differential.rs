@@ -16,11 +16,11 @@ const POINTS: u32 = 32;
 fuzz_target!(|bytes: &[u8]| {
     let mut recipe = Recipe::new(bytes);
     let sight = recipe.sight();
-    let Some(part) = Part::of(&recipe.model()) else {
+    let Some(part) = Part::new(&recipe.model()) else {
         return;
     };
     let known = &part.evaluation;
-    let material = RayOracle::of(&part.tree);
+    let material = RayOracle::new(&part.tree);
     // What is so near to the boundary tells nothing.
     let resolution = known.resolution_of_doubles();
     let near = 1000.0 * resolution;

@@ -7,7 +7,7 @@ use premio_fuzz::{Part, Recipe};
 
 fuzz_target!(|bytes: &[u8]| {
     let model = Recipe::new(bytes).model();
-    let Some(part) = Part::of(&model) else {
+    let Some(part) = Part::new(&model) else {
         return;
     };
     let violations = part.evaluation.violations();
@@ -16,6 +16,6 @@ fuzz_target!(|bytes: &[u8]| {
     let size = part.evaluation.bounds.diagonal();
     let within = mass.volume <= size.powi(3) && mass.area.is_finite();
     assert!(mass.volume >= 0.0 && within, "{mass:?}\n{}", part.text);
-    let again = Part::of(&model).map(|again| again.evaluation.mass());
+    let again = Part::new(&model).map(|again| again.evaluation.mass());
     assert_eq!(again, Some(mass), "{}", part.text);
 });

@@ -15,7 +15,7 @@ fuzz_target!(|bytes: &[u8]| {
     if let Some(text) = sealed(text)
         && let Some(model) = tried(&text)
     {
-        let learned = Learned::of(&model.records, &BORED_BLOCK.brep);
+        let learned = Learned::new(&model.records, &BORED_BLOCK.brep);
         for record in &model.records {
             if let premio_predict::model::record::Record::Feature(feature) = record {
                 let states = learned.states(&feature.source);

@@ -8,7 +8,7 @@ use premio_visibility::contours;
 fuzz_target!(|bytes: &[u8]| {
     let mut recipe = Recipe::new(bytes);
     let sight = recipe.sight();
-    let Some(part) = Part::of(&recipe.model()) else {
+    let Some(part) = Part::new(&recipe.model()) else {
         return;
     };
     let Some(camera) = part.camera(&sight) else {

@@ -23,7 +23,7 @@ fuzz_target!(|bytes: &[u8]| {
     let name = String::from_utf8_lossy(name);
     let mut recipe = Recipe::new(rest);
     let sight = recipe.sight();
-    let Some(part) = Part::of(&recipe.model()) else {
+    let Some(part) = Part::new(&recipe.model()) else {
         return;
     };
     boundary(&part, &name);
@@ -33,7 +33,7 @@ fuzz_target!(|bytes: &[u8]| {
 
 fn boundary(part: &Part, name: &str) {
     let known = &part.evaluation;
-    let text = serde_json::to_string(&ObjectModel::of(&known.brep)).expect("a boundary is written");
+    let text = serde_json::to_string(&ObjectModel::new(&known.brep)).expect("a boundary is written");
     let value: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
     assert!(value.is_object(), "{text}");
     let size = known.bounds.diagonal();
@@ -83,7 +83,7 @@ fn meshes(part: &Part, name: &str) {
         deviation: size / 100.0,
         angle: 0.5,
     };
-    let Ok(facets) = Facets::of(&known.brep, &accuracy, known.resolution_of_doubles()) else {
+    let Ok(facets) = Facets::new(&known.brep, &accuracy, known.resolution_of_doubles()) else {
         return;
     };
     let count = facets.facets.len();
@@ -178,7 +178,7 @@ fn drawings(part: &Part, sight: &Sight, name: &str) {
         angle: sheet::Angle::First,
     };
     let views = vec![(Some(StandardView::Front), view())];
-    if let Ok(sheet) = Sheet::of(views, titled) {
+    if let Ok(sheet) = Sheet::new(views, titled) {
         document(&svg::write_sheet(&sheet), "path");
         groups(&dxf::write_sheet(&sheet));
     }

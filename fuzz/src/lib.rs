@@ -42,7 +42,7 @@ pub struct Part {
 
 impl Part {
     /// The part of a model; none where it is refused, which is no find.
-    pub fn of(model: &Model) -> Option<Self> {
+    pub fn new(model: &Model) -> Option<Self> {
         let text = write(model, Format::Padl);
         let json = write(model, Format::Json);
         let format = premio_csg::reader::Format::Json;

@@ -62,7 +62,10 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
         );
         let predicates = Predicates::new(to_f64(&band));
         let touch = pair.how(PairMeasure::PlaneOnSphere);
-        assert_eq!(predicates.classify("plane on sphere", touch, [0.0; 3]), side);
+        assert_eq!(
+            predicates.classify("plane on sphere", touch, [0.0; 3]),
+            side
+        );
         let decisions = predicates.decisions();
         assert_eq!((decisions.filtered, decisions.coincident), (0, 0));
         assert_eq!(decisions.refined, 1);

@@ -26,7 +26,7 @@ pub struct Astray {
 impl Astray {
     /// How far the edges are off that the features of a part at a pose are drawn to: of all together, and
     /// of each; none of those that are drawn to nothing.
-    pub fn of(
+    pub fn new(
         camera: &Pinhole,
         pose: &Isometry3<f64>,
         features: &[Vec<Pull>],
@@ -124,8 +124,8 @@ mod tests {
         all.collect()
     }
 
-    fn of(pulls: Vec<Pull>) -> Astray {
-        Astray::of(&CAMERA, &Isometry3::identity(), &[pulls]).0
+    fn new(pulls: Vec<Pull>) -> Astray {
+        Astray::new(&CAMERA, &Isometry3::identity(), &[pulls]).0
     }
 
     #[test]

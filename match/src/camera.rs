@@ -175,7 +175,7 @@ impl CameraFile {
             return Err(PinholeError::Value("R", "is not a rotation"));
         }
         Ok(Self {
-            pinhole: Pinhole::of(&matrix(raw.k))?,
+            pinhole: Pinhole::new(&matrix(raw.k))?,
             size: [raw.width, raw.height],
         })
     }
@@ -232,7 +232,7 @@ impl Pinhole {
     }
 
     /// The camera of a matrix K.
-    pub fn of(k: &Matrix3<f64>) -> Result<Self, PinholeError> {
+    pub fn new(k: &Matrix3<f64>) -> Result<Self, PinholeError> {
         if k.iter().any(|v| !v.is_finite()) {
             return Err(PinholeError::Matrix("has a value that is no number"));
         }

@@ -93,7 +93,7 @@ impl Correspondence {
             all
         });
         let mut choices: Vec<Vec<Choice>> = choices.collect();
-        let ends = Ends::of(part, picture, arcs, &order, &choices);
+        let ends = Ends::new(part, picture, arcs, &order, &choices);
         for (k, all) in choices.iter_mut().enumerate() {
             for (c, choice) in all.iter_mut().enumerate() {
                 choice.ends = ends.counts(k, c);

@@ -49,7 +49,7 @@ pub struct Ends(Vec<Vec<Tip>>);
 
 impl Ends {
     /// The ends of arcs in a picture; `order` tells which arc a feature is.
-    pub fn of(
+    pub fn new(
         part: &Part<'_>,
         picture: &Picture,
         arcs: &[Arc],

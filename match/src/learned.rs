@@ -69,7 +69,7 @@ impl Learned {
     }
 
     /// What the records of a part's model tell.
-    pub fn of(records: &[Record], brep: &Brep) -> Self {
+    pub fn new(records: &[Record], brep: &Brep) -> Self {
         let mut learned = Self {
             chance: JUNCTION[1],
             ..Self::default()

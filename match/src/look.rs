@@ -159,14 +159,14 @@ impl Look<'_> {
     /// The match, with what it tells of the part's shape, and the odds that it is the part.
     fn judged(&self, found: Match) -> Match {
         let mut judged = found;
-        let (all, each) = Astray::of(self.camera, &judged.pose, &judged.pulls);
+        let (all, each) = Astray::new(self.camera, &judged.pose, &judged.pulls);
         judged.astray = all;
         for (pair, astray) in judged.pairs.iter_mut().zip(each) {
             if let (Some(found), Some(astray)) = (&mut pair.found, astray) {
                 found.astray = astray;
             }
         }
-        judged.shape = Shape::of(self.part, self.camera, &judged);
+        judged.shape = Shape::new(self.part, self.camera, &judged);
         judged.framed = framed(self.picture, &judged.pairs);
         judged.odds = odds(&judged, self.picture.straightness);
         judged

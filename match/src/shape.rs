@@ -54,7 +54,7 @@ pub struct Shape {
 impl Shape {
     /// What the edges of a match tell; nothing where there are none. Features that are found so badly that
     /// they tell against the part are not asked for its shape.
-    pub fn of(part: &Part<'_>, camera: &Pinhole, found: &Match) -> Self {
+    pub fn new(part: &Part<'_>, camera: &Pinhole, found: &Match) -> Self {
         let pairs = found.pairs.iter().zip(&found.pulls);
         let well = pairs.filter(|(pair, _)| pair.score > 0.0);
         let features = well.map(|(pair, pulls)| (pair.source, pulls.as_slice()));
@@ -218,7 +218,12 @@ struct Places {
 
 impl Places {
     /// The place and the factor of each number that a face's offset by a unit is one of.
-    fn of(&mut self, part: &Part<'_>, face: FaceId, point: &Point3<f64>) -> Vec<(usize, f64)> {
+    fn distances(
+        &mut self,
+        part: &Part<'_>,
+        face: FaceId,
+        point: &Point3<f64>,
+    ) -> Vec<(usize, f64)> {
         let surface = part.brep.geometry.patches[face.0 as usize].surface;
         let moves = !matches!(part.brep.geometry.surfaces[surface], Surface::Plane(_));
         let first = *self.first.entry(surface).or_insert_with(|| {
@@ -248,7 +253,7 @@ fn against_its_kind(
         .map(|d| {
             let mut row: Vec<(usize, f64)> = d.by_pose.into_iter().enumerate().collect();
             for &(face, by) in &d.by_face {
-                let numbers = places.of(part, face, &d.point);
+                let numbers = places.distances(part, face, &d.point);
                 row.extend(numbers.into_iter().map(|(i, factor)| (i, by * factor)));
             }
             row

@@ -82,7 +82,7 @@ pub fn matches(arcs: &[ArcLevel], found: &[Evidence], shortest: f64) -> Vec<Matc
 
 impl Agreement {
     /// The agreement of some features.
-    pub fn of<'m>(matches: impl Iterator<Item = &'m Match>) -> Self {
+    pub fn new<'m>(matches: impl Iterator<Item = &'m Match>) -> Self {
         let mut all = Self {
             reliability: vec![Bin::default(); BINS],
             ..Self::default()
@@ -166,7 +166,7 @@ mod tests {
             seen(0.25, State::Missed),
             seen(0.75, State::Missed),
         ];
-        let agreement = Agreement::of(all.iter());
+        let agreement = Agreement::new(all.iter());
         assert_eq!(agreement.features, 4);
         assert_eq!(agreement.table, [[2, 0, 1], [0, 0, 0], [0, 0, 1]]);
         assert_eq!(agreement.same, 0.75);

@@ -86,7 +86,7 @@ pub struct Counted {
 
 impl Cast {
     /// The triangles of a boundary; none of an empty one.
-    pub fn of(evaluation: &Evaluation) -> Result<Self, TessellationError> {
+    pub fn new(evaluation: &Evaluation) -> Result<Self, TessellationError> {
         let size = evaluation.bounds.diagonal();
         let accuracy = Accuracy {
             deviation: DEVIATION * size,

@@ -94,7 +94,7 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     let drawn = evaluation.view_resolution().is_some();
     if drawn && !depth.views.is_empty() && report.holds() {
         let all = views::around(&evaluation.bounds);
-        let cast = Cast::of(&evaluation);
+        let cast = Cast::new(&evaluation);
         match &cast {
             Ok(cast) => wrong.extend(cast.faults(&evaluation)),
             Err(error) => wrong.push(format!("mesh: {error}")),
@@ -209,7 +209,7 @@ fn lies_on(evaluation: &Evaluation, contour: &Contour, piece: &ContourPiece) -> 
     let others = others.filter(|f| !contour.faces.contains(f));
     let on = others.filter(|&f| {
         let near = brep.surface(f).distance(&p).abs() <= ON * band;
-        near && FaceLocator::of(brep, f, band).place(&p) != PointLocation::Outside
+        near && FaceLocator::from_face(brep, f, band).place(&p) != PointLocation::Outside
     });
     on.count()
 }

@@ -158,7 +158,7 @@ pub fn side(tree: &Value) -> Result<Side, String> {
         return Err(format!("{defect:?}"));
     }
     Ok(Side {
-        signature: Signature::of(&part.brep),
+        signature: Signature::new(&part.brep),
         mass: part.mass(),
         close: !part.decisions.close_calls.is_empty(),
     })

@@ -86,7 +86,7 @@ impl Task {
         let again = evaluated(&description, how)?;
         match fault(&again.decisions) {
             Some(fault) => Err(format!("{fault}: {:?}", again.decisions)),
-            None => Ok(Signature::of(&known.brep) != Signature::of(&again.brep)),
+            None => Ok(Signature::new(&known.brep) != Signature::new(&again.brep)),
         }
     }
 }

@@ -86,7 +86,7 @@ fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
     if again.decisions.filtered > 0 {
         return Some(format!("{name}: {:?}", again.decisions));
     }
-    let differ = Signature::of(&plain.brep) != Signature::of(&again.brep);
+    let differ = Signature::new(&plain.brep) != Signature::new(&again.brep);
     let [told, again] = [plain, again].map(|e| e.brep.topology.census());
     differ.then(|| format!("{name}: {again:?} for {told:?}"))
 }
@@ -126,7 +126,9 @@ fn a_curve_through_an_apex_has_no_other_start() {
 fn faults(name: &str, tree: &Tree) -> Vec<String> {
     if REFUSED.iter().any(|(case, _)| *case == name) {
         return match asked(tree, CoincidencePolicy::Exact) {
-            Err(EvaluationError::IllConditioned { .. } | EvaluationError::InvalidBoundary(_)) => Vec::new(),
+            Err(EvaluationError::IllConditioned { .. } | EvaluationError::InvalidBoundary(_)) => {
+                Vec::new()
+            }
             Err(error) => vec![format!("{name}: {error}")],
             Ok(_) => vec![format!("{name} is no longer refused")],
         };

@@ -30,7 +30,8 @@ fn more_places_than_the_limit_are_refused_by_name() {
     };
     for most in [0, 10, 30, 50] {
         let refused = within(most).unwrap_err();
-        let is_named = matches!(&refused, EvaluationError::EntityLimit { most: told } if *told == most);
+        let is_named =
+            matches!(&refused, EvaluationError::EntityLimit { most: told } if *told == most);
         assert!(is_named, "{refused}");
         assert!(refused.to_string().contains(&most.to_string()));
     }
@@ -57,7 +58,7 @@ fn written(seed: u64) -> [String; 2] {
     let seen = contours(&known.brep, &camera, known.resolution).unwrap();
     let drawn = (&seen.contours, &seen.junctions);
     [
-        serde_json::to_string(&ObjectModel::of(&known.brep)).unwrap(),
+        serde_json::to_string(&ObjectModel::new(&known.brep)).unwrap(),
         serde_json::to_string(&drawn).unwrap(),
     ]
 }

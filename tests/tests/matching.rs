@@ -31,7 +31,7 @@ fn part(json: &Value) -> Evaluation {
 
 fn camera() -> Pinhole {
     let (cx, cy) = (0.5 * (SIZE[0] as f64 - 1.0), 0.5 * (SIZE[1] as f64 - 1.0));
-    Pinhole::of(&Matrix3::new(FOCAL, 0.0, cx, 0.0, FOCAL, cy, 0.0, 0.0, 1.0)).unwrap()
+    Pinhole::new(&Matrix3::new(FOCAL, 0.0, cx, 0.0, FOCAL, cy, 0.0, 0.0, 1.0)).unwrap()
 }
 
 /// A camera at `eye` that looks at the part's middle with z upwards, both in the part's radius about it.
@@ -230,7 +230,7 @@ fn what_is_drawn_is_not_taken_for_a_cube() {
     let cube = part(&json!({"prim": "block", "size": [1.0, 1.0, 1.0]}));
     let cube = sought(&cube, &Learned::nothing());
     for draw in drawn {
-        let grey = Grey::of(640, 480, draw);
+        let grey = Grey::new(640, 480, draw);
         let look = Look {
             part: &cube,
             learned: &Learned::nothing(),
@@ -362,7 +362,7 @@ fn an_empty_picture_holds_nothing() {
     let evaluation = part(&cube_with_cuts());
     let part = sought(&evaluation, &Learned::nothing());
     for (width, height) in [(SIZE[0], SIZE[1]), (1, 1), (0, 0), (3, 200)] {
-        let grey = Grey::of(width, height, |_, _| 90.0);
+        let grey = Grey::new(width, height, |_, _| 90.0);
         let finding = look(&part, &grey, &Options::default());
         assert!(finding.best().is_none());
         assert_eq!(finding.proposed, 0);
@@ -375,7 +375,7 @@ fn clutter_bounds_the_work() {
     let evaluation = part(&cube_with_cuts());
     let part = sought(&evaluation, &Learned::nothing());
     // Tiles of two levels, shifted from row to row.
-    let grey = Grey::of(SIZE[0], SIZE[1], |x, y| {
+    let grey = Grey::new(SIZE[0], SIZE[1], |x, y| {
         let row = y / 14;
         let tile = (x + 5 * row) / 17;
         if (tile + row) % 2 == 0 { 60.0 } else { 170.0 }

@@ -309,7 +309,7 @@ fn features_are_found_as_predicted() {
             .unwrap();
         }
     }
-    let agreement = Agreement::of(all.iter());
+    let agreement = Agreement::new(all.iter());
     assert!(agreement.features > 100, "{}", agreement.features);
     assert!(agreement.baseline_same < 0.9, "too easy: {agreement:?}");
     assert!(agreement.same >= 0.95, "{agreement:?}");

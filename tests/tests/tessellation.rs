@@ -106,7 +106,7 @@ fn rays_on_triangles_find_pieces_that_are_wrong() {
     let (mut raised, mut found) = (0, 0);
     for seed in 0..12 {
         let part = part(&tree(seed).to_string(), Format::Json).unwrap();
-        let cast = Cast::of(&part).unwrap();
+        let cast = Cast::new(&part).unwrap();
         assert_eq!(cast.faults(&part), None);
         for view in views::around(&part.bounds).iter().take(3) {
             let mut seen = contours(&part.brep, &view.camera, part.resolution).unwrap();

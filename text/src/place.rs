@@ -11,7 +11,7 @@ pub struct LineColumn {
 
 impl LineColumn {
     /// Where a byte of a text stands.
-    pub fn of(text: &[u8], at: usize) -> Self {
+    pub fn new(text: &[u8], at: usize) -> Self {
         let before = &text[..at.min(text.len())];
         let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
         let start = before.iter().rposition(|&b| b == b'\n');
@@ -55,9 +55,9 @@ mod tests {
     #[test]
     fn places_count_characters() {
         let text = "ä = 1\nöb".as_bytes();
-        let at = LineColumn::of(text, text.len() - 1);
+        let at = LineColumn::new(text, text.len() - 1);
         assert_eq!(at, LineColumn { line: 2, column: 2 });
-        assert_eq!(LineColumn::of(b"", 9), LineColumn { line: 1, column: 1 });
+        assert_eq!(LineColumn::new(b"", 9), LineColumn { line: 1, column: 1 });
     }
 
     #[test]

@@ -239,7 +239,7 @@ pub fn examine(model: &Model, terms: &Terms) -> Outcome {
         true => Verdict::Right(measures(&evaluation)),
         false => Verdict::Wrong(faults),
     };
-    let untold = report.of(Finding::Untold).map(text).collect();
+    let untold = report.checks_with(Finding::Untold).map(text).collect();
     Outcome {
         verdict,
         close_calls,
@@ -278,7 +278,7 @@ fn faults(report: &Report) -> Vec<Fault> {
         let text = text(check);
         Fault { kind, text }
     };
-    report.of(Finding::Fails).map(fault).collect()
+    report.checks_with(Finding::Fails).map(fault).collect()
 }
 
 fn text(check: &Check) -> String {
@@ -310,7 +310,7 @@ fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &Terms) -> Option<Fa
         Ok(again) => again,
         Err(error) => return Some(fault(error.to_string())),
     };
-    let differ = Signature::of(&known.brep) != Signature::of(&again.brep);
+    let differ = Signature::new(&known.brep) != Signature::new(&again.brep);
     let counts = || [known, &again].map(|part| part.brep.topology.census());
     differ.then(|| fault(format!("doubles and more digits: {:?}", counts())))
 }
@@ -383,7 +383,7 @@ fn size(models: &[&Model]) -> f64 {
     let boxes = models.iter().filter_map(|model| {
         let text = write(model, Format::Json);
         let tree = read(&text, Format::Json).ok()?.tree;
-        let material = premio_csg::ray_casting::RayOracle::of(&tree);
+        let material = premio_csg::ray_casting::RayOracle::new(&tree);
         Some(*material.bounds())
     });
     let all = boxes.reduce(|a, b| a.hull(&b)).map(|b| b.diagonal());
@@ -406,8 +406,8 @@ mod tests {
     };
 
     fn two(op: Operation, apart: f64) -> Model {
-        let block = Model::of(Primitive::Block([1.0; 3]), Vec::new());
-        let other = Model::of(
+        let block = Model::new(Primitive::Block([1.0; 3]), Vec::new());
+        let other = Model::new(
             Primitive::Block([1.0; 3]),
             vec![Step::Shift([apart, 0.0, 0.0])],
         );

@@ -256,7 +256,7 @@ impl Camera {
         up: Vector3<f64>,
         focal: f64,
     ) -> Result<Self, CameraError> {
-        Self::of(CameraModel::Perspective {
+        Self::new(CameraModel::Perspective {
             eye,
             target,
             up,
@@ -270,11 +270,11 @@ impl Camera {
         target: Point3<f64>,
         up: Vector3<f64>,
     ) -> Result<Self, CameraError> {
-        Self::of(CameraModel::Orthographic { eye, target, up })
+        Self::new(CameraModel::Orthographic { eye, target, up })
     }
 
     /// A camera of a model, with the default near plane.
-    pub fn of(model: CameraModel) -> Result<Self, CameraError> {
+    pub fn new(model: CameraModel) -> Result<Self, CameraError> {
         let camera = Self { model, near: None };
         camera.validate()?;
         Ok(camera)

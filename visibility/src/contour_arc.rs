@@ -503,9 +503,9 @@ impl LimbTrimmer<'_, '_, '_, '_> {
                     .map_or(t, |p| lo + (t - lo).rem_euclid(p));
                 if t.lies_between(range) {
                     let p = arc.curve.point(t);
-                    let id = self
-                        .junctions
-                        .add(JunctionKind::SelfCrossing, JunctionSupport::Alone, &p);
+                    let id =
+                        self.junctions
+                            .add(JunctionKind::SelfCrossing, JunctionSupport::Alone, &p);
                     arc.marks.push((t, id));
                 }
             }

@@ -34,7 +34,7 @@ const PLACES: usize = 17;
 impl Edgewise {
     /// The curve over `range` on one of the surfaces, if that is seen edge-on: nearer to parallel sight
     /// than `tilt`. `band` is the resolution.
-    pub fn of<'a>(
+    pub fn new<'a>(
         curve: &Curve,
         range: [f64; 2],
         surfaces: impl Iterator<Item = &'a Surface>,

@@ -23,7 +23,7 @@ pub struct Pierced {
 
 impl Pierced {
     /// The boxes that this line of sight meets.
-    pub fn of(ray: &SightLine) -> Self {
+    pub fn new(ray: &SightLine) -> Self {
         Self {
             origin: ray.origin.into(),
             // Finite, so that zero times it is zero: a line in the plane of a side is inside.
@@ -76,7 +76,7 @@ pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f6
             let hull = own.boxes().iter().fold(Aabb::EMPTY, |a, b| a.hull(b));
             match surface {
                 Surface::Cone(s) if own.place(&s.frame.origin) != PointLocation::Outside => {
-                    hull.hull(&Aabb::of(&s.frame.origin))
+                    hull.hull(&Aabb::new(&s.frame.origin))
                 }
                 _ => hull,
             }

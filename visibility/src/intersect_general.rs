@@ -50,7 +50,7 @@ pub fn general_pair<'x>(
     let mut common = Common::default();
     let mut both = |x: &'x MonotoneArc, y: &'x MonotoneArc| {
         if x.bounds.meets(&y.bounds)
-            && let Some(graphs) = Graphs::of((a, x), (b, y), projection)
+            && let Some(graphs) = Graphs::new((a, x), (b, y), projection)
         {
             graphs.cross(band, &mut common);
         }
@@ -65,7 +65,7 @@ pub fn general_pair<'x>(
         }
     }
     let Common { mut roots, shared } = common;
-    let runs = Runs::of(shared, SAME * band, SHORT * band);
+    let runs = Runs::new(shared, SAME * band, SHORT * band);
     roots.extend(runs.contacts(band));
     let overlap = [a, b].map(|c| overlap_of(runs.length(), c));
     let overlaps = overlap.contains(&Overlap::Yes);
@@ -135,7 +135,7 @@ pub struct Gap {
 
 impl<'x> Graphs<'x> {
     /// None where one of them is a dot.
-    fn of(
+    fn new(
         (a, x): (&'x ContourArc<'x>, &'x MonotoneArc),
         (b, y): (&'x ContourArc<'x>, &'x MonotoneArc),
         projection: &'x Projection,

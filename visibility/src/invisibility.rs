@@ -101,7 +101,7 @@ struct Chain {
 
 impl Chain {
     /// Cuts a strand at its splits; those at one point are taken together, and crowd each other.
-    fn of(strand: &mut ContourArc<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
+    fn new(strand: &mut ContourArc<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
         strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
         let strand = &*strand;
         let [lo, hi] = strand.range;
@@ -178,7 +178,7 @@ pub fn pieces(
 ) -> Vec<Vec<ContourPiece>> {
     let near = LOOSE * scene.band;
     let cut = strands.iter_mut();
-    let chains: Vec<Chain> = cut.map(|s| Chain::of(s, junctions, near)).collect();
+    let chains: Vec<Chain> = cut.map(|s| Chain::new(s, junctions, near)).collect();
     let strands = &*strands;
     let carried = match method {
         Method::Propagated => Carrying::new(scene, strands, &chains, junctions).counts(),

@@ -33,7 +33,7 @@ pub struct Limb {
 }
 
 impl Limb {
-    fn of(curve: Curve) -> Self {
+    fn new(curve: Curve) -> Self {
         Self {
             curve,
             from: None,
@@ -96,7 +96,7 @@ fn cylinder_limbs(s: &Cylinder, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Li
     [middle - half, middle + half]
         .map(|u| {
             let origin = s.frame.point(s.radius * u.cos(), s.radius * u.sin(), 0.0);
-            Limb::of(Curve::Line(Line {
+            Limb::new(Curve::Line(Line {
                 origin,
                 direction: s.frame.z,
             }))
@@ -124,7 +124,7 @@ fn cone_limbs(s: &Cone, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Limb> {
             let radial = s.frame.x * u.cos() + s.frame.y * u.sin();
             Limb {
                 from: Some(0.0),
-                ..Limb::of(Curve::Line(Line {
+                ..Limb::new(Curve::Line(Line {
                     origin: s.frame.origin,
                     direction: s.frame.z * s.cos + radial * s.sin,
                 }))
@@ -135,7 +135,7 @@ fn cone_limbs(s: &Cone, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Limb> {
 
 fn sphere_limb(s: &Sphere, sight: &ViewRay, band: f64) -> Option<Limb> {
     let circle = |centre: Point3<f64>, z: Vector3<f64>, radius: f64| {
-        Limb::of(Curve::Circle(Circle {
+        Limb::new(Curve::Circle(Circle {
             frame: Frame::about(centre, z),
             radius,
         }))
@@ -166,7 +166,7 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, band: f64) -> Result<Vec<Limb>, Unres
     let mut limbs: Vec<Limb> = traced
         .branches
         .into_iter()
-        .map(|c| Limb::of(Curve::Toric(Box::new(c))))
+        .map(|c| Limb::new(Curve::Toric(Box::new(c))))
         .collect();
     for (branch, t) in traced.singular.iter().flat_map(|s| &s.on) {
         if let Some(limb) = limbs.get_mut(*branch) {
@@ -193,7 +193,7 @@ fn axial_limbs(s: &Torus, sight: &LocalSight, band: f64) -> Option<Vec<Limb>> {
     };
     let circle = |phi: f64| {
         let centre = s.frame.point(0.0, 0.0, s.minor * phi.sin());
-        Limb::of(Curve::Circle(Circle {
+        Limb::new(Curve::Circle(Circle {
             frame: s.frame.at(centre),
             radius: s.major + s.minor * phi.cos(),
         }))
@@ -213,14 +213,14 @@ fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
     let quarter = TAU / 4.0;
     let level = |z: f64| Limb {
         nodes: vec![alpha + quarter, alpha - quarter],
-        ..Limb::of(Curve::Circle(Circle {
+        ..Limb::new(Curve::Circle(Circle {
             frame: s.frame.at(s.frame.point(0.0, 0.0, z)),
             radius: s.major,
         }))
     };
     let tube = |radial: Vector3<f64>| Limb {
         nodes: vec![quarter, -quarter],
-        ..Limb::of(Curve::Circle(Circle {
+        ..Limb::new(Curve::Circle(Circle {
             frame: Frame {
                 origin: s.frame.origin + radial * s.major,
                 x: radial,

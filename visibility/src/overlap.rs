@@ -148,7 +148,7 @@ pub struct Runs<'x> {
 impl<'x> Runs<'x> {
     /// Joins stretches; `near` is how far ends may be apart that are one, and what is no longer than
     /// `short` may as well be a crossing or a touch.
-    pub fn of(mut stretches: Vec<Shared<'x>>, near: f64, short: f64) -> Self {
+    pub fn new(mut stretches: Vec<Shared<'x>>, near: f64, short: f64) -> Self {
         stretches.sort_by(|x, y| x.on[0].total_cmp(&y.on[0]));
         let mut all: Vec<Run<'x>> = Vec::new();
         for next in stretches {

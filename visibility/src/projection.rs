@@ -63,14 +63,14 @@ fn unit_of(size: f64) -> f64 {
 impl Projection {
     /// The projection of `camera` for a part of the given size (the diagonal of its box).
     pub fn new(camera: &Camera, size: f64) -> Self {
-        let mut projection = Self::of(camera, size);
+        let mut projection = Self::without_inverse(camera, size);
         if let Some(inverse) = projection.affine.try_inverse() {
             projection.inverse = inverse;
         }
         projection
     }
 
-    fn of(camera: &Camera, size: f64) -> Self {
+    fn without_inverse(camera: &Camera, size: f64) -> Self {
         // A positive distance, so that no contour reaches the eye's own plane.
         let least = size * ROUNDING.sqrt();
         let unit = unit_of(size);

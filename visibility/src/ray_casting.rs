@@ -211,7 +211,7 @@ impl<'a> Scene<'a> {
 
     /// The faces whose boxes a line of sight passes.
     pub(crate) fn passed(&self, ray: &SightLine) -> impl Iterator<Item = FaceId> {
-        let leaves = self.tree.locate_with_selection_function(Pierced::of(ray));
+        let leaves = self.tree.locate_with_selection_function(Pierced::new(ray));
         leaves.map(|leaf| leaf.data)
     }
 

@@ -138,7 +138,7 @@ pub fn part_size(brep: &Brep) -> f64 {
         hull = hull.hull(&bounds(brep.curve(edge), brep.range(edge)));
     }
     for face in brep.topology.face_ids() {
-        let around = |f: &Frame, r: f64| Aabb::of(&f.origin).grown(r);
+        let around = |f: &Frame, r: f64| Aabb::new(&f.origin).grown(r);
         match brep.surface(face) {
             Surface::Sphere(s) => hull = hull.hull(&around(&s.frame, s.radius)),
             Surface::Torus(s) => hull = hull.hull(&around(&s.frame, s.major + s.minor)),
@@ -363,7 +363,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         if let Image::General = seen {
             let brep = self.scene.brep;
             let surfaces = source.faces.iter().map(|f| brep.surface(f.0));
-            seen = Edgewise::of(
+            seen = Edgewise::new(
                 source.curve,
                 range,
                 surfaces,
@@ -407,9 +407,9 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         for &t in &turns {
             if t.lies_between(range) && !at_end(t) || closed {
                 let p = source.curve.point(t);
-                let junction = self
-                    .junctions
-                    .add(JunctionKind::ImageTurn, JunctionSupport::Alone, &p);
+                let junction =
+                    self.junctions
+                        .add(JunctionKind::ImageTurn, JunctionSupport::Alone, &p);
                 splits.push(Split {
                     t,
                     junction,

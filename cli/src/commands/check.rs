@@ -16,11 +16,11 @@ pub fn run(options: &CheckOptions, session: Session) -> Result<(), Failure> {
     let report = checker.all(options.rays as usize);
     drop(working);
     match voice.is_json() {
-        true => output::json(&Checked::of(&report), None)?,
+        true => output::json(&Checked::new(&report), None)?,
         false => output::write(report.to_string(), None)?,
     }
     // A check that does not tell has not failed.
-    match report.of(Finding::Fails).next() {
+    match report.checks_with(Finding::Fails).next() {
         None => Ok(()),
         Some(_) => Err(Failure::Check),
     }
@@ -42,7 +42,7 @@ struct One<'a> {
 }
 
 impl<'a> Checked<'a> {
-    fn of(report: &'a Report) -> Self {
+    fn new(report: &'a Report) -> Self {
         let one = |check: &'a Check| One {
             subject: check.subject.to_string(),
             finding: match check.finding {

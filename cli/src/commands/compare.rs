@@ -59,8 +59,8 @@ pub fn run(options: &CompareOptions, session: Session) -> Result<(), Failure> {
         let outline = |m: &&Match| matches!(m.source, Source::Edge { .. } | Source::Limb { .. });
         let comparison = Comparison {
             schema: SCHEMA,
-            outlines: Agreement::of(features.iter().filter(outline)),
-            lighting: Agreement::of(features.iter().filter(|m| !outline(m))),
+            outlines: Agreement::new(features.iter().filter(outline)),
+            lighting: Agreement::new(features.iter().filter(|m| !outline(m))),
             features,
         };
         (comparison, predicted, image)

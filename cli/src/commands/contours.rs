@@ -111,7 +111,7 @@ fn on_sheet(
         scale: asked.scale,
         angle: asked.projection.map(Angle::from).unwrap_or_default(),
     };
-    let sheet = Sheet::of(views, how).map_err(|e| Failure::input(e.to_string()))?;
+    let sheet = Sheet::new(views, how).map_err(|e| Failure::input(e.to_string()))?;
     Ok(write(&sheet))
 }
 
@@ -149,7 +149,7 @@ impl<'a> Given<'a> {
                 Err(Failure::input(format!("{}: is not read", path.display())))
             }
             Self::Choice(CameraChoice::Named(name)) => {
-                let Extent { middle, size } = Extent::of(part);
+                let Extent { middle, size } = Extent::new(part);
                 StandardView::from(*name)
                     .camera(middle, size)
                     .map_err(failed)
@@ -160,7 +160,7 @@ impl<'a> Given<'a> {
                 up,
                 focal,
             }) => {
-                let middle = Extent::of(part).middle;
+                let middle = Extent::new(part).middle;
                 let (eye, up) = (Point3::from(*eye), (*up).into());
                 let target = target.map_or(middle, Point3::from);
                 match focal {
@@ -196,7 +196,7 @@ fn cameras(
     part: &Part,
     names: &[ViewName],
 ) -> Result<Vec<(Option<StandardView>, Camera)>, Failure> {
-    let Extent { middle, size } = Extent::of(part);
+    let Extent { middle, size } = Extent::new(part);
     let mut cameras: Vec<(Option<StandardView>, Camera)> = Vec::new();
     for &name in names {
         let view = StandardView::from(name);
@@ -216,7 +216,7 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(part: &Part) -> Self {
+    fn new(part: &Part) -> Self {
         let evaluation = &part.evaluation;
         if evaluation.brep.topology.faces.is_empty() {
             let middle = Point3::origin();

@@ -25,7 +25,7 @@ pub fn run(options: &ExportOptions, session: Session) -> Result<(), Failure> {
     let to = options.output.path();
     let working = voice.working("making the file");
     let bytes = match format {
-        ExportFormat::Json => return output::json(&ObjectModel::of(&part.evaluation.brep), to),
+        ExportFormat::Json => return output::json(&ObjectModel::new(&part.evaluation.brep), to),
         ExportFormat::Step => as_step(&part, options)?.into_bytes(),
         ExportFormat::Stl | ExportFormat::Obj | ExportFormat::Glb | ExportFormat::ThreeMf => {
             check_fineness(&part, options)?;
@@ -122,7 +122,7 @@ fn as_triangles(
         angle: options.angle.unwrap_or(mesh::ANGLE).to_radians(),
     };
     let band = evaluation.resolution_of_doubles();
-    let facets = Facets::of(&evaluation.brep, &accuracy, band)?;
+    let facets = Facets::new(&evaluation.brep, &accuracy, band)?;
     let name = name(options);
     match format {
         ExportFormat::Obj => Ok(obj::write(&facets, &name).into_bytes()),

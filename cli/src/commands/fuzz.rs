@@ -64,7 +64,7 @@ pub fn run(options: &FuzzOptions, session: Session) -> Result<(), Failure> {
         archive.finish(&state)?;
     }
     let stopped = stop.load(Ordering::Relaxed);
-    tell(options, voice, &Summary::of(&state), stopped)
+    tell(options, voice, &Summary::new(&state), stopped)
 }
 
 fn tell(

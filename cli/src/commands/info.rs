@@ -69,7 +69,7 @@ pub fn run(options: &InfoOptions, session: Session) -> Result<(), Failure> {
     let voice = session.voice;
     let part = input::part(&options.description, session)?;
     let working = voice.working("measuring");
-    let info = Info::of(&part);
+    let info = Info::new(&part);
     drop(working);
     if voice.is_json() {
         output::json(&info, None)
@@ -79,7 +79,7 @@ pub fn run(options: &InfoOptions, session: Session) -> Result<(), Failure> {
 }
 
 impl Info {
-    fn of(part: &Part) -> Self {
+    fn new(part: &Part) -> Self {
         let brep = &part.evaluation.brep;
         let topology = &brep.topology;
         let mut faces_by_surface = BTreeMap::new();
@@ -94,7 +94,7 @@ impl Info {
             volume: mass.volume,
             area: mass.area,
             centroid: mass.centroid.into(),
-            bounds: Bounds::of(part),
+            bounds: Bounds::new(part),
             solids: topology.solids.len(),
             shells: topology.shells.len(),
             faces: topology.faces.len(),
@@ -107,7 +107,7 @@ impl Info {
                 points: topology.touches.len(),
             },
             faces_by_surface,
-            decisions: Counts::of(&part.evaluation.decisions),
+            decisions: Counts::new(&part.evaluation.decisions),
             close_calls: part.evaluation.decisions.close_calls.clone(),
             resolution: part.evaluation.resolution,
             seconds: Seconds {
@@ -120,7 +120,7 @@ impl Info {
 
 impl Bounds {
     /// The box of the boundary; a point at the origin for an empty solid.
-    fn of(part: &Part) -> Self {
+    fn new(part: &Part) -> Self {
         let evaluation = &part.evaluation;
         if evaluation.brep.topology.faces.is_empty() {
             let (min, max) = ([0.0; 3], [0.0; 3]);
@@ -135,7 +135,7 @@ impl Bounds {
 }
 
 impl Counts {
-    fn of(decisions: &DecisionStats) -> Self {
+    fn new(decisions: &DecisionStats) -> Self {
         Self {
             filtered: decisions.filtered,
             refined: decisions.refined,

@@ -83,7 +83,7 @@ impl Sought {
         match (options.uniform, self.records.is_empty()) {
             (true, _) => Learned::uniform(),
             (false, true) => Learned::nothing(),
-            (false, false) => Learned::of(&self.records, &self.described.evaluation.brep),
+            (false, false) => Learned::new(&self.records, &self.described.evaluation.brep),
         }
     }
 

@@ -20,7 +20,7 @@ pub struct Excerpt {
 
 impl Excerpt {
     /// The excerpt around what an error found.
-    pub fn of(error: &ReadError, text: &[u8]) -> Self {
+    pub fn new(error: &ReadError, text: &[u8]) -> Self {
         let place = [error.line, error.column];
         Self::around(error.name.to_string(), place, &error.span, text)
     }

@@ -85,7 +85,7 @@ impl Message {
     pub fn of_reader(error: &ReadError, text: &[u8]) -> Self {
         Self {
             text: error.to_string(),
-            excerpt: Some(Excerpt::of(error, text)),
+            excerpt: Some(Excerpt::new(error, text)),
             place: Some(Place {
                 file: error.name.to_string(),
                 line: error.line,
@@ -100,7 +100,7 @@ impl Message {
 
     /// What is wrong with some bytes of a text.
     pub fn at(name: &str, text: &[u8], span: &Range<usize>, words: &str) -> Self {
-        let LineColumn { line, column } = LineColumn::of(text, span.start);
+        let LineColumn { line, column } = LineColumn::new(text, span.start);
         let place = [line, column];
         Self {
             text: format!("{name}:{line}:{column}: {words}"),

@@ -108,7 +108,7 @@ pub enum Voice {
 
 impl Voice {
     /// For programs, if JSON is asked for.
-    pub fn of(json: bool) -> Self {
+    pub fn new(json: bool) -> Self {
         match json {
             true => Self::Json,
             false => Self::Words,
@@ -117,7 +117,7 @@ impl Voice {
 
     /// What arguments that are wrong seem to ask for.
     pub fn guessed(arguments: &[OsString]) -> Self {
-        Self::of(arguments.iter().any(|word| word == "--json"))
+        Self::new(arguments.iter().any(|word| word == "--json"))
     }
 
     /// Whether results are written as JSON, too.
@@ -158,7 +158,7 @@ impl Voice {
     /// Tells the notes of a reader.
     pub fn notes(self, name: &str, text: &[u8], notes: &[Note]) {
         for note in notes {
-            let line = LineColumn::of(text, note.span.start).line;
+            let line = LineColumn::new(text, note.span.start).line;
             self.tell(&Message::at_line(name, line, &note.text));
         }
     }

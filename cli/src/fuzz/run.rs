@@ -387,7 +387,7 @@ mod tests {
 
     /// What does not depend on time.
     fn told(state: &State) -> serde_json::Value {
-        let mut told = serde_json::to_value(Summary::of(state)).unwrap();
+        let mut told = serde_json::to_value(Summary::new(state)).unwrap();
         told.as_object_mut().unwrap().remove("seconds");
         told
     }
@@ -397,7 +397,7 @@ mod tests {
         let one = ran(State::new(plan()), 1, usize::MAX, None);
         let many = ran(State::new(plan()), 7, usize::MAX, None);
         assert_eq!(told(&one), told(&many));
-        let summary = Summary::of(&one);
+        let summary = Summary::new(&one);
         assert!(summary.complete && summary.wrong > 0 && summary.trees == 100);
     }
 

@@ -84,7 +84,7 @@ struct Timed {
 
 impl Summary {
     /// The summary of a run.
-    pub fn of(state: &State) -> Self {
+    pub fn new(state: &State) -> Self {
         let sum = |of: fn(&Tally) -> u64| state.tallies.values().map(of).sum();
         let tallies = || state.tallies.iter();
         Self {
@@ -95,21 +95,21 @@ impl Summary {
             right: sum(|t| t.right),
             refused: sum(|t| t.refused),
             wrong: sum(|t| t.wrong),
-            profiles: tallies().map(|(p, t)| (*p, Part::of(t))).collect(),
+            profiles: tallies().map(|(p, t)| (*p, Part::new(t))).collect(),
             seconds: Seconds {
                 total: state.seconds,
-                profiles: tallies().map(|(p, t)| (*p, Times::of(t))).collect(),
+                profiles: tallies().map(|(p, t)| (*p, Times::new(t))).collect(),
             },
         }
     }
 }
 
 impl Part {
-    fn of(tally: &Tally) -> Self {
-        let refusals = tally.refusals.iter().map(|(k, f)| Kind::of(k, f));
-        let faults = tally.faults.iter().map(|(k, f)| Kind::of(k.name(), f));
+    fn new(tally: &Tally) -> Self {
+        let refusals = tally.refusals.iter().map(|(k, f)| Kind::new(k, f));
+        let faults = tally.faults.iter().map(|(k, f)| Kind::new(k.name(), f));
         let untold = Some(&tally.untold).filter(|finds| !finds.is_empty());
-        let untold = untold.into_iter().map(|f| Kind::of("too few samples", f));
+        let untold = untold.into_iter().map(|f| Kind::new("too few samples", f));
         Self {
             trees: tally.trees(),
             right: tally.right,
@@ -127,7 +127,7 @@ impl Part {
 }
 
 impl Kind {
-    fn of(kind: &str, finds: &Finds) -> Self {
+    fn new(kind: &str, finds: &Finds) -> Self {
         let each = finds.iter().map(|(&seed, find)| Seed {
             seed,
             find: find.clone(),
@@ -141,7 +141,7 @@ impl Kind {
 }
 
 impl Times {
-    fn of(tally: &Tally) -> Self {
+    fn new(tally: &Tally) -> Self {
         let timed = |(seed, seconds)| Timed { seed, seconds };
         Self {
             trials: tally.seconds,

@@ -68,7 +68,7 @@ fn lines(records: &[Record]) -> Result<Vec<u8>, Failure> {
 mod tests {
     use super::*;
 
-    fn of(format: Option<RecordsFormat>, path: &str) -> Option<RecordsFormat> {
+    fn new(format: Option<RecordsFormat>, path: &str) -> Option<RecordsFormat> {
         let output = Some(path.into());
         asked(&ModelOutput { output, format }).ok()
     }

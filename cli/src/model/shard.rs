@@ -359,7 +359,7 @@ impl Lines {
 
     /// What is wrong with the line that was read last.
     fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> Failure {
-        let LineColumn { column, .. } = LineColumn::of(line.as_bytes(), span.start);
+        let LineColumn { column, .. } = LineColumn::new(line.as_bytes(), span.start);
         let (path, number) = (self.path.display(), self.count.max(1));
         Failure::input(format!("{path}:{number}:{column}: {words}"))
     }

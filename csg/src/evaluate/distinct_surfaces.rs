@@ -61,7 +61,7 @@ pub(super) fn merge<'t, N: Float>(
         }
     }
     list.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let window = N::of(4.0) * predicates.reach::<N>() + N::ROUNDING * extent.radius;
+    let window = N::from_f64(4.0) * predicates.reach::<N>() + N::ROUNDING * extent.radius;
     let mut sides: Vec<Vec<(usize, Sense)>> = solids
         .all
         .iter()

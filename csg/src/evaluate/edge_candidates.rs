@@ -123,14 +123,18 @@ fn same_curve<N: Float>(
     };
     let [lo, hi] = long.range;
     [N::ONE, N::TWO].iter().all(|&part| {
-        let p = long.curve.point(lo + (hi - lo) * part / N::of(3.0));
-        is_same_place(&short.curve.point(short.curve.parameter(&p)), &p, predicates)
+        let p = long.curve.point(lo + (hi - lo) * part / N::from_f64(3.0));
+        is_same_place(
+            &short.curve.point(short.curve.parameter(&p)),
+            &p,
+            predicates,
+        )
     })
 }
 
 /// Whether points of curves that may be one are: there, or far apart.
 fn is_same_place<N: Float>(p: &Point3<N>, q: &Point3<N>, predicates: &Predicates) -> bool {
-    let reach = N::of(SAME) * predicates.band::<N>();
+    let reach = N::from_f64(SAME) * predicates.band::<N>();
     (p - q).length().is_within(reach)
 }
 
@@ -173,7 +177,7 @@ impl<N: Float> Arrangement<N> {
 impl<N: Float> EdgeCandidate<N> {
     /// The length over which directions are compared: the extent of its curve.
     pub(super) fn reach(&self, arrangement: &Arrangement<N>) -> N {
-        N::of(arrangement.meetings[self.meeting].bounds.diagonal())
+        N::from_f64(arrangement.meetings[self.meeting].bounds.diagonal())
     }
 
     /// Whether two carriers at least hold another one, too.
@@ -241,7 +245,12 @@ fn spans<N: Float>(m: &IntersectionCurve<N>) -> Vec<([N; 2], Option<[usize; 2]>)
 }
 
 /// Whether a curve passes through a point within a range.
-fn passes<N: Float>(curve: &Curve<N>, range: [N; 2], p: &Point3<N>, predicates: &Predicates) -> bool {
+fn passes<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    p: &Point3<N>,
+    predicates: &Predicates,
+) -> bool {
     let t = curve.in_cycle(curve.parameter(p), range[0]);
     // Two pieces between the same corners in the same carriers are one or far apart.
     t.lies_in(range) && is_same_place(&curve.point(t), p, predicates)

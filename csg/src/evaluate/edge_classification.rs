@@ -125,7 +125,7 @@ impl<N: Float> Classifier<'_, N> {
         let [lo, hi] = piece.range;
         let mut best: Option<(N, NeighbourhoodSample<N>)> = None;
         for look in LOOKS {
-            let t = lo + (hi - lo) * N::of(look);
+            let t = lo + (hi - lo) * N::from_f64(look);
             let look = self.look(&curve.point(t), &piece.carriers);
             if !look.may_have_faces() {
                 return Ok(Vec::new());
@@ -285,8 +285,8 @@ impl<N: Float> Classifier<'_, N> {
         let mut best: Option<(Point3<N>, NeighbourhoodSample<N>)> = None;
         for i in 1..40 {
             // Steps of the golden section spread over the surface.
-            let u = N::whole(i) * N::of(2.399_963_229_728_653);
-            let v = N::of(1.3) * (N::whole(i) * N::of(0.7)).sin();
+            let u = N::whole(i) * N::from_f64(2.399_963_229_728_653);
+            let v = N::from_f64(1.3) * (N::whole(i) * N::from_f64(0.7)).sin();
             let p = surface.point(u, v);
             let look = self.look(&p, &[carrier]);
             if !look.may_have_faces() {

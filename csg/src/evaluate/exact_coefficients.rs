@@ -135,7 +135,7 @@ mod tests {
                 &ReadOptions::default(),
             );
             let tree = tree.unwrap().tree;
-            let solids = HalfSpaceModel::of(&tree);
+            let solids = HalfSpaceModel::new(&tree);
             for (k, side) in solids.all[0].sides.iter().enumerate() {
                 let TreeNode::Leaf(placed) = &tree[solids.all[0].leaf] else {
                     continue;

@@ -49,8 +49,8 @@ impl<N: Float> CloseCallFilter<'_, N> {
 
     fn witness<'a>(&self, brep: &'a Brep<N>, face: FaceId) -> Option<FaceVerifier<'a, N>> {
         let band = self.predicates.band::<N>();
-        let locator = FaceLocator::of(brep, face, band);
-        let point = locator.interior(N::TWO * N::of(STEP) * band)?;
+        let locator = FaceLocator::from_face(brep, face, band);
+        let point = locator.interior(N::TWO * N::from_f64(STEP) * band)?;
         let surface = brep.surface(face);
         let normal = surface.normal(&point) * brep.sense(face).sign::<N>();
         Some(FaceVerifier {
@@ -93,7 +93,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
     }
 
     fn beside(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Beside {
-        let step = N::of(STEP) * self.predicates.band::<N>();
+        let step = N::from_f64(STEP) * self.predicates.band::<N>();
         let places = [-step, step].map(|away| surface.distance(&(at.point + at.normal * away)));
         let holds = places.map(N::is_below_zero);
         let is_near = places.iter().any(|d| d.is_within(N::HALF * step));
@@ -141,7 +141,7 @@ mod tests {
     /// Whether a boundary is contradicted by the tree of the same primitives otherwise joined.
     fn is_contradicted(tree: &Tree, joined: &Tree) -> bool {
         let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
-        let solids = HalfSpaceModel::<f64>::of(tree);
+        let solids = HalfSpaceModel::<f64>::new(tree);
         let predicates = Predicates::new(known.resolution);
         let extent = RegionOfInterest {
             centre: solids.bounds.centre(),

@@ -97,7 +97,7 @@ fn up(z: &Rational) -> [Rational; 3] {
 
 impl<N: Float> HalfSpaceModel<N> {
     /// The primitives of a tree, not yet merged.
-    pub fn of(tree: &Tree) -> Self {
+    pub fn new(tree: &Tree) -> Self {
         let all: Vec<Solid<N>> = tree
             .leaves()
             .map(|(leaf, placed)| solid(leaf, placed))

@@ -28,7 +28,7 @@ struct Forms<'a, N: Float> {
 }
 
 impl<'a, N: Float> Forms<'a, N> {
-    fn of(carriers: &'a [Surface<N>], sources: &'a [Source<'a>]) -> Self {
+    fn new(carriers: &'a [Surface<N>], sources: &'a [Source<'a>]) -> Self {
         let known = carriers.iter().map(|_| OnceCell::new()).collect();
         Self {
             carriers,
@@ -38,7 +38,7 @@ impl<'a, N: Float> Forms<'a, N> {
     }
 
     fn level(&self, carrier: usize) -> &Polynomial {
-        let make = || Polynomial::of(&self.carriers[carrier], &self.sources[carrier].exact());
+        let make = || Polynomial::new(&self.carriers[carrier], &self.sources[carrier].exact());
         self.known[carrier].get_or_init(make)
     }
 }
@@ -50,19 +50,19 @@ pub(super) fn prove<N: Float>(
     sources: &[Source<'_>],
     predicates: &Predicates,
 ) -> Result<(), EvaluationError> {
-    let forms = Forms::of(&arrangement.carriers, sources);
+    let forms = Forms::new(&arrangement.carriers, sources);
     for corner in &arrangement.corners {
         let (point, carriers) = (corner.point, &corner.carriers);
-        let incidence = Incidence::of(&forms, carriers, &point, predicates);
+        let incidence = Incidence::new(&forms, carriers, &point, predicates);
         if !incidence.is_plain() {
-            let reach = predicates.band::<N>() / N::of(FINEST_RESOLUTION.sqrt());
+            let reach = predicates.band::<N>() / N::from_f64(FINEST_RESOLUTION.sqrt());
             incidence.settle("point on surfaces", None, (&point, reach), predicates)?;
         }
     }
     for piece in pieces {
         if piece.carriers.len() > 2 || !piece.tangent.is_empty() {
             let curve = &arrangement.meetings[piece.meeting].curve;
-            Holding::of(&forms, curve, piece).settle(predicates)?;
+            Holding::new(&forms, curve, piece).settle(predicates)?;
         }
     }
     Ok(())
@@ -79,7 +79,7 @@ struct Incidence<'f> {
 impl<'f> Incidence<'f> {
     /// Carriers that seem to pass through a point: there, where their normals seem to depend on one
     /// another, they are to do so, and an apex is to be one.
-    fn of<N: Float>(
+    fn new<N: Float>(
         forms: &'f Forms<'_, N>,
         carriers: &[usize],
         place: &Point3<N>,
@@ -171,12 +171,12 @@ const DEFLATIONS: usize = 3;
 /// Whether an angle is nothing as far as 237 bits tell of points where surfaces touch: by the root of
 /// the resolution.
 fn is_flat<N: Float>(angle: N) -> bool {
-    angle.is_within(N::of(FINEST_RESOLUTION.sqrt()))
+    angle.is_within(N::from_f64(FINEST_RESOLUTION.sqrt()))
 }
 
 /// The same of the way to a point.
 fn is_there<N: Float>(way: &Vector3<N>, predicates: &Predicates) -> bool {
-    predicates.within(way.length() * N::of(FINEST_RESOLUTION.sqrt()))
+    predicates.within(way.length() * N::from_f64(FINEST_RESOLUTION.sqrt()))
 }
 
 /// The carriers of a piece of a curve are to hold it.
@@ -189,7 +189,7 @@ struct Holding<'f, N: Float> {
 }
 
 impl<'f, N: Float> Holding<'f, N> {
-    fn of(forms: &'f Forms<'f, N>, curve: &'f Curve<N>, piece: &'f EdgeCandidate<N>) -> Self {
+    fn new(forms: &'f Forms<'f, N>, curve: &'f Curve<N>, piece: &'f EdgeCandidate<N>) -> Self {
         let degrees = piece.carriers.iter().map(|&c| forms.level(c).degree());
         let mut degrees: Vec<u32> = degrees.collect();
         degrees.sort_unstable();
@@ -215,10 +215,10 @@ impl<'f, N: Float> Holding<'f, N> {
         let step = (hi - lo) / N::whole(self.points + 1);
         for k in 1..=self.points {
             // Not at even parts, where a symmetric curve may be singular.
-            let t = lo + step * (N::whole(k) + N::of(ASIDE));
+            let t = lo + step * (N::whole(k) + N::from_f64(ASIDE));
             let place = curve.point(t);
             let next = curve.point(t + step);
-            let incidence = Incidence::of(self.forms, &self.piece.carriers, &place, predicates);
+            let incidence = Incidence::new(self.forms, &self.piece.carriers, &place, predicates);
             let way = (next - place).length();
             let Some(cut) = across(&place, &curve.tangent(t), way) else {
                 predicates.count_assumed(incidence.levels.len() as u64);
@@ -234,7 +234,7 @@ impl<'f, N: Float> Holding<'f, N> {
 /// A plane across a curve, next to a point of it, in few digits: it lies nearer than a part of
 /// `step`.
 fn across<N: Float>(place: &Point3<N>, tangent: &Vector3<N>, step: N) -> Option<Polynomial> {
-    let digits = N::of(DIGITS) - N::of(step.rounded().log2()).floor();
+    let digits = N::from_f64(DIGITS) - N::from_f64(step.rounded().log2()).floor();
     let one = N::TWO.powi(digits.rounded() as i32);
     let rounded = |x: N, one: N| Some((x * one).round().exact()? / one.exact()?);
     let all = |v: &Vector3<N>, one: N| -> Option<[Rational; 3]> {

@@ -20,7 +20,7 @@ struct Count {
 
 impl Count {
     /// One child holds the point: the first, or another.
-    fn of(node: NodeId, first: bool) -> Self {
+    fn new(node: NodeId, first: bool) -> Self {
         let others = usize::from(!first);
         Self {
             node,
@@ -78,9 +78,9 @@ impl<'a> Membership<'a> {
             }
         }
         while let Some((node, first)) = waiting.pop() {
-            let mut count = Count::of(node, first);
+            let mut count = Count::new(node, first);
             while let Some(&(same, first)) = waiting.peek().filter(|w| w.0 == node) {
-                count.add(Count::of(same, first));
+                count.add(Count::new(same, first));
                 waiting.pop();
             }
             // On from there alone, as long as nothing else is to be decided first.
@@ -94,7 +94,7 @@ impl<'a> Membership<'a> {
                     .is_some_and(|(next, _)| next.index() >= parent.index())
                 {
                     true => waiting.push((parent, place == 0)),
-                    false => ready = Some(Count::of(parent, place == 0)),
+                    false => ready = Some(Count::new(parent, place == 0)),
                 }
             }
         }

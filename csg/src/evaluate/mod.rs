@@ -143,7 +143,7 @@ impl Evaluation {
     pub fn violations(&self) -> Vec<Violation> {
         match &self.told {
             Told::Doubles(measures) => check(&self.brep, measures, self.resolution),
-            Told::Wide(wide) => check(&wide.0, &wide.1, F237::of(self.resolution)),
+            Told::Wide(wide) => check(&wide.0, &wide.1, F237::from_f64(self.resolution)),
         }
     }
 }
@@ -305,7 +305,10 @@ impl EvaluationError {
             | Self::Contradiction { .. }
             | Self::NearCylinder { .. }
             | Self::Resolution { .. } => true,
-            Self::Size | Self::TooFarFromOrigin { .. } | Self::UnprovenCoincidence { .. } | Self::EntityLimit { .. } => false,
+            Self::Size
+            | Self::TooFarFromOrigin { .. }
+            | Self::UnprovenCoincidence { .. }
+            | Self::EntityLimit { .. } => false,
         }
     }
 }
@@ -376,7 +379,7 @@ fn seen(tree: &Tree, options: &EvaluationOptions, known: Evaluated<F237>) -> Eva
 
 /// In 237 bits, by the finest resolution.
 fn finely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, EvaluationError> {
-    let size = halfspaces::HalfSpaceModel::<F237>::of(tree)
+    let size = halfspaces::HalfSpaceModel::<F237>::new(tree)
         .bounds
         .diagonal();
     let finest = EvaluationOptions {
@@ -390,13 +393,13 @@ fn evaluated<N: Float>(
     tree: &Tree,
     options: &EvaluationOptions,
 ) -> Result<Evaluated<N>, EvaluationError> {
-    let solids = halfspaces::HalfSpaceModel::of(tree);
+    let solids = halfspaces::HalfSpaceModel::new(tree);
     let size = solids.bounds.diagonal();
     if tree.is_empty() {
         let decisions = Predicates::new(0.0).decisions();
         let (brep, bounds) = (Brep::default(), Aabb::EMPTY);
         return Ok(Evaluated {
-            measures: FaceIntegrals::of(&brep),
+            measures: FaceIntegrals::new(&brep),
             brep,
             decisions,
             resolution: 0.0,
@@ -413,12 +416,12 @@ fn evaluated<N: Float>(
     };
     let straight = near_cylinders::without(tree, &predicates);
     let (tree, solids) = match &straight {
-        Some(tree) => (tree, halfspaces::HalfSpaceModel::of(tree)),
+        Some(tree) => (tree, halfspaces::HalfSpaceModel::new(tree)),
         None => (tree, solids),
     };
     let extent = RegionOfInterest {
-        centre: solids.bounds.centre().map(N::of),
-        radius: N::of(0.75 * size),
+        centre: solids.bounds.centre().map(N::from_f64),
+        radius: N::from_f64(0.75 * size),
     };
     near_cylinders::check(&solids, &extent, &predicates)?;
     let most = options.entities.unwrap_or(MOST_ENTITIES);
@@ -441,8 +444,8 @@ fn evaluated<N: Float>(
     vanished::list(tree, &predicates);
     let raw = edge_classification::boundary(&concern, pieces)?;
     let brep = assemble(raw, &predicates)?;
-    let band = N::of(resolution);
-    let measures = FaceIntegrals::of(&brep);
+    let band = N::from_f64(resolution);
+    let measures = FaceIntegrals::new(&brep);
     if let Some(broken) = check(&brep, &measures, band).into_iter().next() {
         return Err(match worst_gap(&brep, band) {
             Some((place, distance)) => EvaluationError::IllConditioned {

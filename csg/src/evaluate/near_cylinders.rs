@@ -41,7 +41,7 @@ pub(super) fn check<N: Float>(
     for side in solids.all.iter().flat_map(|solid| &solid.sides) {
         if let Surface::Cone(cone) = &side.surface {
             let away = (cone.frame.origin - extent.centre).length();
-            let moved = N::of(ROUNDINGS) * N::EPSILON * away;
+            let moved = N::from_f64(ROUNDINGS) * N::EPSILON * away;
             if moved.is_beyond(predicates.band()) {
                 return Err(EvaluationError::NearCylinder {
                     place: side.bounds.centre().into(),

@@ -121,7 +121,10 @@ impl<N: Float> Spot<'_, N> {
         for pair in sheets.windows(2) {
             let gap = (pair[1].bend - pair[0].bend).abs() * reach * reach;
             is_tied |= pair[0].angle.is_exactly(pair[1].angle)
-                && self.predicates.classify("sheets that touch", gap, rounded(p)) == Side::On;
+                && self
+                    .predicates
+                    .classify("sheets that touch", gap, rounded(p))
+                    == Side::On;
         }
         if is_tied {
             self.settle(&mut sheets)?;
@@ -145,8 +148,8 @@ impl<N: Float> Spot<'_, N> {
         let reach = self.piece.reach(self.arrangement);
         let is_swapped = |a: &HalfSheet<N>, b: &HalfSheet<N>| {
             let sine = a.direction.cross(&b.direction).length();
-            let is_shallow =
-                a.direction.dot(&b.direction).is_above_zero() && sine.is_short_of(N::of(SHALLOW));
+            let is_shallow = a.direction.dot(&b.direction).is_above_zero()
+                && sine.is_short_of(N::from_f64(SHALLOW));
             let gap = (a.bend - b.bend) * reach * reach;
             let is_one = a.angle.is_exactly(b.angle);
             let both = [a, b].map(|s| self.piece.carriers[s.carrier]);
@@ -214,7 +217,8 @@ impl<N: Float> Spot<'_, N> {
         }
         let sine = axis.direction.cross(direction).length();
         let bend = (rise(&axis.direction) - axis.rise).abs();
-        self.predicates.within(sine * self.piece.reach(self.arrangement))
+        self.predicates
+            .within(sine * self.piece.reach(self.arrangement))
             || self.predicates.within(sine * sine / (N::TWO * bend))
     }
 

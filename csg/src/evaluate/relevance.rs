@@ -74,7 +74,8 @@ impl<N: Float> CloseCallFilter<'_, N> {
             return;
         }
         for (_, distance) in beside.into_iter().filter(|(c, _)| has(c)) {
-            self.predicates.classify("point beside surface", distance, place);
+            self.predicates
+                .classify("point beside surface", distance, place);
         }
     }
 
@@ -102,7 +103,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
     /// The carriers, in order, of the faces next to a place of the primitives on which it depends
     /// where the part is there.
     fn carriers(&self, place: [f64; 3]) -> Vec<usize> {
-        let p = Point3::from(place.map(N::of));
+        let p = Point3::from(place.map(N::from_f64));
         // Both of what a close call lies between are within its distance of the place.
         let margin = N::TWO * self.predicates.reach::<N>();
         let [lo, hi] = [-margin, margin].map(|by| rounded(&(p + Vector3::repeat(by))));
@@ -119,7 +120,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
                 |(side, &(c, _)): (&HalfSpace<N>, &(usize, Sense))| (side.surface.distance(&p), c);
             let sides = self.sides(s.data).map(away);
             let outside = sides.clone().fold(N::NEG_INFINITY, |most, s| most.max(s.0));
-            match Side::of(outside, margin) {
+            match Side::new(outside, margin) {
                 Side::Inside => held.push(solid.leaf),
                 Side::On => {
                     open.push(solid.leaf);

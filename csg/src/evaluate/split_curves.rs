@@ -22,7 +22,7 @@ const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
 
 /// Whether two parameters at one corner are one pass of it.
 pub(super) fn is_one_pass<N: Float>(t: N, other: N) -> bool {
-    (t - other).abs().is_short_of(N::of(CLOSE_PASS))
+    (t - other).abs().is_short_of(N::from_f64(CLOSE_PASS))
 }
 
 /// A contact of so high an order that many points are within the band.

@@ -66,7 +66,9 @@ impl<N: Float> Arrangement<N> {
             let aside = other.beside(&p, predicates.reach())? - p;
             let along = aside.dot(&contact.curve.tangent(t)).abs();
             let middle = p + aside * N::HALF;
-            let inside = carriers.iter().all(|s| predicates.within(s.distance(&middle)));
+            let inside = carriers
+                .iter()
+                .all(|s| predicates.within(s.distance(&middle)));
             let across = aside.length() + predicates.reach::<N>();
             if !inside || (N::TWO * along).is_beyond(across) {
                 return None;

@@ -45,7 +45,7 @@ impl<N: Float> VertexMerger<N> {
             all: Vec::new(),
             calls: Vec::new(),
             grid: HashMap::new(),
-            cell: N::of(256.0) * band,
+            cell: N::from_f64(256.0) * band,
         }
     }
 

@@ -136,7 +136,7 @@ fn carriers(shape: &Shape) -> Vec<Carrier> {
 
 impl<'a> Surfaces<'a> {
     /// Collects the surfaces of a tree.
-    pub fn of(material: &'a RayOracle) -> Self {
+    pub fn new(material: &'a RayOracle) -> Self {
         let (size, middle) = (material.bounds.diagonal(), material.bounds.centre().coords);
         let near = size * ROUNDING.sqrt();
         let mut all: Vec<Carrier> = Vec::new();

@@ -89,10 +89,10 @@ struct Scratch {
 }
 
 impl Leaf {
-    fn of(node: NodeId, placed: &PlacedPrimitive) -> Self {
+    fn new(node: NodeId, placed: &PlacedPrimitive) -> Self {
         Self {
             node,
-            shape: Shape::of(&placed.primitive),
+            shape: Shape::new(&placed.primitive),
             turn: placed.motion.rotation_f64(),
             offset: placed.motion.translation_f64(),
         }
@@ -123,8 +123,8 @@ impl Leaf {
 
 impl RayOracle {
     /// Prepares a tree.
-    pub fn of(tree: &Tree) -> Self {
-        let leaves: Vec<Leaf> = tree.leaves().map(|(n, p)| Leaf::of(n, p)).collect();
+    pub fn new(tree: &Tree) -> Self {
+        let leaves: Vec<Leaf> = tree.leaves().map(|(n, p)| Leaf::new(n, p)).collect();
         let boxes = leaves.iter().enumerate().map(|(i, leaf)| {
             let b = leaf.bounds();
             LeafBox::new(Rectangle::from_corners(b.min, b.max), i)

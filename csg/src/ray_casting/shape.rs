@@ -36,7 +36,7 @@ pub(super) fn clip(range: &mut [f64; 2], a: f64, b: f64) -> bool {
 }
 
 impl Shape {
-    pub fn of(primitive: &Primitive) -> Self {
+    pub fn new(primitive: &Primitive) -> Self {
         let edges = |size: &[Rational; 3]| [0, 1, 2].map(|i| to_f64(&size[i]));
         match primitive {
             Primitive::Block { size } => Self::Block(edges(size)),

@@ -12,7 +12,7 @@ fn material(padl: &str) -> RayOracle {
         &ReadOptions::default(),
     )
     .unwrap();
-    RayOracle::of(&read.tree)
+    RayOracle::new(&read.tree)
 }
 
 fn ray(origin: [f64; 3], direction: [f64; 3]) -> Ray {
@@ -93,7 +93,7 @@ fn nothing_is_nothing() {
     let empty = material("P = SPH(R=1) INT SPH(R=1) AT (MOVX=3)");
     assert_eq!(empty.volume(1000, 1), Estimate::default());
     let builder = Builder::new();
-    let none = RayOracle::of(&builder.finish(crate::builder::SolidId::EMPTY).unwrap());
+    let none = RayOracle::new(&builder.finish(crate::builder::SolidId::EMPTY).unwrap());
     assert_eq!(none.volume(1000, 1), Estimate::default());
     assert!(!none.holds(&Point3::origin()));
     assert!(

@@ -114,7 +114,7 @@ impl RayOracle {
             let ray = window.ray(u, v);
             self.cross(&ray, &mut scratch, |span| {
                 for at in span.into_iter().filter(|_| span[1] - span[0] > least) {
-                    extent = extent.hull(&Aabb::of(&(ray.origin + ray.direction * at)));
+                    extent = extent.hull(&Aabb::new(&(ray.origin + ray.direction * at)));
                 }
             });
         }

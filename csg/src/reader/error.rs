@@ -114,7 +114,7 @@ impl SpannedError {
 
     /// The error with its line and column.
     pub(super) fn locate(self, name: &str, text: &[u8]) -> ReadError {
-        let LineColumn { line, column } = LineColumn::of(text, self.span.start);
+        let LineColumn { line, column } = LineColumn::new(text, self.span.start);
         ReadError {
             name: name.into(),
             kind: self.kind,

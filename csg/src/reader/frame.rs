@@ -52,7 +52,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// The axis of a vector; `None` for one without direction.
-    pub(super) fn of(vector: &Vector) -> Option<Self> {
+    pub(super) fn new(vector: &Vector) -> Option<Self> {
         let length = length(vector)?;
         let turn = quarter(vector).map_or_else(|| oblique(vector, &length), Some)?;
         Some(Self { turn, length })
@@ -109,7 +109,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The frame of three edges; `None` unless they are at right angles, up to the rounding of a
     /// text, and right-handed.
-    pub(super) fn of(edges: &[Vector; 3]) -> Option<Self> {
+    pub(super) fn new(edges: &[Vector; 3]) -> Option<Self> {
         let [a, b, c] = edges.each_ref().map(length);
         let lengths = [a?, b?, c?];
         // The columns of the matrix are the edges.
@@ -183,26 +183,26 @@ mod tests {
             [1, -2, 2],
             [-2, 3, -6],
         ] {
-            let axis = Axis::of(&vector(v)).unwrap();
+            let axis = Axis::new(&vector(v)).unwrap();
             let end = axis.turn.motion().apply_vector(&z());
             assert_eq!(end.map(|x| x * &axis.length), vector(v), "{v:?}");
         }
-        assert!(Axis::of(&vector([0, 0, 0])).is_none());
+        assert!(Axis::new(&vector([0, 0, 0])).is_none());
     }
 
     #[test]
     fn edges_that_are_not_at_right_angles_are_no_frame() {
         let edges = [[1, 0, 0], [0, 1, 0], [0, 1, 1]].map(vector);
-        assert!(Frame::of(&edges).is_none());
+        assert!(Frame::new(&edges).is_none());
         let edges = [[1, 0, 0], [0, 1, 0], [0, 0, 0]].map(vector);
-        assert!(Frame::of(&edges).is_none());
+        assert!(Frame::new(&edges).is_none());
     }
 
     proptest! {
         #[test]
         fn any_axis_is_found(v in prop::array::uniform3(-99i32..=99)) {
             prop_assume!(v != [0; 3]);
-            let axis = Axis::of(&vector(v)).unwrap();
+            let axis = Axis::new(&vector(v)).unwrap();
             let end = axis.turn.motion().apply_vector(&z());
             for (x, y) in end.iter().zip(v) {
                 prop_assert!((to_f64(x) * to_f64(&axis.length) - f64::from(y)).abs() < 1e-13);
@@ -220,11 +220,11 @@ mod tests {
                 let unit = std::array::from_fn(|i| Rational::from(u8::from(i == k)));
                 motion.apply_vector(&unit).map(|x| x * Rational::from(lengths[k]))
             });
-            let frame = Frame::of(&edges).unwrap();
+            let frame = Frame::new(&edges).unwrap();
             prop_assert_eq!(frame.turn.motion(), &motion);
             prop_assert_eq!(frame.lengths, lengths.map(Rational::from));
             let [a, b, c] = edges;
-            prop_assert!(Frame::of(&[b, a, c]).is_none());
+            prop_assert!(Frame::new(&[b, a, c]).is_none());
         }
     }
 }

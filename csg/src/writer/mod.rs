@@ -54,7 +54,7 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     if leaves > MAX_LEAVES {
         return Err(WriteError::TooManyLeaves { leaves });
     }
-    let top = builder.draft_of(part).map(Use::of);
+    let top = builder.draft_of(part).map(Use::new);
     match format {
         Format::Padl => padl::write(builder, top.ok_or(WriteError::Empty)?),
         Format::Csg => scad::write(builder, top),
@@ -73,7 +73,7 @@ struct Use {
 }
 
 impl Use {
-    fn of(draft: usize) -> Self {
+    fn new(draft: usize) -> Self {
         Self {
             draft,
             mirrored: false,

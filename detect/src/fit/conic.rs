@@ -31,7 +31,7 @@ pub fn ellipse(points: &[[f64; 2]]) -> Option<EllipseFit> {
     if points.len() < FEWEST {
         return None;
     }
-    let frame = Frame::of(points)?;
+    let frame = Frame::new(points)?;
     let first = direct(points.iter().map(|&p| (frame.inward(p), 1.0)))?;
     let weighed = points.iter().map(|&p| {
         let q = frame.inward(p);
@@ -96,7 +96,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(points: &[[f64; 2]]) -> Option<Self> {
+    fn new(points: &[[f64; 2]]) -> Option<Self> {
         let n = points.len() as f64;
         let centre = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / n);
         let square = |p: &[f64; 2]| (p[0] - centre[0]).powi(2) + (p[1] - centre[1]).powi(2);

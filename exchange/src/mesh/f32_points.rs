@@ -20,7 +20,7 @@ pub(super) fn rounded(p: &Point3<f64>, origin: &Point3<f64>) -> [f32; 3] {
 
 impl F32Points {
     /// The triangles, where rounding does not take points farther than triangles may be off.
-    pub fn of(facets: &Facets, origin: &Point3<f64>) -> Result<Self, MeshError> {
+    pub fn new(facets: &Facets, origin: &Point3<f64>) -> Result<Self, MeshError> {
         let points: Vec<[f32; 3]> = facets.points.iter().map(|p| rounded(p, origin)).collect();
         let exact: Vec<Point3<f64>> = points.iter().map(|p| p.map(f64::from).into()).collect();
         let is_far = |(p, q): (&Point3<f64>, &Point3<f64>)| {

@@ -27,7 +27,7 @@ const ROUGH: f32 = 0.6;
 /// The bytes of a file.
 pub fn write(facets: &Facets, name: &str, unit: Unit) -> Result<Vec<u8>, MeshError> {
     let centre = centre(&facets.points);
-    let single = F32Points::of(facets, &centre)?;
+    let single = F32Points::new(facets, &centre)?;
     let mut file = File::default();
     let faces = file.faces(&single);
     let mut primitives = vec![faces];

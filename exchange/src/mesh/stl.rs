@@ -9,7 +9,7 @@ use stl_io::{Normal, Triangle, Vertex, write_stl};
 
 /// The bytes of a file.
 pub fn write(facets: &Facets) -> Result<Vec<u8>, MeshError> {
-    let single = F32Points::of(facets, &Point3::origin())?;
+    let single = F32Points::new(facets, &Point3::origin())?;
     if let Some(corner) = single.closed_gap(&facets.points) {
         return Err(facets.coarse(corner));
     }

@@ -355,7 +355,7 @@ fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
         return false;
     }
     let [lo, hi] = edge.range;
-    let on = |k: u32| window.of(&edge.curve.point(lo + (hi - lo) * f64::from(k) / 8.0));
+    let on = |k: u32| window.parameters_at(&edge.curve.point(lo + (hi - lo) * f64::from(k) / 8.0));
     let middle = on(4);
     let size = |i: usize| {
         if window.surface.periods()[i].is_some() {

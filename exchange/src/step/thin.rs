@@ -57,7 +57,7 @@ pub(super) fn check(
     if let Some(near) = clearance::near_edges(seamed, resolution, crossing) {
         return Err(thin(Thin::Gap, near.place, near.distance, crossing));
     }
-    let areas = FaceIntegrals::of(brep).areas(brep);
+    let areas = FaceIntegrals::new(brep).areas(brep);
     let length = |edge: &SeamedEdge<'_>| short::length(&edge.curve, edge.range);
     let lengths: Vec<f64> = seamed.edges.iter().map(length).collect();
     let start = |edge: usize| seamed.points[seamed.edges[edge].ends[0]];
@@ -91,7 +91,7 @@ fn thin(what: Thin, place: Point3<f64>, size: f64, least: f64) -> StepError {
 /// That no shell has its two sides as near.
 pub(super) fn check_shells(brep: &Brep, least: f64) -> Result<(), StepError> {
     let topology = &brep.topology;
-    let measures = FaceIntegrals::of(brep);
+    let measures = FaceIntegrals::new(brep);
     let areas = measures.areas(brep);
     for (shell, id) in topology.shells.iter().zip(0..) {
         let area: f64 = shell.faces.iter().map(|f| areas[f.index()].area).sum();

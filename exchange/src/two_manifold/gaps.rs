@@ -33,7 +33,7 @@ const INNER: f64 = 1.0 / (1 << 16) as f64;
 const TRIED: usize = 24;
 
 impl Samples {
-    pub fn of(brep: &Brep, edges: impl Iterator<Item = EdgeId>) -> Self {
+    pub fn new(brep: &Brep, edges: impl Iterator<Item = EdgeId>) -> Self {
         let sampled = |edge: EdgeId| {
             let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
             let breaks = curve.breaks(lo, hi);
@@ -67,7 +67,11 @@ impl Samples {
     /// pole.
     pub fn turns(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
         let turn = |edge: &Sampled| {
-            let angles: Vec<f64> = edge.points.iter().map(|p| window.of(p)[i]).collect();
+            let angles: Vec<f64> = edge
+                .points
+                .iter()
+                .map(|p| window.parameters_at(p)[i])
+                .collect();
             angles.windows(2).map(|w| wrap(w[1] - w[0])).sum()
         };
         self.edges.iter().map(turn).collect()
@@ -75,7 +79,7 @@ impl Samples {
 
     /// The values of the parameter `i`, which is an angle, at which edges end, turn back or touch.
     pub fn critical(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
-        let touches = self.touches.iter().map(|p| window.of(p)[i]);
+        let touches = self.touches.iter().map(|p| window.parameters_at(p)[i]);
         let mut critical: Vec<f64> = touches.filter(|x| x.is_finite()).collect();
         for edge in &self.edges {
             edge.add_turns(window, i, &mut critical);
@@ -121,7 +125,7 @@ const ROOM: f64 = 1.0 / 8.0;
 impl Sampled {
     /// The angles at the ends of the edge and where it turns back.
     fn add_turns(&self, window: &ParameterWindow, i: usize, found: &mut Vec<f64>) {
-        let parameters = self.points.iter().map(|p| window.of(p));
+        let parameters = self.points.iter().map(|p| window.parameters_at(p));
         let known: Vec<Point2<f64>> = parameters.filter(|p| p[i].is_finite()).collect();
         let (Some(first), Some(last)) = (known.first(), known.last()) else {
             return;

@@ -201,7 +201,7 @@ impl<'a> Linking<'a, '_> {
         }
         let outlines: Vec<Outline> = loops
             .into_iter()
-            .map(|halves| Outline::of(&self.seamed, self.brep.sense(face), &cut.window, halves))
+            .map(|halves| Outline::new(&self.seamed, self.brep.sense(face), &cut.window, halves))
             .collect();
         let pieces = match cut.seams.is_empty() {
             true => vec![whole(outlines)],
@@ -339,7 +339,7 @@ struct Outline {
 const STEPS: u32 = 24;
 
 impl Outline {
-    fn of(
+    fn new(
         seamed: &TwoManifold<'_>,
         side: Sense,
         window: &ParameterWindow,
@@ -391,7 +391,7 @@ fn along(
         edge.curve
             .point(lo + (hi - lo) * f64::from(k) / f64::from(STEPS))
     };
-    let mut points: Vec<Point2<f64>> = (0..=STEPS).map(|k| window.of(&at(k))).collect();
+    let mut points: Vec<Point2<f64>> = (0..=STEPS).map(|k| window.parameters_at(&at(k))).collect();
     if edge.source.is_none() || is_at_start(&points, window) {
         on_seam(&mut points, sense == side, window);
     }

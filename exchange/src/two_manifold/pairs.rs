@@ -21,7 +21,7 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    pub fn of(brep: &Brep) -> Self {
+    pub fn new(brep: &Brep) -> Self {
         let topology = &brep.topology;
         let mut pairs = Self::default();
         let mut partner = HashMap::new();

@@ -90,7 +90,7 @@ struct Faced<'a> {
 
 impl Cut {
     /// The cut of a face, of which `rings` are the loops without slits.
-    pub fn of(
+    pub fn new(
         brep: &Brep,
         face: FaceId,
         rings: &[Vec<CoedgeId>],
@@ -102,8 +102,8 @@ impl Cut {
             brep,
             face,
             band,
-            arcs: coedges.iter().map(|c| DirectedArc::of(brep, *c)).collect(),
-            samples: Samples::of(brep, edges),
+            arcs: coedges.iter().map(|c| DirectedArc::new(brep, *c)).collect(),
+            samples: Samples::new(brep, edges),
             rings: rings.iter().map(Vec::len).collect(),
             coedges,
         };

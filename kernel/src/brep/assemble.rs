@@ -312,7 +312,7 @@ impl<'a, N: Float> Assembler<'a, N> {
     fn told_apart(&self, v: &Point3<N>, frame: &Frame<N>, ends: &[End]) -> Vec<Vec<End>> {
         let mut best = Vec::new();
         for sphere in &SPHERES {
-            let [along, part, clear] = [sphere.along, sphere.part, sphere.clear].map(N::of);
+            let [along, part, clear] = [sphere.along, sphere.part, sphere.clear].map(N::from_f64);
             let reaches = ends
                 .iter()
                 .map(|e| (self.point_along(*e, along) - v).length());

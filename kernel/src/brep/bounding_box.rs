@@ -73,13 +73,17 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
         return Aabb::EMPTY;
     }
     // A band of nothing would miss boundaries by rounding. An apex may be far from the face.
-    let arcs = FaceLocator::of(brep, face, N::ZERO);
+    let arcs = FaceLocator::from_face(brep, face, N::ZERO);
     let around = match surface {
         Surface::Cone(_) => Aabb::EMPTY,
-        _ => points.iter().fold(Aabb::EMPTY, |b, p| b.hull(&Aabb::of(p))),
+        _ => points
+            .iter()
+            .fold(Aabb::EMPTY, |b, p| b.hull(&Aabb::new(p))),
     };
     let around = arcs.boxes().iter().fold(around, |a, b| a.hull(b));
-    let locator = FaceLocator::by_gaps(brep, face, N::of(around.diagonal()));
+    let locator = FaceLocator::by_gaps(brep, face, N::from_f64(around.diagonal()));
     points.retain(|p| locator.place(p) != PointLocation::Outside);
-    points.iter().fold(Aabb::EMPTY, |b, p| b.hull(&Aabb::of(p)))
+    points
+        .iter()
+        .fold(Aabb::EMPTY, |b, p| b.hull(&Aabb::new(p)))
 }

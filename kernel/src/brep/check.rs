@@ -106,7 +106,7 @@ pub fn worst_gap<N: Float>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
 
 /// Whether a distance is what making one of what coincides may leave.
 fn is_accounted<N: Float>(distance: N, band: N) -> bool {
-    distance.is_within(N::of(PLAY) * band)
+    distance.is_within(N::from_f64(PLAY) * band)
 }
 
 /// The ends of an edge: the vertex, the place on the edge, and how far they are apart.

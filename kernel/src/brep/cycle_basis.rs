@@ -12,14 +12,14 @@ pub type GraphEdge = [usize; 2];
 
 /// A basis of the cycles: each a set of edges, by index.
 pub fn basis(links: &[GraphEdge]) -> Vec<BTreeSet<usize>> {
-    let forest = Forest::of(links);
+    let forest = Forest::new(links);
     let outside = (0..links.len()).filter(|e| !forest.edges.contains(e));
     outside.map(|e| forest.closed_by(links, e)).collect()
 }
 
 /// Whether a set of edges is a sum of cycles.
 pub fn is_sum_of_cycles(links: &[GraphEdge], edges: &BTreeSet<usize>) -> bool {
-    let forest = Forest::of(links);
+    let forest = Forest::new(links);
     let mut sum = BTreeSet::new();
     for &e in edges.iter().filter(|e| !forest.edges.contains(e)) {
         for part in forest.closed_by(links, e) {
@@ -39,7 +39,7 @@ struct Forest {
 }
 
 impl Forest {
-    fn of(links: &[GraphEdge]) -> Self {
+    fn new(links: &[GraphEdge]) -> Self {
         let mut around: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (e, [a, b]) in links.iter().enumerate() {
             around.entry(*a).or_default().push(e);

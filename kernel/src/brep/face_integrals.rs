@@ -47,19 +47,19 @@ pub struct FaceIntegrals<N: Float = f64> {
 
 impl<N: Float> FaceIntegrals<N> {
     /// The measures of the faces of a boundary, as far as doubles tell them.
-    pub fn of(brep: &Brep<N>) -> Self {
+    pub fn new(brep: &Brep<N>) -> Self {
         Self::with(brep, Care::Doubles)
     }
 
     fn with(brep: &Brep<N>, care: Care) -> Self {
         let shells = brep.topology.shells.iter();
         let shells: Vec<Amid<N>> = shells
-            .map(|shell| Amid::of(brep, shell.faces.iter().copied(), care))
+            .map(|shell| Amid::new(brep, shell.faces.iter().copied(), care))
             .collect();
         let about = |face| &shells[brep.topology.face(face).shell.index()];
         let faces = brep.topology.face_ids();
         Self {
-            whole: Amid::of(brep, brep.topology.face_ids(), care),
+            whole: Amid::new(brep, brep.topology.face_ids(), care),
             faces: faces.map(|face| moments(brep, face, about(face))).collect(),
             shells,
         }
@@ -81,11 +81,11 @@ impl<N: Float> FaceIntegrals<N> {
         for (shell, amid) in brep.topology.shells.iter().zip(&self.shells) {
             let of = shell.faces.iter().map(|&f| (f, self.faces[f.index()]));
             let m = shell_moments(brep, of);
-            let enclosed = m[1] / N::of(3.0);
+            let enclosed = m[1] / N::from_f64(3.0);
             area += m[0];
             volume += enclosed;
             first += (amid.reference - reference) * enclosed;
-            first += Vector3::new(m[2], m[3], m[4]) / N::of(4.0);
+            first += Vector3::new(m[2], m[3], m[4]) / N::from_f64(4.0);
         }
         let centroid = if volume.is_exactly(N::ZERO) {
             reference
@@ -120,7 +120,7 @@ impl<N: Float> FaceIntegrals<N> {
             let [floor, ..] = amid.floor(brep, face);
             FaceArea {
                 area,
-                noise: N::of(NOISE) * floor,
+                noise: N::from_f64(NOISE) * floor,
             }
         };
         let of_face = |face: FaceId| {
@@ -173,8 +173,8 @@ impl Care {
     /// What sums are known to, relative to their terms.
     fn part<N: Float>(self) -> N {
         match self {
-            Self::Doubles => N::of(f64::rules().settled / NOISE),
-            Self::Digits => N::rules().settled / N::of(NOISE),
+            Self::Doubles => N::from_f64(f64::rules().settled / NOISE),
+            Self::Digits => N::rules().settled / N::from_f64(NOISE),
             Self::Last => N::ROUNDING,
         }
     }
@@ -185,13 +185,13 @@ const NOISE: f64 = 64.0;
 
 /// The size of a part, in terms of which its coordinates are rounded.
 pub fn size<N: Float>(brep: &Brep<N>) -> N {
-    Amid::of(brep, brep.topology.face_ids(), Care::Doubles).size
+    Amid::new(brep, brep.topology.face_ids(), Care::Doubles).size
 }
 
 /// The signed volume that a shell encloses; `size` is that of the part.
 pub fn shell_volume<N: Float>(brep: &Brep<N>, faces: &[FaceId], size: N) -> ShellVolume<N> {
     let told = |care| {
-        let amid = Amid::of(brep, faces.iter().copied(), care);
+        let amid = Amid::new(brep, faces.iter().copied(), care);
         let of = faces.iter().map(|&f| (f, moments(brep, f, &amid)));
         enclosed(brep, faces, shell_moments(brep, of), &amid, size)
     };
@@ -215,7 +215,7 @@ fn enclosed<N: Float>(
     size: N,
 ) -> ShellVolume<N> {
     ShellVolume {
-        volume: volume / N::of(3.0),
+        volume: volume / N::from_f64(3.0),
         noise: amid.noise(brep, faces.iter().copied(), area * size),
     }
 }
@@ -255,18 +255,18 @@ struct Amid<N: Float = f64> {
 }
 
 impl<N: Float> Amid<N> {
-    fn of(brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, care: Care) -> Self {
+    fn new(brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, care: Care) -> Self {
         let (mut edges, mut all) = (Aabb::EMPTY, Aabb::EMPTY);
         for face in faces {
             edges = edges.hull(&box_of(brep, face));
             // What bulges beyond its edges is of the size of its surface.
             if let Surface::Sphere(_) | Surface::Torus(_) = brep.surface(face) {
-                all = all.hull(&Aabb::of(&brep.surface(face).frame().origin));
+                all = all.hull(&Aabb::new(&brep.surface(face).frame().origin));
             }
         }
-        let size = N::of(all.hull(&edges).diagonal());
+        let size = N::from_f64(all.hull(&edges).diagonal());
         let reference = if size.is_finite() {
-            edges.centre().map(N::of)
+            edges.centre().map(N::from_f64)
         } else {
             Point3::origin()
         };
@@ -290,7 +290,7 @@ impl<N: Float> Amid<N> {
             true => faces.map(|face| self.floor(brep, face)[1]).sum(),
             false => N::ZERO,
         };
-        N::of(NOISE) * (by_area + floors)
+        N::from_f64(NOISE) * (by_area + floors)
     }
 
     /// Whether doubles tell for numbers of more digits.
@@ -300,7 +300,7 @@ impl<N: Float> Amid<N> {
 
     /// The errors of a face's moments that do not matter: what the rounding of its edges makes.
     fn floor(&self, brep: &Brep<N>, face: FaceId) -> Moments<N> {
-        let along = N::of(box_of(brep, face).diagonal()).min(self.size);
+        let along = N::from_f64(box_of(brep, face).diagonal()).min(self.size);
         let area = self.part() * self.size * along;
         let (volume, first) = (area * self.size, area * self.size * self.size);
         [area, volume, first, first, first]
@@ -312,8 +312,8 @@ fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
     let mut b = Aabb::EMPTY;
     for edge in brep.topology.edges_of(face) {
         let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
-        b = b.hull(&Aabb::of(&curve.point(lo)));
-        b = b.hull(&Aabb::of(&curve.point(N::HALF * (lo + hi))));
+        b = b.hull(&Aabb::new(&curve.point(lo)));
+        b = b.hull(&Aabb::new(&curve.point(N::HALF * (lo + hi))));
     }
     let surface = brep.surface(face);
     let radius = match surface {
@@ -322,5 +322,5 @@ fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
         Surface::Torus(t) => t.major + t.minor,
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => return b,
     };
-    Aabb::of(&surface.frame().origin).grown(radius)
+    Aabb::new(&surface.frame().origin).grown(radius)
 }

@@ -59,8 +59,8 @@ enum Outcome {
 }
 
 impl<'a, N: Float> FaceLocator<'a, N> {
-    /// A locator for the region of `surface` that `arcs` bound; `classify` tells whether the outward
-    /// normal of the face is the surface's own, `band` is the resolution.
+    /// A locator for the region of `surface` that `arcs` bound; `side` is the sense of the face's outward
+    /// normal against the surface's own, `band` is the resolution.
     pub fn new(
         surface: &'a Surface<N>,
         side: Sense,
@@ -69,7 +69,8 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     ) -> Self {
         let arcs = Arcs::new(arcs, band);
         let hull = arcs.boxes.iter().fold(Aabb::EMPTY, |a, b| a.hull(b));
-        let spacing = N::of(2.0 * hull.diagonal()) / (N::of(arcs.all.len() as f64)).sqrt();
+        let spacing =
+            N::from_f64(2.0 * hull.diagonal()) / (N::from_f64(arcs.all.len() as f64)).sqrt();
         Self {
             surface,
             side,
@@ -80,9 +81,9 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     /// The locator of a face of a boundary representation.
-    pub fn of(brep: &'a Brep<N>, face: FaceId, band: N) -> Self {
+    pub fn from_face(brep: &'a Brep<N>, face: FaceId, band: N) -> Self {
         let coedges = brep.topology.coedges_of(face);
-        let arcs = coedges.map(|c| DirectedArc::of(brep, c));
+        let arcs = coedges.map(|c| DirectedArc::new(brep, c));
         Self::new(brep.surface(face), brep.sense(face), arcs.collect(), band)
     }
 
@@ -92,8 +93,8 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         let edges = brep.topology.edges_of(face);
         let gaps = edges.flat_map(|edge| gaps_at_ends(brep, edge));
         let apart = gaps.map(|(_, _, gap)| gap).fold(N::ZERO, N::max);
-        let rounding = size * N::of(OFF) * N::ROUNDING;
-        Self::of(brep, face, rounding + N::TWO * apart)
+        let rounding = size * N::from_f64(OFF) * N::ROUNDING;
+        Self::from_face(brep, face, rounding + N::TWO * apart)
     }
 
     /// The directed arcs of the boundary.
@@ -159,7 +160,8 @@ impl<'a, N: Float> FaceLocator<'a, N> {
 
     /// The k-th walk from `p`, in one or two legs.
     fn attempt(&self, p: &Point3<N>, k: usize) -> Outcome {
-        let turn = N::TAU * (N::of(0.123) + N::of(SPREAD) * N::of(k as f64)).fract();
+        let turn =
+            N::TAU * (N::from_f64(0.123) + N::from_f64(SPREAD) * N::from_f64(k as f64)).fract();
         match self.surface {
             Surface::Plane(s) => {
                 let (sin, cos) = turn.sin_cos();
@@ -298,10 +300,11 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     /// A point inside some arc of the boundary.
     fn target(&self, k: usize) -> Point3<N> {
         let arc = &self.arcs.all[k % self.arcs.all.len()];
-        let part = (N::HALF + N::of(SPREAD) * N::of((k / self.arcs.all.len()) as f64)).fract();
+        let part =
+            (N::HALF + N::from_f64(SPREAD) * N::from_f64((k / self.arcs.all.len()) as f64)).fract();
         let [lo, hi] = arc.range;
         arc.curve
-            .point(lo + (hi - lo) * (N::of(0.1) + N::of(0.8) * part))
+            .point(lo + (hi - lo) * (N::from_f64(0.1) + N::from_f64(0.8) * part))
     }
 
     /// A walk without end, in growing lengths where there are many arcs: mostly the nearest
@@ -312,7 +315,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             for _ in 0..3 {
                 match self.take(&walk.upto(length)) {
                     Outcome::Found(place) => return Outcome::Found(place),
-                    Outcome::Nothing | Outcome::Unclear => length *= N::of(4.0),
+                    Outcome::Nothing | Outcome::Unclear => length *= N::from_f64(4.0),
                 }
             }
         }
@@ -414,7 +417,7 @@ impl<'a, N: Float> Locator<'a, N> {
 
     /// The locator of one face.
     pub fn face(&self, face: FaceId) -> &FaceLocator<'a, N> {
-        self.faces[face.index()].get_or_init(|| FaceLocator::of(self.brep, face, self.band))
+        self.faces[face.index()].get_or_init(|| FaceLocator::from_face(self.brep, face, self.band))
     }
 
     /// Where `p`, a point of the face's surface, lies with respect to the face.

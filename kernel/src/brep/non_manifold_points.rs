@@ -22,8 +22,8 @@ pub(super) fn touches<N: Float>(
     fans: &Fans,
     predicates: &Predicates,
 ) -> Vec<(Point3<N>, NonManifoldPoint)> {
-    let edges = Edges::of(raw, names);
-    let faces = Faces::of(brep, predicates.band());
+    let edges = Edges::new(raw, names);
+    let faces = Faces::new(brep, predicates.band());
     let mut found = Vec::new();
     for (point, at) in raw.points.iter().enumerate() {
         let vertex = names.vertex_of.get(&point).copied();
@@ -75,7 +75,7 @@ struct Edges {
 }
 
 impl Edges {
-    fn of<N: Float>(raw: &BoundaryInput<N>, names: &Names) -> Self {
+    fn new<N: Float>(raw: &BoundaryInput<N>, names: &Names) -> Self {
         let mut found = Self::default();
         for (id, edge) in raw.edges.iter().enumerate() {
             for &point in &edge.passes {
@@ -100,7 +100,7 @@ struct Faces<'a, N: Float = f64> {
 }
 
 impl<'a, N: Float> Faces<'a, N> {
-    fn of(brep: &'a Brep<N>, band: N) -> Self {
+    fn new(brep: &'a Brep<N>, band: N) -> Self {
         let mut of_surface = vec![Vec::new(); brep.geometry.surfaces.len()];
         for (patch, face) in brep.geometry.patches.iter().zip(brep.topology.face_ids()) {
             of_surface[patch.surface].push(face);

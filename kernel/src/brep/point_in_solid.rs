@@ -21,7 +21,7 @@ const LINES: u32 = 64;
 /// by.
 pub fn holds<N: Float>(brep: &Brep<N>, p: &Point3<N>, band: N) -> Option<bool> {
     let faces: Vec<FaceId> = brep.topology.face_ids().collect();
-    Closed::of(brep, &faces, band).holds(p)
+    Closed::new(brep, &faces, band).holds(p)
 }
 
 /// The faces of closed shells, with their boxes.
@@ -35,7 +35,7 @@ pub(super) struct Closed<'a, N: Float> {
 
 impl<'a, N: Float> Closed<'a, N> {
     /// The faces, what lies within `band` of an edge being on it.
-    pub fn of(brep: &'a Brep<N>, faces: &[FaceId], band: N) -> Self {
+    pub fn new(brep: &'a Brep<N>, faces: &[FaceId], band: N) -> Self {
         let boxed = |&f: &FaceId| (f, face_bounds(brep, f).grown(band));
         let faces: Vec<(FaceId, Aabb)> = faces.iter().map(boxed).collect();
         let bounds = faces.iter().fold(Aabb::EMPTY, |all, f| all.hull(&f.1));
@@ -79,9 +79,11 @@ impl<'a, N: Float> Closed<'a, N> {
     /// its middle.
     fn line_across(&self, k: u32) -> Line<N> {
         let b = self.faces[k as usize % self.faces.len()].1;
-        let part = |i: u32| N::of(0.5) + N::of(0.21) * (N::whole(k + 1) * N::whole(i + 2)).sin();
+        let part = |i: u32| {
+            N::from_f64(0.5) + N::from_f64(0.21) * (N::whole(k + 1) * N::whole(i + 2)).sin()
+        };
         let at = |i: usize| {
-            let (lo, hi) = (N::of(b.min[i]), N::of(b.max[i]));
+            let (lo, hi) = (N::from_f64(b.min[i]), N::from_f64(b.max[i]));
             lo + (hi - lo) * part(i as u32)
         };
         Line {
@@ -92,8 +94,8 @@ impl<'a, N: Float> Closed<'a, N> {
 
     /// The range of a line beyond which nothing is crossed.
     fn reach(&self, line: &Line<N>) -> [N; 2] {
-        let away = (self.bounds.centre().map(N::of) - line.origin).length();
-        let length = N::TWO * (away + N::of(self.bounds.diagonal()));
+        let away = (self.bounds.centre().map(N::from_f64) - line.origin).length();
+        let length = N::TWO * (away + N::from_f64(self.bounds.diagonal()));
         [-length, length]
     }
 
@@ -112,7 +114,7 @@ impl<'a, N: Float> Closed<'a, N> {
             if roots.is_empty() {
                 continue;
             }
-            let locator = FaceLocator::of(self.brep, *face, self.band);
+            let locator = FaceLocator::from_face(self.brep, *face, self.band);
             for root in roots {
                 match locator.place(&curve.point(root.t)) {
                     PointLocation::Outside => {}
@@ -130,7 +132,7 @@ impl<'a, N: Float> Closed<'a, N> {
 
 /// The direction of the k-th line: none along an axis or a common diagonal.
 fn towards<N: Float>(k: u32) -> Vector3<N> {
-    let a = N::of(0.61) + N::of(2.4) * N::whole(k);
-    let rise = N::of(0.37) - N::of(0.21) * N::whole(k % 5);
+    let a = N::from_f64(0.61) + N::from_f64(2.4) * N::whole(k);
+    let rise = N::from_f64(0.37) - N::from_f64(0.21) * N::whole(k % 5);
     Vector3::new(a.cos(), a.sin(), rise).unit()
 }

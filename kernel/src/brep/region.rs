@@ -167,7 +167,7 @@ impl<N: Float> Sorter<'_, N> {
         let mut starts = Vec::new();
         for &fraction in &STARTS {
             let arcs = self.firsts[ring]..self.firsts[ring + 1];
-            starts.extend(arcs.map(|arc| self.start_on(arc, N::of(fraction))));
+            starts.extend(arcs.map(|arc| self.start_on(arc, N::from_f64(fraction))));
         }
         starts
     }
@@ -204,7 +204,7 @@ impl<N: Float> Sorter<'_, N> {
                 return None;
             }
         }
-        let turn = N::HALF + N::of(0.7) * N::of(attempt as f64);
+        let turn = N::HALF + N::from_f64(0.7) * N::from_f64(attempt as f64);
         let turned = starts
             .iter()
             .any(|start| self.turn_down(ring, start, turn, attempt));
@@ -287,7 +287,7 @@ impl<N: Float> Sorter<'_, N> {
             }
             Surface::Plane(plane) => {
                 let f = &plane.frame;
-                let angle = N::of(0.7) + N::of(1.9) * N::of(attempt as f64);
+                let angle = N::from_f64(0.7) + N::from_f64(1.9) * N::from_f64(attempt as f64);
                 let d = f.x * angle.cos() + f.y * angle.sin();
                 let walk = SurfacePath::straight(plane, point, d).toward(point, left);
                 self.follow(ring, *arc, point, left, &[walk], None)
@@ -315,9 +315,9 @@ impl<N: Float> Sorter<'_, N> {
             return false;
         }
         let is_ruled = matches!(self.surface, Surface::Cylinder(_) | Surface::Cone(_));
-        let mut inside = if heading.reaches(N::of(SLANT)) {
+        let mut inside = if heading.reaches(N::from_f64(SLANT)) {
             Some(ring)
-        } else if is_ruled && (-heading).reaches(N::of(SLANT)) {
+        } else if is_ruled && (-heading).reaches(N::from_f64(SLANT)) {
             self.twin(arc).map(|twin| self.owner[twin])
         } else {
             return false;
@@ -373,7 +373,7 @@ impl<N: Float> Sorter<'_, N> {
 
     /// As far as this from a walk's start the arc is that it starts on.
     fn start(&self) -> N {
-        N::of(64.0) * self.band
+        N::from_f64(64.0) * self.band
     }
 
     /// The arc that runs over the same edge the other way.
@@ -462,5 +462,5 @@ fn pole<N: Float>(centre: Point3<N>, radius: N, attempt: usize) -> Point3<N> {
     let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).unit();
     let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);
     let d = Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d;
-    centre + d.map(N::of).unit() * radius
+    centre + d.map(N::from_f64).unit() * radius
 }

@@ -183,7 +183,7 @@ fn homes<N: Float>(
     }
     let closed = |shell: usize| {
         let faces = &brep.topology.shells[shell].faces;
-        Closed::of(brep, faces, predicates.band())
+        Closed::new(brep, faces, predicates.band())
     };
     let around: Vec<Closed<'_, N>> = outer.iter().map(|&s| closed(s)).collect();
     let home_of = |void: usize| {
@@ -216,11 +216,11 @@ pub(super) fn point_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Point3<N> {
         Some(&l) => {
             let edge = topology.coedge(topology.ring(l).coedges[0]).edge;
             let [lo, hi] = brep.range(edge);
-            brep.curve(edge).point(lo + N::of(0.37) * (hi - lo))
+            brep.curve(edge).point(lo + N::from_f64(0.37) * (hi - lo))
         }
         None => {
             let s = brep.surface(face);
-            s.point(N::of(0.3), N::of(0.4)) + Vector3::zeros()
+            s.point(N::from_f64(0.3), N::from_f64(0.4)) + Vector3::zeros()
         }
     }
 }

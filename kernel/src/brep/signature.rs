@@ -49,7 +49,7 @@ struct Colouring<'a> {
 
 impl Signature {
     /// The combinatorics of a boundary.
-    pub fn of(brep: &Brep) -> Self {
+    pub fn new(brep: &Brep) -> Self {
         let topology = &brep.topology;
         let kind = |face| {
             let entity = topology.face(face);

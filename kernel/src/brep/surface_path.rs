@@ -37,7 +37,7 @@ pub struct DirectedArc<'a, N: Float = f64> {
 
 impl<'a, N: Float> DirectedArc<'a, N> {
     /// A coedge of a boundary representation.
-    pub fn of(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
+    pub fn new(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
         let coedge = brep.topology.coedge(coedge);
         Self {
             curve: brep.curve(coedge.edge),
@@ -128,7 +128,7 @@ impl<N: Float> SurfacePath<N> {
             track,
             branch,
             length,
-            reach: Reach::of((start, &normal), &track, &branch, length),
+            reach: Reach::new((start, &normal), &track, &branch, length),
         }
     }
 
@@ -172,7 +172,7 @@ impl<N: Float> SurfacePath<N> {
             Surface::Plane(_) => return None,
             Surface::Torus(t) => {
                 let away = rho - t.major;
-                if away.is_within(N::of(TOP) * t.minor) {
+                if away.is_within(N::from_f64(TOP) * t.minor) {
                     let upright = Cylinder {
                         frame: *f,
                         radius: rho,
@@ -333,8 +333,8 @@ impl<N: Float> SurfacePath<N> {
         self.may_meet(&b.min, &b.max, band)
     }
 
-    /// The crossings with `arcs` on `surface`, in order; `classify` tells whether the outward normal
-    /// of the face is the surface's own, `band` is the resolution.
+    /// The crossings with `arcs` on `surface`, in order; `side` is the sense of the face's outward
+    /// normal against the surface's own, `band` is the resolution.
     pub fn crossings(
         &self,
         surface: &Surface<N>,

@@ -124,9 +124,15 @@ impl<N: Float> BivariateTrigPoly<N> {
     /// The polynomial that takes the values of `f`, which is known to be one: found from 25
     /// samples by the discrete orthogonality of the five functions.
     pub fn interpolate(f: impl Fn(N, N) -> N) -> Self {
-        let node = |i: usize| N::TAU * (N::of(i as f64)) / N::of(5.0);
+        let node = |i: usize| N::TAU * (N::from_f64(i as f64)) / N::from_f64(5.0);
         let rows: [[N; 5]; 5] = std::array::from_fn(|i| basis(node(i))[0]);
-        let weight = |m: usize| if m == 0 { N::of(0.2) } else { N::of(0.4) };
+        let weight = |m: usize| {
+            if m == 0 {
+                N::from_f64(0.2)
+            } else {
+                N::from_f64(0.4)
+            }
+        };
         let mut k = [[N::ZERO; 5]; 5];
         for i in 0..5 {
             for j in 0..5 {
@@ -201,7 +207,7 @@ impl<N: Float> BivariateTrigPoly<N> {
         for (i, row) in self.0.iter().enumerate() {
             for (j, c) in row.iter().enumerate() {
                 let d: N = degree[i] + degree[j];
-                let over = (1..=n).fold(N::ONE, |t, k| t * d / N::of(k as f64));
+                let over = (1..=n).fold(N::ONE, |t, k| t * d / N::from_f64(k as f64));
                 total += c.abs() * over;
             }
         }

@@ -65,8 +65,8 @@ fn terms<N: Float>(angle: N) -> [[N; 5]; DEGREE + 1] {
     let (mut one, mut two) = (N::ONE, N::ONE);
     for (n, row) in all.iter_mut().enumerate() {
         if n > 0 {
-            one /= N::of(n as f64);
-            two *= N::TWO / N::of(n as f64);
+            one /= N::from_f64(n as f64);
+            two *= N::TWO / N::from_f64(n as f64);
         }
         *row = [
             if n == 0 { N::ONE } else { N::ZERO },
@@ -116,7 +116,7 @@ pub fn sheared<N: Float>(taylor: &Taylor<N>, n: usize, c: N) -> Taylor<N> {
                     break;
                 }
                 all[s][r] += term;
-                term *= c * N::of(r as f64) / N::of((q + 1 - r) as f64);
+                term *= c * N::from_f64(r as f64) / N::from_f64((q + 1 - r) as f64);
             }
         }
     }
@@ -166,7 +166,7 @@ impl<N: Float> Chart<N> {
                 let mut term = *c;
                 for r in (0..=q).rev() {
                     chart.add(term, p, &powers[q - r], r);
-                    term *= N::of(r as f64) / N::of((q + 1 - r) as f64);
+                    term *= N::from_f64(r as f64) / N::from_f64((q + 1 - r) as f64);
                 }
             }
         }
@@ -259,7 +259,7 @@ impl<N: Float> Chart<N> {
         for (j, row) in self.rows.iter().enumerate() {
             let mut p = [zero; 3];
             for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != N::ZERO) {
-                let m = N::of(n as f64);
+                let m = N::from_f64(n as f64);
                 p[0] = p[0] + powers[n].scale(c);
                 if n > 0 {
                     p[1] = p[1] + powers[n - 1].scale(c * m);
@@ -276,7 +276,7 @@ impl<N: Float> Chart<N> {
                 xy = xy + p[1] * k[1];
                 yy = yy + p[0] * k[2];
             }
-            let m = N::of((j + 1) as f64);
+            let m = N::from_f64((j + 1) as f64);
             k = [k[0] * kappa, k[0].scale(m), k[1].scale(m)];
         }
         Partials {
@@ -301,7 +301,7 @@ impl<N: Float> Chart<N> {
         let power = (run * n - form) as i32;
         let value = self.rest * size.powi(n as i32);
         // A derivative takes a factor of σ away, and no more than this comes with it.
-        let factor = N::of((form + 2 * n * rise) as f64);
+        let factor = N::from_f64((form + 2 * n * rise) as f64);
         [0, 1, 2].map(|d| value * factor.powi(d) * sigma.powi(power - d))
     }
 

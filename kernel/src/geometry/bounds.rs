@@ -32,7 +32,7 @@ impl Aabb {
     };
 
     /// The box around one point.
-    pub fn of<N: Float>(p: &Point3<N>) -> Self {
+    pub fn new<N: Float>(p: &Point3<N>) -> Self {
         let c = [p.x, p.y, p.z];
         Self {
             min: c.map(N::below),
@@ -62,7 +62,7 @@ impl Aabb {
 
     /// Whether a point lies in it.
     pub fn holds<N: Float>(&self, p: &Point3<N>) -> bool {
-        (0..3).all(|i| N::of(self.min[i]) <= p[i] && p[i] <= N::of(self.max[i]))
+        (0..3).all(|i| N::from_f64(self.min[i]) <= p[i] && p[i] <= N::from_f64(self.max[i]))
     }
 
     /// Whether another box lies in it.
@@ -76,7 +76,7 @@ impl Aabb {
         for i in 0..3 {
             let (o, d) = (line.origin[i], line.direction[i]);
             // Steep enough to cross the slab within the extent, or else it lies along it.
-            let (min, max) = (N::of(self.min[i]), N::of(self.max[i]));
+            let (min, max) = (N::from_f64(self.min[i]), N::from_f64(self.max[i]));
             let (x, y) = ((min - o) / d, (max - o) / d);
             if d == N::ZERO || !x.is_finite() || !y.is_finite() {
                 if o < min || o > max {
@@ -143,8 +143,8 @@ fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], 
     let last = rounded.len().saturating_sub(1);
     let all = rounded.drain(..).enumerate();
     all.map(|(i, ([a, b], part))| {
-        let from = if i == 0 { lo } else { N::of(a) };
-        let to = if i == last { hi } else { N::of(b) };
+        let from = if i == 0 { lo } else { N::from_f64(a) };
+        let to = if i == last { hi } else { N::from_f64(b) };
         ([from, to], part.grown(growth))
     })
     .collect()
@@ -156,7 +156,7 @@ fn has_exact_bounds<N: Float>(curve: &Curve<N>) -> bool {
 }
 
 fn ends<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Aabb {
-    Aabb::of(&curve.point(lo)).hull(&Aabb::of(&curve.point(hi)))
+    Aabb::new(&curve.point(lo)).hull(&Aabb::new(&curve.point(hi)))
 }
 
 /// Grows the box of the ends by the extrema a x cos t + b y sin t that the range passes.
@@ -202,12 +202,12 @@ fn extremes<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
             let t = pair[0] + step * N::whole(k);
             let after = (t, curve.derivative(t));
             // A sample may be an extreme itself.
-            hull = hull.hull(&Aabb::of(&curve.point(t)));
+            hull = hull.hull(&Aabb::new(&curve.point(t)));
             for i in 0..3 {
                 if before.1[i] * after.1[i] < N::ZERO {
                     let turn = |t: N| curve.derivative(t)[i];
                     let t = bisect(before.0, after.0, before.1[i], turn);
-                    hull = hull.hull(&Aabb::of(&curve.point(t)));
+                    hull = hull.hull(&Aabb::new(&curve.point(t)));
                 }
             }
             before = after;
@@ -234,8 +234,8 @@ fn enclosed<N: Float>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 2
     let mut seen = Aabb::EMPTY;
     for pair in breaks.windows(2) {
         for k in 0..=4 {
-            let t = pair[0] + (pair[1] - pair[0]) * N::whole(k) / N::of(4.0);
-            seen = seen.hull(&Aabb::of(&curve.point(t)));
+            let t = pair[0] + (pair[1] - pair[0]) * N::whole(k) / N::from_f64(4.0);
+            seen = seen.hull(&Aabb::new(&curve.point(t)));
         }
     }
     let mut stack: Vec<(N, N)> = breaks.windows(2).rev().map(|p| (p[0], p[1])).collect();
@@ -250,7 +250,7 @@ fn enclosed<N: Float>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 2
             continue;
         }
         let m = N::HALF * (a + b);
-        seen = seen.hull(&Aabb::of(&curve.point(m)));
+        seen = seen.hull(&Aabb::new(&curve.point(m)));
         stack.push((m, b));
         stack.push((a, m));
     }

@@ -215,7 +215,7 @@ pub fn line_meets<N: Float>(
     let c = (rho - s.radius) * (rho + s.radius);
     let radicand = b * b - a * c;
     // Next to a touch the roots are not told from each other.
-    if radicand.abs() <= N::of(16.0) * s.radius * band * a {
+    if radicand.abs() <= N::from_f64(16.0) * s.radius * band * a {
         return false;
     }
     if radicand < N::ZERO {
@@ -226,7 +226,7 @@ pub fn line_meets<N: Float>(
         let p = start + direction * at;
         let t = curve.in_cycle(curve.parameter(&p), lo);
         // Else on another branch.
-        if t >= lo && t <= hi && (curve.point(t) - p).length() <= N::of(64.0) * band {
+        if t >= lo && t <= hi && (curve.point(t) - p).length() <= N::from_f64(64.0) * band {
             found(t, true);
         }
     }

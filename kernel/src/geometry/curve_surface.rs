@@ -24,12 +24,12 @@ struct Height<'a, N: Float = f64> {
 }
 
 impl<'a, N: Float> Height<'a, N> {
-    fn of(curve: &'a Curve<N>, surface: &'a Surface<N>) -> Self {
+    fn new(curve: &'a Curve<N>, surface: &'a Surface<N>) -> Self {
         let doubles = || Height::over(curve.in_doubles(), surface.in_doubles());
         Self {
             curve: Cow::Borrowed(curve),
             surface: Cow::Borrowed(surface),
-            restriction: ImplicitOnCurve::of(curve, surface),
+            restriction: ImplicitOnCurve::new(curve, surface),
             doubles: (!N::IS_DOUBLE).then(|| Box::new(doubles())),
         }
     }
@@ -38,7 +38,7 @@ impl<'a, N: Float> Height<'a, N> {
 impl Height<'static> {
     fn over(curve: Curve, surface: Surface) -> Self {
         Self {
-            restriction: ImplicitOnCurve::of(&curve, &surface),
+            restriction: ImplicitOnCurve::new(&curve, &surface),
             curve: Cow::Owned(curve),
             surface: Cow::Owned(surface),
             doubles: None,
@@ -68,7 +68,7 @@ impl<N: Float> Function<N> for Height<'_, N> {
         let doubles = self.doubles.as_deref()?;
         let away = |p: &Point3<N>| p.coords.length().rounded();
         let size = away(&self.surface.frame().origin) + away(&self.curve.point(piece[0]));
-        Some(F64Filter::of(self, doubles, piece, f64::ROUNDING * size))
+        Some(F64Filter::new(self, doubles, piece, f64::ROUNDING * size))
     }
 
     fn at(&self, t: N) -> Jet<N> {
@@ -87,7 +87,7 @@ pub fn cut<N: Float>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, band
         return Roots::Everywhere;
     }
     let breaks = curve.breaks(range[0], range[1]);
-    match isolate(&Height::of(curve, surface), &breaks, band) {
+    match isolate(&Height::new(curve, surface), &breaks, band) {
         Roots::Everywhere => touching(range),
         zeros => zeros,
     }
@@ -103,7 +103,7 @@ pub fn roots<N: Float>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, ba
         return known;
     }
     let breaks = curve.breaks(range[0], range[1]);
-    let zeros = match isolate_closely(&Height::of(curve, surface), &breaks, band) {
+    let zeros = match isolate_closely(&Height::new(curve, surface), &breaks, band) {
         Roots::Everywhere => touching(range),
         zeros => zeros,
     };
@@ -128,18 +128,18 @@ fn rounded_roots<N: Float>(
     let follows = |part: N| {
         let t = range[0] + (range[1] - range[0]) * part;
         let p = curve.point(t);
-        let away = (rounded.point(t.rounded()).map(N::of) - p).length();
-        let rounding = N::of(f64::ROUNDING) * p.coords.length();
-        (away + rounding) * N::of(FOLLOWING) <= band
+        let away = (rounded.point(t.rounded()).map(N::from_f64) - p).length();
+        let rounding = N::from_f64(f64::ROUNDING) * p.coords.length();
+        (away + rounding) * N::from_f64(FOLLOWING) <= band
     };
     if !probes().step_by(4).all(follows) {
         return None;
     }
-    let height = Height::of(curve, surface);
+    let height = Height::new(curve, surface);
     let ends = range.map(N::rounded);
     let (found, misses) = roots(&rounded, ends, &surface.in_doubles(), band.rounded());
     let settled = |t: f64| {
-        let mut t = N::of(t);
+        let mut t = N::from_f64(t);
         for _ in 0..STEPS {
             let at = height.at(t);
             t -= at.v / at.d;
@@ -149,14 +149,16 @@ fn rounded_roots<N: Float>(
     let root = |r: Root| Root {
         t: match r.contact {
             RootKind::Simple => settled(r.t),
-            RootKind::Touching | RootKind::Inflected => N::of(r.t),
+            RootKind::Touching | RootKind::Inflected => N::from_f64(r.t),
         },
-        lo: N::of(r.lo),
-        hi: N::of(r.hi),
+        lo: N::from_f64(r.lo),
+        hi: N::from_f64(r.hi),
         contact: r.contact,
-        margin: r.margin.map(N::of),
+        margin: r.margin.map(N::from_f64),
     };
-    let misses = misses.into_iter().map(|(t, v)| (N::of(t), N::of(v)));
+    let misses = misses
+        .into_iter()
+        .map(|(t, v)| (N::from_f64(t), N::from_f64(v)));
     Some((found.into_iter().map(root).collect(), misses.collect()))
 }
 
@@ -184,11 +186,12 @@ pub fn comes_near<N: Float>(surface: &Surface<N>, b: &Aabb, margin: N) -> bool {
     // The distance of a surface changes by no more than the way, which doubles tell to rounding.
     let centre = b.centre();
     let rounding = f64::ROUNDING * (centre.coords.norm() + b.diagonal());
-    let away = surface.distance(&centre.map(N::of)).abs();
-    if away > N::of(0.5 * b.diagonal() + rounding) + margin {
+    let away = surface.distance(&centre.map(N::from_f64)).abs();
+    if away > N::from_f64(0.5 * b.diagonal() + rounding) + margin {
         return false;
     }
-    let level = surface.level([0, 1, 2].map(|i| Interval::new(N::of(b.min[i]), N::of(b.max[i]))));
+    let level = surface
+        .level([0, 1, 2].map(|i| Interval::new(N::from_f64(b.min[i]), N::from_f64(b.max[i]))));
     level.lo <= margin && level.hi >= -margin
 }
 

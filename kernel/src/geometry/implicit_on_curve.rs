@@ -39,7 +39,7 @@ const ROUNDINGS: f64 = 64.0;
 
 impl<N: Float> ImplicitOnCurve<N> {
     /// None of curves that are neither, and where doubles do as well without.
-    pub(super) fn of(curve: &Curve<N>, surface: &Surface<N>) -> Option<Self> {
+    pub(super) fn new(curve: &Curve<N>, surface: &Surface<N>) -> Option<Self> {
         match (curve, surface) {
             (Curve::Circle(circle), Surface::Torus(_)) => Some(Self::circle(circle, surface)),
             _ if N::IS_DOUBLE => None,
@@ -68,7 +68,7 @@ impl<N: Float> ImplicitOnCurve<N> {
         }
         Self::Circle {
             coefficients,
-            slop: N::of(ROUNDINGS) * N::EPSILON * most,
+            slop: N::from_f64(ROUNDINGS) * N::EPSILON * most,
         }
     }
 
@@ -98,7 +98,7 @@ impl<N: Float> ImplicitOnCurve<N> {
             Surface::Torus(s) => {
                 let all: Quartic<N> = std::array::from_fn(|n| across[n] + z[n]);
                 let [a, b, c, ..] = minus(all, s.minor * s.minor - s.major * s.major);
-                let far = N::of(4.0) * s.major * s.major;
+                let far = N::from_f64(4.0) * s.major * s.major;
                 let sum = square([a, b, c]);
                 std::array::from_fn(|n| sum[n] - far * across[n])
             }
@@ -121,7 +121,7 @@ impl<N: Float> ImplicitOnCurve<N> {
             Self::Circle { coefficients, slop } => (t.harmonic(coefficients, t.sin_cos()), *slop),
             Self::Line { powers, away } => {
                 let most = size(surface, *away + t.magnitude());
-                (over(powers, t), N::of(ROUNDINGS) * N::EPSILON * most)
+                (over(powers, t), N::from_f64(ROUNDINGS) * N::EPSILON * most)
             }
         };
         let value = value + Interval::around(N::ZERO, slop);

@@ -56,7 +56,8 @@ const CANCELLING: f64 = 1.0 / 256.0;
 impl<N: Float> Along<N> {
     pub(super) fn new(lead: N, linear: Trig1<N>, constant: Trig2<N>) -> Self {
         let size = |k: &[N]| k.iter().map(|c| c.abs()).sum::<N>();
-        let cancels = lead.abs() * size(&constant) <= N::of(CANCELLING) * size(&linear).powi(2);
+        let cancels =
+            lead.abs() * size(&constant) <= N::from_f64(CANCELLING) * size(&linear).powi(2);
         Self {
             lead,
             linear,
@@ -179,7 +180,7 @@ impl<N: Float> QuadricCurve<N> {
                 let [mean, cos, sin] = linear;
                 let (middle, size) = (sin.atan2(cos), cos.hypot(sin));
                 let level = -mean / size;
-                if level.abs() > N::ONE + N::HALF * N::of(DOUBLE) * N::of(DOUBLE) {
+                if level.abs() > N::ONE + N::HALF * N::from_f64(DOUBLE) * N::from_f64(DOUBLE) {
                     return Vec::new();
                 }
                 let half = level.clamp(-N::ONE, N::ONE).acos();
@@ -195,7 +196,7 @@ impl<N: Float> QuadricCurve<N> {
         let zeros = self.apex_parameters();
         let near = |u: &N| {
             let away = (t - *u).rem_euclid(N::TAU);
-            away.min(N::TAU - away) < N::of(DOUBLE)
+            away.min(N::TAU - away) < N::from_f64(DOUBLE)
         };
         !zeros.is_empty() && zeros.iter().all(near)
     }

@@ -48,7 +48,7 @@ const DEEP: u32 = 10;
 
 /// The critical points of F at which F is within the band, or so near to it that it is to be told.
 pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critical<N>, Unresolved> {
-    let reach = N::of(CLOSE) * tracer.band;
+    let reach = N::from_f64(CLOSE) * tracer.band;
     let mut misses: Vec<[N; 2]> = Vec::new();
     let mut found: Vec<SingularPoint<N>> = Vec::new();
     // Degenerate points, with how far from them F is within the band.
@@ -80,8 +80,9 @@ pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critic
             let Some(point) = only_critical(tracer, &cell) else {
                 continue;
             };
-            let same =
-                |q: &SingularPoint<N>| near(&q.angles, &point, N::of(1e3) * tracer.slop.sqrt());
+            let same = |q: &SingularPoint<N>| {
+                near(&q.angles, &point, N::from_f64(1e3) * tracer.slop.sqrt())
+            };
             let value = tracer.form.value(point[0], point[1]).abs();
             if value > tracer.band {
                 if value < reach {
@@ -122,7 +123,7 @@ pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critic
     });
     let mut close: Vec<[N; 2]> = Vec::new();
     for p in found.iter().map(|p| p.angles).chain(misses) {
-        if !close.iter().any(|q| near(q, &p, N::of(ZONE))) {
+        if !close.iter().any(|q| near(q, &p, N::from_f64(ZONE))) {
             close.push(p);
         }
     }
@@ -176,8 +177,8 @@ impl Look {
             Self::Bare => Look::Bare,
             Self::Regular => Look::Regular,
             Self::Unclear { least, value, wide } => Look::Unclear {
-                least: N::of(least),
-                value: N::of(value),
+                least: N::from_f64(least),
+                value: N::from_f64(value),
                 wide,
             },
         }
@@ -200,7 +201,7 @@ fn is_regular<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>
     let [xx, xy, yy] = thirds.seconds(around);
     // ‖H⁻¹‖ times the change of H over the surroundings stays below one.
     let change = rows(scaled(xx, xy, yy));
-    rows(scaled(at.xx, at.xy, at.yy)) * change < N::of(0.25) * det
+    rows(scaled(at.xx, at.xy, at.yy)) * change < N::from_f64(0.25) * det
 }
 
 /// The one critical point of a cell over whose surroundings the Hessian is regular, if it lies in it.
@@ -215,12 +216,13 @@ fn only_critical<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>) -> Option<[N;
             (g.y * g.xx - g.x * g.xy) / det,
         ];
         p = [p[0] - step[0], p[1] - step[1]];
-        if step[0].abs().max(step[1].abs()) <= N::of(4.0) * N::EPSILON {
+        if step[0].abs().max(step[1].abs()) <= N::from_f64(4.0) * N::EPSILON {
             break;
         }
     }
     let c = cell.centre();
-    let inside = (p[0] - c[0]).abs() <= N::of(1.01) * hx && (p[1] - c[1]).abs() <= N::of(1.01) * hy;
+    let inside = (p[0] - c[0]).abs() <= N::from_f64(1.01) * hx
+        && (p[1] - c[1]).abs() <= N::from_f64(1.01) * hy;
     inside.then_some(p)
 }
 

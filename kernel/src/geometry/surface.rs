@@ -169,7 +169,7 @@ impl<N: Float> Surface<N> {
             Self::Cone(s) => across * s.cos * s.cos - q.z * q.z * s.sin * s.sin,
             Self::Torus(s) => {
                 let sum = across + q.z * q.z + s.major * s.major - s.minor * s.minor;
-                sum * sum - N::of(4.0) * s.major * s.major * across
+                sum * sum - N::from_f64(4.0) * s.major * s.major * across
             }
         }
     }

@@ -88,7 +88,7 @@ impl<'a, N: Float> Carrier<'a, N> {
     /// Ranges that hold the exact coefficients: every number of a surface is within a few units in
     /// the last place of its length.
     fn ranges(&self) -> Coefficients<Interval<N>> {
-        let near = |x: N, size: N| Interval::around(x, N::of(SLACK) * N::EPSILON * size);
+        let near = |x: N, size: N| Interval::around(x, N::from_f64(SLACK) * N::EPSILON * size);
         numbers(
             self.surface,
             |x| near(x, Float::abs(x)),

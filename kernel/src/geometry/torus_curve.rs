@@ -101,7 +101,7 @@ impl<N: Float> Fixed<N> {
             let [value, slope] = section.at(y);
             y -= value / slope;
         }
-        N::of(y)
+        N::from_f64(y)
     }
 
     /// The value and the derivative.
@@ -169,7 +169,9 @@ impl<N: Float> TorusCurveSegment<N> {
         let s = (x - self.from) / length;
         let (m0, m1) = (self.slopes[0] * length, self.slopes[1] * length);
         let (a, b) = (N::ONE - s, s);
-        y0 * a * a * (N::ONE + N::TWO * b) + y1 * b * b * (N::of(3.0) - N::TWO * b) + m0 * b * a * a
+        y0 * a * a * (N::ONE + N::TWO * b)
+            + y1 * b * b * (N::from_f64(3.0) - N::TWO * b)
+            + m0 * b * a * a
             - m1 * a * b * b
     }
 
@@ -247,7 +249,7 @@ impl<N: Float> TorusCurveSegment<N> {
     fn solution(&self, form: Form<'_, N>, x: Interval<N>) -> Interval<N> {
         let m = x.mid();
         let y = self.solve(form, m);
-        let slop = Interval::around(y, N::of(4.0) * N::EPSILON * (N::ONE + y.abs()));
+        let slop = Interval::around(y, N::from_f64(4.0) * N::EPSILON * (N::ONE + y.abs()));
         slop + Interval::new(-self.steep, self.steep) * (x - Interval::point(m))
     }
 
@@ -310,18 +312,18 @@ impl<N: Float> TorusCurve<N> {
 
     /// The number of segments: the parameter's length.
     pub fn length(&self) -> N {
-        N::of(self.segments.len() as f64)
+        N::from_f64(self.segments.len() as f64)
     }
 
     fn locate(&self, t: N) -> (&TorusCurveSegment<N>, N) {
         let n = self.segments.len();
         let t = if self.closed {
-            t.rem_euclid(N::of(n as f64))
+            t.rem_euclid(N::from_f64(n as f64))
         } else {
-            t.clamp(N::ZERO, N::of(n as f64))
+            t.clamp(N::ZERO, N::from_f64(n as f64))
         };
         let i = t.floor().index().min(n - 1);
-        (&self.segments[i], t - N::of(i as f64))
+        (&self.segments[i], t - N::from_f64(i as f64))
     }
 
     /// (θ, φ) at t with two derivatives by t.
@@ -390,11 +392,11 @@ impl<N: Float> TorusCurve<N> {
     /// Whether the curve turns back at t: whether a cusp is there.
     pub fn turns_back(&self, t: N) -> bool {
         let n = self.segments.len();
-        let near = t.rem_euclid(N::of(n as f64)).round();
+        let near = t.rem_euclid(N::from_f64(n as f64)).round();
         let s = &self.segments[near.index() % n];
         let at_cusp = |c: &Chart<N>| c.weights.run == 2 && s.from == N::ZERO;
-        let away = (t - near).rem_euclid(N::of(n as f64));
-        away.min(N::of(n as f64) - away) <= N::ROUNDING * N::of(n as f64)
+        let away = (t - near).rem_euclid(N::from_f64(n as f64));
+        away.min(N::from_f64(n as f64) - away) <= N::ROUNDING * N::from_f64(n as f64)
             && self.chart(s).is_some_and(at_cusp)
     }
 
@@ -408,7 +410,7 @@ impl<N: Float> TorusCurve<N> {
             let [a, b] = self.angles_on(s, tau);
             let away = wrap(theta - a).hypot(wrap(phi - b));
             if away < best.0 {
-                best = (away, N::of(i as f64) + tau);
+                best = (away, N::from_f64(i as f64) + tau);
             }
         }
         best.1

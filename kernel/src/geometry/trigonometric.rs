@@ -92,7 +92,7 @@ impl<N: Float> Function<N> for Trigonometric<N> {
     /// By Taylor's sum about the middle: next to a zero of order four the terms of the polynomial
     /// cancel, and their own ranges tell nothing before they are as short as its square.
     fn over(&self, u: Interval<N>) -> Jet<Interval<N>> {
-        if u.width() > N::of(SHORT) {
+        if u.width() > N::from_f64(SHORT) {
             return self.jet(u);
         }
         let middle = u.mid();
@@ -116,7 +116,7 @@ impl<N: Float> Function<N> for Trigonometric<N> {
     fn roughly(&self, piece: [N; 2]) -> Option<F64Filter<'_>> {
         let doubles = self.doubles.as_deref()?;
         let size: f64 = doubles.derivatives[0].iter().map(|c| c.abs()).sum();
-        Some(F64Filter::of(self, doubles, piece, f64::ROUNDING * size))
+        Some(F64Filter::new(self, doubles, piece, f64::ROUNDING * size))
     }
 
     fn at(&self, u: N) -> Jet<N> {
@@ -156,9 +156,9 @@ pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, band: N) -> Option<Vec<(N, N)
 /// The zeros over one turn; none of what vanishes everywhere.
 fn zeros_once<N: Float>(k: &Trig2<N>, band: N) -> Option<Vec<(N, RootKind)>> {
     // Started off the axes, where symmetric polynomials have their zeros.
-    let start = N::of(0.1);
+    let start = N::from_f64(0.1);
     let breaks: Vec<N> = (0..=8)
-        .map(|i| start + N::TAU * N::whole(i) / N::of(8.0))
+        .map(|i| start + N::TAU * N::whole(i) / N::from_f64(8.0))
         .collect();
     let Roots::At { roots, .. } = isolate(&Trigonometric::new(k), &breaks, band) else {
         return None;
@@ -176,7 +176,7 @@ fn zeros_once<N: Float>(k: &Trig2<N>, band: N) -> Option<Vec<(N, RootKind)>> {
 pub(super) fn divide_half<N: Float>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 2], [N; 4]) {
     // Sampled away from the zero, and solved for: both are exact up to rounding.
     let samples: Vec<N> = (0..8)
-        .map(|i| u0 + N::TAU * (N::whole(i) + N::HALF) / N::of(8.0))
+        .map(|i| u0 + N::TAU * (N::whole(i) + N::HALF) / N::from_f64(8.0))
         .collect();
     let half = |u: N| (N::HALF * (u - u0)).sin();
     let mut nb = SMatrix::<N, 2, 2>::zeros();
@@ -184,7 +184,7 @@ pub(super) fn divide_half<N: Float>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 2
     let mut nc = SMatrix::<N, 4, 4>::zeros();
     let mut rc = SVector::<N, 4>::zeros();
     for &u in &samples {
-        let [first, third] = [N::HALF, N::of(1.5)].map(|k| k * u);
+        let [first, third] = [N::HALF, N::from_f64(1.5)].map(|k| k * u);
         let f = SVector::from([first.cos(), first.sin()]);
         let g = SVector::from([f.x, f.y, third.cos(), third.sin()]);
         nb += f * f.transpose();
@@ -205,12 +205,16 @@ mod tests {
     /// (cos u + 4/3 sin u - 5/3)², which touches zero to the fourth order, but for rounding.
     #[test]
     fn a_fourfold_zero_is_one() {
-        let third = F237::ONE / F237::of(3.0);
-        let m = [F237::of(-5.0) * third, F237::ONE, F237::of(4.0) * third];
+        let third = F237::ONE / F237::from_f64(3.0);
+        let m = [
+            F237::from_f64(-5.0) * third,
+            F237::ONE,
+            F237::from_f64(4.0) * third,
+        ];
         let k = product(&m, &m);
         let size: F237 = k.iter().map(|c| c.abs()).sum();
         for by in [1.0, 16.0, 256.0, 4096.0] {
-            let zeros = zeros_once(&k, F237::ROUNDING * size * F237::of(by)).unwrap();
+            let zeros = zeros_once(&k, F237::ROUNDING * size * F237::from_f64(by)).unwrap();
             assert_eq!(zeros.len(), 1, "{zeros:?}");
             assert_eq!(zeros[0].1, RootKind::Touching);
         }

@@ -19,11 +19,11 @@ pub trait Analytic:
     fn scale(self, k: Self::Float) -> Self;
     /// The product with a double.
     fn times(self, k: f64) -> Self {
-        self.scale(Self::Float::of(k))
+        self.scale(Self::Float::from_f64(k))
     }
     /// A double.
     fn plain(x: f64) -> Self {
-        Self::constant(Self::Float::of(x))
+        Self::constant(Self::Float::from_f64(x))
     }
     /// The square, tighter than a product on intervals.
     fn square(self) -> Self;
@@ -70,7 +70,7 @@ pub fn dot<S: Analytic>(k: &nalgebra::Vector3<S::Float>, v: [S; 3]) -> S {
 /// sin x / x and its first two derivatives at a number.
 pub(super) fn sinc_jet<N: Float>(x: N) -> [N; 3] {
     let x2 = x * x;
-    if x2 < N::of(0.25) {
+    if x2 < N::from_f64(0.25) {
         return sinc_series(x, x2);
     }
     let (s, c) = x.sin_cos();
@@ -85,7 +85,7 @@ fn sinc_series<N: Float>(x: N, x2: N) -> [N; 3] {
     for n in (0..N::SINC_TERMS).rev() {
         let n2 = N::whole(2 * n);
         let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
-        let c = N::of(sign) / factorial(2 * n + 1);
+        let c = N::from_f64(sign) / factorial(2 * n + 1);
         value = value * x2 + c;
         if n >= 1 {
             first = first * x2 + c * n2;

@@ -41,7 +41,7 @@ pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N
     if ga == N::ZERO {
         return a;
     }
-    let rounding = N::of(0.25) * N::EPSILON * a.abs().max(b.abs());
+    let rounding = N::from_f64(0.25) * N::EPSILON * a.abs().max(b.abs());
     let mut t = N::HALF * (a + b);
     let mut last = b - a;
     let mut before: Option<(N, N)> = None;
@@ -63,14 +63,14 @@ pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N
         let inside = newton > a && newton < b;
         let left = before.map(|(t0, d0)| ((d - d0) / (t - t0) * step * step / (N::TWO * d)).abs());
         let done = |left: N| {
-            let noise = left <= rounding && step.abs() >= N::of(0.75) * last;
-            noise || left <= N::of(0.25) * N::EPSILON * newton.abs()
+            let noise = left <= rounding && step.abs() >= N::from_f64(0.75) * last;
+            noise || left <= N::from_f64(0.25) * N::EPSILON * newton.abs()
         };
         if inside && left.is_some_and(done) {
             return newton;
         }
         before = Some((t, d));
-        let next = if inside && step.abs() < N::of(0.75) * last {
+        let next = if inside && step.abs() < N::from_f64(0.75) * last {
             last = step.abs();
             newton
         } else {
@@ -95,7 +95,7 @@ mod tests {
     /// The zeros of cos t - cos z for many z, found from a bracket that is not symmetric: the last
     /// step may end on either side of the zero, or on it but for rounding.
     fn zeros_to_the_last_digit<N: Float + std::fmt::Debug>() {
-        let [a, b] = [0.9, 2.2].map(N::of);
+        let [a, b] = [0.9, 2.2].map(N::from_f64);
         for k in 1..400 {
             let z = a + (b - a) * N::whole(k) / N::whole(400);
             let level = z.sin_cos().1;

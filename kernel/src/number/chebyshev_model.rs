@@ -37,10 +37,10 @@ pub(super) struct ChebyshevModel<N: Float> {
 
 impl<N: Float> ChebyshevModel<N> {
     /// The polynomial that the function is within `off`; none where it is none.
-    pub(super) fn of(f: &impl Function<N>, [a, b]: [N; 2], off: N) -> Option<Self> {
+    pub(super) fn new(f: &impl Function<N>, [a, b]: [N; 2], off: N) -> Option<Self> {
         let (middle, half) = (N::HALF * (a + b), N::HALF * (b - a));
         let series = series(|s| f.value(middle + half * s));
-        let near = off / N::of(NEARER);
+        let near = off / N::from_f64(NEARER);
         let ends = series.iter().rev().take(LAST);
         let polynomial = Self {
             middle,
@@ -168,13 +168,13 @@ mod tests {
 
     #[test]
     fn a_wave_is_a_polynomial_within_the_finest_resolution() {
-        let off = F237::of(1e-50);
-        let range = [F237::of(0.25), F237::of(1.5)];
-        let polynomial = ChebyshevModel::of(&wave, range, off).unwrap();
+        let off = F237::from_f64(1e-50);
+        let range = [F237::from_f64(0.25), F237::from_f64(1.5)];
+        let polynomial = ChebyshevModel::new(&wave, range, off).unwrap();
         for (lo, hi) in [(0.25, 1.5), (0.5, 0.75), (1.0, 1.0)] {
             let x = Interval {
-                lo: F237::of(lo),
-                hi: F237::of(hi),
+                lo: F237::from_f64(lo),
+                hi: F237::from_f64(hi),
             };
             let (told, known) = (polynomial.over(x), wave(x));
             let holds = |told: Interval<F237>, known: Interval<F237>| {
@@ -182,7 +182,7 @@ mod tests {
             };
             assert!(holds(told.v, known.v) && holds(told.d, known.d) && holds(told.dd, known.dd));
             if lo == hi {
-                assert!(told.v.width() < F237::of(3e-50), "{:?}", told.v);
+                assert!(told.v.width() < F237::from_f64(3e-50), "{:?}", told.v);
             }
         }
     }
@@ -195,6 +195,6 @@ mod tests {
             dd: Interval::ENTIRE,
         };
         let range = [F237::ZERO, F237::ONE];
-        assert!(ChebyshevModel::of(&root, range, F237::of(1e-20)).is_none());
+        assert!(ChebyshevModel::new(&root, range, F237::from_f64(1e-20)).is_none());
     }
 }

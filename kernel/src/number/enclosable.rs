@@ -23,7 +23,7 @@ pub trait Enclosable:
 
 impl<N: Float> Enclosable for N {
     fn constant(x: f64) -> Self {
-        N::of(x)
+        N::from_f64(x)
     }
     fn over(self, divisor: Self) -> Self {
         self / divisor
@@ -38,7 +38,7 @@ impl<N: Float> Enclosable for N {
 
 impl<N: Float> Enclosable for Interval<N> {
     fn constant(x: f64) -> Self {
-        Self::point(N::of(x))
+        Self::point(N::from_f64(x))
     }
     fn over(self, divisor: Self) -> Self {
         Analytic::over(self, divisor)

@@ -143,7 +143,7 @@ impl F237 {
     /// e^|x| - 1, by Taylor's series of a part of x, doubled again: e^2x - 1 = d (2 + d).
     fn growth(self) -> Self {
         let x = Float::abs(self);
-        if x > Self::of(GREAT) || x.is_nan() {
+        if x > Self::from_f64(GREAT) || x.is_nan() {
             return Self(x.0.exp_m1());
         }
         let halvings = if x < Self(power(-8)) {
@@ -186,7 +186,7 @@ impl Float for F237 {
         &RULES
     }
 
-    fn of(x: f64) -> Self {
+    fn from_f64(x: f64) -> Self {
         Self(f256::from(x))
     }
 
@@ -252,7 +252,7 @@ impl Float for F237 {
 
     fn below(self) -> f64 {
         let near = self.rounded();
-        if Self::of(near) > self {
+        if Self::from_f64(near) > self {
             near.next_down()
         } else {
             near
@@ -381,7 +381,7 @@ const GREAT: f64 = 2.0;
 static SHARES: LazyLock<[F237; 24]> = LazyLock::new(|| {
     let mut share = F237::ONE;
     std::array::from_fn(|n| {
-        share /= F237::of((n + 1) as f64);
+        share /= F237::from_f64((n + 1) as f64);
         share
     })
 });

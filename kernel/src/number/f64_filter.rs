@@ -22,7 +22,7 @@ const FARTHER: f64 = 64.0;
 impl<'a> F64Filter<'a> {
     /// The function in doubles, by how far it is off at some places; `least` is what rounding alone
     /// takes it off.
-    pub fn of<N: Float>(
+    pub fn new<N: Float>(
         whole: &dyn Function<N>,
         doubles: &'a dyn Function,
         [a, b]: [N; 2],

@@ -51,7 +51,7 @@ pub trait Float:
     fn rules() -> &'static GaussRules<Self>;
 
     /// A double, exactly.
-    fn of(x: f64) -> Self;
+    fn from_f64(x: f64) -> Self;
     /// The nearest to a rational number.
     fn nearest(x: &Rational) -> Self;
     /// The same, exactly; none of what is not finite.
@@ -66,12 +66,12 @@ pub trait Float:
     }
     /// A whole number, exactly.
     fn whole(n: impl Into<f64>) -> Self {
-        Self::of(n.into())
+        Self::from_f64(n.into())
     }
 
     /// The n-th root, to the digits of a double.
     fn rough_root(self, n: u32) -> Self {
-        Self::of(self.rounded().powf(1.0 / f64::from(n)))
+        Self::from_f64(self.rounded().powf(1.0 / f64::from(n)))
     }
 
     /// What tells it from every other number.
@@ -141,7 +141,7 @@ impl Float for f64 {
         &RULES
     }
     #[inline]
-    fn of(x: f64) -> Self {
+    fn from_f64(x: f64) -> Self {
         x
     }
     #[inline]

@@ -188,11 +188,11 @@ impl<N: Float> Interval<N> {
         // Bounds of the next derivative on the whole line: 0.4362, 1/3, 1/4.
         let centre = sinc_jet(self.mid());
         let radius = N::HALF * self.width();
-        let slop = N::of(8.0) * N::EPSILON;
+        let slop = N::from_f64(8.0) * N::EPSILON;
         [
-            Self::around(centre[0], N::of(0.4363) * radius + slop),
-            Self::around(centre[1], N::of(0.3334) * radius + slop),
-            Self::around(centre[2], N::of(0.25) * radius + slop),
+            Self::around(centre[0], N::from_f64(0.4363) * radius + slop),
+            Self::around(centre[1], N::from_f64(0.3334) * radius + slop),
+            Self::around(centre[2], N::from_f64(0.25) * radius + slop),
         ]
     }
 }

@@ -22,8 +22,8 @@ impl<N: Float> Interval<N> {
 
     fn back(known: Interval) -> Self {
         Self {
-            lo: N::of(known.lo),
-            hi: N::of(known.hi),
+            lo: N::from_f64(known.lo),
+            hi: N::from_f64(known.hi),
         }
     }
 

@@ -42,8 +42,8 @@ impl<N: Float> MonotoneSamples<N> {
         let mut way = Way::Level;
         let (mut least, mut most) = (first, first);
         for &mark in &self.marks {
-            let rises = size(mark) > size(least) * (N::ONE + N::of(LEVEL));
-            let falls = size(mark) < size(most) * (N::ONE - N::of(LEVEL));
+            let rises = size(mark) > size(least) * (N::ONE + N::from_f64(LEVEL));
+            let falls = size(mark) < size(most) * (N::ONE - N::from_f64(LEVEL));
             match way {
                 Way::Level | Way::Down if rises => {
                     if least.0 > first.0 || is_least(least, mark.0) {
@@ -79,7 +79,7 @@ impl<N: Float> MonotoneSamples<N> {
 
     /// The last place before the least value at which there was more.
     fn risen_before(&self, least: (N, N)) -> N {
-        let more = |m: &&(N, N)| m.1.abs() > least.1.abs() * (N::ONE + N::of(LEVEL));
+        let more = |m: &&(N, N)| m.1.abs() > least.1.abs() * (N::ONE + N::from_f64(LEVEL));
         self.marks.iter().rev().find(more).map_or(least.0, |m| m.0)
     }
 }

@@ -34,18 +34,18 @@ impl<N: Float> GaussRules<N> {
 /// The rule with `n` nodes, exact for polynomials up to degree 2n - 1: the roots of the Legendre
 /// polynomial by Newton's steps.
 fn gauss<N: Float>(n: usize) -> GaussRule<N> {
-    let size = N::of(n as f64);
+    let size = N::from_f64(n as f64);
     let legendre = |x: N| {
         let (mut a, mut b) = (N::ONE, x);
         for k in 2..=n {
-            let k = N::of(k as f64);
+            let k = N::from_f64(k as f64);
             (a, b) = (b, ((N::TWO * k - N::ONE) * x * b - (k - N::ONE) * a) / k);
         }
         (b, size * (x * b - a) / (x * x - N::ONE))
     };
     (0..n)
         .map(|i| {
-            let mut x = (N::PI * N::of(i as f64 + 0.75) / (size + N::HALF)).cos();
+            let mut x = (N::PI * N::from_f64(i as f64 + 0.75) / (size + N::HALF)).cos();
             for _ in 0..8 {
                 let (p, d) = legendre(x);
                 x -= p / d;
@@ -133,11 +133,11 @@ pub fn adaptive<N: Float, const D: usize>(
     floor: &[N; D],
     f: &impl Integrand<N, D>,
 ) -> [N; D] {
-    let mut parts = BinaryHeap::from([Part::of([a, b], None, floor, f)]);
+    let mut parts = BinaryHeap::from([Part::new([a, b], None, floor, f)]);
     while parts.len() <= MOST && parts.peek().is_some_and(|worst| worst.off > 0.0) {
         let Some(worst) = parts.pop() else { break };
         for (range, whole) in halved(worst.range).into_iter().zip(worst.halves) {
-            parts.push(Part::of(range, whole, floor, f));
+            parts.push(Part::new(range, whole, floor, f));
         }
     }
     let mut parts = parts.into_vec();
@@ -161,7 +161,7 @@ const PLACES: usize = 5;
 
 impl<N: Float, const D: usize> Part<N, D> {
     /// A part, whose integral by one rule may be known.
-    fn of(range: [N; 2], whole: Option<[N; D]>, floor: &[N; D], f: &impl Integrand<N, D>) -> Self {
+    fn new(range: [N; 2], whole: Option<[N; D]>, floor: &[N; D], f: &impl Integrand<N, D>) -> Self {
         let told = Self::in_doubles(range, floor, f).or_else(|| Self::in_short(range, floor, f));
         if let Some(part) = told {
             return part;
@@ -207,17 +207,17 @@ impl<N: Float, const D: usize> Part<N, D> {
         let width = range[1] - range[0];
         let sum = added(halves[0], halves[1]);
         let known = matters(halves, &floor.map(N::rounded));
-        let matters = known.map(N::of);
+        let matters = known.map(N::from_f64);
         let follows = |part: N| {
             let t = range[0] + width * part;
             let (exact, rough) = (f.at(t), f.roughly(t.rounded()));
             rough.is_some_and(|rough| {
-                (0..D).all(|i| (exact[i] - N::of(rough[i])).abs() * width.abs() <= matters[i])
+                (0..D).all(|i| (exact[i] - N::from_f64(rough[i])).abs() * width.abs() <= matters[i])
             })
         };
         probes().take(PLACES).all(follows).then(|| Self {
             range,
-            sum: sum.map(N::of),
+            sum: sum.map(N::from_f64),
             off: off(whole, sum, &known),
             halves: [None; 2],
         })

@@ -104,7 +104,7 @@ impl RationalInterval {
         self.ends.as_ref().map_or(N::NAN, middle)
     }
 
-    fn of(ends: Option<[Rational; 2]>, bits: usize) -> Self {
+    fn new(ends: Option<[Rational; 2]>, bits: usize) -> Self {
         let ends = ends.map(|[lo, hi]| {
             [
                 rounded(lo, bits, Toward::Below),
@@ -116,7 +116,7 @@ impl RationalInterval {
 
     fn with(self, other: Self, f: impl Fn([Rational; 2], [Rational; 2]) -> [Rational; 2]) -> Self {
         let bits = self.bits.max(other.bits);
-        Self::of(self.ends.zip(other.ends).map(|(a, b)| f(a, b)), bits)
+        Self::new(self.ends.zip(other.ends).map(|(a, b)| f(a, b)), bits)
     }
 
     pub(super) fn quotient(self, divisor: Self) -> Self {
@@ -125,7 +125,7 @@ impl RationalInterval {
             let one_sided = lo > Rational::ZERO || hi < Rational::ZERO;
             one_sided.then(|| [Rational::ONE / hi, Rational::ONE / lo])
         });
-        self * Self::of(inverse, bits)
+        self * Self::new(inverse, bits)
     }
 
     pub(super) fn root(self) -> Self {

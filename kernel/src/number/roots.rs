@@ -133,7 +133,7 @@ const PROBES: u32 = 67;
 
 /// Fractions of a range: the first few already lie far apart, by steps of the golden section.
 pub fn probes<N: Float>() -> impl Iterator<Item = N> {
-    (1..=PROBES).map(|k| (N::whole(k) * N::of(0.618_033_988_749_895)).fract())
+    (1..=PROBES).map(|k| (N::whole(k) * N::from_f64(0.618_033_988_749_895)).fract())
 }
 
 /// After so many halvings of a piece, and again after twice as many, a polynomial is tried for all that
@@ -166,7 +166,7 @@ pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Roots<
 
 /// The same, and all misses that are close calls.
 pub fn isolate_closely<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Roots<N> {
-    search(f, breaks, band, N::of(CLOSE) * band)
+    search(f, breaks, band, N::from_f64(CLOSE) * band)
 }
 
 fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> Roots<N> {
@@ -176,7 +176,8 @@ fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> R
             misses: Vec::new(),
         };
     };
-    let floor = (last - first).abs().max(first.abs()).max(last.abs()) * N::EPSILON * N::of(64.0);
+    let floor =
+        (last - first).abs().max(first.abs()).max(last.abs()) * N::EPSILON * N::from_f64(64.0);
     let mut search = Search {
         f,
         band,
@@ -253,7 +254,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         let mut halved = 0;
         while let Some((a, b)) = stack.pop() {
             let x = Interval { lo: a, hi: b };
-            let small = b - a <= N::of(SMALL) * (whole.1 - whole.0);
+            let small = b - a <= N::from_f64(SMALL) * (whole.1 - whole.0);
             let is_clear = rough.as_ref().is_some_and(|f| f.is_clear(x, self.reach));
             let jet = match is_clear {
                 true => None,
@@ -282,7 +283,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     /// The same of a function that is a polynomial there within a small part of the band; false where
     /// it is none.
     fn interpolated(&mut self, a: N, b: N) -> bool {
-        let Some(polynomial) = ChebyshevModel::of(self.f, [a, b], N::of(FINE) * self.band) else {
+        let Some(polynomial) = ChebyshevModel::new(self.f, [a, b], N::from_f64(FINE) * self.band)
+        else {
             return false;
         };
         let mut stack = vec![(a, b)];
@@ -310,7 +312,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         // Beyond the reach, too: what is level at its edge would be halved without end.
         if misses && (v.magnitude() <= N::TWO * self.reach || b - a <= self.floor) {
             self.beside(a, b);
-        } else if v.magnitude() <= N::of(FRINGE) * self.band {
+        } else if v.magnitude() <= N::from_f64(FRINGE) * self.band {
             let level = !jet.d.has_zero();
             let kind = if level { Kind::Level } else { Kind::Loose };
             self.cluster(a, b, m, kind, Some(N::ZERO));
@@ -434,7 +436,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     /// band between them.
     fn is_one(&self, before: &Cluster<N>, after: &Cluster<N>) -> bool {
         before.hi >= after.lo
-            || self.value(N::HALF * (before.hi + after.lo)).abs() <= N::of(FRINGE) * self.band
+            || self.value(N::HALF * (before.hi + after.lo)).abs() <= N::from_f64(FRINGE) * self.band
     }
 
     fn finish(self, first: N, last: N) -> Roots<N> {
@@ -457,7 +459,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
             .map(|g| (g[0].lo, g[g.len() - 1].hi))
             .collect();
         // Between clusters the sign is plain; beyond the ends of the range the function goes on.
-        let step = (last - first) * N::of(OUTSIDE);
+        let step = (last - first) * N::from_f64(OUTSIDE);
         let sign_between = |i: usize| {
             let left = if i == 0 { None } else { Some(ends[i - 1].1) };
             let right = ends.get(i).map(|e| e.0);

@@ -20,12 +20,12 @@ const ONE: f64 = 1.0 / (1u64 << 40) as f64;
 /// The polynomials that vanish at a point with the given ones because the gradients of these depend
 /// on one another there.
 pub fn deflated<N: Float>(polynomials: &[Polynomial], p: &Point3<N>) -> Vec<Polynomial> {
-    let Some(place) = Place::of(p, FIRST) else {
+    let Some(place) = Place::new(p, FIRST) else {
         return Vec::new();
     };
     let mut simplest: Vec<&Polynomial> = polynomials.iter().collect();
     simplest.sort_by_key(|p| (p.degree(), p.height()));
-    let forms = simplest.into_iter().take(FEW).map(Form::of);
+    let forms = simplest.into_iter().take(FEW).map(Form::new);
     let all: Vec<(Form, Option<Vector3<f64>>)> = forms
         .map(|form| {
             let direction = form.direction(&place, CLEAR);

@@ -16,7 +16,7 @@ pub(super) struct Place {
 
 impl Place {
     /// A point, rounded to so many bits after the point; none where it is not finite.
-    pub fn of<N: Float>(p: &Point3<N>, bits: usize) -> Option<Self> {
+    pub fn new<N: Float>(p: &Point3<N>, bits: usize) -> Option<Self> {
         let one = Rational::from(IBig::ONE << bits);
         let mut at = [IBig::ZERO, IBig::ZERO, IBig::ZERO];
         for (to, x) in at.iter_mut().zip([p.x, p.y, p.z]) {

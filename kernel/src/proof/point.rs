@@ -72,7 +72,7 @@ pub(super) struct Form {
 }
 
 impl Form {
-    pub fn of(level: &Polynomial) -> Self {
+    pub fn new(level: &Polynomial) -> Self {
         Self {
             level: level.clone(),
             gradient: level.gradient(),
@@ -105,18 +105,18 @@ impl AlgebraicPoint {
         polynomials: impl IntoIterator<Item = &'p Polynomial>,
         p: &Point3<N>,
     ) -> Option<Self> {
-        let place = Place::of(p, FIRST)?;
-        let forms = polynomials.into_iter().map(Form::of);
+        let place = Place::new(p, FIRST)?;
+        let forms = polynomials.into_iter().map(Form::new);
         let known: Vec<(Form, Vector3<f64>)> = forms
             .filter_map(|form| form.direction(&place, CLEAR).map(|d| (form, d)))
             .collect();
         let base = INDEPENDENT
             .iter()
             .find_map(|&least| independent(&known, least))?;
-        Self::of(base, place)
+        Self::new(base, place)
     }
 
-    fn of(base: [Form; 3], mut place: Place) -> Option<Self> {
+    fn new(base: [Form; 3], mut place: Place) -> Option<Self> {
         for _ in 0..STEPS {
             place = stepped(&base, &place)?;
         }

@@ -140,7 +140,7 @@ impl Polynomial {
     }
 
     /// A surface, both nappes of a cone.
-    pub fn of<N: Float>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
+    pub fn new<N: Float>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
         let (v, q) = away(&exact.point);
         let d = whole_vector(&exact.direction);
         let square = |p: &Self| p.times(p);

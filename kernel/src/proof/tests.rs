@@ -25,7 +25,7 @@ fn surface(kind: usize, point: [Rational; 3], direction: [i64; 3], size: Rationa
         tube: ratio(1, 1),
     };
     let kinds = of_every_kind(Frame::world(), 1.0, [2.0, 1.0]);
-    Polynomial::of(&kinds[kind], &exact)
+    Polynomial::new(&kinds[kind], &exact)
 }
 
 /// A plane, a cylinder, a cone, a sphere or a torus with a tube of radius one.

@@ -42,7 +42,7 @@ pub(super) struct Seams {
 
 impl Chart {
     /// The chart of a face.
-    pub fn of(
+    pub fn new(
         brep: &Brep,
         face: FaceId,
         lines: &Polylines,
@@ -60,7 +60,7 @@ impl Chart {
             }
             Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
             Surface::Sphere(s) => {
-                let (z, cap) = Around::of(brep, face, &s, lines).centre(accuracy, band);
+                let (z, cap) = Around::new(brep, face, &s, lines).centre(accuracy, band);
                 Self::Sphere(Frame::about(s.frame.origin, z), s.radius, cap)
             }
             Surface::Torus(s) => {
@@ -161,7 +161,7 @@ struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    fn of(brep: &'a Brep, face: FaceId, sphere: &'a Sphere, lines: &Polylines) -> Self {
+    fn new(brep: &'a Brep, face: FaceId, sphere: &'a Sphere, lines: &Polylines) -> Self {
         let chords = brep.topology.edges_of(face).flat_map(|edge| {
             let nodes = lines.nodes(edge).windows(2);
             nodes.map(|pair| [0, 1].map(|i: usize| lines.points[pair[i].point as usize]))
@@ -195,7 +195,7 @@ impl<'a> Around<'a> {
             return None;
         }
         let Sphere { frame, radius } = self.sphere;
-        let locator = FaceLocator::of(self.brep, self.face, band);
+        let locator = FaceLocator::from_face(self.brep, self.face, band);
         let outside = |d: &Vector3<f64>| {
             locator.place(&(frame.origin + d * *radius)) == PointLocation::Outside
         };

@@ -33,7 +33,7 @@ pub(super) const STEEPEST: f64 = 0.6;
 
 impl Polylines {
     /// The edges divided so that every chord is within the accuracy of its curve.
-    pub fn of(brep: &Brep, accuracy: &Accuracy) -> Self {
+    pub fn new(brep: &Brep, accuracy: &Accuracy) -> Self {
         let mut lines = Self {
             points: brep.geometry.points.clone(),
             nodes: Vec::new(),

@@ -84,7 +84,7 @@ impl FaceTriangulation {
     }
 
     /// The face in its chart, or where its edges have to be divided first.
-    pub fn of(
+    pub fn new(
         brep: &Brep,
         face: FaceId,
         chart: &Chart,

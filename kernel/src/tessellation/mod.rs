@@ -98,11 +98,11 @@ const ROUNDS: usize = 40;
 
 /// The mesh of a boundary; `band` is the part's resolution.
 pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, TessellationError> {
-    let mut lines = Polylines::of(brep, accuracy);
+    let mut lines = Polylines::new(brep, accuracy);
     let charts: Vec<Chart> = brep
         .topology
         .face_ids()
-        .map(|face| Chart::of(brep, face, &lines, accuracy, band))
+        .map(|face| Chart::new(brep, face, &lines, accuracy, band))
         .collect();
     let mut domains: Vec<Option<FaceTriangulation>> = charts.iter().map(|_| None).collect();
     for round in 0.. {
@@ -120,7 +120,7 @@ pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, T
                 return Err(TessellationError::TooMany { face, limit: LIMIT });
             }
             settled = false;
-            match FaceTriangulation::of(brep, face, chart, accuracy, &mut lines) {
+            match FaceTriangulation::new(brep, face, chart, accuracy, &mut lines) {
                 Ok(found) => *domain = Some(found),
                 Err(found) => divisions.extend(found),
             }

@@ -24,7 +24,7 @@ fn halved(grey: &Grey) -> Grey {
         let at = |dx: usize, dy: usize| grey.levels[(2 * y + dy) * grey.width + 2 * x + dx];
         0.25 * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1))
     };
-    Grey::of(grey.width / 2, grey.height / 2, level)
+    Grey::new(grey.width / 2, grey.height / 2, level)
 }
 
 #[cfg(test)]
@@ -40,7 +40,7 @@ mod tests {
             centre: [2000.0, 1499.0],
             skew: 2.0,
         };
-        let grey = Grey::of(4000, 3001, |x, y| ((x + 2 * y) % 251) as f32);
+        let grey = Grey::new(4000, 3001, |x, y| ((x + 2 * y) % 251) as f32);
         let (small, near, scale) = reduced(grey, camera);
         assert_eq!((small.width, small.height, scale), (1000, 750, 4));
         for p in [[0.1, 0.2, 2.0], [-0.5, 0.3, 1.5], [0.0, 0.0, 1.0]] {

@@ -87,7 +87,7 @@ struct Equations<'a> {
 }
 
 impl<'a> Equations<'a> {
-    fn of(part: &PartChain, image: &'a ImageChain) -> Option<Self> {
+    fn new(part: &PartChain, image: &'a ImageChain) -> Option<Self> {
         let along = part.points[1] - part.points[0];
         let length = along.norm();
         let z = along / length;
@@ -191,7 +191,7 @@ impl<'a> Equations<'a> {
 /// all roots, up to eight.
 pub fn poses(part: &PartChain, image: &ImageChain) -> Vec<Isometry3<f64>> {
     let mut found = Vec::new();
-    let Some(equations) = Equations::of(part, image) else {
+    let Some(equations) = Equations::new(part, image) else {
         return found;
     };
     let steps = &image.steps;

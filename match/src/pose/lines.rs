@@ -78,7 +78,7 @@ struct Equations {
 impl Equations {
     /// Rotations that may solve the equations.
     fn proposals(&self) -> Vec<UnitQuaternion<f64>> {
-        let angles = Angles::of(self);
+        let angles = Angles::new(self);
         let mut found = Vec::new();
         // tan α/2 is small on one half of the circle, and on the other that of α - π.
         for half in [1.0, -1.0] {
@@ -162,7 +162,7 @@ struct Angles {
 type Terms = [[f64; 3]; 3];
 
 impl Angles {
-    fn of(equations: &Equations) -> Self {
+    fn new(equations: &Equations) -> Self {
         let plane = Frame::about(Point3::origin(), equations.normals[0]);
         let part = Frame::about(Point3::origin(), equations.directions[0]);
         let other = |i: usize| {

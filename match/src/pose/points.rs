@@ -24,7 +24,7 @@ const SLACK: f64 = 1.0 / (1 << 10) as f64;
 /// on three rays of length one: all roots, up to four, a double one once. None where the points lie on
 /// a line or rays coincide.
 pub fn poses(points: &[Point3<f64>; 3], rays: &[Vector3<f64>; 3]) -> Vec<Isometry3<f64>> {
-    let Some(equations) = Equations::of(points, rays) else {
+    let Some(equations) = Equations::new(points, rays) else {
         return Vec::new();
     };
     let mut found: Vec<Vector3<f64>> = Vec::new();
@@ -51,7 +51,7 @@ struct Equations {
 const NEXT: [usize; 3] = [1, 2, 0];
 
 impl Equations {
-    fn of(points: &[Point3<f64>; 3], rays: &[Vector3<f64>; 3]) -> Option<Self> {
+    fn new(points: &[Point3<f64>; 3], rays: &[Vector3<f64>; 3]) -> Option<Self> {
         let sides = [0, 1, 2].map(|k| points[NEXT[k]] - points[k]);
         let squares = sides.map(|s| s.norm_squared());
         let longest = squares.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -82,7 +82,7 @@ impl Equations {
         let forms = [0, 1, 2].map(|k| self.form(k));
         let [a, b, c] = self.squares;
         let cones = [forms[0] * b - forms[1] * a, forms[2] * b - forms[1] * c];
-        let Some(pair) = Pair::of(&cones.map(|m| m / m.norm())) else {
+        let Some(pair) = Pair::new(&cones.map(|m| m / m.norm())) else {
             return Vec::new();
         };
         let sum = forms[0] + forms[1] + forms[2];
@@ -144,7 +144,7 @@ struct Pair {
 impl Pair {
     /// The pair of planes of the pencil that are told best: the greatest product of eigenvalues of
     /// different signs.
-    fn of([a, b]: &[Matrix3<f64>; 2]) -> Option<Self> {
+    fn new([a, b]: &[Matrix3<f64>; 2]) -> Option<Self> {
         let mut best: Option<(f64, Self)> = None;
         for [x, y] in degenerate(a, b) {
             let eigen = SymmetricEigen::new(a * x + b * y);

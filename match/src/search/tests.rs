@@ -37,7 +37,7 @@ fn feature(index: usize) -> impl Strategy2<Value = Feature> {
     let candidate = (-4.0..6.0f64, prop::collection::btree_set(0..7u32, 1..3));
     let candidates = prop::collection::vec(candidate, 0..4);
     let rates = prop::array::uniform2(0.02..0.98f64);
-    let parent = prop::option::of(0..index.max(1));
+    let parent = prop::option::new(0..index.max(1));
     (candidates, rates, parent).prop_map(move |(candidates, rates, parent)| Feature {
         parent: parent.filter(|_| index > 0),
         found: rates.map(f64::ln),

@@ -82,7 +82,7 @@ pub struct Nodes {
 
 impl Nodes {
     /// The nodes of arcs.
-    pub fn of(arcs: &[Arc]) -> Self {
+    pub fn new(arcs: &[Arc]) -> Self {
         let mut ends: Vec<([f64; 2], usize, usize)> = Vec::new();
         for (i, arc) in arcs.iter().enumerate() {
             let last = arc.line.points.len() - 1;

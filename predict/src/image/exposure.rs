@@ -27,7 +27,7 @@ struct Share {
 
 /// The levels of the pixels of a domain, before the point spread, noise and steps.
 pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, image: &mut Grey) {
-    let mut light = Light::of(shading, regions);
+    let mut light = Light::new(shading, regions);
     let mut shares: Vec<Share> = Vec::new();
     let mut row = Row::default();
     for y in 0..image.height.min(domain.height()) {
@@ -75,12 +75,12 @@ struct Light<'s, 'p> {
 }
 
 impl<'s, 'p> Light<'s, 'p> {
-    fn of(shading: &'s Shading<'p>, regions: &'s Regions) -> Self {
+    fn new(shading: &'s Shading<'p>, regions: &'s Regions) -> Self {
         let hint = |region: &Region| {
             let seen = region.seen.as_ref();
             seen.map_or(0.0, |s| shading.distance(&s.point))
         };
-        let field = |region: &Region| Field::of(shading, region);
+        let field = |region: &Region| Field::new(shading, region);
         Self {
             shading,
             regions,

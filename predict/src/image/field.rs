@@ -32,7 +32,7 @@ pub struct Field {
 
 impl Field {
     /// The light of a region, if it is flat: a plane or the background.
-    pub fn of(shading: &Shading<'_>, region: &Region) -> Option<Self> {
+    pub fn new(shading: &Shading<'_>, region: &Region) -> Option<Self> {
         let seen = region.seen?;
         let flat = |face| matches!(shading.surface(face), Surface::Plane(_));
         let [least, most] = region.bounds;

@@ -121,7 +121,9 @@ impl<'s> Shading<'s> {
     ) -> Radiance {
         let material = self.finishes.by_face[face.index()];
         let normal = self.stage.subject.brep.outward(face, p);
-        let around = self.ambient * self.surfaces[material].ambient() * self.unblocked_fraction[face.index()];
+        let around = self.ambient
+            * self.surfaces[material].ambient()
+            * self.unblocked_fraction[face.index()];
         let mut all = Radiance {
             total: around,
             specular: 0.0,

@@ -28,7 +28,7 @@ impl ModelFile {
             if let Record::Feature(feature) = record {
                 let checked = limits.check("source", &feature.source);
                 if let Err(error) = checked {
-                    return Err(Line::of(line, start)?.inconsistent(&error));
+                    return Err(Line::new(line, start)?.inconsistent(&error));
                 }
             }
             start += line.len() + 1;
@@ -39,7 +39,7 @@ impl ModelFile {
     /// What is wrong with a value of the first line of the model's text.
     pub fn in_head(&self, text: &str, key: &str, words: &str) -> ModelError {
         let first = text.lines().next().unwrap_or_default();
-        Line::of(first, 0).map_or_else(|error| error, |line| line.wrong(key, words))
+        Line::new(first, 0).map_or_else(|error| error, |line| line.wrong(key, words))
     }
 }
 
@@ -68,7 +68,7 @@ pub fn parse(text: &str) -> Result<ModelFile, ModelError> {
         let words = format!("found an empty line, expected the head of a model ({SCHEMA})");
         return Err(ModelError { span: 0..0, words });
     }
-    let line = Line::of(first, 0)?;
+    let line = Line::new(first, 0)?;
     line.check_schema()?;
     let head: Head = match line.record()? {
         Record::Model(head) => *head,
@@ -78,7 +78,7 @@ pub fn parse(text: &str) -> Result<ModelFile, ModelError> {
     let mut records = vec![Record::Model(Box::new(head.clone()))];
     let mut start = first.len() + 1;
     for next in text.lines().skip(1) {
-        let line = Line::of(next, start)?;
+        let line = Line::new(next, start)?;
         let record = line.record()?;
         consistency
             .next(&record)
@@ -135,7 +135,7 @@ struct Line {
 }
 
 impl Line {
-    fn of(line: &str, start: usize) -> Result<Self, ModelError> {
+    fn new(line: &str, start: usize) -> Result<Self, ModelError> {
         match Document::from_json(line) {
             Ok(document) => Ok(Self { document, start }),
             Err(error) => Err(shifted(error, start)),

@@ -125,7 +125,7 @@ pub fn observe(draft: &Draft<'_>, setups: &Setups, setup: usize) -> Observation 
             sight
         })
         .collect();
-    let nodes = Nodes::of(&draft.arcs);
+    let nodes = Nodes::new(&draft.arcs);
     let margin = draft.conditions.detector.radius() as f64;
     let meetings = junctions(&draft.arcs, &nodes, &outcome.evidence, &draft.ink, margin);
     let index = index(draft.arcs.len(), &groups);

@@ -104,7 +104,7 @@ pub struct Rate {
 }
 
 impl Rate {
-    fn of(proportion: &Proportion) -> Self {
+    fn new(proportion: &Proportion) -> Self {
         let Interval { low, high } = proportion.interval(Proportion::LEVEL);
         Self {
             mean: proportion.mean(),
@@ -114,7 +114,7 @@ impl Rate {
     }
 
     fn counted(successes: u64, trials: u64) -> Self {
-        Self::of(&Proportion::new(successes.min(trials), trials).unwrap_or_default())
+        Self::new(&Proportion::new(successes.min(trials), trials).unwrap_or_default())
     }
 }
 
@@ -131,7 +131,7 @@ pub struct Attributes {
 }
 
 impl Attributes {
-    fn of(moments: &Moments<ATTRIBUTES>) -> Option<Self> {
+    fn new(moments: &Moments<ATTRIBUTES>) -> Option<Self> {
         let covariance = moments.covariance(&FLOOR);
         let rows = covariance
             .row_iter()
@@ -294,11 +294,11 @@ fn feature(rank: usize, source: Source, sums: &FeatureSums, setups: u64) -> Feat
         states: sums.sights.states,
         detectability: Rate::counted(sums.sights.found(), setups),
         detectability_visible: Rate::counted(sums.sights.found(), sums.sights.visible()),
-        reliability: Rate::of(&sums.reliability),
+        reliability: Rate::new(&sums.reliability),
         accuracy: growth.map(|g| [g[0].exp(), g[1].exp()]),
         fragments: *sums.fragments.counts(),
         share: sums.share.mean().map_or(0.0, |m| m[0]),
-        attributes: Attributes::of(&sums.sights.attributes),
+        attributes: Attributes::new(&sums.sights.attributes),
     }
 }
 
@@ -313,7 +313,7 @@ fn aspects(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Vec<Aspect> {
                 feature: rank[source],
                 states: own.states,
                 detectability: Rate::counted(own.found(), sums.setups),
-                attributes: Attributes::of(&own.attributes),
+                attributes: Attributes::new(&own.attributes),
             })
             .collect();
         features.sort_by_key(|f| f.feature);

@@ -244,7 +244,7 @@ impl Summary {
         let known: Vec<(Source, Likeness)> = sums
             .learnt
             .iter()
-            .filter_map(|(source, sums)| Some((*source, Likeness::of(sums)?)))
+            .filter_map(|(source, sums)| Some((*source, Likeness::new(sums)?)))
             .collect();
         for sight in &observation.sights {
             let Some(attributes) = &sight.attributes else {
@@ -273,7 +273,7 @@ struct Likeness {
 }
 
 impl Likeness {
-    fn of(sums: &SightSums) -> Option<Self> {
+    fn new(sums: &SightSums) -> Option<Self> {
         if sums.attributes.count() < LEARNT {
             return None;
         }

@@ -163,7 +163,7 @@ pub enum Side {
 
 impl Side {
     /// The side of the line from `a` to `b` that `p` is on.
-    pub fn of(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> Self {
+    pub fn new(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> Self {
         let cross = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
         // With y down what is to the right turns clockwise on the page, and that is positive.
         if cross > 0.0 { Self::Right } else { Self::Left }

@@ -19,7 +19,7 @@ pub struct Lines {
 
 impl Lines {
     /// The polylines of all arcs.
-    pub fn of(arcs: &[Arc]) -> Self {
+    pub fn new(arcs: &[Arc]) -> Self {
         let all: Vec<Vec<[f64; 2]>> = arcs.iter().map(|arc| arc.line.points.clone()).collect();
         let leaf = |(i, points): (usize, &Vec<[f64; 2]>)| {
             let hull = AABB::from_points(points);

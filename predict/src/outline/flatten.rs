@@ -32,7 +32,7 @@ pub struct Window {
 
 impl Window {
     /// An image with this many pixels, and some beyond.
-    pub fn of([width, height]: [usize; 2]) -> Self {
+    pub fn new([width, height]: [usize; 2]) -> Self {
         let margin = 32.0;
         Self {
             min: [-margin; 2],

@@ -105,7 +105,7 @@ impl Sets {
 impl Regions {
     /// The regions between the arcs of a stage's image.
     pub fn new(stage: &Stage<'_>, arcs: &[Arc], [width, height]: [usize; 2]) -> Self {
-        let sections = Sections::of(arcs);
+        let sections = Sections::new(arcs);
         let scanlines = Scanlines::new(arcs, &sections, height);
         let mut sets = Sets((0..=2 * sections.all.len() as u32).collect());
         for line in 0..scanlines.lines() {
@@ -244,7 +244,7 @@ impl Regions {
             ];
             for sign in [1.0, -1.0] {
                 let at = [0, 1].map(|i| 0.5 * (a[i] + b[i]) + sign * across[i]);
-                let side = Side::of(at, [a, b]);
+                let side = Side::new(at, [a, b]);
                 let region = self.at(at);
                 // Another arc may run in between.
                 if region != self.beside(section as u32, side) || !self.holds(at) {

@@ -39,7 +39,7 @@ pub struct Sections {
 
 impl Sections {
     /// The sections of arcs.
-    pub fn of(arcs: &[Arc]) -> Self {
+    pub fn new(arcs: &[Arc]) -> Self {
         let mut sections = Self::default();
         for (i, arc) in arcs.iter().enumerate() {
             sections.first.push(sections.all.len() as u32);

@@ -37,7 +37,7 @@ struct Cast<'c> {
 
 /// Adds the visible boundaries of cast shadows to the arcs of a view, which they stop where they end.
 pub fn add_shadows(stage: &Stage<'_>, window: &Window, arcs: &mut Vec<Arc>) {
-    let lines = Lines::of(arcs);
+    let lines = Lines::new(arcs);
     let mut found = Vec::new();
     let mut ends = Vec::new();
     for (light, (_, views)) in stage.lights.iter().enumerate() {
@@ -302,7 +302,7 @@ fn lit_side(stage: &Stage<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<
     let lit = stage.view.scene.projection.project(&cast.lit);
     let along = [after[0] - before[0], after[1] - before[1]];
     let ahead = [middle[0] + along[0], middle[1] + along[1]];
-    Some(Side::of([lit.x, lit.y], [middle, ahead]))
+    Some(Side::new([lit.x, lit.y], [middle, ahead]))
 }
 
 /// The parts of a curve on a face that the camera sees, and where these end on which arcs.

@@ -99,7 +99,7 @@ impl<'s> Draft<'s> {
     ) -> Result<Self, StageError> {
         let sensor = &conditions.sensor;
         let size = sensor.resolution;
-        let window = Window::of(size);
+        let window = Window::new(size);
         let mut arcs = stage.arcs(&window);
         add_shadows(stage, &window, &mut arcs);
         let regions = Regions::new(stage, &arcs, size);

@@ -203,7 +203,7 @@ pub fn prediction(draft: &Draft<'_>, setup: &Setup) -> Prediction {
     let arcs: Vec<ArcLevel> = (0..draft.arcs.len())
         .map(|i| arc_level(draft, &outcome, i, &measure))
         .collect();
-    let nodes = Nodes::of(&draft.arcs);
+    let nodes = Nodes::new(&draft.arcs);
     let margin = draft.conditions.detector.radius() as f64;
     let meetings = junctions(&draft.arcs, &nodes, &outcome.evidence, &draft.ink, margin);
     let mut regions = region_levels(draft);

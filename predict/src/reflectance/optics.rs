@@ -56,7 +56,7 @@ impl Default for Polarisation {
 impl Reflectivity {
     /// The share of a light that is reflected: F = ρ∥ cos²ψ + ρ⊥ sin²ψ = (ρ∥ I∥ + ρ⊥ I⊥)/(I∥ + I⊥).
     #[inline]
-    pub fn of(self, light: Polarisation) -> f64 {
+    pub fn reflectivity(self, light: Polarisation) -> f64 {
         self.perpendicular + (self.parallel - self.perpendicular) * light.parallel
     }
 }

@@ -100,6 +100,6 @@ impl Surface {
         } else {
             1.0 / (small * large)
         };
-        self.specular * self.optics.fresnel(v_h).of(polarisation) * d * seen
+        self.specular * self.optics.fresnel(v_h).reflectivity(polarisation) * d * seen
     }
 }

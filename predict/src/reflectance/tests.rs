@@ -92,10 +92,10 @@ fn polarisations_weigh_the_components() {
         perpendicular: 0.6,
     };
     let weighed = |parallel, perpendicular| Polarisation::new(parallel, perpendicular).unwrap();
-    assert!((of.of(Polarisation::UNPOLARISED) - 0.4).abs() < 1e-15);
-    assert!((of.of(weighed(3.0, 0.0)) - 0.2).abs() < 1e-15);
-    assert!((of.of(weighed(0.0, 2.0)) - 0.6).abs() < 1e-15);
-    assert!((of.of(weighed(1.0, 3.0)) - (0.2 + 3.0 * 0.6) / 4.0).abs() < 1e-15);
+    assert!((of.reflectivity(Polarisation::UNPOLARISED) - 0.4).abs() < 1e-15);
+    assert!((of.reflectivity(weighed(3.0, 0.0)) - 0.2).abs() < 1e-15);
+    assert!((of.reflectivity(weighed(0.0, 2.0)) - 0.6).abs() < 1e-15);
+    assert!((of.reflectivity(weighed(1.0, 3.0)) - (0.2 + 3.0 * 0.6) / 4.0).abs() < 1e-15);
     for (parallel, perpendicular) in [
         (0.0, 0.0),
         (-1.0, 2.0),
@@ -206,7 +206,7 @@ fn the_surface_is_the_product_of_its_terms_and_reciprocal() {
         let material = Material::new(with).unwrap();
         let found = material.reflectance(&n, &l, &v, light_of);
         let h = (l + v).normalize();
-        let f = material.optics().fresnel(h.dot(&l)).of(light_of);
+        let f = material.optics().fresnel(h.dot(&l)).reflectivity(light_of);
         let g = attenuation(h.z, v.z, l.z, h.dot(&v));
         let expected = 0.75 * f * distribution(with.m, h.z) * g / (4.0 * PI * l.z * v.z);
         assert!((found.specular - expected).abs() <= 1e-11 * expected.max(1e-12));

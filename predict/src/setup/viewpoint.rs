@@ -132,7 +132,7 @@ impl Matrices {
     /// The camera of the matrices.
     pub fn camera(&self) -> Result<Camera, SetupError> {
         let Self { k, r, t } = *self;
-        Camera::of(CameraModel::Matrices {
+        Camera::new(CameraModel::Matrices {
             k,
             r,
             t,

@@ -102,7 +102,7 @@ impl<'a> Cell<'a> {
 
 impl<'a> Images<'a> {
     /// The images of all pieces.
-    pub fn of(seen: &'a Contours, window: &'a Window) -> Self {
+    pub fn new(seen: &'a Contours, window: &'a Window) -> Self {
         let mut cells: Vec<Cell<'_>> = Vec::new();
         for contour in &seen.contours {
             for piece in &contour.pieces {

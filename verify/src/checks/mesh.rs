@@ -44,7 +44,7 @@ impl Checker<'_> {
             angle: mesh::ANGLE.to_radians(),
         };
         let resolution = evaluation.resolution_of_doubles();
-        let facets = match Facets::of(&evaluation.brep, &accuracy, resolution) {
+        let facets = match Facets::new(&evaluation.brep, &accuracy, resolution) {
             Ok(facets) => facets,
             Err(error) => return told(Finding::Holds, format!("refused: {error}")),
         };

@@ -128,7 +128,7 @@ impl Report {
     }
 
     /// The checks that find one thing.
-    pub fn of(&self, finding: Finding) -> impl Iterator<Item = &Check> {
+    pub fn checks_with(&self, finding: Finding) -> impl Iterator<Item = &Check> {
         self.checks.iter().filter(move |c| c.finding == finding)
     }
 
@@ -147,7 +147,7 @@ impl Check {
 
 impl Finding {
     /// Of a check that always tells.
-    fn of(holds: bool) -> Self {
+    fn new(holds: bool) -> Self {
         match holds {
             true => Self::Holds,
             false => Self::Fails,
@@ -159,7 +159,7 @@ impl<'a> Checker<'a> {
     /// Prepares the checks of a tree and its boundary.
     pub fn new(tree: &Tree, evaluation: &'a Evaluation) -> Self {
         Self {
-            material: RayOracle::of(tree),
+            material: RayOracle::new(tree),
             evaluation,
             told: evaluation.tight_bounds(),
         }
@@ -188,7 +188,7 @@ impl<'a> Checker<'a> {
         let texts: Vec<String> = violations.iter().map(ToString::to_string).collect();
         Check {
             subject: Subject::Topology,
-            finding: Finding::of(texts.is_empty()),
+            finding: Finding::new(texts.is_empty()),
             detail: if texts.is_empty() {
                 "no violation".to_owned()
             } else {
@@ -213,7 +213,7 @@ impl<'a> Checker<'a> {
         } = estimate;
         Check {
             subject: Subject::Volume,
-            finding: Finding::of(off <= DEVIATIONS),
+            finding: Finding::new(off <= DEVIATIONS),
             detail: format!(
                 "{volume} of the boundary, {value} ± {standard_error:.1e} by rays: {off:.1} standard errors"
             ),
@@ -228,7 +228,7 @@ impl<'a> Checker<'a> {
         let off = (0..3).map(beyond).fold(f64::NEG_INFINITY, f64::max);
         Check {
             subject: Subject::Bounds,
-            finding: Finding::of(off <= slack || met == Aabb::EMPTY),
+            finding: Finding::new(off <= slack || met == Aabb::EMPTY),
             detail: if off <= slack || met == Aabb::EMPTY {
                 format!("{AROUND} rays meet nothing outside the box")
             } else {
@@ -282,7 +282,7 @@ impl<'a> Checker<'a> {
     fn contours(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
         let counted = Recount::telling(&self.material, seen, &clearance);
-        let outlines = Outlines::of(&self.material, seen, &clearance);
+        let outlines = Outlines::new(&self.material, seen, &clearance);
         [
             Check {
                 subject: Subject::View(name.to_owned()),
@@ -291,7 +291,7 @@ impl<'a> Checker<'a> {
             },
             Check {
                 subject: Subject::Contours(name.to_owned()),
-                finding: Finding::of(outlines.missing.is_empty()),
+                finding: Finding::new(outlines.missing.is_empty()),
                 detail: outlines.to_string(),
             },
         ]
@@ -319,7 +319,7 @@ impl<'a> Checker<'a> {
             },
             Check {
                 subject: Subject::Sheet(name.to_owned()),
-                finding: Finding::of(sheet.faults.is_empty()),
+                finding: Finding::new(sheet.faults.is_empty()),
                 detail: sheet.to_string(),
             },
         ]
@@ -374,7 +374,8 @@ impl fmt::Display for Report {
             writeln!(f, "{check}")?;
         }
         let all = self.checks.len();
-        let [failed, untold] = [Finding::Fails, Finding::Untold].map(|k| self.of(k).count());
+        let [failed, untold] =
+            [Finding::Fails, Finding::Untold].map(|k| self.checks_with(k).count());
         match (failed, untold) {
             (0, 0) => writeln!(f, "all {all} checks hold"),
             (_, 0) => writeln!(f, "{failed} of {all} checks failed"),

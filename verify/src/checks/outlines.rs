@@ -79,12 +79,12 @@ struct Change {
 
 impl Outlines {
     /// Looks for the contours of a view.
-    pub fn of(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
+    pub fn new(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let window = Window::around(&projection, material.bounds());
-        let images = Images::of(seen, &window);
+        let images = Images::new(seen, &window);
         let search = Search {
-            surfaces: Surfaces::of(material),
+            surfaces: Surfaces::new(material),
             window: &window,
             clearance,
         };

@@ -79,18 +79,18 @@ impl Recount {
     /// Counts every piece again, by lines of sight that run closer where too few tell something: in
     /// the image of a part that nearly falls on itself contours lie next to one another everywhere.
     pub fn telling(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
-        let first = Self::of(material, seen, clearance);
+        let first = Self::new(material, seen, clearance);
         let tells = |recount: &Self| recount.suffices() || !recount.wrong.is_empty();
         if tells(&first) {
             return first;
         }
         let closer = closer(clearance).into_iter();
-        let mut again = closer.map(|c| Self::of(material, seen, &c));
+        let mut again = closer.map(|c| Self::new(material, seen, &c));
         again.find(tells).unwrap_or(first)
     }
 
     /// Counts every piece again.
-    fn of(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
+    fn new(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let sight = |p: &_| line_of_sight(&projection, p);
         let closer = closer(clearance);

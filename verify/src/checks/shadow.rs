@@ -224,7 +224,7 @@ mod tests {
             image: 2.0 * drawing.distance,
             sliver: 0.0,
         };
-        ShadowOutline::new(&RayOracle::of(&tree), &projection, &drawing, tolerance)
+        ShadowOutline::new(&RayOracle::new(&tree), &projection, &drawing, tolerance)
     }
 
     #[test]

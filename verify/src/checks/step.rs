@@ -42,7 +42,7 @@ impl Checker<'_> {
             Ok(text) => text,
             Err(error) => return told(Finding::Holds, format!("refused: {error}")),
         };
-        let shape = part21::read(&text).and_then(|instances| Shape::of(&instances));
+        let shape = part21::read(&text).and_then(|instances| Shape::new(&instances));
         let shape = match shape {
             Ok(shape) => shape,
             Err(error) => return told(Finding::Fails, error.to_string()),
@@ -128,7 +128,7 @@ mod tests {
     }
 
     fn measured(text: &str, known: &Known) -> Measured {
-        let shape = Shape::of(&part21::read(text).unwrap()).unwrap();
+        let shape = Shape::new(&part21::read(text).unwrap()).unwrap();
         rules::measure(&shape, known)
     }
 

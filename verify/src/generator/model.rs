@@ -153,7 +153,7 @@ impl Axis {
 
 impl Model {
     /// A model of one primitive.
-    pub fn of(primitive: Primitive, steps: Vec<Step>) -> Self {
+    pub fn new(primitive: Primitive, steps: Vec<Step>) -> Self {
         let mut model = Self::default();
         model.leaf(primitive, steps);
         model
@@ -309,7 +309,7 @@ mod tests {
     use super::*;
 
     fn three() -> Model {
-        let ball = |r| Model::of(Primitive::Sphere(r), Vec::new());
+        let ball = |r| Model::new(Primitive::Sphere(r), Vec::new());
         let two = Model::join(Operation::Union, &[&ball(1.0), &ball(2.0)], Vec::new());
         Model::join(Operation::Difference, &[&two, &ball(3.0)], Vec::new())
     }

@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn small_numbers_have_no_exponent() {
         let step = Step::Shift([2f64.powi(-60), 0.0, -1e-9]);
-        let model = Model::of(Primitive::Sphere(0.5), vec![step]);
+        let model = Model::new(Primitive::Sphere(0.5), vec![step]);
         for format in [Format::Padl, Format::Csg, Format::Json] {
             let text = write(&model, format);
             assert!(text.contains("0.000000000000000000867"), "{text}");

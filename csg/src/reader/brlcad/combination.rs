@@ -42,7 +42,7 @@ const EXPECTED: &str = "a member `l NAME` or an operation: `u`, `n`, `-` or `^` 
 
 impl<'a> Combination<'a> {
     /// The tree of an object; without one it holds nothing.
-    pub(super) fn of(object: &Object<'a>) -> Result<Self, SpannedError> {
+    pub(super) fn new(object: &Object<'a>) -> Result<Self, SpannedError> {
         let mut combination = Self::default();
         let Some(tree) = object.attribute("tree") else {
             return Ok(combination);
@@ -51,7 +51,7 @@ impl<'a> Combination<'a> {
             return Ok(combination);
         }
         let mut open = vec![Open::at(tree.span.start)];
-        let mut ahead = Marks::of(tree);
+        let mut ahead = Marks::new(tree);
         loop {
             match ahead.next()? {
                 Mark::Open(at) => open.push(Open::at(at)),

@@ -97,7 +97,7 @@ pub(super) struct Marks<'a> {
 
 impl<'a> Marks<'a> {
     /// The braces of a word are paired.
-    pub(super) fn of(word: &Word<'a>) -> Self {
+    pub(super) fn new(word: &Word<'a>) -> Self {
         let words = Words::new(word.text, word.span.start);
         Self { words }
     }

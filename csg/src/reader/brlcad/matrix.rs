@@ -22,7 +22,7 @@ pub(super) struct Placed {
 
 impl Placed {
     /// The placement of sixteen numbers by rows; the last divides all others.
-    pub(super) fn of(word: &Word<'_>) -> Result<Self, SpannedError> {
+    pub(super) fn new(word: &Word<'_>) -> Result<Self, SpannedError> {
         let numbers: Result<Vec<Rational>, SpannedError> =
             word.list()?.iter().map(number).collect();
         let wrong = |_| word.unexpected("a matrix of sixteen numbers");

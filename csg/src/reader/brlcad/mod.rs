@@ -33,7 +33,7 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         return Err(SpannedError::input(0..1, found, "one of version 5")
             .help("`asc2g` and then `g2asc` of a newer BRL-CAD make one of the other"));
     }
-    let database = Database::of(source)?;
+    let database = Database::new(source)?;
     let mut reader = Reader {
         database: &database,
         builder: Builder::new(),
@@ -118,7 +118,7 @@ struct Database<'a> {
 }
 
 impl<'a> Database<'a> {
-    fn of(source: &'a str) -> Result<Self, SpannedError> {
+    fn new(source: &'a str) -> Result<Self, SpannedError> {
         let mut database = Self {
             objects: Vec::new(),
             names: HashMap::new(),
@@ -152,7 +152,7 @@ impl<'a> Database<'a> {
         }
         if let Some(&earlier) = self.names.get(name.text) {
             let start = self.objects[earlier].name.span.start;
-            let line = LineColumn::of(source.as_bytes(), start).line;
+            let line = LineColumn::new(source.as_bytes(), start).line;
             let found = format!("{}, which is put already", quote(name.text));
             return Err(SpannedError::input(name.span.clone(), found, "a new name")
                 .help(format!("it was put on line {line}")));
@@ -185,7 +185,7 @@ impl<'a> Database<'a> {
     fn top(&self, source: &str, notes: &mut Notes) -> Result<usize, SpannedError> {
         let mut held = vec![false; self.objects.len()];
         for object in self.objects.iter().filter(|object| object.is_combination()) {
-            for leaf in Combination::of(object)?.leaves() {
+            for leaf in Combination::new(object)?.leaves() {
                 if let Some(&index) = self.names.get(leaf.text) {
                     held[index] = true;
                 }
@@ -289,7 +289,7 @@ impl<'a> Reader<'a> {
             self.parts.insert(index, Some(part));
             return Ok(());
         }
-        let combination = Combination::of(object)?;
+        let combination = Combination::new(object)?;
         self.parts.insert(index, None);
         let mut members = Vec::new();
         for leaf in combination.leaves() {
@@ -345,7 +345,7 @@ impl<'a> Reader<'a> {
     }
 
     fn placed(&mut self, part: SolidId, word: &Word<'_>) -> Result<SolidId, SpannedError> {
-        let matrix = matrix::Placed::of(word)?;
+        let matrix = matrix::Placed::new(word)?;
         self.replaced(matrix.residual, word.span.clone());
         let scaled = self.builder.scaled(part, matrix.factor);
         let part = match matrix.mirrored {

@@ -118,7 +118,7 @@ pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, Unsupported
     if upright > MOST {
         return Err(Unsupported::Oblique);
     }
-    let axis = Axis::of(&h).ok_or(Unsupported::NoDirection)?;
+    let axis = Axis::new(&h).ok_or(Unsupported::NoDirection)?;
     let primitive = Primitive::frustum(la, lc, axis.length).map_err(Unsupported::Size)?;
     Ok(Solid {
         primitive,
@@ -133,7 +133,7 @@ pub(super) fn torus(
     major: Rational,
     minor: Rational,
 ) -> Result<Solid, Unsupported> {
-    let axis = Axis::of(&h).ok_or(Unsupported::NoDirection)?;
+    let axis = Axis::new(&h).ok_or(Unsupported::NoDirection)?;
     let primitive = Primitive::torus(major, minor).map_err(Unsupported::Size)?;
     Ok(Solid {
         primitive,
@@ -154,7 +154,7 @@ const FACES: [[usize; 4]; 6] = [
 
 /// A polyhedron of eight corners, some of which may be in one place.
 pub(super) fn polyhedron(corners: &[Vector; 8]) -> Result<Solid, Unsupported> {
-    let distinct = Distinct::of(corners);
+    let distinct = Distinct::new(corners);
     let solid = match distinct.points.len() {
         8 => block(corners),
         6 => wedge(&distinct),
@@ -171,7 +171,7 @@ struct Distinct {
 }
 
 impl Distinct {
-    fn of(corners: &[Vector; 8]) -> Self {
+    fn new(corners: &[Vector; 8]) -> Self {
         let furthest = corners
             .iter()
             .map(|p| distance(p, &corners[0]))
@@ -231,7 +231,7 @@ fn block(corners: &[Vector; 8]) -> Option<Solid> {
         (point, along.iter().fold(o.clone(), add))
     });
     let off = misplaced(pairs, &edges)?;
-    let frame = Frame::of(&right_handed(edges))?;
+    let frame = Frame::new(&right_handed(edges))?;
     let primitive = Primitive::block(frame.lengths).ok()?;
     Some(Solid {
         primitive,
@@ -292,7 +292,7 @@ impl Prism {
         let [x, z] = [self.x, self.z].map(|end| sum(&points[end], &edges[1]));
         let pairs = [(&points[self.ends[0]], x), (&points[self.ends[1]], z)];
         let off = misplaced(pairs, &edges)?;
-        let frame = Frame::of(&right_handed(edges))?;
+        let frame = Frame::new(&right_handed(edges))?;
         let primitive = Primitive::wedge(frame.lengths).ok()?;
         let shift = Transform::shift(points[self.corner].clone());
         Some(Solid {

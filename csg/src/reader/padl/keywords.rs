@@ -62,7 +62,7 @@ pub(super) const KEYWORDS: [&str; 10] = [
 ];
 
 impl Keyword {
-    pub(super) fn of(word: &str) -> Option<Self> {
+    pub(super) fn new(word: &str) -> Option<Self> {
         Some(match word.to_ascii_uppercase().as_str() {
             "BLO" => Self::Shape(Shape::Block),
             "WED" => Self::Shape(Shape::Wedge),

@@ -66,7 +66,7 @@ impl<'a> Parser<'a> {
     }
 
     fn line(&self, at: usize) -> usize {
-        LineColumn::of(self.cursor.source().as_bytes(), at).line
+        LineColumn::new(self.cursor.source().as_bytes(), at).line
     }
 
     /// Reads one statement; false at the end of the text.
@@ -97,7 +97,7 @@ impl<'a> Parser<'a> {
 
     fn check_new_name(&self, name: Lexeme) -> Result<(), SpannedError> {
         let text = self.cursor.text(name);
-        if Keyword::of(text).is_some() {
+        if Keyword::new(text).is_some() {
             let found = format!("the keyword {}", quote(text));
             return Err(SpannedError::input(
                 name.span(),
@@ -173,7 +173,7 @@ impl<'a> Parser<'a> {
 
     fn word(&mut self, lexeme: Lexeme) -> Result<(), SpannedError> {
         let text = self.cursor.text(lexeme);
-        match Keyword::of(text) {
+        match Keyword::new(text) {
             Some(Keyword::Shape(shape)) => {
                 let what_for = format!("and the arguments of `{}`", shape.keyword());
                 let open = self.cursor.expect('(', &what_for)?;
@@ -213,7 +213,7 @@ impl<'a> Parser<'a> {
             Token::Symbol('-') => Operator::Subtract,
             Token::Symbol('*') => Operator::Multiply,
             Token::Symbol('/') => Operator::Divide,
-            Token::Name => match Keyword::of(self.cursor.text(lexeme)) {
+            Token::Name => match Keyword::new(self.cursor.text(lexeme)) {
                 Some(Keyword::Operation(op)) => Operator::Set(op),
                 Some(Keyword::At) => return self.begin_placing(lexeme).map(|()| None),
                 _ => return Err(self.not_an_operator(lexeme)),

@@ -293,7 +293,7 @@ impl<'a> Reader<'a> {
 
     fn unclosed(&self, end: Lexeme, open: Lexeme) -> SpannedError {
         let source = self.cursor.source().as_bytes();
-        let line = LineColumn::of(source, open.span().start).line;
+        let line = LineColumn::new(source, open.span().start).line;
         let fault = self.cursor.unexpected(end, "a closing bracket");
         fault.help(format!("the bracket opened on line {line} is not closed"))
     }

@@ -94,7 +94,7 @@ pub(super) fn cone(
     [radius, end]: [Rational; 2],
     span: Range<usize>,
 ) -> Result<Object, SpannedError> {
-    let Some(axis) = Axis::of(&difference(&top, &base)) else {
+    let Some(axis) = Axis::new(&difference(&top, &base)) else {
         let expected = "two points that differ";
         return Err(SpannedError::input(
             span,
@@ -113,7 +113,7 @@ pub(super) fn torus(
     major: Rational,
     (minor, span): (Rational, Range<usize>),
 ) -> Result<Object, SpannedError> {
-    let axis = Axis::of(&[0, 1, 0].map(Rational::from));
+    let axis = Axis::new(&[0, 1, 0].map(Rational::from));
     let moves = axis.map_or_else(Transform::new, |axis| axis.turn);
     let made = Primitive::torus(major, minor.clone());
     placed(builder, made, (Some(&minor), &span), moves).map(Object::from)

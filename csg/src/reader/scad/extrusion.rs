@@ -24,7 +24,7 @@ pub(super) fn half(value: &Rational) -> Rational {
 
 impl Raise {
     /// What the arguments of `linear_extrude` say. A height of zero makes every figure empty.
-    pub(super) fn of(arguments: &mut Arguments) -> Result<Self, SpannedError> {
+    pub(super) fn new(arguments: &mut Arguments) -> Result<Self, SpannedError> {
         arguments.bind(&["height", "center", "scale", "twist", "v", "h"])?;
         let height = match arguments.find("h") {
             Some(height) => length(height, "height")?,

@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
                 let expected = if block.single { "a node or `;`" } else { "`}`" };
                 let start = block.open.span().start;
                 let source = self.cursor.source().as_bytes();
-                let line = LineColumn::of(source, start).line;
+                let line = LineColumn::new(source, start).line;
                 Err(self
                     .cursor
                     .unexpected(end, expected)

@@ -109,7 +109,7 @@ pub(super) fn node(
             Err(SpannedError::input(place.span(), found, "a plane figure"))
         }
         "linear_extrude" => {
-            let around = Around::Raised(Box::new(Raise::of(arguments)?));
+            let around = Around::Raised(Box::new(Raise::new(arguments)?));
             Ok(Node::Block {
                 kind: Kind::Union,
                 around,

@@ -142,7 +142,7 @@ fn amid_edges<N: Float>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId]
     };
     match coedges.len() {
         0 => ground.base,
-        n => coedges.iter().map(middle).sum::<N>() / N::of(n as f64),
+        n => coedges.iter().map(middle).sum::<N>() / N::from_f64(n as f64),
     }
 }
 
@@ -159,7 +159,7 @@ fn holds_far<N: Float>(
     if brep.topology.face(face).loops.is_empty() {
         return Some(true);
     }
-    if part.abs().is_beyond(N::of(FEW) * amid.part()) {
+    if part.abs().is_beyond(N::from_f64(FEW) * amid.part()) {
         return Some(part.is_below_zero());
     }
     match FaceLocator::by_gaps(brep, face, amid.size).place(far) {
@@ -220,7 +220,7 @@ fn clear_axis<N: Float>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> 
         sines.fold(1.0, f64::min)
     };
     match clearest(axes, clearance) {
-        Some(axis) => Frame::about(s.frame.origin, axis.map(N::of).unit()),
+        Some(axis) => Frame::about(s.frame.origin, axis.map(N::from_f64).unit()),
         None => s.frame,
     }
 }
@@ -239,7 +239,7 @@ fn opposite_parallel<N: Float>(brep: &Brep<N>, t: &Torus<N>, coedges: &[CoedgeId
     if let Some(&amid) = angles.get(angles.len() / 2)
         && near(amid).is_short_of(FRAC_PI_4)
     {
-        return N::of(amid);
+        return N::from_f64(amid);
     }
     let step = TAU / f64::from(WAYS);
     let opposites = (0..WAYS).map(|k| step * (f64::from(k) + 0.2));
@@ -247,7 +247,7 @@ fn opposite_parallel<N: Float>(brep: &Brep<N>, t: &Torus<N>, coedges: &[CoedgeId
         let off = angles.iter().map(|a| (a - v).rem_euclid(TAU) - PI);
         off.map(f64::abs).fold(PI, f64::min)
     };
-    N::of(clearest(opposites, clearance).unwrap_or(step))
+    N::from_f64(clearest(opposites, clearance).unwrap_or(step))
 }
 
 /// A torus is cut open along the parallel of its base: what of it lies in the face is part of the
@@ -324,11 +324,11 @@ fn opening_passes<N: Float>(
     let plane = Plane { frame };
     let start = d.ground.surface.point(N::ZERO, angle);
     let opening = SurfacePath::parallel(&d.ground.surface, &start, Sense::Along, N::ZERO)?;
-    let directed = coedges.iter().map(|&c| DirectedArc::of(brep, c));
+    let directed = coedges.iter().map(|&c| DirectedArc::new(brep, c));
     let arcs = Arcs::new(directed.collect(), N::ZERO);
     // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
     // that is told from it to rounding, or to the finest resolution.
-    let band = N::ROUNDING.max(N::of(FINEST_RESOLUTION)) * d.amid.size;
+    let band = N::ROUNDING.max(N::from_f64(FINEST_RESOLUTION)) * d.amid.size;
     let mut passes: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
     let mut plain = true;
     for (i, &c) in coedges.iter().enumerate() {

@@ -79,7 +79,7 @@ fn loop_sum<N: Float>(
         // What does not matter is shared by the pieces; to doubles it is their rounding.
         let floor = match N::IS_DOUBLE {
             true => floor,
-            false => floor.map(|f| f / N::of(breaks.len() as f64)),
+            false => floor.map(|f| f / N::from_f64(breaks.len() as f64)),
         };
         for pair in breaks.windows(2) {
             // The middle tells on which side of a cut the piece lies.

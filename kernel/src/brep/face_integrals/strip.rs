@@ -61,7 +61,11 @@ fn straight<N: Float>(
 ) -> Moments<N> {
     // The integrals of 1, v and v².
     let length = N::TWO * d;
-    let [one, first, second] = [length, length * m, length * (m * m + d * d / N::of(3.0))];
+    let [one, first, second] = [
+        length,
+        length * m,
+        length * (m * m + d * d / N::from_f64(3.0)),
+    ];
     let area = j * one + k * first;
     let at = (p * area + q * (j * first + k * second)) * height;
     [area, height * area, at.x, at.y, at.z]
@@ -94,7 +98,7 @@ fn waves<N: Float>(m: N, d: N) -> (N, [[N; 2]; 3]) {
         let size = N::TWO * (k * d).sin() / k;
         [size * cos, size * sin]
     };
-    (N::TWO * d, [N::ONE, N::TWO, N::of(3.0)].map(wave))
+    (N::TWO * d, [N::ONE, N::TWO, N::from_f64(3.0)].map(wave))
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ impl<N: Float> FaceLocator<'_, N> {
         let step = (self.arcs.all.len() / ARCS).max(1);
         let starts = STARTS.into_iter().flat_map(|part| {
             let arcs = self.arcs.all.iter().step_by(step).take(ARCS);
-            arcs.map(move |arc| (arc, N::of(part)))
+            arcs.map(move |arc| (arc, N::from_f64(part)))
         });
         let mut best: Option<(N, Point3<N>)> = None;
         for (length, point) in starts.flat_map(|(arc, part)| self.ways_from(arc, part)) {
@@ -44,7 +44,7 @@ impl<N: Float> FaceLocator<'_, N> {
                 best = Some((length, point));
             }
             // Mostly the first one is.
-            if length.is_beyond(N::of(LONG) * self.band) {
+            if length.is_beyond(N::from_f64(LONG) * self.band) {
                 break;
             }
         }
@@ -61,10 +61,10 @@ impl<N: Float> FaceLocator<'_, N> {
         let mut ways = Vec::new();
         for walk in self.walks_through(&p, left) {
             let walk = walk.toward(&p, &left);
-            if walk.direction(&p).dot(&left).reaches(N::of(SLANT))
+            if walk.direction(&p).dot(&left).reaches(N::from_f64(SLANT))
                 && let Some(length) = self.left_at(&walk)
             {
-                let length = N::of(INSIDE) * length;
+                let length = N::from_f64(INSIDE) * length;
                 ways.push((length, walk.point(length)));
             }
         }
@@ -96,7 +96,7 @@ impl<N: Float> FaceLocator<'_, N> {
 
     /// Where a walk from the boundary plainly leaves the face, before it meets anything else.
     fn left_at(&self, walk: &SurfacePath<N>) -> Option<N> {
-        let start = N::of(NEXT) * self.band;
+        let start = N::from_f64(NEXT) * self.band;
         let mut first: Option<(N, CrossingSense)> = None;
         self.arcs.met_by(walk, self.band, &mut |i, ranges| {
             let arc = &self.arcs.all[i];

@@ -49,7 +49,7 @@ impl<N: Float> Sorter<'_, N> {
         left: &Vector3<N>,
     ) -> bool {
         let [around, along] = self.winding;
-        for turn in [N::of(0.4), N::of(2.6), N::of(4.3)] {
+        for turn in [N::from_f64(0.4), N::from_f64(2.6), N::from_f64(4.3)] {
             for sense in [Sense::Along, Sense::Against] {
                 let leg = SurfacePath::tube(t, p, sense).upto(turn * t.minor);
                 let corner = leg.point(turn * t.minor);
@@ -86,13 +86,13 @@ impl<N: Float> Sorter<'_, N> {
         let heights = [
             Height::First,
             Height::Last,
-            Height::At(N::of(0.4)),
-            Height::At(N::of(2.6)),
-            Height::At(N::of(4.3)),
+            Height::At(N::from_f64(0.4)),
+            Height::At(N::from_f64(2.6)),
+            Height::At(N::from_f64(4.3)),
         ];
         for &fraction in &STARTS {
             for goal in 0..self.firsts[1] {
-                let q = self.start_on(goal, N::of(fraction));
+                let q = self.start_on(goal, N::from_f64(fraction));
                 // The way ends just before the first loop: within its face, or on the other side
                 // of it, where the face of the same edge is another loop's.
                 for height in heights {
@@ -151,7 +151,7 @@ impl<N: Float> Sorter<'_, N> {
             ],
         };
         if let Some((_, length)) = legs.last_mut() {
-            *length -= N::of(64.0) * self.band;
+            *length -= N::from_f64(64.0) * self.band;
         }
         let cut = |(walk, length): (SurfacePath<N>, N)| walk.upto(length.max(N::ZERO));
         Some(legs.into_iter().map(cut).collect())
@@ -186,7 +186,7 @@ impl<N: Float> Sorter<'_, N> {
             Sense::Against => [arc.range[1], arc.range[0]],
         };
         std::array::from_fn(|k| {
-            let part = N::whole(k as u32) / N::of(32.0);
+            let part = N::whole(k as u32) / N::from_f64(32.0);
             let t = from + part * (to - from);
             self.surface.parameters(&arc.curve.point(t))
         })

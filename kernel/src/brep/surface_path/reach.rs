@@ -43,7 +43,7 @@ struct Middle {
 }
 
 impl Above {
-    fn of<N: Float>(origin: &Point3<N>, normal: &Vector3<N>) -> Self {
+    fn new<N: Float>(origin: &Point3<N>, normal: &Vector3<N>) -> Self {
         Self {
             origin: origin.map(N::rounded),
             normal: normal.map(N::rounded),
@@ -64,20 +64,20 @@ impl Above {
 
 impl Reach {
     /// What holds a walk in the plane through its start with the given normal.
-    pub fn of<N: Float>(
+    pub fn new<N: Float>(
         (start, normal): (&Point3<N>, &Vector3<N>),
         track: &Track<N>,
         branch: &Branch<N>,
         length: N,
     ) -> Self {
         let half = match branch {
-            Branch::Half(o, side) => Some(Above::of(o, side)),
-            Branch::Level(c, side) => Some(Above::of(&c.frame.origin, &(c.frame.z * *side))),
+            Branch::Half(o, side) => Some(Above::new(o, side)),
+            Branch::Level(c, side) => Some(Above::new(&c.frame.origin, &(c.frame.z * *side))),
             Branch::Whole | Branch::Parallel(..) => None,
         };
         let beside = match branch {
             Branch::Parallel(t, side) => Some(Beside {
-                axis: Above::of(&t.frame.origin, &t.frame.z),
+                axis: Above::new(&t.frame.origin, &t.frame.z),
                 major: t.major.rounded(),
                 side: side.rounded(),
             }),
@@ -85,14 +85,14 @@ impl Reach {
         };
         let (line, extent) = match track {
             Track::Line(d) => {
-                let ends = Aabb::of(start).hull(&Aabb::of(&(start + d * length)));
+                let ends = Aabb::new(start).hull(&Aabb::new(&(start + d * length)));
                 let extent = if length.is_finite() { ends } else { Aabb::ALL };
-                (Some((Above::of(start, d), length.above())), extent)
+                (Some((Above::new(start, d), length.above())), extent)
             }
             Track::Circle(..) => (None, Aabb::ALL),
         };
         Self {
-            plane: Above::of(start, normal),
+            plane: Above::new(start, normal),
             half,
             beside,
             line,
@@ -157,36 +157,37 @@ mod tests {
 
     fn walks<N: Float>() -> Vec<SurfacePath<N>> {
         let frame = Frame {
-            origin: Point3::new(N::of(1.1), N::of(-0.3), N::of(0.7)),
+            origin: Point3::new(N::from_f64(1.1), N::from_f64(-0.3), N::from_f64(0.7)),
             ..Frame::world()
         };
         let torus = Torus {
             frame,
-            major: N::of(2.0),
-            minor: N::of(0.6),
+            major: N::from_f64(2.0),
+            minor: N::from_f64(0.6),
         };
         let (ring, rod) = (
             Surface::Torus(torus),
             Cylinder {
                 frame,
-                radius: N::of(0.9),
+                radius: N::from_f64(0.9),
             },
         );
         let rod = Surface::Cylinder(rod);
         let mut all = Vec::new();
         for k in 0..12 {
-            let [u, v] = [0.4, 0.55].map(|step| N::of(step * f64::from(k)));
+            let [u, v] = [0.4, 0.55].map(|step| N::from_f64(step * f64::from(k)));
             let p = ring.point(u, v);
             all.push(SurfacePath::tube(&torus, &p, Sense::Along));
             all.extend(SurfacePath::parallel(
                 &ring,
                 &p,
                 Sense::Against,
-                N::of(1e-11),
+                N::from_f64(1e-11),
             ));
             let q = rod.point(u, v);
             all.extend(
-                SurfacePath::ruling_through(&rod, &q, Sense::Along).map(|w| w.upto(N::of(3.0))),
+                SurfacePath::ruling_through(&rod, &q, Sense::Along)
+                    .map(|w| w.upto(N::from_f64(3.0))),
             );
         }
         all
@@ -197,14 +198,14 @@ mod tests {
             let length = walk.length();
             let mut passed_over = 0;
             for k in 0..=100 {
-                let p = walk.point(length * N::of(f64::from(k) / 100.0));
+                let p = walk.point(length * N::from_f64(f64::from(k) / 100.0));
                 assert!(
-                    walk.may_meet_box(&Aabb::of(&p), N::ZERO),
+                    walk.may_meet_box(&Aabb::new(&p), N::ZERO),
                     "{walk:?} at {p:?}"
                 );
                 // Aside by more than the box is wide.
-                let aside = p.map(|x| x + N::of(0.1));
-                passed_over += u32::from(!walk.may_meet_box(&Aabb::of(&aside), N::of(1e-3)));
+                let aside = p.map(|x| x + N::from_f64(0.1));
+                passed_over += u32::from(!walk.may_meet_box(&Aabb::new(&aside), N::from_f64(1e-3)));
             }
             assert!(passed_over > 20, "{walk:?}");
         }

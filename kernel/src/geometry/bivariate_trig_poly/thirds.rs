@@ -21,7 +21,7 @@ pub struct Thirds<N: Float = f64>(pub [N; 4]);
 /// The five functions' derivatives of the orders none to three.
 fn to_third<N: Float>(basis: &[[N; 5]; 3]) -> [[N; 5]; 4] {
     let [_, c, s, c2, s2] = basis[1];
-    let four = N::of(4.0);
+    let four = N::from_f64(4.0);
     let third = [N::ZERO, -c, -s, -four * c2, -four * s2];
     [basis[0], basis[1], basis[2], third]
 }

@@ -78,14 +78,14 @@ impl<N: Float> Contact<N> {
             }
         };
         let breaks: Vec<N> = (0..=8)
-            .map(|i| N::of(0.1) + N::TAU * N::whole(i) / N::of(8.0))
+            .map(|i| N::from_f64(0.1) + N::TAU * N::whole(i) / N::from_f64(8.0))
             .collect();
         let Roots::At { roots, .. } = isolate(&along, &breaks, form.bound() * N::ROUNDING) else {
             return Vec::new();
         };
         let once = roots
             .iter()
-            .filter(|r| r.t < N::of(0.1) + N::TAU * (N::ONE - N::ROUNDING));
+            .filter(|r| r.t < N::from_f64(0.1) + N::TAU * (N::ONE - N::ROUNDING));
         let angles = |t: N| match *self {
             Self::Meridian(theta) => [theta, t],
             Self::Rim(phi) => [t, phi],
@@ -159,7 +159,11 @@ fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) ->
 
 /// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
 /// the tube, a straight pipe or another bend that continues it.
-fn equal_tubes<N: Float>(t: &Torus<N>, pair: &SurfacePair<'_, N>, predicates: &Predicates) -> Option<N> {
+fn equal_tubes<N: Float>(
+    t: &Torus<N>,
+    pair: &SurfacePair<'_, N>,
+    predicates: &Predicates,
+) -> Option<N> {
     let (other, extent) = (pair.b.surface, pair.extent);
     let f = other.frame();
     let radii = match other {

@@ -110,8 +110,9 @@ impl<N: Float> SurfaceIntersection<N> {
     fn cross_at(&mut self, point: Point3<N>, predicates: &Predicates) {
         let on = self.branches.iter().enumerate();
         let on = on.map(|(i, branch)| (i, branch.curve.parameter(&point)));
-        let passed =
-            |&(i, t): &(usize, N)| predicates.within((self.branches[i].curve.point(t) - point).length());
+        let passed = |&(i, t): &(usize, N)| {
+            predicates.within((self.branches[i].curve.point(t) - point).length())
+        };
         let on = on.filter(passed).collect();
         self.nodes.push(Node { point, on });
     }
@@ -144,7 +145,11 @@ pub fn intersect<N: Float>(
 }
 
 /// Whether the axes of two carriers are one line within the band.
-fn same_line<N: Float>(pair: &SurfacePair<'_, N>, place: [f64; 3], predicates: &Predicates) -> bool {
+fn same_line<N: Float>(
+    pair: &SurfacePair<'_, N>,
+    place: [f64; 3],
+    predicates: &Predicates,
+) -> bool {
     predicates.coincide("axes side by side", pair.how(PairMeasure::Drift), place)
         && predicates.coincide("axis on axis", pair.how(PairMeasure::OffLine), place)
 }
@@ -191,7 +196,7 @@ fn positive_parts<N: Float>(
     };
     let value = |t: N| f.at(t).v;
     if roots.is_empty() {
-        let middle = range[0] + (range[1] - range[0]) * N::of(0.618);
+        let middle = range[0] + (range[1] - range[0]) * N::from_f64(0.618);
         return if value(middle) > N::ZERO {
             vec![range]
         } else {

@@ -127,7 +127,7 @@ pub(super) fn plane_cylinder<N: Float>(
         );
     } else {
         let (a, b) = (c.radius / cos.abs(), c.radius);
-        if a > N::of(FAR) * pair.extent.radius {
+        if a > N::from_f64(FAR) * pair.extent.radius {
             add_long_section(p, c, pair.extent, &mut meeting);
             return meeting;
         }
@@ -161,7 +161,7 @@ fn add_long_section<N: Float>(
     } else {
         -N::ONE
     };
-    if vertex(side).abs() <= N::of(NEAR) * extent.radius {
+    if vertex(side).abs() <= N::from_f64(NEAR) * extent.radius {
         let inward = steep.x * -(side * c).signum();
         let frame = Frame::toward(foot + steep.x * vertex(side), n, inward);
         let conic = Conic::about_vertex(frame, r * c.abs(), c * c);
@@ -191,7 +191,8 @@ pub(super) fn plane_cone<N: Float>(
 ) -> SurfaceIntersection<N> {
     let apex = c.frame.origin;
     let h = height(p, &apex);
-    match predicates.classify_at_point("apex on plane", pair.how(PairMeasure::Height), place(&apex)) {
+    match predicates.classify_at_point("apex on plane", pair.how(PairMeasure::Height), place(&apex))
+    {
         Side::On => plane_through_apex(p, c, pair, predicates),
         _ => plane_beside_apex(p, c, h, pair, predicates),
     }
@@ -320,18 +321,19 @@ fn plane_beside_apex<N: Float>(
     let x = if near == 0 { -along } else { along };
     let vertex = vertex(near);
     let closed = ahead == [true, true];
-    let curve = if a > N::of(FAR) * ((vertex - pair.extent.centre).length() + pair.extent.radius) {
-        let outward = if closed { N::ONE } else { -N::ONE };
-        let frame = Frame::toward(vertex, n, -x * outward);
-        Curve::Conic(Conic::about_vertex(frame, rectum, outward * rectum / a))
-    } else {
-        let frame = Frame::toward(vertex - x * a, n, x);
-        if closed {
-            Curve::Ellipse(Ellipse { frame, a, b })
+    let curve =
+        if a > N::from_f64(FAR) * ((vertex - pair.extent.centre).length() + pair.extent.radius) {
+            let outward = if closed { N::ONE } else { -N::ONE };
+            let frame = Frame::toward(vertex, n, -x * outward);
+            Curve::Conic(Conic::about_vertex(frame, rectum, outward * rectum / a))
         } else {
-            Curve::Hyperbola(Hyperbola { frame, a, b })
-        }
-    };
+            let frame = Frame::toward(vertex - x * a, n, x);
+            if closed {
+                Curve::Ellipse(Ellipse { frame, a, b })
+            } else {
+                Curve::Hyperbola(Hyperbola { frame, a, b })
+            }
+        };
     meeting.add(curve, false, pair.extent);
     meeting
 }

@@ -91,7 +91,8 @@ fn cones<N: Float>(
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let at = place(&c.frame.origin);
-    if predicates.classify_at_point("apex on apex", pair.how(PairMeasure::Between), at) == Side::On {
+    if predicates.classify_at_point("apex on apex", pair.how(PairMeasure::Between), at) == Side::On
+    {
         return Ok(common_apex(c, pair.b.surface, pair.extent, predicates));
     }
     let turned = pair.turned();
@@ -120,7 +121,7 @@ fn common_apex<N: Float>(
         other.level(p)
     };
     let breaks: Vec<N> = (0..=8)
-        .map(|i| N::of(0.1) + N::TAU * N::whole(i) / N::of(8.0))
+        .map(|i| N::from_f64(0.1) + N::TAU * N::whole(i) / N::from_f64(8.0))
         .collect();
     let Roots::At { roots, .. } = isolate(&|t| along(Jet::variable(t)), &breaks, predicates.band())
     else {

@@ -80,7 +80,7 @@ fn polynomial_level<N: Float>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N 
             let away = (t.frame.origin - c.frame.origin).length().max(t.minor);
             N::TWO * c.sin * away
         }
-        Surface::Torus(c) => N::of(8.0) * c.major * c.major * c.minor,
+        Surface::Torus(c) => N::from_f64(8.0) * c.major * c.major * c.minor,
     };
     s.polynomial(p) / slope
 }
@@ -167,7 +167,7 @@ fn circle_of<N: Float>(
 ) -> Option<Curve<N>> {
     let period = branch.period()?;
     let [a, b, c] =
-        [N::ZERO, N::ONE, N::TWO].map(|third| branch.point(third * period / N::of(3.0)));
+        [N::ZERO, N::ONE, N::TWO].map(|third| branch.point(third * period / N::from_f64(3.0)));
     let circle = Curve::Circle(Circle::through(&a, &b, &c)?);
     let on = |s: &Surface<N>| lies_on(&circle, [N::ZERO, N::TAU], s, predicates.band());
     (on(&Surface::Torus(*t)) && on(other)).then_some(circle)
@@ -198,8 +198,12 @@ fn coaxial<N: Float>(
     let f = other.frame();
     let at = place(&t.frame.origin);
     let is_coaxial = match other {
-        Surface::Plane(_) => predicates.coincide("plane across axis", pair.how(PairMeasure::Tilt), at),
-        Surface::Sphere(_) => predicates.coincide("centre on axis", pair.how(PairMeasure::OffAxis), at),
+        Surface::Plane(_) => {
+            predicates.coincide("plane across axis", pair.how(PairMeasure::Tilt), at)
+        }
+        Surface::Sphere(_) => {
+            predicates.coincide("centre on axis", pair.how(PairMeasure::OffAxis), at)
+        }
         _ => same_line(pair, at, predicates),
     };
     if !is_coaxial {
@@ -311,7 +315,7 @@ fn central_plane<N: Float>(
     let mut meeting = SurfaceIntersection::nothing();
     if predicates.coincide("axis in plane", pair.how(PairMeasure::Upright), at) {
         let q = t.frame.components(&n);
-        let theta = q.y.atan2(q.x) + N::TAU / N::of(4.0);
+        let theta = q.y.atan2(q.x) + N::TAU / N::from_f64(4.0);
         for theta in [theta, theta + N::TAU / N::TWO] {
             meeting.add(Curve::Circle(meridian(t, theta)), false, extent);
         }

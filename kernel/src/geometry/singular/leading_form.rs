@@ -115,7 +115,7 @@ impl Kind {
         let rough = walk(start.map(N::rounded), STEPS, |p| self.step(form, p))?;
         let band = tracer.band.rounded().max(OFF * slop);
         self.is_at(form, rough, band).then_some(())?;
-        walk(rough.map(N::of), MORE_STEPS, exactly)
+        walk(rough.map(N::from_f64), MORE_STEPS, exactly)
     }
 }
 
@@ -129,7 +129,7 @@ fn walk<N: Float>(
     for _ in 0..steps {
         let step = step(p)?;
         p = [p[0] + step[0], p[1] + step[1]];
-        if !near(&p, &start, N::of(ZONE)) {
+        if !near(&p, &start, N::from_f64(ZONE)) {
             return None;
         }
     }
@@ -145,7 +145,7 @@ fn multiple<N: Float>(
     let p = Kind::Multiple(n).near(tracer, start)?;
     let k = taylor(tracer.form, p, TorusParameter::Around);
     let reach = terms_vanish(&k, n, tracer.band)?;
-    if !(reach < N::of(ZONE) && N::of(LEAD) * size(&k, n + 1) * reach <= size(&k, n)) {
+    if !(reach < N::from_f64(ZONE) && N::from_f64(LEAD) * size(&k, n + 1) * reach <= size(&k, n)) {
         return None;
     }
     let directions = roots_of_form(&k, n)?;
@@ -172,8 +172,8 @@ fn toward_multiple<N: Float>(k: &Taylor<N>, n: usize) -> Option<[N; 2]> {
     for j in 0..n {
         let i = n - 1 - j;
         let by = [
-            N::of((i + 1) as f64) * k[i + 1][j],
-            N::of((j + 1) as f64) * k[i][j + 1],
+            N::from_f64((i + 1) as f64) * k[i + 1][j],
+            N::from_f64((j + 1) as f64) * k[i][j + 1],
         ];
         a += by[0] * by[0];
         b += by[0] * by[1];
@@ -209,7 +209,7 @@ fn roots_of_form<N: Float>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
     };
     let size: N = (0..=n).map(|j| k[n - j][j].abs()).sum();
     // Half a turn, from where no simple slope is.
-    let [from, to] = [N::of(ZONE), N::of(ZONE) + N::PI];
+    let [from, to] = [N::from_f64(ZONE), N::from_f64(ZONE) + N::PI];
     let Roots::At { roots, .. } = isolate(&form, &[from, to], size * N::ROUNDING) else {
         return None;
     };
@@ -254,13 +254,13 @@ fn fold<N: Float>(
 
 /// The greatest zone of which something holds.
 fn zone<N: Float>(holds: impl Fn(N) -> bool) -> Option<N> {
-    let zones = (0..deepest::<N>() as i32).map(|n| N::of(ZONE) * N::HALF.powi(n));
+    let zones = (0..deepest::<N>() as i32).map(|n| N::from_f64(ZONE) * N::HALF.powi(n));
     zones.into_iter().find(|&z| holds(z))
 }
 
 /// Whether Taylor's polynomial is F well within the band, for |σ| and |κ| up to the given ones.
 fn is_whole<N: Float>(chart: &Chart<N>, band: N, sigma: N, kappa: N) -> bool {
-    N::of(WHOLE) * chart.left(sigma, kappa) <= band
+    N::from_f64(WHOLE) * chart.left(sigma, kappa) <= band
 }
 
 /// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
@@ -327,7 +327,7 @@ impl<N: Float> Sheet<N> {
             TorusParameter::Around => at.y,
             TorusParameter::Tube => at.x,
         };
-        let s = -self.along[k - 1] / (N::of(k as f64) * self.along[k]);
+        let s = -self.along[k - 1] / (N::from_f64(k as f64) * self.along[k]);
         let y = -N::HALF * across / self.bend + self.trend[1] * s;
         match self.axis {
             TorusParameter::Around => [s, y],
@@ -352,9 +352,9 @@ fn rank_one<N: Float>(
     let p = Kind::RankOne(k).near(tracer, start)?;
     let sheet = Sheet::at(tracer.form, p);
     let reach = sheet.vanishes(k, tracer.band)?;
-    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::of(LEAD) * tracer.band
-        && reach < N::of(ZONE)
-        && N::of(LEAD) * sheet.along[k + 1].abs() * reach <= sheet.along[k].abs();
+    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::from_f64(LEAD) * tracer.band
+        && reach < N::from_f64(ZONE)
+        && N::from_f64(LEAD) * sheet.along[k + 1].abs() * reach <= sheet.along[k].abs();
     leads.then_some(())?;
     Some((rank_one_branches(tracer, p, &sheet, k)?, reach))
 }

@@ -55,9 +55,9 @@ impl<N: Float> TorusCurve<N> {
         band: N,
     ) -> Option<Vec<N>> {
         let holds = |part: f64| {
-            let p = self.point(self.length() * N::of(part));
+            let p = self.point(self.length() * N::from_f64(part));
             let size = p.coords.length() + (surface.frame().origin - p).length();
-            surface.distance(&p).abs() <= N::of(ROUNDINGS) * N::ROUNDING * size
+            surface.distance(&p).abs() <= N::from_f64(ROUNDINGS) * N::ROUNDING * size
         };
         if !PARTS.into_iter().all(holds) {
             return None;
@@ -120,7 +120,7 @@ impl<N: Float> TorusCurve<N> {
         }
         let [_, y] = arrange(s.axis, theta, phi);
         let rough = wrap(s.hermite(x) - y).abs();
-        if rough > N::TWO * s.steep.max(N::ONE) * length.abs() + N::of(BESIDE) * slack {
+        if rough > N::TWO * s.steep.max(N::ONE) * length.abs() + N::from_f64(BESIDE) * slack {
             return Place::Beside;
         }
         let tau = ((x - s.from) / length).clamp(N::ZERO, N::ONE);
@@ -128,7 +128,7 @@ impl<N: Float> TorusCurve<N> {
         let away = wrap(theta - a).hypot(wrap(phi - b));
         if away <= slack {
             Place::On(tau)
-        } else if away > N::of(BESIDE) * slack {
+        } else if away > N::from_f64(BESIDE) * slack {
             Place::Beside
         } else {
             Place::Unclear

@@ -82,20 +82,20 @@ const SKEWS: [[[f64; 2]; 2]; 3] = [
 
 impl<N: Float> Layout<N> {
     /// One after the other: every skew, then with smaller zones.
-    pub fn of(attempt: usize) -> Self {
+    pub fn new(attempt: usize) -> Self {
         let n = attempt as i32;
         let skews = SKEWS.len() as i32;
         Self {
             shrink: N::HALF.powi(n / skews),
-            skew: SKEWS[attempt % SKEWS.len()].map(|side| side.map(N::of)),
-            start: START.map(|s| N::of(s) * N::whole(n + 1)),
+            skew: SKEWS[attempt % SKEWS.len()].map(|side| side.map(N::from_f64)),
+            start: START.map(|s| N::from_f64(s) * N::whole(n + 1)),
         }
     }
 }
 
 /// The cells of the first grid, without singular points.
 pub fn plain_grid<N: Float>() -> Vec<Cell<N>> {
-    let layout = Layout::of(0);
+    let layout = Layout::new(0);
     let [xs, ys] = [0, 1].map(|angle| lines(angle, &[], &layout));
     grid(&xs, &ys)
 }
@@ -105,7 +105,7 @@ pub fn plain_grid<N: Float>() -> Vec<Cell<N>> {
 pub fn lines<N: Float>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Vec<N> {
     let (start, skew) = (layout.start[angle], layout.skew[angle]);
     let mut all: Vec<N> = (0..GRID)
-        .map(|i| start + N::TAU * N::of(i as f64) / N::of(GRID as f64))
+        .map(|i| start + N::TAU * N::from_f64(i as f64) / N::from_f64(GRID as f64))
         .collect();
     all.retain(|x| zones.iter().all(|(c, size)| wrap(*x - *c).abs() > *size));
     for &(c, size) in zones {
@@ -113,10 +113,11 @@ pub fn lines<N: Float>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Ve
             let side = start + (side - start).rem_euclid(N::TAU);
             let same = all
                 .iter()
-                .any(|x| wrap(*x - side).abs() < size * N::of(SAME));
+                .any(|x| wrap(*x - side).abs() < size * N::from_f64(SAME));
             let within = |&(c, size): &(N, N)| {
                 let d = wrap(side - c);
-                d > -size * skew[0] * N::of(WITHIN) && d < size * skew[1] * N::of(WITHIN)
+                d > -size * skew[0] * N::from_f64(WITHIN)
+                    && d < size * skew[1] * N::from_f64(WITHIN)
             };
             if !same && !zones.iter().any(within) {
                 all.push(side);

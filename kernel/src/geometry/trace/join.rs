@@ -73,7 +73,7 @@ impl<N: Float> Tracer<'_, N> {
             let centre = c.centre();
             let holds = |k: usize, i: usize| {
                 let (at, size) = zones[k][i];
-                wrap(centre[k] - at).abs() <= N::of(0.9) * size
+                wrap(centre[k] - at).abs() <= N::from_f64(0.9) * size
             };
             (0..points.len()).find(|&i| holds(0, i) && holds(1, i))
         };
@@ -163,7 +163,7 @@ impl<N: Float> Tracer<'_, N> {
                 to: q[k],
                 ends: [p[1 - k], q[1 - k]],
                 slopes: [slope(p), slope(q)],
-                steep: N::of(steep),
+                steep: N::from_f64(steep),
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
                 chart: None,
             };
@@ -368,7 +368,7 @@ fn chain<N: Float>(
             if let End::Pass(s, _) = entry {
                 singular[s]
                     .on
-                    .push((branches.len(), N::of(segments.len() as f64)));
+                    .push((branches.len(), N::from_f64(segments.len() as f64)));
             }
             segments.push(if forward {
                 p.segment

@@ -89,9 +89,9 @@ impl<N: Float> Bounds<N> {
         let [x, y] = [self.x, self.y];
         if self.least > N::ZERO {
             Holds::Nothing
-        } else if y[0] > N::ZERO && x[1] <= N::of(STEEP) * y[0] {
+        } else if y[0] > N::ZERO && x[1] <= N::from_f64(STEEP) * y[0] {
             graph(TorusParameter::Around, x[1], y[0])
-        } else if x[0] > N::ZERO && y[1] <= N::of(STEEP) * x[0] {
+        } else if x[0] > N::ZERO && y[1] <= N::from_f64(STEEP) * x[0] {
             graph(TorusParameter::Tube, y[1], x[0])
         } else {
             Holds::Unknown
@@ -127,7 +127,7 @@ const MOST_CELLS: u32 = 1 << 17;
 
 /// A bound of the rounding error of a form.
 fn slop<N: Float>(form: &BivariateTrigPoly<N>) -> N {
-    form.bound() * N::EPSILON * N::of(64.0)
+    form.bound() * N::EPSILON * N::from_f64(64.0)
 }
 
 /// The depth at which a cell that is still undecided is given up: where its sides are next to the
@@ -190,7 +190,7 @@ impl<'a, N: Float> Tracer<'a, N> {
         let third = xx * hx * hx + N::TWO * xy * hx * hy + yy * hy * hy;
         let bent = p.xx.abs() * hx * hx + N::TWO * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy;
         let spread =
-            p.x.abs() * hx + p.y.abs() * hy + N::HALF * bent + third / N::of(6.0) + self.slop;
+            p.x.abs() * hx + p.y.abs() * hy + N::HALF * bent + third / N::from_f64(6.0) + self.slop;
         let rx = p.xx.abs() * hx + p.xy.abs() * hy + N::HALF * (xx * hx + xy * hy) + self.slop;
         let ry = p.xy.abs() * hx + p.yy.abs() * hy + N::HALF * (xy * hx + yy * hy) + self.slop;
         let across = [(p.xx.abs() + xx) * hx * hx, (p.yy.abs() + yy) * hy * hy];
@@ -260,7 +260,7 @@ pub fn trace<N: Float>(
     } = singular_points(&tracer)?;
     let mut failed = None;
     for attempt in 0..ATTEMPTS {
-        match tracer.assemble(torus, &points, &Layout::of(attempt)) {
+        match tracer.assemble(torus, &points, &Layout::new(attempt)) {
             Ok(traced) => return Ok(Traced { close, ..traced }),
             Err(e) => failed = failed.or(Some(e)),
         }

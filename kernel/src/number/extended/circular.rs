@@ -17,7 +17,7 @@ const PLACES: usize = 403;
 /// The sines and cosines of the places.
 static TABLE: LazyLock<[(F237, F237); PLACES]> = LazyLock::new(|| {
     std::array::from_fn(|k| {
-        let (sin, cos) = F237::of(STEP * k as f64).0.sin_cos();
+        let (sin, cos) = F237::from_f64(STEP * k as f64).0.sin_cos();
         (F237(sin), F237(cos))
     })
 });
@@ -73,7 +73,7 @@ pub(super) fn sin_cos(x: F237) -> (F237, F237) {
     let mut rest = x;
     if turns != 0.0 {
         let [upper, lower] = *QUARTER;
-        rest = (x - F237::of(turns) * upper) - F237::of(turns) * lower;
+        rest = (x - F237::from_f64(turns) * upper) - F237::from_f64(turns) * lower;
     }
     let (sin, cos) = within_eighth(rest);
     match turns.rem_euclid(4.0) as u8 {
@@ -92,7 +92,7 @@ fn within_eighth(x: F237) -> (F237, F237) {
     }
     let (sin, cos) = TABLE[place.abs() as usize];
     let sin = if place < 0.0 { -sin } else { sin };
-    let (s, c) = series(x - F237::of(STEP * place));
+    let (s, c) = series(x - F237::from_f64(STEP * place));
     (sin * c + cos * s, cos * c - sin * s)
 }
 
@@ -114,11 +114,11 @@ fn series(x: F237) -> (F237, F237) {
 pub(super) fn angle(side: F237, along: F237) -> Option<F237> {
     let across = Float::abs(side);
     let near = across.rounded().atan2(along.rounded());
-    let start = F237::of(near);
+    let start = F237::from_f64(near);
     let (sin, cos) = sin_cos(start);
     let rest = (across * cos - along * sin) / (along * cos + across * sin);
     // Of the series of the arctangent the fifth power is beyond all digits.
-    let third = rest * rest * rest / F237::of(3.0);
+    let third = rest * rest * rest / F237::from_f64(3.0);
     (rest.rounded().abs() < NEAR).then(|| (start + (rest - third)).copysign(side))
 }
 

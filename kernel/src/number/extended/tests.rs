@@ -25,22 +25,23 @@ fn sines_are_their_series() {
     let turns = (-9..10).map(|k| f64::from(k) * eighth);
     let beside = turns.flat_map(|x| [x, x.next_up(), x + 0.001, x - 0.0078]);
     for x in beside.chain([1e-40, 0.3, 0.49, 1.0, -2.0, 6.0]) {
-        let (sin, cos) = F237::of(x).sin_cos();
+        let (sin, cos) = F237::from_f64(x).sin_cos();
         let (s, c) = by_fractions(x);
         assert!(near(sin, s), "{x} {sin:?} {s:?}");
         assert!(near(cos, c), "{x} {cos:?} {c:?}");
         let back = sin.atan2(cos);
-        let turned = F237::of(x) - F237::TAU * F237::of((x / std::f64::consts::TAU).round());
+        let turned =
+            F237::from_f64(x) - F237::TAU * F237::from_f64((x / std::f64::consts::TAU).round());
         let apart = Float::abs(back - turned);
         let off = Float::min(apart, Float::abs(apart - F237::TAU));
         assert!(
-            off <= Float::abs(F237::of(x)) * F237::ROUNDING,
+            off <= Float::abs(F237::from_f64(x)) * F237::ROUNDING,
             "{x} {back:?}"
         );
     }
     // Far off, the library's.
-    let x = F237::of(123_456.75);
-    let y = F237::of(1_000_000.5);
+    let x = F237::from_f64(123_456.75);
+    let y = F237::from_f64(1_000_000.5);
     for x in [x, y] {
         let (sin, cos) = (F237(x.0.sin()), F237(x.0.cos()));
         assert!(near(x.sin_cos().0, sin) && near(x.sin_cos().1, cos));
@@ -49,7 +50,7 @@ fn sines_are_their_series() {
 
 #[test]
 fn functions_have_all_digits() {
-    for x in [-3.7, -1e-20, 1e-9, 0.3, 1.0, 2.5, 40.0].map(F237::of) {
+    for x in [-3.7, -1e-20, 1e-9, 0.3, 1.0, 2.5, 40.0].map(F237::from_f64) {
         let (sin, cos) = x.sin_cos();
         assert!(near(sin * sin + cos * cos, F237::ONE), "{x:?}");
         assert!(near(x.sinh().asinh(), x), "{x:?}");
@@ -59,15 +60,18 @@ fn functions_have_all_digits() {
         );
         assert!(near(sin.atan2(cos).sin(), sin), "{x:?}");
     }
-    let x = F237::of(1.25);
+    let x = F237::from_f64(1.25);
     assert!(near(x.acosh().cosh(), x));
     assert!(near(
-        x.hypot(F237::of(3.0)) * x.hypot(F237::of(3.0)),
-        F237::of(10.5625)
+        x.hypot(F237::from_f64(3.0)) * x.hypot(F237::from_f64(3.0)),
+        F237::from_f64(10.5625)
     ));
-    assert!(near(F237::of(-0.5).acos() * F237::of(3.0), F237::TAU));
+    assert!(near(
+        F237::from_f64(-0.5).acos() * F237::from_f64(3.0),
+        F237::TAU
+    ));
     let third = F237::nearest(&(Rational::ONE / Rational::from(3)));
-    assert!(near(third * F237::of(3.0), F237::ONE));
+    assert!(near(third * F237::from_f64(3.0), F237::ONE));
 }
 
 /// Where the functions of doubles and of wide numbers are held against each other: special
@@ -88,7 +92,7 @@ fn agrees(a: F237, b: f64, about: (&str, f64, f64)) {
 #[test]
 fn functions_of_one_number_are_those_of_doubles() {
     for x in PLACES.into_iter().flat_map(|x| [x, -x]) {
-        let w = F237::of(x);
+        let w = F237::from_f64(x);
         let about = |name| (name, x, 0.0);
         agrees(w.sin(), x.sin(), about("sin"));
         agrees(w.cos(), x.cos(), about("cos"));
@@ -120,7 +124,7 @@ fn functions_of_one_number_are_those_of_doubles() {
 fn functions_of_two_numbers_are_those_of_doubles() {
     let all = || PLACES.into_iter().flat_map(|x| [x, -x]);
     for (x, y) in all().flat_map(|x| all().map(move |y| (x, y))) {
-        let (a, b) = (F237::of(x), F237::of(y));
+        let (a, b) = (F237::from_f64(x), F237::from_f64(y));
         agrees(a.atan2(b), x.atan2(y), ("atan2", x, y));
         agrees(a.hypot(b), x.hypot(y), ("hypot", x, y));
         agrees(Float::max(a, b), x.max(y), ("max", x, y));
@@ -135,7 +139,7 @@ fn functions_of_two_numbers_are_those_of_doubles() {
     }
     for n in -5..6 {
         agrees(
-            F237::of(1.75).powi(n),
+            F237::from_f64(1.75).powi(n),
             1.75_f64.powi(n),
             ("powi", 1.75, f64::from(n)),
         );
@@ -145,7 +149,7 @@ fn functions_of_two_numbers_are_those_of_doubles() {
 #[test]
 fn small_angles_are_those_of_their_series() {
     for n in [-7, -20, -60, -110, -119, -121, -400] {
-        let x = F237::of(1.3) * F237(f256::TWO).powi(n);
+        let x = F237::from_f64(1.3) * F237(f256::TWO).powi(n);
         let x2 = x * x;
         let terms = |first: i32| {
             // The terms of a series of alternating powers over factorials.
@@ -168,24 +172,24 @@ fn small_angles_are_those_of_their_series() {
 
 #[test]
 fn sinc_is_smooth_where_its_series_ends() {
-    let [a, b] = [0.499_999_999_9, 0.500_000_000_1].map(F237::of);
+    let [a, b] = [0.499_999_999_9, 0.500_000_000_1].map(F237::from_f64);
     for i in 0..2 {
         // The mean of the derivative at both ends is the slope between, to the third order.
         let rise = sinc_jet(b)[i] - sinc_jet(a)[i];
         let mean = F237::HALF * (sinc_jet(a)[i + 1] + sinc_jet(b)[i + 1]);
         let off = Float::abs(rise / (b - a) - mean);
-        assert!(off < F237::of(1e-18), "{off:?}");
+        assert!(off < F237::from_f64(1e-18), "{off:?}");
     }
 }
 
 #[test]
 fn doubles_bound_what_lies_between_them() {
-    let third = F237::ONE / F237::of(3.0);
+    let third = F237::ONE / F237::from_f64(3.0);
     assert_eq!(third.rounded(), 1.0 / 3.0);
-    assert!(F237::of(third.below()) < third && third < F237::of(third.above()));
+    assert!(F237::from_f64(third.below()) < third && third < F237::from_f64(third.above()));
     assert_eq!(third.above(), third.below().next_up());
-    assert_eq!(F237::of(0.1).below(), 0.1);
-    assert_eq!(F237::of(0.1).above(), 0.1);
+    assert_eq!(F237::from_f64(0.1).below(), 0.1);
+    assert_eq!(F237::from_f64(0.1).above(), 0.1);
     assert_eq!(F237::ZERO.rounded(), 0.0);
     assert_eq!(F237::NEG_INFINITY.rounded(), f64::NEG_INFINITY);
     assert!(F237::NAN.rounded().is_nan());
@@ -194,8 +198,8 @@ fn doubles_bound_what_lies_between_them() {
 proptest! {
     #[test]
     fn a_double_survives(x in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
-        prop_assert_eq!(F237::of(x).rounded(), x);
-        prop_assert_eq!(F237::of(x).exact(), from_f64(x));
+        prop_assert_eq!(F237::from_f64(x).rounded(), x);
+        prop_assert_eq!(F237::from_f64(x).exact(), from_f64(x));
     }
 
     #[test]

@@ -100,13 +100,13 @@ impl Predicates {
 
     /// The resolution, a distance in the part's unit.
     pub fn band<N: Float>(&self) -> N {
-        N::of(self.band)
+        N::from_f64(self.band)
     }
 
     /// What is no further apart than this coincides, or is a close call: only what is further apart
     /// need not be asked about.
     pub fn reach<N: Float>(&self) -> N {
-        N::of(self.band * CLOSE)
+        N::from_f64(self.band * CLOSE)
     }
 
     /// The side on which the signed `distance` lies; `place` is where it was measured.

@@ -97,13 +97,13 @@ mod tests {
     fn what_is_not_a_number_answers_no() {
         assert_eq!(all(f64::NAN), [false; 10]);
         assert_eq!(all(F237::NAN), [false; 10]);
-        assert_eq!(Side::of(f64::NAN, 1.0), Side::On);
+        assert_eq!(Side::new(f64::NAN, 1.0), Side::On);
     }
 
     #[test]
     fn a_limit_belongs_to_what_is_within_it() {
         let is = |x: f64| {
-            assert_eq!(all(x), all(F237::of(x)));
+            assert_eq!(all(x), all(F237::from_f64(x)));
             let told = all(x).map(|yes| if yes { '1' } else { '0' });
             told.into_iter().collect::<String>()
         };
@@ -112,7 +112,7 @@ mod tests {
         assert_eq!(is(1.0), "1011001110");
         assert_eq!(is(1.5), "1000101011");
         assert_eq!(is(2.0), "1000101010");
-        let sides = [-1.5, -1.0, 1.0, 1.5].map(|x| Side::of(x, 1.0));
+        let sides = [-1.5, -1.0, 1.0, 1.5].map(|x| Side::new(x, 1.0));
         assert_eq!(sides, [Side::Inside, Side::On, Side::On, Side::Outside]);
     }
 }

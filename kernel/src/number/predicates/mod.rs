@@ -10,7 +10,7 @@
 //! growing precision do.
 //!
 //! What is asked of a number that a construction reckoned, of its sign, or whether it exceeds a
-//! limit, is asked by the words of [`Compare`] and [`Side::of`]: nothing that decides compares numbers
+//! limit, is asked by the words of [`Compare`] and [`Side::new`]: nothing that decides compares numbers
 //! by operators of its own.
 
 mod classify;
@@ -51,7 +51,7 @@ impl Side {
     /// The side of a signed distance, where what is no more than `within` is on the surface, and so
     /// is what is not a number.
     #[inline]
-    pub fn of<N: Float>(distance: N, within: N) -> Self {
+    pub fn new<N: Float>(distance: N, within: N) -> Self {
         if distance > within {
             Self::Outside
         } else if distance < -within {

@@ -172,8 +172,8 @@ fn what_runs_along_zero_is_told_at_once() {
         }
     }
     let asked = Cell::new(0);
-    let ends = [F237::of(0.5), F237::of(1.5)];
-    let zeros = isolate(&Along(&asked), &ends, F237::of(1e-45));
+    let ends = [F237::from_f64(0.5), F237::from_f64(1.5)];
+    let zeros = isolate(&Along(&asked), &ends, F237::from_f64(1e-45));
     let Roots::At { roots, .. } = zeros else {
         panic!("everywhere");
     };

@@ -22,7 +22,7 @@ struct Part {
 }
 
 impl Part {
-    fn of(padl: &str) -> Self {
+    fn new(padl: &str) -> Self {
         let read = read(
             "test",
             padl.as_bytes(),
@@ -50,7 +50,7 @@ impl Part {
 
     fn outlines(&self, seen: &Contours) -> Outlines {
         let checker = Checker::new(&self.tree, &self.evaluation);
-        Outlines::of(&checker.material, seen, &checker.clearance())
+        Outlines::new(&checker.material, seen, &checker.clearance())
     }
 
     /// The length of a piece in the image, in radii of the window.
@@ -79,7 +79,7 @@ const VIEWS: [&str; 3] = ["perspective 2", "perspective 5", "orthographic 1"];
 #[test]
 fn every_change_has_its_contour() {
     for padl in PARTS {
-        let part = Part::of(padl);
+        let part = Part::new(padl);
         for view in around(&part.evaluation.bounds) {
             let found = part.outlines(&part.contours(&view));
             assert!(found.missing.is_empty(), "{padl} {}: {found}", view.name);
@@ -92,7 +92,7 @@ fn every_change_has_its_contour() {
 #[test]
 fn a_wall_narrower_than_the_last_interval_has_its_contours() {
     // It leans by 2e-7, and what is behind it begins and ends in its image.
-    let part = Part::of(
+    let part = Part::new(
         "A = CYL(R=1, H=3)\n\
          B = BLO(X=4, Y=4, Z=8) AT (MOVY=-2, MOVZ=-4, ROTY=0.00001, MOVX=0.3)\n\
          C = CYL(R=0.4, H=4) AT (ROTX=90, MOVY=2, MOVX=0.3, MOVZ=1.5)\n\
@@ -107,7 +107,7 @@ fn a_wall_narrower_than_the_last_interval_has_its_contours() {
 fn a_missing_contour_is_missed() {
     let mut limbs = 0;
     for padl in PARTS {
-        let part = Part::of(padl);
+        let part = Part::new(padl);
         for name in VIEWS {
             let seen = part.contours(&part.view(name));
             for (k, contour) in seen.contours.iter().enumerate() {
@@ -135,7 +135,7 @@ fn a_missing_contour_is_missed() {
 fn a_visible_piece_that_is_said_to_be_hidden_is_missed() {
     let mut marked = 0;
     for padl in PARTS {
-        let part = Part::of(padl);
+        let part = Part::new(padl);
         for name in VIEWS {
             let seen = part.contours(&part.view(name));
             for (k, contour) in seen.contours.iter().enumerate() {
@@ -165,7 +165,7 @@ fn a_visible_piece_that_is_said_to_be_hidden_is_missed() {
 #[test]
 fn surfaces_that_touch_are_not_told_apart() {
     let part =
-        Part::of("P = CON(R=2, H=2) UN CON(R=2, H=2) AT (ROTY=90) UN CON(R=2, H=2) AT (ROTX=90)");
+        Part::new("P = CON(R=2, H=2) UN CON(R=2, H=2) AT (ROTY=90) UN CON(R=2, H=2) AT (ROTX=90)");
     let found = part.outlines(&part.contours(&part.view("along z")));
     assert!(found.missing.is_empty(), "{found}");
     assert!(found.explained > 30, "{found}");
@@ -173,7 +173,7 @@ fn surfaces_that_touch_are_not_told_apart() {
 
 #[test]
 fn contours_on_one_another_are_told_apart_by_depth() {
-    let part = Part::of("P = CYL(R=1, H=2)");
+    let part = Part::new("P = CYL(R=1, H=2)");
     let mut seen = part.contours(&part.view("along z"));
     assert!(part.outlines(&seen).missing.is_empty());
     seen.contours.retain(|c| c.curve3.point(0.0).z < 1.0);
@@ -183,7 +183,7 @@ fn contours_on_one_another_are_told_apart_by_depth() {
 
 #[test]
 fn a_camera_inside_a_hole_sees_contours_too() {
-    let part = Part::of("P = BLO(X=4, Y=4, Z=4) DIF CYL(R=1, H=9) AT (MOVX=2, MOVY=2, MOVZ=-2)");
+    let part = Part::new("P = BLO(X=4, Y=4, Z=4) DIF CYL(R=1, H=9) AT (MOVX=2, MOVY=2, MOVZ=-2)");
     let eye = nalgebra::Point3::new(2.1, 2.2, 1.7);
     let target = nalgebra::Point3::new(2.0, 1.9, 4.0);
     let up = nalgebra::Vector3::y();

@@ -114,7 +114,7 @@ impl SheetReport {
             scale: None,
             angle: sheet::Angle::First,
         };
-        let sheet = match Sheet::of(vec![(None, drawing)], how) {
+        let sheet = match Sheet::new(vec![(None, drawing)], how) {
             Ok(sheet) => sheet,
             // Nothing is drawn.
             Err(SheetError::Size { .. }) => return,
@@ -190,7 +190,7 @@ impl SheetReport {
         } = *scale;
         let projection = Projection::new(&seen.camera, 1.0);
         let window = Window::around(&projection, bounds);
-        let images = Images::of(seen, &window);
+        let images = Images::new(seen, &window);
         let strokes = Strokes::new(read);
         let touching = TOUCHING * (tolerance * size).sqrt();
         let place = |p: &Point2<f64>| window.of_drawing(&projection, p);

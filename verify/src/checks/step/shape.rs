@@ -48,7 +48,7 @@ pub struct Shape {
 
 impl Shape {
     /// The solids of a file.
-    pub fn of(instances: &Instances) -> Result<Self, ReadError> {
+    pub fn new(instances: &Instances) -> Result<Self, ReadError> {
         let mut reader = Reader {
             instances,
             shape: Self::default(),

@@ -30,16 +30,16 @@ const BITS: usize = 256;
 
 impl<N: Float> Difference<N> {
     /// Of a pair, the first the base: to first order twice the distance times a length.
-    pub fn of(pair: &SurfacePair<'_, N>) -> Self {
+    pub fn new(pair: &SurfacePair<'_, N>) -> Self {
         let surfaces = [pair.a.surface, pair.b.surface];
         let [a, b] = [pair.a, pair.b].map(|c| c.numbers());
-        let parts = Parts::of(surfaces, &a, &b);
+        let parts = Parts::new(surfaces, &a, &b);
         let lean = Vector3::from(parts.lean).length();
-        if lean > N::of(LEAN) {
+        if lean > N::from_f64(LEAN) {
             return parts.difference(surfaces);
         }
         let [a, b] = [pair.a, pair.b].map(|c| c.reckoned(BITS));
-        Parts::of(surfaces, &a, &b)
+        Parts::new(surfaces, &a, &b)
             .map(RationalInterval::middle)
             .difference(surfaces)
     }
@@ -82,7 +82,7 @@ fn shape<N: Float, R: Enclosable>(surface: &Surface<N>, size: &R) -> [R; 2] {
 }
 
 impl<R: Enclosable> Parts<R> {
-    fn of<N: Float>(
+    fn new<N: Float>(
         surfaces: [&Surface<N>; 2],
         base: &Coefficients<R>,
         other: &Coefficients<R>,

@@ -82,7 +82,7 @@ impl<N: Float> Rulings<'_, N> {
         };
         // Tangent all along where both conics are one.
         let gap = (0..8)
-            .map(|i| N::TAU * N::whole(i) / N::of(8.0))
+            .map(|i| N::TAU * N::whole(i) / N::from_f64(8.0))
             .map(|u| (u, self.middle(u)))
             .filter(|(_, m)| self.is_on_base(*m))
             .map(|(u, m)| apart(self.other, &self.world(u, m)))

@@ -25,7 +25,7 @@ use nalgebra::{Point3, Vector3};
 
 /// The rulings over which it is asked whether curves are conics.
 fn asked_rulings<N: Float>() -> impl Iterator<Item = N> {
-    (0..24).map(|i| N::TAU * (N::whole(i) + N::of(0.3)) / N::of(24.0))
+    (0..24).map(|i| N::TAU * (N::whole(i) + N::from_f64(0.3)) / N::from_f64(24.0))
 }
 
 /// The distance of a point from the whole quadric of a surface: a cone with both nappes.
@@ -62,7 +62,7 @@ fn surface_of<N: Float>(base: &Ruled<N>) -> Surface<N> {
 impl<'a, N: Float> Rulings<'a, N> {
     /// Over the rulings of the pair's first.
     pub(super) fn new(base: Ruled<N>, pair: &SurfacePair<'a, N>) -> Self {
-        let q = Difference::of(pair);
+        let q = Difference::new(pair);
         let (a, b) = (&q.a, &q.b);
         // The ruling's point is m (cos, sin, 0) + ... with m the radius or the slope.
         let (lead, linear, constant) = match &base {
@@ -227,7 +227,12 @@ impl<'a, N: Float> Rulings<'a, N> {
     }
 
     /// The parts of a curve that lie on the other surface's own nappe, where it is a cone.
-    fn on_other_nappe(&self, curve: &Curve<N>, range: [N; 2], predicates: &Predicates) -> Vec<[N; 2]> {
+    fn on_other_nappe(
+        &self,
+        curve: &Curve<N>,
+        range: [N; 2],
+        predicates: &Predicates,
+    ) -> Vec<[N; 2]> {
         nappe_parts(curve, range, self.other, predicates.band())
     }
 

@@ -6,7 +6,7 @@ mod matching;
 mod predict;
 mod sheet;
 
-use crate::session::Limits;
+use crate::session::InputLimits;
 pub use camera::{CameraChoice, CameraOptions};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -18,7 +18,7 @@ pub use predict::{
 };
 use premio_csg::reader::ReadOptions;
 use premio_kernel::unit::Unit;
-pub use sheet::{SheetOptions, ViewName};
+pub use sheet::{SheetArguments, ViewName};
 use std::path::{Path, PathBuf};
 
 /// From a description of a solid to its exact boundary and to what a camera sees of it.
@@ -34,7 +34,7 @@ pub struct Arguments {
     pub json: bool,
     /// The most that is read.
     #[command(flatten)]
-    pub limits: Limits,
+    pub limits: InputLimits,
 }
 
 const EXIT_STATUS: &str = "Example: premio info part.padl
@@ -203,7 +203,7 @@ pub struct ContoursOptions {
     #[command(flatten)]
     pub camera: CameraOptions,
     #[command(flatten)]
-    pub sheet: SheetOptions,
+    pub sheet: SheetArguments,
     /// What to write [default: by the ending of OUT]
     #[arg(long, value_enum)]
     pub format: Option<ContoursFormat>,

@@ -1,7 +1,7 @@
 //! The files of a command: what it reads and what it writes, known before anything is computed.
 
 use crate::arguments::{Command, DescriptionOptions, ModelCommand, SoughtOptions};
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::fuzz::archive::MANIFEST;
 use crate::output;
 use std::fs::{self, Metadata};
@@ -139,7 +139,7 @@ impl Files {
     }
 
     /// Whether no other output is among those of a folder.
-    fn check_folder(&self) -> Result<(), Failure> {
+    fn check_folder(&self) -> Result<(), CliError> {
         let Some(folder) = &self.folder else {
             return Ok(());
         };
@@ -164,7 +164,7 @@ impl Files {
     ///
     /// # Errors
     /// Two outputs are one file, an output is an input, or an output cannot be a file.
-    pub fn check(&self) -> Result<(), Failure> {
+    pub fn check(&self) -> Result<(), CliError> {
         self.check_folder()?;
         let mut known: Vec<(&Named, Identity)> = Vec::new();
         for output in &self.outputs {
@@ -215,12 +215,12 @@ impl Named {
         Some(Self { option, path })
     }
 
-    fn refused(&self, why: &str) -> Failure {
-        Failure::input(format!("{}: {why}", self.path.display()))
+    fn refused(&self, why: &str) -> CliError {
+        CliError::input(format!("{}: {why}", self.path.display()))
     }
 
     /// What the file that is written is known by; none for devices and pipes, which lose nothing.
-    fn identity_of_output(&self) -> Result<Option<Identity>, Failure> {
+    fn identity_of_output(&self) -> Result<Option<Identity>, CliError> {
         if is_folder(&self.path) {
             return Err(self.refused("found the path of a folder, expected that of a file"));
         }

@@ -4,7 +4,7 @@ mod jpeg;
 mod netpbm;
 mod png;
 
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::session::Session;
 use font8x8::legacy::BASIC_LEGACY;
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Rgb, RgbImage};
@@ -12,10 +12,10 @@ use jpeg::JpegError;
 use netpbm::NetpbmError;
 use png::PngError;
 use premio_detect::Grey;
-use premio_matching::finding::Match;
-use premio_matching::picture::Picture;
-use premio_predict::feature::ink::bresenham;
-use premio_predict::outline::Source;
+use premio_matching::image_features::ImageFeatures;
+use premio_matching::search_result::PartMatch;
+use premio_predict::feature::arc_raster::bresenham;
+use premio_predict::image_arcs::ArcSource;
 use premio_predict::overlay;
 use premio_predict::prediction::Prediction;
 use std::io::Cursor;
@@ -25,10 +25,10 @@ use std::path::Path;
 ///
 /// # Errors
 /// The file is no picture, or not all of one, or it has more pixels than the limit, or none.
-pub fn read(path: &Path, session: Session) -> Result<Grey, Failure> {
+pub fn read(path: &Path, session: Session) -> Result<Grey, CliError> {
     let bytes = session.limits.read(path)?;
     let image = decode(&bytes, session.limits.pixels)
-        .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        .map_err(|error| CliError::input(format!("{}: {error}", path.display())))?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let levels = match image {
         // Levels of eight bits, whatever there are.
@@ -113,7 +113,7 @@ fn decode(bytes: &[u8], limit: u64) -> Result<DynamicImage, PictureError> {
 }
 
 /// The bytes of a grey image of so many levels: PNG, or PGM, by the file's ending.
-pub fn bytes(image: &Grey, levels: u32, path: &Path) -> Result<Vec<u8>, Failure> {
+pub fn bytes(image: &Grey, levels: u32, path: &Path) -> Result<Vec<u8>, CliError> {
     let (width, height) = (image.width as u32, image.height as u32);
     let picture = if levels <= 256 {
         let bytes = image.levels.iter().map(|v| *v as u8).collect();
@@ -123,7 +123,7 @@ pub fn bytes(image: &Grey, levels: u32, path: &Path) -> Result<Vec<u8>, Failure>
         image::ImageBuffer::from_raw(width, height, words).map(DynamicImage::ImageLuma16)
     };
     let Some(picture) = picture else {
-        return Err(Failure::input("the image has no pixels"));
+        return Err(CliError::input("the image has no pixels"));
     };
     encode(&picture, path)
 }
@@ -132,7 +132,7 @@ pub fn bytes(image: &Grey, levels: u32, path: &Path) -> Result<Vec<u8>, Failure>
 ///
 /// # Errors
 /// The ending is another.
-pub fn format(path: &Path) -> Result<ImageFormat, Failure> {
+pub fn format(path: &Path) -> Result<ImageFormat, CliError> {
     let ending = path
         .extension()
         .and_then(|e| e.to_str())
@@ -143,7 +143,7 @@ pub fn format(path: &Path) -> Result<ImageFormat, Failure> {
         _ => {
             let name = path.display();
             let expected = "expected a file that ends in .png or .pgm";
-            Err(Failure::input(format!("{name}: {expected}")))
+            Err(CliError::input(format!("{name}: {expected}")))
         }
     }
 }
@@ -152,7 +152,7 @@ pub fn format(path: &Path) -> Result<ImageFormat, Failure> {
 ///
 /// # Errors
 /// The ending is another.
-pub fn overlay_format(path: &Path) -> Result<Option<ImageFormat>, Failure> {
+pub fn overlay_format(path: &Path) -> Result<Option<ImageFormat>, CliError> {
     let ending = path.extension();
     match ending.is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
         true => Ok(None),
@@ -160,10 +160,10 @@ pub fn overlay_format(path: &Path) -> Result<Option<ImageFormat>, Failure> {
     }
 }
 
-fn encode(picture: &DynamicImage, path: &Path) -> Result<Vec<u8>, Failure> {
+fn encode(picture: &DynamicImage, path: &Path) -> Result<Vec<u8>, CliError> {
     let mut bytes = Cursor::new(Vec::new());
     let written = picture.write_to(&mut bytes, format(path)?);
-    written.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
+    written.map_err(|e| CliError::input(format!("{}: {e}", path.display())))?;
     Ok(bytes.into_inner())
 }
 
@@ -172,7 +172,7 @@ pub fn overlay(
     prediction: &Prediction,
     below: Option<&Grey>,
     path: &Path,
-) -> Result<Vec<u8>, Failure> {
+) -> Result<Vec<u8>, CliError> {
     if overlay_format(path)?.is_none() {
         return Ok(overlay::svg(prediction).into_bytes());
     }
@@ -187,16 +187,16 @@ const SEGMENTS: [u8; 3] = [31, 119, 180];
 /// dashed where they are missed, and the segments that they are in blue.
 pub fn matched(
     grey: &Grey,
-    picture: &Picture,
-    found: &Match,
+    picture: &ImageFeatures,
+    found: &PartMatch,
     path: &Path,
-) -> Result<Vec<u8>, Failure> {
+) -> Result<Vec<u8>, CliError> {
     let (width, height) = (grey.width as u32, grey.height as u32);
     let mut image = RgbImage::from_pixel(width, height, Rgb([255; 3]));
     for (pixel, level) in image.pixels_mut().zip(&grey.levels) {
         *pixel = Rgb([(96.0 + 0.625 * level.clamp(0.0, 255.0)) as u8; 3]);
     }
-    let is = |source: &Source| found.pairs.iter().find(|p| p.source == *source);
+    let is = |source: &ArcSource| found.pairs.iter().find(|p| p.source == *source);
     for arc in &found.arcs {
         let missed = is(&arc.source).is_some_and(|p| p.found.is_none());
         let colour = if missed { overlay::MISSING } else { FOUND };

@@ -1,13 +1,13 @@
 //! Reading files and evaluating what they describe.
 
 use crate::arguments::DescriptionOptions;
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::{CliError, Reporter};
 use crate::session::Session;
 use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{self, Description, Format, ReadOptions};
 use premio_kernel::number::predicates::CoincidencePolicy;
 use premio_matching::camera::{CameraFile, Pinhole};
-use premio_predict::model::record::Description as Written;
+use premio_predict::model::record::DescriptionRecord as Written;
 use premio_text::escape::quote;
 use premio_visibility::Camera;
 use premio_visibility::camera::CameraError;
@@ -16,7 +16,7 @@ use std::time::Instant;
 
 /// A part: its description and its boundary.
 #[derive(Debug)]
-pub struct Part {
+pub struct EvaluatedPart {
     /// What messages call it.
     pub name: String,
     /// What was read.
@@ -32,7 +32,7 @@ pub struct Part {
 }
 
 /// Reads and evaluates a description; tells the reader's notes and the close calls.
-pub fn part(options: &DescriptionOptions, session: Session) -> Result<Part, Failure> {
+pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedPart, CliError> {
     let voice = session.voice;
     let name = options.file.display().to_string();
     let format = format(&options.file)?;
@@ -53,7 +53,7 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<Part, Fail
     let part = evaluated(name, format, written, digits, voice)?;
     let calls = &part.evaluation.decisions.close_calls;
     if options.strict && !calls.is_empty() {
-        return Err(Failure::close(
+        return Err(CliError::close(
             &part.name,
             part.evaluation.resolution,
             calls,
@@ -64,7 +64,7 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<Part, Fail
 }
 
 /// The part of a description, read in the usual way.
-pub fn described(path: &Path, session: Session) -> Result<Part, Failure> {
+pub fn described(path: &Path, session: Session) -> Result<EvaluatedPart, CliError> {
     let options = DescriptionOptions {
         file: path.to_owned(),
         ..DescriptionOptions::default()
@@ -73,8 +73,12 @@ pub fn described(path: &Path, session: Session) -> Result<Part, Failure> {
 }
 
 /// The part of a description that a model holds.
-pub fn part_of_model(name: &str, written: Written, voice: Voice) -> Result<Part, Failure> {
-    let format = language(&written).map_err(|e| Failure::input(format!("{name}: {e}")))?;
+pub fn part_of_model(
+    name: &str,
+    written: Written,
+    voice: Reporter,
+) -> Result<EvaluatedPart, CliError> {
+    let format = language(&written).map_err(|e| CliError::input(format!("{name}: {e}")))?;
     // Places in it are not places in the model.
     let name = format!("{name} (its description)");
     evaluated(name, format, written, Arithmetic::Filtered, voice)
@@ -94,9 +98,9 @@ pub fn language(written: &Written) -> Result<Format, String> {
 }
 
 /// What the reader says of bytes that are no text.
-fn not_a_text(name: &str, format: Format, bytes: &[u8]) -> Result<String, Failure> {
+fn not_a_text(name: &str, format: Format, bytes: &[u8]) -> Result<String, CliError> {
     match reader::parse(name, bytes, format, &ReadOptions::default()) {
-        Err(error) => Err(Failure::read(&error, bytes)),
+        Err(error) => Err(CliError::read(&error, bytes)),
         Ok(_) => Ok(String::from_utf8_lossy(bytes).into_owned()),
     }
 }
@@ -106,8 +110,8 @@ fn evaluated(
     format: Format,
     written: Written,
     digits: Arithmetic,
-    voice: Voice,
-) -> Result<Part, Failure> {
+    voice: Reporter,
+) -> Result<EvaluatedPart, CliError> {
     let started = Instant::now();
     let how = ReadOptions {
         smooth: written.smooth,
@@ -129,12 +133,12 @@ fn evaluated(
     };
     let working = voice.working("finding the boundary");
     let evaluation =
-        evaluate(&description.tree, &how).map_err(|e| Failure::evaluation(&name, &e))?;
+        evaluate(&description.tree, &how).map_err(|e| CliError::evaluation(&name, &e))?;
     drop(working);
     if evaluation.brep.topology.solids.is_empty() {
         voice.note(&name, EMPTY);
     }
-    Ok(Part {
+    Ok(EvaluatedPart {
         name,
         description,
         written,
@@ -152,29 +156,30 @@ const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do n
     the boundary is known, but no view of it is reckoned with more digits";
 
 /// The resolution for views of a part.
-pub fn view_resolution(part: &Part) -> Result<f64, Failure> {
+pub fn view_resolution(part: &EvaluatedPart) -> Result<f64, CliError> {
     let resolution = part.evaluation.view_resolution();
-    resolution.ok_or_else(|| Failure::limit(format!("{}: {UNSEEN}", part.name)))
+    resolution.ok_or_else(|| CliError::limit(format!("{}: {UNSEEN}", part.name)))
 }
 
 fn description(
     name: &str,
     (format, text): (Format, &[u8]),
     how: &ReadOptions,
-    voice: Voice,
-) -> Result<Description, Failure> {
+    voice: Reporter,
+) -> Result<Description, CliError> {
     let working = voice.working("reading");
-    let description = reader::read(name, text, format, how).map_err(|e| Failure::read(&e, text))?;
+    let description =
+        reader::read(name, text, format, how).map_err(|e| CliError::read(&e, text))?;
     drop(working);
     voice.notes(name, text, &description.notes);
     Ok(description)
 }
 
 /// The language of a file, which its ending says.
-pub fn format(path: &Path) -> Result<Format, Failure> {
+pub fn format(path: &Path) -> Result<Format, CliError> {
     Format::from_path(path).ok_or_else(|| {
         let name = path.display();
-        Failure::input(format!(
+        CliError::input(format!(
             "{name}: found a file of an unknown kind, expected one that ends in .padl, .csg, .json, \
              .asc or .pov"
         ))
@@ -182,16 +187,16 @@ pub fn format(path: &Path) -> Result<Format, Failure> {
 }
 
 /// The camera of a file, and the file's text.
-pub fn camera_of_file(path: &Path, session: Session) -> Result<(Camera, String), Failure> {
+pub fn camera_of_file(path: &Path, session: Session) -> Result<(Camera, String), CliError> {
     let text = session.limits.read_text(path)?;
     let camera = Camera::from_json(&text).map_err(|e| refused_camera(path, &text, &e))?;
     Ok((camera, text))
 }
 
 /// That a camera of a file is refused, at the key that is wrong.
-pub fn refused_camera(path: &Path, text: &str, error: &CameraError) -> Failure {
+pub fn refused_camera(path: &Path, text: &str, error: &CameraError) -> CliError {
     let name = path.display().to_string();
-    Failure::at(&name, text, error.span(text), error)
+    CliError::at(&name, text, error.span(text), error)
 }
 
 /// The camera that took pictures, with its file.
@@ -207,11 +212,11 @@ impl PinholeFile {
     ///
     /// # Errors
     /// The file is no camera's.
-    pub fn read(path: &Path, session: Session) -> Result<Self, Failure> {
+    pub fn read(path: &Path, session: Session) -> Result<Self, CliError> {
         let text = session.limits.read_text(path)?;
         let name = path.display().to_string();
         let camera = CameraFile::from_json(&text)
-            .map_err(|e| Failure::at(&name, &text, e.span(&text), &e))?;
+            .map_err(|e| CliError::at(&name, &text, e.span(&text), &e))?;
         Ok(Self { name, text, camera })
     }
 
@@ -219,10 +224,10 @@ impl PinholeFile {
     ///
     /// # Errors
     /// It did not take the picture.
-    pub fn for_picture(&self, picture: &Path, size: [usize; 2]) -> Result<Pinhole, Failure> {
+    pub fn for_picture(&self, picture: &Path, size: [usize; 2]) -> Result<Pinhole, CliError> {
         self.camera.for_picture(size).map_err(|error| {
             let words = format!("{error} (for the picture {})", picture.display());
-            Failure::at(&self.name, &self.text, error.span(&self.text), &words)
+            CliError::at(&self.name, &self.text, error.span(&self.text), &words)
         })
     }
 }

@@ -1,16 +1,16 @@
 //! Long work: on how many threads, and that it ends in good order where it is interrupted.
 
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Set by an interrupt.
-pub fn stop() -> Result<Arc<AtomicBool>, Failure> {
+pub fn stop() -> Result<Arc<AtomicBool>, CliError> {
     let stop = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&stop);
     ctrlc::set_handler(move || set.store(true, Ordering::Relaxed))
-        .map_err(|e| Failure::input(format!("interrupts cannot be caught: {e}")))?;
+        .map_err(|e| CliError::input(format!("interrupts cannot be caught: {e}")))?;
     Ok(stop)
 }
 
@@ -34,7 +34,7 @@ pub fn threads(asked: Option<u16>) -> usize {
 }
 
 /// So many threads.
-pub fn pool(asked: Option<u16>) -> Result<ThreadPool, Failure> {
+pub fn pool(asked: Option<u16>) -> Result<ThreadPool, CliError> {
     let pool = ThreadPoolBuilder::new().num_threads(threads(asked)).build();
-    pool.map_err(|e| Failure::input(format!("threads: {e}")))
+    pool.map_err(|e| CliError::input(format!("threads: {e}")))
 }

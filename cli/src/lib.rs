@@ -16,7 +16,7 @@ mod setup;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
-use diagnostics::Voice;
+use diagnostics::Reporter;
 use files::Files;
 use premio_csg::reader::Format;
 use premio_memory::EndingAllocator;
@@ -34,9 +34,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = with_command(arguments.into_iter().collect());
     let arguments = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => arguments,
-        Err(message) => return Voice::guessed(&arguments).usage(&message),
+        Err(message) => return Reporter::guessed(&arguments).usage(&message),
     };
-    let voice = Voice::new(arguments.json);
+    let voice = Reporter::new(arguments.json);
     let session = Session {
         voice,
         limits: arguments.limits,

@@ -1,6 +1,6 @@
 //! Writing results: whole, or not at all.
 
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use premio_text::escape;
 use serde::Serialize;
 use std::fs;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Writes a text, or bytes, to a file or to standard output.
-pub fn write(text: impl AsRef<[u8]>, to: Option<&Path>) -> Result<(), Failure> {
+pub fn write(text: impl AsRef<[u8]>, to: Option<&Path>) -> Result<(), CliError> {
     let mut outputs = Outputs::default();
     outputs.add(text.as_ref().to_vec(), to)?;
     outputs.finish()
@@ -26,12 +26,12 @@ pub struct Outputs {
 
 impl Outputs {
     /// Adds an output: a file, or else standard output.
-    pub fn add(&mut self, bytes: Vec<u8>, to: Option<&Path>) -> Result<(), Failure> {
+    pub fn add(&mut self, bytes: Vec<u8>, to: Option<&Path>) -> Result<(), CliError> {
         let Some(path) = to else {
             self.streams.push((bytes, None));
             return Ok(());
         };
-        let failed = |e: io::Error| Failure::input(format!("{}: {e}", path.display()));
+        let failed = |e: io::Error| CliError::input(format!("{}: {e}", path.display()));
         let target = target(path).map_err(failed)?;
         if is_no_file(&target) {
             // A device or a pipe must not be replaced.
@@ -43,15 +43,16 @@ impl Outputs {
     }
 
     /// Adds a value as JSON, in one line.
-    pub fn add_json(&mut self, value: &impl Serialize, to: Option<&Path>) -> Result<(), Failure> {
+    pub fn add_json(&mut self, value: &impl Serialize, to: Option<&Path>) -> Result<(), CliError> {
         let mut text = json_text(value)?;
         text.push('\n');
         self.add(text.into_bytes(), to)
     }
 
     /// Puts every output in its place.
-    pub fn finish(self) -> Result<(), Failure> {
-        let failed = |path: &Path, e: io::Error| Failure::input(format!("{}: {e}", path.display()));
+    pub fn finish(self) -> Result<(), CliError> {
+        let failed =
+            |path: &Path, e: io::Error| CliError::input(format!("{}: {e}", path.display()));
         // All are written beside their places before the first is put there.
         let mut whole = Vec::new();
         for (bytes, path) in self.files {
@@ -66,7 +67,7 @@ impl Outputs {
             };
             match written {
                 // The files are still wanted.
-                Err(Failure::BrokenPipe) => broken = true,
+                Err(CliError::BrokenPipe) => broken = true,
                 written => written?,
             }
         }
@@ -74,39 +75,39 @@ impl Outputs {
             file.persist(&path).map_err(|e| failed(&path, e.error))?;
         }
         match broken {
-            true => Err(Failure::BrokenPipe),
+            true => Err(CliError::BrokenPipe),
             false => Ok(()),
         }
     }
 }
 
 /// A value as JSON, without characters that a terminal obeys.
-pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
+pub fn json_text(value: &impl Serialize) -> Result<String, CliError> {
     let text = serde_json::to_string(value);
     text.map(escape::json)
-        .map_err(|e| Failure::input(e.to_string()))
+        .map_err(|e| CliError::input(e.to_string()))
 }
 
 /// The same, spread over lines.
-pub fn json_pretty(value: &impl Serialize) -> Result<String, Failure> {
+pub fn json_pretty(value: &impl Serialize) -> Result<String, CliError> {
     let text = serde_json::to_string_pretty(value);
     text.map(escape::json)
-        .map_err(|e| Failure::input(e.to_string()))
+        .map_err(|e| CliError::input(e.to_string()))
 }
 
 /// Writes a value as JSON, in one line.
-pub fn json(value: &impl Serialize, to: Option<&Path>) -> Result<(), Failure> {
+pub fn json(value: &impl Serialize, to: Option<&Path>) -> Result<(), CliError> {
     let mut outputs = Outputs::default();
     outputs.add_json(value, to)?;
     outputs.finish()
 }
 
-fn stdout(text: &[u8]) -> Result<(), Failure> {
+fn stdout(text: &[u8]) -> Result<(), CliError> {
     let mut out = io::stdout().lock();
     let written = out.write_all(text).and_then(|()| out.flush());
     written.map_err(|e| match e.kind() {
-        ErrorKind::BrokenPipe => Failure::BrokenPipe,
-        _ => Failure::input(format!("standard output: {e}")),
+        ErrorKind::BrokenPipe => CliError::BrokenPipe,
+        _ => CliError::input(format!("standard output: {e}")),
     })
 }
 

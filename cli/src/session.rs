@@ -1,6 +1,6 @@
 //! What every command is given besides its own options.
 
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::{CliError, Reporter};
 use clap::Args;
 use std::collections::TryReserveError;
 use std::fs::File;
@@ -11,14 +11,14 @@ use std::path::Path;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Session {
     /// For whom it speaks.
-    pub voice: Voice,
+    pub voice: Reporter,
     /// How much it reads.
-    pub limits: Limits,
+    pub limits: InputLimits,
 }
 
 /// The most that is read.
 #[derive(Args, Clone, Copy, Debug)]
-pub struct Limits {
+pub struct InputLimits {
     /// Refuse a file, a pipe or a device with more bytes: a number, or one with KiB, MiB or GiB
     /// [default: 1GiB]
     #[arg(long = "max-input", global = true, value_name = "BYTES", value_parser = bytes,
@@ -31,7 +31,7 @@ pub struct Limits {
 }
 
 /// Before there are options, as in tests.
-impl Default for Limits {
+impl Default for InputLimits {
     fn default() -> Self {
         Self {
             input: 1 << 30,
@@ -67,13 +67,14 @@ fn pixels(text: &str) -> Result<u64, String> {
 /// So much is read at once.
 const PIECE: usize = 1 << 20;
 
-impl Limits {
+impl InputLimits {
     /// The content of a file, a pipe or a device.
     ///
     /// # Errors
     /// It cannot be read, it is longer than the limit, or there is no memory for it.
-    pub fn read(&self, path: &Path) -> Result<Vec<u8>, Failure> {
-        let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: {e}", path.display()));
+    pub fn read(&self, path: &Path) -> Result<Vec<u8>, CliError> {
+        let failed =
+            |e: &dyn std::fmt::Display| CliError::input(format!("{}: {e}", path.display()));
         let mut file = File::open(path).map_err(|e| failed(&e))?;
         let too_long = || {
             let words = "found more than the limit of bytes";
@@ -120,9 +121,9 @@ impl Limits {
     ///
     /// # Errors
     /// It cannot be opened.
-    pub fn open(&self, path: &Path) -> Result<Limited, Failure> {
+    pub fn open(&self, path: &Path) -> Result<Limited, CliError> {
         let file = File::open(path);
-        let file = file.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
+        let file = file.map_err(|e| CliError::input(format!("{}: {e}", path.display())))?;
         let left = self.input;
         Ok(Limited { file, left })
     }
@@ -130,15 +131,15 @@ impl Limits {
     /// The text of a file.
     ///
     /// # Errors
-    /// As [`Limits::read`]; or it is not a text in UTF-8.
-    pub fn read_text(&self, path: &Path) -> Result<String, Failure> {
+    /// As [`InputLimits::read`]; or it is not a text in UTF-8.
+    pub fn read_text(&self, path: &Path) -> Result<String, CliError> {
         String::from_utf8(self.read(path)?).map_err(|e| {
             let at = e.utf8_error().valid_up_to();
             let bytes = e.as_bytes();
             let byte = bytes.get(at).copied().unwrap_or_default();
             let words = format!("found the byte {byte:#04x}, expected a text in UTF-8");
             let name = path.display().to_string();
-            Failure::in_bytes(&name, bytes, at..at + 1, &words)
+            CliError::in_bytes(&name, bytes, at..at + 1, &words)
         })
     }
 }
@@ -192,9 +193,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("file");
         std::fs::write(&path, "12345").unwrap();
-        let limits = |input| Limits {
+        let limits = |input| InputLimits {
             input,
-            ..Limits::default()
+            ..InputLimits::default()
         };
         assert_eq!(limits(5).read(&path).unwrap(), b"12345");
         let refused = format!("{:?}", limits(4).read(&path).unwrap_err());

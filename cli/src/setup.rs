@@ -1,20 +1,20 @@
 //! Reading setups, and putting parts into them.
 
-use crate::diagnostics::Failure;
-use crate::input::{self, Part};
+use crate::diagnostics::CliError;
+use crate::input::{self, EvaluatedPart};
 use crate::session::Session;
 use nalgebra::Point3;
 use premio_detect::Detector;
 use premio_kernel::brep::bounding_box::bounds;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_predict::image::shading::Finishes;
+use premio_predict::image_arcs::lit_scene::StageError;
 use premio_predict::model::Setups;
-use premio_predict::model::record::Head;
-use premio_predict::outline::stage::StageError;
-use premio_predict::prediction::{self, Draft, Memory};
+use premio_predict::model::record::ModelHead;
+use premio_predict::prediction::{self, Memory, PredictedImage};
+use premio_predict::prepared_part::PreparedPart;
 use premio_predict::setup::light::Light;
 use premio_predict::setup::{Conditions, Setup, SetupError, detector_from_toml};
-use premio_predict::subject::Subject;
 use std::path::Path;
 
 /// A file about setups, and what it says.
@@ -29,7 +29,7 @@ pub struct SetupFile<T> {
 }
 
 /// The setup of a file.
-pub fn setup(path: &Path, session: Session) -> Result<SetupFile<Setup>, Failure> {
+pub fn setup(path: &Path, session: Session) -> Result<SetupFile<Setup>, CliError> {
     let file = read(path, session, Setup::from_toml)?;
     file.check_pixels(&file.value.conditions, session)?;
     if is_dark(&file.value.lights) {
@@ -39,7 +39,7 @@ pub fn setup(path: &Path, session: Session) -> Result<SetupFile<Setup>, Failure>
 }
 
 /// The setups of a file.
-pub fn setups(path: &Path, session: Session) -> Result<SetupFile<Setups>, Failure> {
+pub fn setups(path: &Path, session: Session) -> Result<SetupFile<Setups>, CliError> {
     let file = read(path, session, Setups::from_toml)?;
     file.check_pixels(&file.value.conditions, session)?;
     if is_dark(&file.value.lights) && file.value.illumination.is_none() {
@@ -54,7 +54,7 @@ fn is_dark(lights: &[Light]) -> bool {
 }
 
 /// The detector of a file.
-pub fn detector(path: &Path, session: Session) -> Result<Detector, Failure> {
+pub fn detector(path: &Path, session: Session) -> Result<Detector, CliError> {
     read(path, session, detector_from_toml).map(|file| file.value)
 }
 
@@ -62,20 +62,20 @@ fn read<T>(
     path: &Path,
     session: Session,
     parse: impl Fn(&str) -> Result<T, SetupError>,
-) -> Result<SetupFile<T>, Failure> {
+) -> Result<SetupFile<T>, CliError> {
     let name = path.display().to_string();
     let text = session.limits.read_text(path)?;
-    let value = parse(&text).map_err(|error| Failure::setup(&name, &error, &text))?;
+    let value = parse(&text).map_err(|error| CliError::setup(&name, &error, &text))?;
     Ok(SetupFile { name, text, value })
 }
 
 impl<T> SetupFile<T> {
     /// The failure of a part in it.
-    fn failure(&self, part: &Part, error: &StageError) -> Failure {
-        Failure::stage(&part.name, [&self.name, &self.text], error)
+    fn failure(&self, part: &EvaluatedPart, error: &StageError) -> CliError {
+        CliError::stage(&part.name, [&self.name, &self.text], error)
     }
 
-    fn check_pixels(&self, conditions: &Conditions, session: Session) -> Result<(), Failure> {
+    fn check_pixels(&self, conditions: &Conditions, session: Session) -> Result<(), CliError> {
         let [width, height] = conditions.sensor.resolution;
         let (pixels, most) = (width as u64 * height as u64, session.limits.pixels);
         if pixels <= most {
@@ -86,7 +86,7 @@ impl<T> SetupFile<T> {
              another limit"
         );
         let error = SetupError::value("sensor.resolution", reason);
-        Err(Failure::setup(&self.name, &error, &self.text))
+        Err(CliError::setup(&self.name, &error, &self.text))
     }
 
     fn note_darkness(&self, conditions: &Conditions, session: Session) {
@@ -101,9 +101,9 @@ impl<T> SetupFile<T> {
     /// A part that is seen in setups, with the materials of its faces.
     pub fn subject<'p>(
         &self,
-        part: &'p Part,
+        part: &'p EvaluatedPart,
         conditions: &Conditions,
-    ) -> Result<(Subject<'p>, Finishes), Failure> {
+    ) -> Result<(PreparedPart<'p>, Finishes), CliError> {
         let subject = self.bare(part)?;
         let finishes = Finishes::new(&subject, conditions);
         Ok((subject, finishes.map_err(|e| self.failure(part, &e))?))
@@ -113,7 +113,7 @@ impl<T> SetupFile<T> {
     ///
     /// # Errors
     /// It is seen in none.
-    pub fn check_seen(&self, head: &Head, session: Session) -> Result<(), Failure> {
+    pub fn check_seen(&self, head: &ModelHead, session: Session) -> Result<(), CliError> {
         let unseen: u64 = head.unseen.values().sum();
         let Some((why, _)) = head.unseen.iter().max_by_key(|(_, count)| **count) else {
             return Ok(());
@@ -127,12 +127,12 @@ impl<T> SetupFile<T> {
         }
         let reason = format!("shows nothing of the part in any of {count} setups, as {why}");
         let error = SetupError::value("viewing.radius", reason);
-        Err(Failure::setup(&self.name, &error, &self.text))
+        Err(CliError::setup(&self.name, &error, &self.text))
     }
 
-    fn bare<'p>(&self, part: &'p Part) -> Result<Subject<'p>, Failure> {
+    fn bare<'p>(&self, part: &'p EvaluatedPart) -> Result<PreparedPart<'p>, CliError> {
         let band = input::view_resolution(part)?;
-        let subject = Subject::new(&part.evaluation.brep, band);
+        let subject = PreparedPart::new(&part.evaluation.brep, band);
         subject.map_err(|error| self.failure(part, &error.into()))
     }
 }
@@ -142,11 +142,15 @@ impl SetupFile<Setups> {
     ///
     /// # Errors
     /// All of one sphere are, or a light that stands still is.
-    pub fn check_places(&self, subject: &Subject<'_>, session: Session) -> Result<(), Failure> {
+    pub fn check_places(
+        &self,
+        subject: &PreparedPart<'_>,
+        session: Session,
+    ) -> Result<(), CliError> {
         let setups = &self.value;
         let refused = |key: String, reason: &str| {
             let error = SetupError::value(key, reason);
-            Err(Failure::setup(&self.name, &error, &self.text))
+            Err(CliError::setup(&self.name, &error, &self.text))
         };
         for (i, light) in setups.lights.iter().enumerate() {
             let place = light.position.map(Point3::from);
@@ -190,9 +194,9 @@ impl SetupFile<Setup> {
     /// Asks something of the draft of a part's image.
     pub fn with_draft<T>(
         &self,
-        part: &Part,
-        ask: impl FnOnce(&Draft<'_>) -> T,
-    ) -> Result<T, Failure> {
+        part: &EvaluatedPart,
+        ask: impl FnOnce(&PredictedImage<'_>) -> T,
+    ) -> Result<T, CliError> {
         let subject = self.bare(part)?;
         prediction::with_draft(&subject, None, &self.value, &mut Memory::default(), ask)
             .map_err(|error| self.failure(part, &error))

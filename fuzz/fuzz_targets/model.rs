@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use premio_fuzz::BORED_BLOCK;
-use premio_matching::learned::Learned;
+use premio_matching::detectability_prior::DetectabilityPrior;
 use premio_predict::model::file::{ModelFile, parse, sealed};
 
 fuzz_target!(|bytes: &[u8]| {
@@ -15,7 +15,7 @@ fuzz_target!(|bytes: &[u8]| {
     if let Some(text) = sealed(text)
         && let Some(model) = tried(&text)
     {
-        let learned = Learned::new(&model.records, &BORED_BLOCK.brep);
+        let learned = DetectabilityPrior::new(&model.records, &BORED_BLOCK.brep);
         for record in &model.records {
             if let premio_predict::model::record::Record::Feature(feature) = record {
                 let states = learned.states(&feature.source);

@@ -7,7 +7,7 @@
 mod recipe;
 
 use nalgebra::{Point3, Vector3};
-use premio_verify::generator::model::Model;
+use premio_verify::generator::model::PartModel;
 use premio_verify::generator::write::{Format, write};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{ReadOptions, read};
@@ -42,7 +42,7 @@ pub struct Part {
 
 impl Part {
     /// The part of a model; none where it is refused, which is no find.
-    pub fn new(model: &Model) -> Option<Self> {
+    pub fn new(model: &PartModel) -> Option<Self> {
         let text = write(model, Format::Padl);
         let json = write(model, Format::Json);
         let format = premio_csg::reader::Format::Json;

@@ -1,6 +1,6 @@
 //! Bytes, taken one after the other, as choices.
 
-use premio_verify::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
+use premio_verify::generator::model::{ModelAxis, PartModel, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep};
 
 /// Bytes that are taken as choices; where they end, each further one is the first.
 #[derive(Debug)]
@@ -45,10 +45,10 @@ impl<'a> Recipe<'a> {
     }
 
     /// A model of up to five primitives.
-    pub fn model(&mut self) -> Model {
-        let mut model = Model::default();
+    pub fn model(&mut self) -> PartModel {
+        let mut model = PartModel::default();
         let count = 1 + self.below(MOST);
-        let mut open: Vec<NodeId> = Vec::new();
+        let mut open: Vec<ModelNodeId> = Vec::new();
         for _ in 0..count {
             let primitive = self.primitive();
             let steps = self.steps();
@@ -67,19 +67,19 @@ impl<'a> Recipe<'a> {
         model
     }
 
-    fn operation(&mut self) -> Operation {
-        Operation::ALL[self.below(Operation::ALL.len())]
+    fn operation(&mut self) -> ModelOperation {
+        ModelOperation::ALL[self.below(ModelOperation::ALL.len())]
     }
 
-    fn primitive(&mut self) -> Primitive {
+    fn primitive(&mut self) -> ModelPrimitive {
         match self.below(7) {
-            0 => Primitive::Block([0; 3].map(|_| self.length())),
-            1 => Primitive::Wedge([0; 3].map(|_| self.length())),
-            2 => Primitive::Cylinder {
+            0 => ModelPrimitive::Block([0; 3].map(|_| self.length())),
+            1 => ModelPrimitive::Wedge([0; 3].map(|_| self.length())),
+            2 => ModelPrimitive::Cylinder {
                 r: self.length(),
                 h: self.length(),
             },
-            3 => Primitive::Frustum {
+            3 => ModelPrimitive::Frustum {
                 r1: self.length(),
                 r2: 0.0,
                 h: self.length(),
@@ -90,13 +90,13 @@ impl<'a> Recipe<'a> {
                     same if same == r1 => 0.0,
                     other => other,
                 };
-                Primitive::Frustum { r1, r2, h }
+                ModelPrimitive::Frustum { r1, r2, h }
             }
-            5 => Primitive::Sphere(self.length()),
+            5 => ModelPrimitive::Sphere(self.length()),
             _ => {
                 let minor = self.length();
                 let major = minor + self.length();
-                Primitive::Torus { major, minor }
+                ModelPrimitive::Torus { major, minor }
             }
         }
     }
@@ -137,20 +137,20 @@ impl<'a> Recipe<'a> {
         }
     }
 
-    fn rarely_steps(&mut self) -> Vec<Step> {
+    fn rarely_steps(&mut self) -> Vec<ModelStep> {
         match self.below(4) {
             3 => self.steps(),
             _ => Vec::new(),
         }
     }
 
-    fn steps(&mut self) -> Vec<Step> {
+    fn steps(&mut self) -> Vec<ModelStep> {
         let mut steps = Vec::new();
         if self.below(3) == 2 {
             steps.push(self.turn());
         }
         if self.below(4) > 0 {
-            steps.push(Step::Shift([0; 3].map(|_| self.coordinate())));
+            steps.push(ModelStep::Shift([0; 3].map(|_| self.coordinate())));
         }
         if self.below(8) == 7 {
             steps.push(self.turn());
@@ -158,14 +158,14 @@ impl<'a> Recipe<'a> {
         steps
     }
 
-    fn turn(&mut self) -> Step {
-        let axis = Axis::ALL[self.below(3)];
+    fn turn(&mut self) -> ModelStep {
+        let axis = ModelAxis::ALL[self.below(3)];
         let degrees = match self.below(4) {
             0 | 1 => TURNS[self.below(TURNS.len())],
             2 => self.little(),
             _ => 360.0 * self.fraction(),
         };
-        Step::Turn(axis, degrees)
+        ModelStep::Turn(axis, degrees)
     }
 
     /// How to look at the part.

@@ -5,8 +5,8 @@
 //! angle, as often as there are such segments in the area, times the part of the area and of all angles
 //! that this takes.
 
-use crate::picture::Picture;
-use crate::predicted::Arc;
+use crate::image_features::ImageFeatures;
+use crate::predicted_contours::PredictedContour;
 use nalgebra::Point2;
 use std::f64::consts::PI;
 
@@ -30,7 +30,7 @@ pub struct Clutter {
 
 impl Clutter {
     /// The segments about predicted arcs.
-    pub fn about(picture: &Picture, arcs: &[Arc]) -> Self {
+    pub fn about(picture: &ImageFeatures, arcs: &[PredictedContour]) -> Self {
         let size = picture.size.map(|n| n as f64);
         let (mut low, mut high): ([f64; 2], [f64; 2]) = (size, [0.0; 2]);
         for (_, seen) in arcs.iter().flat_map(|a| &a.points) {

@@ -5,13 +5,13 @@
 //! are candidates together, as a broken edge.
 
 use crate::clutter::Clutter;
-use crate::ends::Ends;
-use crate::learned::Learned;
-use crate::part::Part;
-use crate::picture::{PIECE, Picture};
-use crate::pose::refine::Pull;
-use crate::predicted::{APART, Arc};
-use crate::search::{Candidate, Feature, Problem};
+use crate::detectability_prior::DetectabilityPrior;
+use crate::endpoints::Endpoints;
+use crate::image_features::{ImageFeatures, PIECE};
+use crate::part::SoughtPart;
+use crate::pose::refine::PointToLine;
+use crate::predicted_contours::{APART, PredictedContour};
+use crate::search::{Candidate, Problem, ProblemFeature};
 use nalgebra::Point2;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -43,7 +43,7 @@ pub const WHOLE: f64 = 0.85;
 
 /// What an arc can be, with the edge pixels that say so.
 #[derive(Clone, Debug)]
-pub struct Choice {
+pub struct FeatureChoice {
     /// The segments.
     pub segments: Vec<u32>,
     /// The covered share of the arc within the picture.
@@ -68,15 +68,20 @@ pub struct Correspondence {
     /// By feature: its length in the picture, in pixels.
     pub lengths: Vec<f64>,
     /// By feature and candidate: what it is.
-    pub choices: Vec<Vec<Choice>>,
+    pub choices: Vec<Vec<FeatureChoice>>,
     /// The problem.
     pub problem: Problem,
 }
 
 impl Correspondence {
     /// The correspondences between predicted arcs and a picture.
-    pub fn new(part: &Part<'_>, learned: &Learned, picture: &Picture, arcs: &[Arc]) -> Self {
-        let inside = |arc: &Arc| {
+    pub fn new(
+        part: &SoughtPart<'_>,
+        learned: &DetectabilityPrior,
+        picture: &ImageFeatures,
+        arcs: &[PredictedContour],
+    ) -> Self {
+        let inside = |arc: &PredictedContour| {
             let held = arc.points.iter().filter(|p| picture.edges.reaches(&p.1.at));
             held.map(|p| p.1.length).sum::<f64>()
         };
@@ -92,8 +97,8 @@ impl Correspondence {
             }
             all
         });
-        let mut choices: Vec<Vec<Choice>> = choices.collect();
-        let ends = Ends::new(part, picture, arcs, &order, &choices);
+        let mut choices: Vec<Vec<FeatureChoice>> = choices.collect();
+        let ends = Endpoints::new(part, picture, arcs, &order, &choices);
         for (k, all) in choices.iter_mut().enumerate() {
             for (c, choice) in all.iter_mut().enumerate() {
                 choice.ends = ends.counts(k, c);
@@ -112,7 +117,7 @@ impl Correspondence {
             let given = at_all(rates.given);
             let missed = likelihood(lengths[i], 0.0, learned.covered(&arcs[i]));
             let askew = ASKEW.hypot(END / lengths[i]);
-            Feature {
+            ProblemFeature {
                 parent,
                 found: given.map(|p| (p / rates.alone).ln()),
                 missed: given.map(|p| missed + ((1.0 - p) / (1.0 - rates.alone)).ln()),
@@ -125,7 +130,7 @@ impl Correspondence {
                     .collect(),
             }
         });
-        let features: Vec<Feature> = features.collect();
+        let features: Vec<ProblemFeature> = features.collect();
         Self {
             problem: Problem {
                 features,
@@ -138,7 +143,11 @@ impl Correspondence {
     }
 
     /// By feature: what an assignment draws the part to, the edges of its candidate.
-    pub fn pulls(&self, arcs: &[Arc], assignment: &[Option<usize>]) -> Vec<Vec<Pull>> {
+    pub fn pulls(
+        &self,
+        arcs: &[PredictedContour],
+        assignment: &[Option<usize>],
+    ) -> Vec<Vec<PointToLine>> {
         let features = self.order.iter().zip(&self.choices).zip(assignment);
         let all = features.map(|((&i, choices), choice)| {
             choice.map_or(Vec::new(), |c| choices[c].pulls(&arcs[i]))
@@ -161,7 +170,13 @@ fn against(x: f64, deviation: f64, range: f64) -> f64 {
 
 /// How much less likely clutter covers as much of an arc, of so many pixels in the picture, and runs
 /// along it so, than an edge of its own, in logarithms.
-fn told(choice: &Choice, arc: &Arc, length: f64, askew: f64, clutter: &Clutter) -> f64 {
+fn told(
+    choice: &FeatureChoice,
+    arc: &PredictedContour,
+    length: f64,
+    askew: f64,
+    clutter: &Clutter,
+) -> f64 {
     let covered = choice.share.min(1.0) * length;
     // Pieces that lie end to end are rarer than the longest alone, and less rare than a whole one.
     let piece = choice.longest.min(covered);
@@ -172,16 +187,16 @@ fn told(choice: &Choice, arc: &Arc, length: f64, askew: f64, clutter: &Clutter) 
     told.max(-ATTRIBUTE) - PAST * f64::from(choice.ends[1])
 }
 
-impl Choice {
+impl FeatureChoice {
     /// What it draws an arc to.
-    fn pulls(&self, arc: &Arc) -> Vec<Pull> {
+    fn pulls(&self, arc: &PredictedContour) -> Vec<PointToLine> {
         let covered: f64 = self.hits.iter().map(|h| arc.points[h.0].1.length).sum();
         // Edges next to each other are off alike: a line tells as much as its ends, and a little more
         // if it is long.
         let weight = (2.0 + covered / LONG) / self.hits.len() as f64;
         let hits = self.hits.iter().map(|&(k, target, _)| {
             let (point, seen) = arc.points[k];
-            Pull {
+            PointToLine {
                 point,
                 target,
                 normal: seen.normal,
@@ -226,7 +241,7 @@ const STRETCH: f64 = 60.0;
 const ATTRIBUTE: f64 = 6.0;
 
 /// How much askew the edges of a choice run, in radians: the slope of their offsets.
-fn tilt(choice: &Choice, arc: &Arc) -> f64 {
+fn tilt(choice: &FeatureChoice, arc: &PredictedContour) -> f64 {
     let mut along = 0.0;
     let mut places = Vec::with_capacity(arc.points.len());
     for (_, seen) in &arc.points {
@@ -255,7 +270,7 @@ fn tilt(choice: &Choice, arc: &Arc) -> f64 {
 type Run = (usize, Point2<f64>, f64, u32);
 
 /// What runs along an arc: single segments, and those that lie end to end.
-fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
+fn choices(arc: &PredictedContour, picture: &ImageFeatures) -> Vec<FeatureChoice> {
     let mut by_segment: BTreeMap<u32, Vec<Run>> = BTreeMap::new();
     let mut inside = 0;
     for (k, (_, seen)) in arc.points.iter().enumerate() {
@@ -276,7 +291,7 @@ fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
         }
     }
     let fewest = FEWEST.max((SHARE * f64::from(inside)) as usize);
-    let single = |(&segment, hits): (&u32, &Vec<Run>)| Choice {
+    let single = |(&segment, hits): (&u32, &Vec<Run>)| FeatureChoice {
         segments: vec![segment],
         share: hits.len() as f64 / f64::from(inside),
         offset: hits.iter().map(|h| h.2).sum::<f64>() / hits.len() as f64,
@@ -285,14 +300,14 @@ fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
         likely: 0.0,
         ends: [0; 2],
     };
-    let pieces: Vec<Choice> = by_segment.iter().map(single).collect();
-    let mut all: Vec<Choice> = Vec::new();
+    let pieces: Vec<FeatureChoice> = by_segment.iter().map(single).collect();
+    let mut all: Vec<FeatureChoice> = Vec::new();
     for seed in pieces.iter().filter(|p| p.hits.len() >= fewest) {
         let joined = match is_along(seed, arc) {
             true => joined(arc, seed, &pieces),
             false => seed.clone(),
         };
-        let known = |c: &Choice| c.segments == joined.segments;
+        let known = |c: &FeatureChoice| c.segments == joined.segments;
         if joined.segments.len() > 1 && !all.iter().any(known) {
             all.push(joined);
         }
@@ -311,14 +326,14 @@ fn choices(arc: &Arc, picture: &Picture) -> Vec<Choice> {
 const MOST: usize = 12;
 
 /// Whether a piece runs as an arc does, so that it can be one of several that it is broken into.
-fn is_along(piece: &Choice, arc: &Arc) -> bool {
+fn is_along(piece: &FeatureChoice, arc: &PredictedContour) -> bool {
     tilt(piece, arc).abs() < PARALLEL * ASKEW.hypot(END / piece.longest)
 }
 
 /// A piece with those that lie end to end with it, the longest first.
-fn joined(arc: &Arc, seed: &Choice, pieces: &[Choice]) -> Choice {
+fn joined(arc: &PredictedContour, seed: &FeatureChoice, pieces: &[FeatureChoice]) -> FeatureChoice {
     let mut whole = seed.clone();
-    let mut order: Vec<&Choice> = pieces.iter().collect();
+    let mut order: Vec<&FeatureChoice> = pieces.iter().collect();
     order.sort_by(|a, b| {
         b.hits
             .len()

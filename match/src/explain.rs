@@ -1,13 +1,13 @@
 //! Why a match won, in words.
 
-use crate::finding::Match;
-use crate::report::{Feature, Report, State};
-use premio_predict::outline::Source;
+use crate::report::{FeatureReport, FeatureState, MatchReport};
+use crate::search_result::PartMatch;
+use premio_predict::image_arcs::ArcSource;
 use std::fmt::Write;
 
 /// What tells for and against the likeliest match, if there is any: feature by feature, and what its pose
 /// was fitted to; and why a part is not found.
-pub fn explained(best: Option<&Match>, report: &Report) -> String {
+pub fn explained(best: Option<&PartMatch>, report: &MatchReport) -> String {
     let mut text = match &report.reason {
         Some(reason) => format!("not found: {reason}\n"),
         None => String::new(),
@@ -25,7 +25,7 @@ pub fn explained(best: Option<&Match>, report: &Report) -> String {
 }
 
 /// What a match weighs, and of what.
-fn weighed(best: &Match, report: &Report) -> String {
+fn weighed(best: &PartMatch, report: &MatchReport) -> String {
     let mut text = String::new();
     let verdict = if report.found { "found" } else { "likeliest" };
     let _ = writeln!(
@@ -66,7 +66,7 @@ fn weighed(best: &Match, report: &Report) -> String {
 }
 
 /// What the search did.
-fn worked(report: &Report) -> String {
+fn worked(report: &MatchReport) -> String {
     let work = &report.work;
     let mut text = String::new();
     let _ = writeln!(
@@ -89,11 +89,11 @@ fn worked(report: &Report) -> String {
 }
 
 /// What a feature adds.
-fn told(feature: &Feature) -> String {
+fn told(feature: &FeatureReport) -> String {
     let state = match feature.state {
-        State::Whole => "whole",
-        State::Broken => "broken",
-        State::Missed => "missed",
+        FeatureState::Whole => "whole",
+        FeatureState::Broken => "broken",
+        FeatureState::Missed => "missed",
     };
     let beside = feature.offset.zip(feature.astray);
     let beside = beside.map_or(String::new(), |(offset, off)| {
@@ -112,10 +112,10 @@ fn told(feature: &Feature) -> String {
 }
 
 /// The number of a feature.
-fn number(source: &Source) -> String {
+fn number(source: &ArcSource) -> String {
     match source {
-        Source::Edge { edge } => edge.to_string(),
-        Source::Limb { face, ordinal } => format!("{face}.{ordinal}"),
+        ArcSource::Edge { edge } => edge.to_string(),
+        ArcSource::Limb { face, ordinal } => format!("{face}.{ordinal}"),
         _ => String::new(),
     }
 }

@@ -1,12 +1,12 @@
 //! Poses that a picture proposes: chains of its lines taken for chains of edges.
 
 use crate::camera::Pinhole;
-use crate::evidence::{COSINE, evidence, eye, is_unlikely, seen, visible};
-use crate::part::{self, Part};
-use crate::picture::{self, Picture, Reach};
-use crate::pose::chain::{ImageChain, poses};
-use crate::pose::refine::{Pull, refine};
-use crate::rounds::of_ellipses;
+use crate::edge_score::{COSINE, evidence, eye, is_unlikely, seen, visible};
+use crate::from_ellipses::of_ellipses;
+use crate::image_features::{self, ImageFeatures, Reach};
+use crate::part::{self, SoughtPart};
+use crate::pose::p2p2l::{ImageChain, poses};
+use crate::pose::refine::{PointToLine, refine};
 use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 use rayon::prelude::*;
 
@@ -43,10 +43,10 @@ pub struct Proposed {
 
 /// The poses that chains and ellipses of a picture propose, the most likely first.
 pub fn hypotheses(
-    part: &Part<'_>,
-    picture: &Picture,
+    part: &SoughtPart<'_>,
+    picture: &ImageFeatures,
     camera: &Pinhole,
-    chains: &[Vec<picture::Chain>; 2],
+    chains: &[Vec<image_features::LinePath>; 2],
 ) -> Proposed {
     let numbered = [0, 1].map(|kind| chains[kind].iter().map(move |c| (kind, c)));
     let numbered: Vec<_> = numbered.into_iter().flatten().enumerate().collect();
@@ -78,7 +78,7 @@ pub fn best_first(all: &mut [Hypothesis]) {
 
 /// The hypotheses that are not like a more likely one, at most so many.
 pub fn distinct(
-    part: &Part<'_>,
+    part: &SoughtPart<'_>,
     camera: &Pinhole,
     all: Vec<Hypothesis>,
     most: usize,
@@ -99,7 +99,11 @@ pub fn distinct(
 }
 
 /// The images of a part's probes at a pose, and at those that its symmetries make of it.
-fn all_images(part: &Part<'_>, camera: &Pinhole, pose: &Isometry3<f64>) -> Vec<[Point2<f64>; 4]> {
+fn all_images(
+    part: &SoughtPart<'_>,
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+) -> Vec<[Point2<f64>; 4]> {
     let probes = part.probes();
     let image = |s: &Isometry3<f64>| probes.map(|p| camera.project(&(pose * (s * p))));
     part.turns().map(image).collect()
@@ -117,7 +121,7 @@ fn is_one_of(images: &[[Point2<f64>; 4]], known: &[Point2<f64>; 4]) -> bool {
 
 /// Whether two poses are one, but for the part's symmetries.
 pub fn is_same(
-    part: &Part<'_>,
+    part: &SoughtPart<'_>,
     camera: &Pinhole,
     pose: &Isometry3<f64>,
     other: &Isometry3<f64>,
@@ -132,11 +136,11 @@ pub const INSIDE: f64 = 0.3;
 const SAME: f64 = 0.04;
 
 fn of_chain(
-    part: &Part<'_>,
-    picture: &Picture,
+    part: &SoughtPart<'_>,
+    picture: &ImageFeatures,
     camera: &Pinhole,
     (number, kind): (usize, usize),
-    chain: &picture::Chain,
+    chain: &image_features::LinePath,
 ) -> (Vec<Hypothesis>, usize) {
     let points = chain.corners.map(|c| c.at);
     let beyond = [0, 1].map(|i| points[i] + chain.corners[i].away * chain.corners[i].length);
@@ -160,8 +164,8 @@ fn of_chain(
 
 /// A pose that a chain of the picture and one of the part propose, if it is not unlikely at a first look.
 pub fn plausible(
-    part: &Part<'_>,
-    picture: &Picture,
+    part: &SoughtPart<'_>,
+    picture: &ImageFeatures,
     camera: &Pinhole,
     pose: Isometry3<f64>,
     [chain, of]: [usize; 2],
@@ -181,11 +185,11 @@ pub fn plausible(
 
 /// Whether the edges of a chain can be seen in a pose, and are as long as their lines at least.
 fn fits(
-    part: &Part<'_>,
-    model: &part::Chain,
+    part: &SoughtPart<'_>,
+    model: &part::EdgePath,
     camera: &Pinhole,
     pose: &Isometry3<f64>,
-    chain: &picture::Chain,
+    chain: &image_features::LinePath,
 ) -> bool {
     let eye = eye(pose);
     let behind = |i: usize| {
@@ -217,8 +221,8 @@ fn fits(
 
 /// The pose that edges near it draw it to, with the likelihood there.
 pub fn drawn(
-    part: &Part<'_>,
-    picture: &Picture,
+    part: &SoughtPart<'_>,
+    picture: &ImageFeatures,
     camera: &Pinhole,
     start: &Hypothesis,
     reaches: &[f64],
@@ -249,8 +253,8 @@ pub fn drawn(
 /// Edges that lie side by side draw to wrong places: what is turned and moved a little may be drawn to
 /// better ones.
 pub fn settled(
-    part: &Part<'_>,
-    picture: &Picture,
+    part: &SoughtPart<'_>,
+    picture: &ImageFeatures,
     camera: &Pinhole,
     start: &Hypothesis,
 ) -> Hypothesis {
@@ -292,13 +296,13 @@ const MANY: usize = 300;
 
 /// The edges that the marks of a part, or one in so many, are drawn to.
 fn pulls(
-    part: &Part<'_>,
-    picture: &Picture,
+    part: &SoughtPart<'_>,
+    picture: &ImageFeatures,
     camera: &Pinhole,
     pose: &Isometry3<f64>,
-    view: &crate::part::View,
+    view: &crate::part::PartView,
     (reach, stride): (f64, usize),
-) -> Vec<Pull> {
+) -> Vec<PointToLine> {
     let mut all = Vec::new();
     for mark in visible(part, view, eye(pose)).step_by(stride) {
         let Some(seen) = seen(camera, pose, mark) else {
@@ -306,7 +310,7 @@ fn pulls(
         };
         let normal: Vector2<f64> = seen.normal;
         if let Some(hit) = picture.edges.along(&seen.at, &normal, reach, COSINE) {
-            all.push(Pull {
+            all.push(PointToLine {
                 point: mark.point,
                 target: seen.at + normal * hit.offset,
                 normal,

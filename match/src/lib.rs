@@ -1,27 +1,27 @@
 //! A part found in a picture, and where it is.
 //!
-//! What the detector finds in a picture ([`picture`]) is matched with what is predicted of a part
+//! What the detector finds in a picture ([`image_features`]) is matched with what is predicted of a part
 //! ([`part`]).
 
-pub mod astray;
+mod axis_alignment;
 pub mod camera;
 pub mod clutter;
 pub mod correspondence;
-mod ends;
-pub mod evidence;
+pub mod detectability_prior;
+pub mod edge_score;
+mod endpoints;
 pub mod explain;
-pub mod finding;
-mod framed;
+pub mod from_ellipses;
 pub mod hypotheses;
-pub mod learned;
-pub mod look;
+pub mod image_features;
+pub mod matcher;
 pub mod part;
-pub mod picture;
 pub mod pose;
-pub mod predicted;
+pub mod predicted_contours;
 pub mod report;
-pub mod rounds;
+pub mod residuals;
+pub mod scoring;
 pub mod search;
-pub mod shape;
-pub mod track;
-pub mod worth;
+pub mod search_result;
+pub mod shape_evidence;
+pub mod tracker;

@@ -1,26 +1,26 @@
 //! What was found, as it is handed on (`premio.match/1`), and a line for the evaluation of others
 //! (the CSV of the BOP challenge, Hodan et al. 2018).
 
-use crate::astray::Astray;
-use crate::finding::{Finding, Match};
 use crate::hypotheses::INSIDE;
-use crate::part::Part;
-use crate::picture::Picture;
-use crate::search::Effort;
-use crate::shape::Shape;
-use crate::worth::{FEWEST, SMALLEST, is_figure};
+use crate::image_features::ImageFeatures;
+use crate::part::SoughtPart;
+use crate::residuals::SystematicOffset;
+use crate::scoring::{FEWEST, SMALLEST, is_figure};
+use crate::search::SearchStats;
+use crate::search_result::{PartMatch, SearchResult};
+use crate::shape_evidence::ShapeEvidence;
 use nalgebra::{Isometry3, Matrix3};
 use premio_kernel::geometry::frame::Frame;
-use premio_predict::outline::Source;
+use premio_predict::image_arcs::ArcSource;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The name of the format.
 pub const SCHEMA: &str = "premio.match/1";
 
-/// The schema of [`Report`], as JSON Schema has it.
+/// The schema of [`MatchReport`], as JSON Schema has it.
 pub fn schema() -> schemars::Schema {
-    schemars::schema_for!(Report)
+    schemars::schema_for!(MatchReport)
 }
 
 /// A pose: x_camera = R x + t, with the camera's x to the right, y down and z forward (OpenCV).
@@ -45,14 +45,14 @@ impl From<&Isometry3<f64>> for Pose {
 
 /// An axis of a part, in its frame.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Axis {
+pub struct SymmetryAxis {
     /// A point of it.
     pub point: [f64; 3],
     /// Its unit direction.
     pub direction: [f64; 3],
 }
 
-impl From<&Frame> for Axis {
+impl From<&Frame> for SymmetryAxis {
     fn from(frame: &Frame) -> Self {
         Self {
             point: frame.origin.into(),
@@ -64,7 +64,7 @@ impl From<&Frame> for Axis {
 /// What a feature of the part is in the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum State {
+pub enum FeatureState {
     /// Its edge is there.
     Whole,
     /// Some of its edge is.
@@ -75,14 +75,14 @@ pub enum State {
 
 /// A correspondence.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Feature {
+pub struct FeatureReport {
     /// The feature of the part.
     #[serde(flatten)]
-    pub source: Source,
+    pub source: ArcSource,
     /// Its visible length in the picture, in pixels.
     pub length: f64,
     /// What it is there.
-    pub state: State,
+    pub state: FeatureState,
     /// The share of it that is covered.
     pub share: f64,
     /// At how many of its vertices that are seen its edge ends, and goes on.
@@ -90,7 +90,7 @@ pub struct Feature {
     /// How far beside it, in pixels, its edge runs.
     pub offset: Option<f64>,
     /// How far the edge is off its contour at the pose, as root mean squares in pixels.
-    pub astray: Option<Astray>,
+    pub astray: Option<SystematicOffset>,
     /// The ends of the segments that it is.
     pub segments: Vec<[[f64; 2]; 2]>,
     /// What it adds to the score, and what of that tells against the part.
@@ -113,7 +113,7 @@ pub struct Rival {
 
 /// A place in the picture at which the part is found.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Instance {
+pub struct InstanceReport {
     /// The pose.
     #[serde(flatten)]
     pub pose: Pose,
@@ -125,7 +125,7 @@ pub struct Instance {
 
 /// What the search for a part did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
-pub struct Work {
+pub struct SearchWork {
     /// Segments that the detector found.
     pub segments: usize,
     /// Chains of lines with one, and with two, between their corners.
@@ -136,14 +136,14 @@ pub struct Work {
     pub cut: bool,
     /// The search for the correspondences at the pose.
     #[serde(flatten)]
-    pub search: Effort,
+    pub search: SearchStats,
     /// Pruned over opened paths.
     pub pruning: f64,
 }
 
 /// How long it took, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
-pub struct Seconds {
+pub struct MatchSeconds {
     /// To detect features.
     pub features: f64,
     /// To find the pose.
@@ -152,7 +152,7 @@ pub struct Seconds {
 
 /// What was found in a picture.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Report {
+pub struct MatchReport {
     /// [`SCHEMA`].
     pub schema: String,
     /// The picture's file.
@@ -176,10 +176,10 @@ pub struct Report {
     /// is the part rather than a piece of it.
     pub odds: Option<f64>,
     /// What is told of the part's shape.
-    pub shape: Option<Shape>,
+    pub shape: Option<ShapeEvidence>,
     /// How far features are off as wholes, and their edges beside that: of another thing that is like the
     /// part the former is more.
-    pub astray: Option<Astray>,
+    pub astray: Option<SystematicOffset>,
     /// How much of what is found runs along the picture's rows and columns, from nothing to one: all of
     /// it, some along either, as of what is drawn or framed.
     pub framed: Option<f64>,
@@ -207,45 +207,45 @@ pub struct Report {
     pub alternatives: Vec<Pose>,
     /// Of a part that is turned about an axis, the axis, in the part's frame: the pose may be turned
     /// about it by any angle.
-    pub axis: Option<Axis>,
+    pub axis: Option<SymmetryAxis>,
     /// Other poses at which the part is found, too, and whose odds are less by no more than e³, up to
     /// symmetries.
     pub rivals: Vec<Rival>,
     /// The part as often as it is found, each with edges of its own, the likeliest first: that is the one
     /// that the report is of. More may be in the picture, as only the best poses are searched.
-    pub instances: Vec<Instance>,
+    pub instances: Vec<InstanceReport>,
     /// The correspondences.
-    pub features: Vec<Feature>,
+    pub features: Vec<FeatureReport>,
     /// Of a sequence: whether it was looked for anew, rather than from its last pose.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anew: Option<bool>,
     /// What the search did.
-    pub work: Work,
+    pub work: SearchWork,
     /// How many pixels of the file make a side of one that lengths and distances are told in: more than
     /// one of large pictures. Ends of segments are in the file's.
     pub scale: u32,
     /// How long it took.
-    pub seconds: Seconds,
+    pub seconds: MatchSeconds,
 }
 
-impl Report {
+impl MatchReport {
     /// The report of a finding.
     pub fn new(
-        part: &Part<'_>,
+        part: &SoughtPart<'_>,
         [image, name]: [&str; 2],
-        picture: &Picture,
-        finding: &Finding,
-        (scale, seconds): (u32, Seconds),
+        picture: &ImageFeatures,
+        finding: &SearchResult,
+        (scale, seconds): (u32, MatchSeconds),
     ) -> Self {
         let best = finding.best();
-        let found = best.is_some_and(Match::is_accepted);
+        let found = best.is_some_and(PartMatch::is_accepted);
         Self {
             schema: SCHEMA.to_owned(),
             image: image.to_owned(),
             part: name.to_owned(),
             found,
             reason: (!found).then(|| reason(part, picture, finding)),
-            probability: best.map_or(0.0, Match::probability),
+            probability: best.map_or(0.0, PartMatch::probability),
             ratio: best.map(|m| m.ratio),
             odds: best.map(|m| m.odds),
             shape: best.map(|m| m.shape),
@@ -253,8 +253,8 @@ impl Report {
             framed: best.map(|m| m.framed),
             score: best.map(|m| m.score),
             fitted: best.map(|m| m.fitted),
-            inside: best.map(Match::inside),
-            covered: best.map(Match::share),
+            inside: best.map(PartMatch::inside),
+            covered: best.map(PartMatch::share),
             related: best.map(|m| m.relations.iter().sum()),
             pose: best.map(|m| Pose::from(&m.pose)),
             covariance: best
@@ -265,7 +265,7 @@ impl Report {
                 let others = part.turns().skip(1);
                 others.map(|s| Pose::from(&(m.pose * s))).collect()
             }),
-            axis: part.axis.as_ref().map(Axis::from),
+            axis: part.axis.as_ref().map(SymmetryAxis::from),
             rivals: rivals(finding),
             instances: instances(finding),
             features: best.map_or(Vec::new(), |m| features(m, picture, scale)),
@@ -295,10 +295,10 @@ impl Report {
 /// The first line of the BOP challenge's CSV.
 pub const BOP: &str = "scene_id,im_id,obj_id,score,R,t,time";
 
-fn work(picture: &Picture, finding: &Finding) -> Work {
+fn work(picture: &ImageFeatures, finding: &SearchResult) -> SearchWork {
     let best = finding.best();
     let search = best.map(|m| m.effort).unwrap_or_default();
-    Work {
+    SearchWork {
         segments: picture.detection.segments.len(),
         chains: finding.chains,
         proposed: finding.proposed,
@@ -308,7 +308,7 @@ fn work(picture: &Picture, finding: &Finding) -> Work {
     }
 }
 
-fn rivals(finding: &Finding) -> Vec<Rival> {
+fn rivals(finding: &SearchResult) -> Vec<Rival> {
     let rivals = finding.rivals().iter().map(|m| Rival {
         pose: Pose::from(&m.pose),
         ratio: m.ratio,
@@ -317,8 +317,8 @@ fn rivals(finding: &Finding) -> Vec<Rival> {
     rivals.collect()
 }
 
-fn instances(finding: &Finding) -> Vec<Instance> {
-    let instances = finding.instances().into_iter().map(|m| Instance {
+fn instances(finding: &SearchResult) -> Vec<InstanceReport> {
+    let instances = finding.instances().into_iter().map(|m| InstanceReport {
         pose: Pose::from(&m.pose),
         probability: m.probability(),
         found: m.is_accepted(),
@@ -326,20 +326,20 @@ fn instances(finding: &Finding) -> Vec<Instance> {
     instances.collect()
 }
 
-fn features(found: &Match, picture: &Picture, scale: u32) -> Vec<Feature> {
+fn features(found: &PartMatch, picture: &ImageFeatures, scale: u32) -> Vec<FeatureReport> {
     // The middles of pixels that are means of others lie between those.
     let side = f64::from(scale);
     let given = |v: f64| side * (v + 0.5) - 0.5;
     let features = found.pairs.iter().map(|pair| {
         let is = pair.found.as_ref();
         let share = is.map_or(0.0, |f| f.share.min(1.0));
-        Feature {
+        FeatureReport {
             source: pair.source,
             length: pair.length,
             state: match is {
-                None => State::Missed,
-                Some(_) if share >= crate::correspondence::WHOLE => State::Whole,
-                Some(_) => State::Broken,
+                None => FeatureState::Missed,
+                Some(_) if share >= crate::correspondence::WHOLE => FeatureState::Whole,
+                Some(_) => FeatureState::Broken,
             },
             share,
             offset: is.map(|f| f.offset),
@@ -358,7 +358,7 @@ fn features(found: &Match, picture: &Picture, scale: u32) -> Vec<Feature> {
 }
 
 /// Why a part is taken not to be there.
-fn reason(part: &Part<'_>, picture: &Picture, finding: &Finding) -> String {
+fn reason(part: &SoughtPart<'_>, picture: &ImageFeatures, finding: &SearchResult) -> String {
     if !part.proposes() {
         return "the part has neither straight edges that meet nor round ones, which poses are found by"
             .to_owned();

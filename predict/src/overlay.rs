@@ -1,8 +1,8 @@
 //! Predicted features as a drawing: found pieces coloured by their contrast, the rest dashed, each with
 //! why it is missing.
 
-use crate::feature::evidence::State;
-use crate::prediction::{ArcLevel, Geometry, Prediction};
+use crate::feature::detected_arc::DetectionState;
+use crate::prediction::{ArcGeometry, ArcLevel, Prediction};
 use std::fmt::Write;
 
 /// The contrast of the strongest colour, in grey levels.
@@ -33,7 +33,7 @@ pub fn colour(contrast: f64) -> [u8; 3] {
 
 /// A line of the overlay.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stroke {
+pub struct OverlayStroke {
     /// Its points in pixels.
     pub points: Vec<[f64; 2]>,
     /// The mean contrast along it, where it is found.
@@ -43,7 +43,7 @@ pub struct Stroke {
 }
 
 /// What is drawn of a prediction, as far as it is in the image.
-pub fn strokes(prediction: &Prediction) -> Vec<Stroke> {
+pub fn strokes(prediction: &Prediction) -> Vec<OverlayStroke> {
     let size = prediction.image.setup.conditions.sensor.resolution;
     // The centre of the first pixel is at (0, 0).
     let window = Window {
@@ -57,7 +57,7 @@ pub fn strokes(prediction: &Prediction) -> Vec<Stroke> {
             let pieces = window.clipped(&stroke.points);
             pieces
                 .into_iter()
-                .map(move |points| Stroke { points, ..stroke })
+                .map(move |points| OverlayStroke { points, ..stroke })
         })
         .collect()
 }
@@ -112,12 +112,12 @@ impl Window {
     }
 }
 
-fn arc_strokes(arc: &ArcLevel, prediction: &Prediction) -> Vec<Stroke> {
+fn arc_strokes(arc: &ArcLevel, prediction: &Prediction) -> Vec<OverlayStroke> {
     let points = points(&arc.geometry);
     let top = f64::from(prediction.image.setup.conditions.sensor.levels - 1);
     let mut strokes = Vec::new();
-    if arc.state != State::Whole {
-        strokes.push(Stroke {
+    if arc.state != DetectionState::Whole {
+        strokes.push(OverlayStroke {
             points: points.clone(),
             contrast: None,
             arc: arc.id,
@@ -128,7 +128,7 @@ fn arc_strokes(arc: &ArcLevel, prediction: &Prediction) -> Vec<Stroke> {
         let on = arc.contrast.iter().filter(|c| within(c.along));
         let all: Vec<f64> = on.map(|c| c.difference(top)).collect();
         let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
-        strokes.push(Stroke {
+        strokes.push(OverlayStroke {
             points: part(&points, piece.along),
             contrast: Some(mean),
             arc: arc.id,
@@ -138,10 +138,10 @@ fn arc_strokes(arc: &ArcLevel, prediction: &Prediction) -> Vec<Stroke> {
 }
 
 /// The points of a form.
-pub fn points(geometry: &Geometry) -> Vec<[f64; 2]> {
+pub fn points(geometry: &ArcGeometry) -> Vec<[f64; 2]> {
     match geometry {
-        Geometry::Line { ends } => ends.to_vec(),
-        Geometry::Conic { points, .. } | Geometry::Sampled { points } => points.clone(),
+        ArcGeometry::Line { ends } => ends.to_vec(),
+        ArcGeometry::Conic { points, .. } | ArcGeometry::Sampled { points } => points.clone(),
     }
 }
 
@@ -237,7 +237,7 @@ pub fn svg(prediction: &Prediction) -> String {
     out
 }
 
-fn path(stroke: &Stroke, prediction: &Prediction, out: &mut String) {
+fn path(stroke: &OverlayStroke, prediction: &Prediction, out: &mut String) {
     let mut d = String::new();
     for (i, [x, y]) in stroke.points.iter().enumerate() {
         let command = if i == 0 { 'M' } else { 'L' };

@@ -7,7 +7,7 @@
 use crate::image::blur::blur;
 use crate::image::response::respond;
 use crate::image::shading::Shading;
-use crate::outline::Seen;
+use crate::image_arcs::RegionSample;
 use crate::setup::sensor::Sensor;
 use premio_detect::{Grey, PixelMask};
 
@@ -18,9 +18,9 @@ pub const FINE: usize = 8;
 pub fn rows(shading: &Shading<'_>, width: usize, rows: std::ops::Range<usize>) -> Vec<f32> {
     let corner = |x: usize, y: usize| shading.asked([x as f64 - 0.5, y as f64 - 0.5]);
     let mut levels = Vec::with_capacity(width * rows.len());
-    let mut above: Vec<Seen> = (0..=width).map(|x| corner(x, rows.start)).collect();
+    let mut above: Vec<RegionSample> = (0..=width).map(|x| corner(x, rows.start)).collect();
     for y in rows {
-        let below: Vec<Seen> = (0..=width).map(|x| corner(x, y + 1)).collect();
+        let below: Vec<RegionSample> = (0..=width).map(|x| corner(x, y + 1)).collect();
         for x in 0..width {
             let at = [x as f64, y as f64];
             let middle = shading.asked(at);
@@ -53,7 +53,7 @@ pub fn finished(levels: Vec<f32>, sensor: &Sensor, seed: u64) -> Grey {
     image
 }
 
-fn level(shading: &Shading<'_>, at: [f64; 2], seen: &Seen) -> f64 {
+fn level(shading: &Shading<'_>, at: [f64; 2], seen: &RegionSample) -> f64 {
     shading.level(at, seen, &mut shading.distance(&seen.point))
 }
 

@@ -6,9 +6,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_predict::prediction::{Memory, prediction, with_draft};
+use premio_predict::prepared_part::PreparedPart;
 use premio_predict::render;
 use premio_predict::setup::Setup;
-use premio_predict::subject::Subject;
 use premio_tests::parts::{cube_with_cuts, plate};
 use serde_json::Value;
 use std::time::Duration;
@@ -47,7 +47,7 @@ fn predictions(c: &mut Criterion) {
         ("block with 49 through holes", plate(7, 2.0), 7.0),
     ] {
         let part = part(&json);
-        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
         let setup = setup(size);
         let mut memory = Memory::default();
         group.bench_function(name, |b| {

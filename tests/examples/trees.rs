@@ -6,7 +6,7 @@
 use clap::Parser;
 use premio_tests::examine::{Depth, VIEWS, examine};
 use premio_tests::random::text;
-use premio_verify::generator::model::Model;
+use premio_verify::generator::model::PartModel;
 use premio_verify::generator::profile::Profile;
 use premio_verify::generator::shrink::shrink;
 use std::collections::BTreeMap;
@@ -131,7 +131,7 @@ fn kind(text: &str) -> &str {
 }
 
 /// A smaller tree that is wrong in the same way as far as the first thing goes.
-fn shrunk(model: &Model, wrong: &[String], arguments: &Arguments) -> Model {
+fn shrunk(model: &PartModel, wrong: &[String], arguments: &Arguments) -> PartModel {
     let first = wrong.first().map(|text| kind(text));
     shrink(model, TRIES, |smaller| {
         let found = in_a_process(smaller, arguments);
@@ -143,7 +143,7 @@ fn shrunk(model: &Model, wrong: &[String], arguments: &Arguments) -> Model {
 const TRIES: usize = 1000;
 
 /// Examines one tree in a process of its own, which may hang, overflow its stack or eat memory.
-fn in_a_process(model: &Model, arguments: &Arguments) -> Vec<String> {
+fn in_a_process(model: &PartModel, arguments: &Arguments) -> Vec<String> {
     let mut command = Command::new(std::env::current_exe().unwrap_or_default());
     command.args(["--one", "--rays", &arguments.rays.to_string()]);
     if arguments.views {

@@ -1,6 +1,6 @@
 //! Random trees on a half-unit grid as JSON values, to be joined and scaled by the tests.
 
-use premio_verify::generator::model::Model;
+use premio_verify::generator::model::PartModel;
 use premio_verify::generator::profile::Profile;
 use premio_verify::generator::write::{Format, write};
 use serde_json::Value;
@@ -11,6 +11,6 @@ pub fn tree(seed: u64) -> Value {
 }
 
 /// A model in the JSON that the reader takes.
-pub fn text(model: &Model) -> String {
+pub fn text(model: &PartModel) -> String {
     write(model, Format::Json)
 }

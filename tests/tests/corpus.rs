@@ -6,7 +6,7 @@ use premio_csg::reader::{Description, Format, ReadOptions, read};
 use premio_kernel::brep::signature::Signature;
 use premio_kernel::number::predicates::{CoincidencePolicy, DecisionStats};
 use premio_tests::examine::within;
-use premio_verify::checks::{Checker, Subject};
+use premio_verify::checks::{CheckSubject, Checker};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -113,7 +113,7 @@ fn wrong(
     let report = Checker::new(&description.tree, evaluation).solid(100_000);
     let failures: Vec<String> = report
         .failures()
-        .filter(|c| c.subject == Subject::Topology || expected.is_none())
+        .filter(|c| c.subject == CheckSubject::Topology || expected.is_none())
         .map(ToString::to_string)
         .collect();
     if failures.is_empty() {

@@ -6,16 +6,16 @@ use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions as Reading, read};
 use premio_detect::Grey;
 use premio_matching::camera::Pinhole;
-use premio_matching::finding::{Finding, Limits, Match, Options};
-use premio_matching::learned::Learned;
-use premio_matching::look::Look;
-use premio_matching::part::Part;
-use premio_matching::picture::{Picture, detector};
+use premio_matching::detectability_prior::DetectabilityPrior;
+use premio_matching::image_features::{ImageFeatures, detector};
+use premio_matching::matcher::Matcher;
+use premio_matching::part::SoughtPart;
 use premio_matching::search::Strategy;
+use premio_matching::search_result::{PartMatch, SearchLimits, SearchOptions, SearchResult};
 use premio_predict::prediction::{Memory, with_draft};
+use premio_predict::prepared_part::PreparedPart;
 use premio_predict::render;
 use premio_predict::setup::Setup;
-use premio_predict::subject::Subject;
 use premio_tests::parts::cube_with_cuts;
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
@@ -35,7 +35,7 @@ fn camera() -> Pinhole {
 }
 
 /// A camera at `eye` that looks at the part's middle with z upwards, both in the part's radius about it.
-fn pose(subject: &Subject<'_>, eye: [f64; 3], beside: [f64; 3]) -> Isometry3<f64> {
+fn pose(subject: &PreparedPart<'_>, eye: [f64; 3], beside: [f64; 3]) -> Isometry3<f64> {
     let at = |d: [f64; 3]| subject.centre + Vector3::from(d) * subject.radius;
     let (eye, target) = (at(eye), at(beside));
     let z = (target - eye).normalize();
@@ -46,7 +46,7 @@ fn pose(subject: &Subject<'_>, eye: [f64; 3], beside: [f64; 3]) -> Isometry3<f64
 }
 
 /// The picture of a part at a pose, with noise.
-fn picture(subject: &Subject<'_>, pose: &Isometry3<f64>, seed: u64) -> Grey {
+fn picture(subject: &PreparedPart<'_>, pose: &Isometry3<f64>, seed: u64) -> Grey {
     let k = camera();
     let r = pose.rotation.to_rotation_matrix();
     let row = |i: usize| format!("[{}, {}, {}]", r[(i, 0)], r[(i, 1)], r[(i, 2)]);
@@ -81,34 +81,34 @@ fn picture(subject: &Subject<'_>, pose: &Isometry3<f64>, seed: u64) -> Grey {
     drawn.unwrap()
 }
 
-fn sought<'a>(evaluation: &'a Evaluation, learned: &Learned) -> Part<'a> {
-    Part::new(&evaluation.brep, evaluation.resolution, learned)
+fn sought<'a>(evaluation: &'a Evaluation, learned: &DetectabilityPrior) -> SoughtPart<'a> {
+    SoughtPart::new(&evaluation.brep, evaluation.resolution, learned)
 }
 
 /// Asks something of a part that is looked for in a picture.
 fn looked<T>(
-    part: &Part<'_>,
-    picture: &Picture,
-    options: &Options,
-    ask: impl FnOnce(&Look<'_>) -> T,
+    part: &SoughtPart<'_>,
+    picture: &ImageFeatures,
+    options: &SearchOptions,
+    ask: impl FnOnce(&Matcher<'_>) -> T,
 ) -> T {
-    ask(&Look {
+    ask(&Matcher {
         part,
-        learned: &Learned::nothing(),
+        learned: &DetectabilityPrior::nothing(),
         picture,
         camera: &camera(),
         options,
     })
 }
 
-fn look(part: &Part<'_>, grey: &Grey, options: &Options) -> Finding {
-    let picture = Picture::new(grey, &detector());
+fn look(part: &SoughtPart<'_>, grey: &Grey, options: &SearchOptions) -> SearchResult {
+    let picture = ImageFeatures::new(grey, &detector());
     looked(part, &picture, options, |look| look.find())
 }
 
 /// How far a pose is off another, of those that the part's symmetries make alike: of the middle, in the
 /// part's radius, and in radians.
-fn off(part: &Part<'_>, found: &Isometry3<f64>, truth: &Isometry3<f64>) -> [f64; 2] {
+fn off(part: &SoughtPart<'_>, found: &Isometry3<f64>, truth: &Isometry3<f64>) -> [f64; 2] {
     let each = part.turns().map(|s| {
         let pose = found * s;
         let moved = (pose * part.centre - truth * part.centre).norm() / part.radius;
@@ -123,12 +123,12 @@ const EYES: [[f64; 3]; 3] = [[3.1, 2.4, 2.6], [-3.6, 1.9, 2.2], [2.2, -3.4, 2.9]
 #[test]
 fn a_part_is_found_where_it_is() {
     let evaluation = part(&cube_with_cuts());
-    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-    let part = sought(&evaluation, &Learned::nothing());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     for (seed, eye) in (1..).zip(EYES) {
         let truth = pose(&subject, eye, [0.15, -0.1, 0.05]);
         let grey = picture(&subject, &truth, seed);
-        let finding = look(&part, &grey, &Options::default());
+        let finding = look(&part, &grey, &SearchOptions::default());
         let best = finding.best().unwrap();
         assert!(best.is_accepted(), "{eye:?}: ratio {}", best.ratio);
         let [moved, turned] = off(&part, &best.pose, &truth);
@@ -143,13 +143,15 @@ fn a_part_of_any_size_is_found() {
     let poses = [1.0, 1e9, 1e-9].map(|unit| {
         let block = json!({"prim": "block", "size": [3.0 * unit, 2.0 * unit, 4.0 * unit]});
         let evaluation = part(&block);
-        let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-        let part = sought(&evaluation, &Learned::nothing());
+        let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+        let part = sought(&evaluation, &DetectabilityPrior::nothing());
         // One picture for all: that of the block of the first size.
         let first = self::part(&json!({"prim": "block", "size": [3.0, 2.0, 4.0]}));
-        let one = Subject::new(&first.brep, first.resolution).unwrap();
+        let one = PreparedPart::new(&first.brep, first.resolution).unwrap();
         let grey = picture(&one, &pose(&one, EYES[0], [0.0; 3]), 5);
-        let best = look(&part, &grey, &Options::default()).matches.remove(0);
+        let best = look(&part, &grey, &SearchOptions::default())
+            .matches
+            .remove(0);
         assert!(best.is_accepted());
         let truth = pose(&subject, EYES[0], [0.0; 3]);
         let [moved, turned] = off(&part, &best.pose, &truth);
@@ -168,14 +170,18 @@ fn poses_that_look_alike_are_told() {
     let cube = block([2.0; 3], [0.0; 3]);
     let pocket = block([1.0, 1.0, 0.5], [0.5, 0.5, 0.0]);
     let evaluation = part(&json!({"op": "difference", "children": [cube, pocket]}));
-    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-    let part = sought(&evaluation, &Learned::nothing());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     let truth = pose(&subject, EYES[0], [0.0; 3]);
-    let finding = look(&part, &picture(&subject, &truth, 7), &Options::default());
+    let finding = look(
+        &part,
+        &picture(&subject, &truth, 7),
+        &SearchOptions::default(),
+    );
     let best = finding.best().unwrap();
-    let all: Vec<&Match> = std::iter::once(best).chain(finding.rivals()).collect();
+    let all: Vec<&PartMatch> = std::iter::once(best).chain(finding.rivals()).collect();
     assert!(all.len() > 1, "{:?}", finding.matches.len());
-    let right = |m: &&&Match| off(&part, &m.pose, &truth).iter().all(|x| *x < 0.02);
+    let right = |m: &&&PartMatch| off(&part, &m.pose, &truth).iter().all(|x| *x < 0.02);
     assert_eq!(all.iter().filter(right).count(), 1);
 }
 
@@ -183,10 +189,10 @@ fn poses_that_look_alike_are_told() {
 #[test]
 fn a_face_alone_is_not_taken_for_a_block() {
     let evaluation = part(&json!({"prim": "block", "size": [2.0, 2.0, 2.0]}));
-    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-    let part = sought(&evaluation, &Learned::nothing());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     let grey = picture(&subject, &pose(&subject, [0.0, -4.0, 0.0], [0.0; 3]), 2);
-    let finding = look(&part, &grey, &Options::default());
+    let finding = look(&part, &grey, &SearchOptions::default());
     assert!(finding.best().is_none());
     assert!(finding.little.is_some_and(|few| few.found() <= 4));
 }
@@ -200,15 +206,15 @@ fn a_frame_is_not_taken_for_a_block() {
         {"prim": "block", "size": [1.9, 1.4, 0.1],
             "transform": [{"translate": [0.05, 0.05, 0.0]}]},
     ]}));
-    let subject = Subject::new(&frame.brep, frame.resolution).unwrap();
+    let subject = PreparedPart::new(&frame.brep, frame.resolution).unwrap();
     let block = part(&json!({"prim": "block", "size": [2.0, 1.5, 1.0]}));
-    let block = sought(&block, &Learned::nothing());
+    let block = sought(&block, &DetectabilityPrior::nothing());
     for (i, eye) in [[0.2, -0.4, 4.0], [-0.6, -0.3, 4.0], [0.9, -0.9, 4.0]]
         .into_iter()
         .enumerate()
     {
         let grey = picture(&subject, &pose(&subject, eye, [0.0; 3]), i as u64);
-        let finding = look(&block, &grey, &Options::default());
+        let finding = look(&block, &grey, &SearchOptions::default());
         let best = finding.best();
         assert!(
             best.is_none_or(|m| !m.is_accepted()),
@@ -228,19 +234,19 @@ fn what_is_drawn_is_not_taken_for_a_cube() {
     };
     let drawn: [&dyn Fn(usize, usize) -> f32; 2] = [&board, &panels];
     let cube = part(&json!({"prim": "block", "size": [1.0, 1.0, 1.0]}));
-    let cube = sought(&cube, &Learned::nothing());
+    let cube = sought(&cube, &DetectabilityPrior::nothing());
     for draw in drawn {
         let grey = Grey::new(640, 480, draw);
-        let look = Look {
+        let look = Matcher {
             part: &cube,
-            learned: &Learned::nothing(),
-            picture: &Picture::new(&grey, &detector()),
+            learned: &DetectabilityPrior::nothing(),
+            picture: &ImageFeatures::new(&grey, &detector()),
             camera: &Pinhole {
                 focal: [700.0, 700.0],
                 centre: [319.5, 239.5],
                 skew: 0.0,
             },
-            options: &Options::default(),
+            options: &SearchOptions::default(),
         };
         let finding = look.find();
         let best = finding.best().unwrap();
@@ -258,13 +264,13 @@ fn a_piece_of_a_part_is_not_the_part() {
         "transform": [{"translate": [2.0, 0.4, 0.0]}]});
     let both = part(&json!({"op": "union", "children": [cube, tube]}));
     let cube = part(&cube);
-    let subject = Subject::new(&cube.brep, cube.resolution).unwrap();
-    let [cube, both] = [&cube, &both].map(|e| sought(e, &Learned::nothing()));
+    let subject = PreparedPart::new(&cube.brep, cube.resolution).unwrap();
+    let [cube, both] = [&cube, &both].map(|e| sought(e, &DetectabilityPrior::nothing()));
     for (seed, eye) in (1..).zip(EYES) {
         for beside in [[0.0; 3], [0.9, 0.2, 0.0]] {
             let truth = pose(&subject, eye, beside);
             let grey = picture(&subject, &truth, seed);
-            let [alone, more] = [&cube, &both].map(|p| look(p, &grey, &Options::default()));
+            let [alone, more] = [&cube, &both].map(|p| look(p, &grey, &SearchOptions::default()));
             let [alone, more] = [alone, more].map(|f| f.best().map(|m| m.is_accepted()));
             assert_eq!(alone, Some(true), "{eye:?} {beside:?}");
             assert_ne!(more, Some(true), "{eye:?} {beside:?}");
@@ -279,13 +285,13 @@ fn a_round_part_is_found_but_for_its_turn() {
         {"prim": "cylinder", "r": 2.0, "h": 1.0},
         {"prim": "cylinder", "r": 1.0, "h": 4.0},
     ]}));
-    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-    let part = sought(&evaluation, &Learned::nothing());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     assert!(part.axis.is_some());
     for (seed, eye) in (1..).zip(EYES) {
         let truth = pose(&subject, eye, [0.1, 0.1, 0.0]);
         let grey = picture(&subject, &truth, seed);
-        let finding = look(&part, &grey, &Options::default());
+        let finding = look(&part, &grey, &SearchOptions::default());
         let best = finding.best().unwrap();
         let moved = (best.pose * part.centre - truth * part.centre).norm() / part.radius;
         let tilted = (best.pose * Vector3::z()).angle(&(truth * Vector3::z()));
@@ -298,14 +304,14 @@ fn a_round_part_is_found_but_for_its_turn() {
 #[test]
 fn all_strategies_give_the_same_correspondences() {
     let evaluation = part(&cube_with_cuts());
-    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-    let part = sought(&evaluation, &Learned::nothing());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     let truth = pose(&subject, EYES[0], [0.0; 3]);
     let grey = picture(&subject, &truth, 7);
     let by = |strategy| {
-        let options = Options {
+        let options = SearchOptions {
             strategy,
-            ..Options::default()
+            ..SearchOptions::default()
         };
         let finding = look(&part, &grey, &options);
         let best = finding.best().unwrap();
@@ -320,8 +326,8 @@ fn all_strategies_give_the_same_correspondences() {
 #[test]
 fn what_is_found_does_not_depend_on_threads() {
     let evaluation = part(&cube_with_cuts());
-    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-    let part = sought(&evaluation, &Learned::nothing());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     let truth = pose(&subject, EYES[1], [0.0; 3]);
     let grey = picture(&subject, &truth, 3);
     let with = |threads: usize| {
@@ -329,8 +335,8 @@ fn what_is_found_does_not_depend_on_threads() {
             .num_threads(threads)
             .build()
             .unwrap();
-        let finding = pool.install(|| look(&part, &grey, &Options::default()));
-        let told = |m: &Match| (m.pose, m.ratio, m.effort);
+        let finding = pool.install(|| look(&part, &grey, &SearchOptions::default()));
+        let told = |m: &PartMatch| (m.pose, m.ratio, m.effort);
         finding.matches.iter().map(told).collect::<Vec<_>>()
     };
     assert_eq!(with(1), with(3));
@@ -342,12 +348,12 @@ fn a_part_that_is_not_there_is_not_found() {
         {"prim": "torus", "R": 3.0, "r": 1.0},
         {"prim": "block", "size": [6.0, 1.0, 1.0]},
     ]}));
-    let subject = Subject::new(&other.brep, other.resolution).unwrap();
+    let subject = PreparedPart::new(&other.brep, other.resolution).unwrap();
     let evaluation = part(&cube_with_cuts());
-    let part = sought(&evaluation, &Learned::nothing());
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     for (seed, eye) in (1..).zip(EYES) {
         let grey = picture(&subject, &pose(&subject, eye, [0.0; 3]), seed);
-        let finding = look(&part, &grey, &Options::default());
+        let finding = look(&part, &grey, &SearchOptions::default());
         let accepted = finding.best().filter(|m| m.is_accepted());
         assert!(
             accepted.is_none(),
@@ -360,10 +366,10 @@ fn a_part_that_is_not_there_is_not_found() {
 #[test]
 fn an_empty_picture_holds_nothing() {
     let evaluation = part(&cube_with_cuts());
-    let part = sought(&evaluation, &Learned::nothing());
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     for (width, height) in [(SIZE[0], SIZE[1]), (1, 1), (0, 0), (3, 200)] {
         let grey = Grey::new(width, height, |_, _| 90.0);
-        let finding = look(&part, &grey, &Options::default());
+        let finding = look(&part, &grey, &SearchOptions::default());
         assert!(finding.best().is_none());
         assert_eq!(finding.proposed, 0);
     }
@@ -373,21 +379,21 @@ fn an_empty_picture_holds_nothing() {
 #[test]
 fn clutter_bounds_the_work() {
     let evaluation = part(&cube_with_cuts());
-    let part = sought(&evaluation, &Learned::nothing());
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     // Tiles of two levels, shifted from row to row.
     let grey = Grey::new(SIZE[0], SIZE[1], |x, y| {
         let row = y / 14;
         let tile = (x + 5 * row) / 17;
         if (tile + row) % 2 == 0 { 60.0 } else { 170.0 }
     });
-    let options = Options {
-        limits: Limits {
+    let options = SearchOptions {
+        limits: SearchLimits {
             chains: 20,
             settled: 4,
             searched: 2,
             paths: 500,
         },
-        ..Options::default()
+        ..SearchOptions::default()
     };
     let finding = look(&part, &grey, &options);
     assert!(finding.cut);
@@ -400,16 +406,18 @@ fn clutter_bounds_the_work() {
 #[test]
 fn a_part_is_followed_from_picture_to_picture() {
     let evaluation = part(&cube_with_cuts());
-    let subject = Subject::new(&evaluation.brep, evaluation.resolution).unwrap();
-    let part = sought(&evaluation, &Learned::nothing());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
     let mut last = pose(&subject, [3.1, 2.4, 2.6], [0.0; 3]);
     for k in 1..5u32 {
         let turn = 0.04 * f64::from(k);
         let eye = [3.1 - turn, 2.4 + turn, 2.6 - 0.5 * turn];
         let truth = pose(&subject, eye, [0.0; 3]);
         let grey = picture(&subject, &truth, u64::from(k));
-        let seen = Picture::new(&grey, &detector());
-        let next = looked(&part, &seen, &Options::default(), |look| look.follow(&last));
+        let seen = ImageFeatures::new(&grey, &detector());
+        let next = looked(&part, &seen, &SearchOptions::default(), |look| {
+            look.follow(&last)
+        });
         let next = next.unwrap_or_else(|| panic!("lost in picture {k}"));
         let [moved, turned] = off(&part, &next.pose, &truth);
         assert!(moved < 0.02 && turned < 0.02, "{k}: {moved} {turned}");

@@ -4,13 +4,13 @@
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_detect::PixelMask;
-use premio_predict::agreement::{Agreement, matches};
-use premio_predict::outline::Source;
-use premio_predict::outline::stage::StageError;
-use premio_predict::prediction::{self, Draft, Memory, prediction};
+use premio_predict::image_arcs::ArcSource;
+use premio_predict::image_arcs::lit_scene::StageError;
+use premio_predict::prediction::{self, Memory, PredictedImage, prediction};
+use premio_predict::prediction_score::{PredictionScore, matches};
+use premio_predict::prepared_part::PreparedPart;
 use premio_predict::render;
 use premio_predict::setup::Setup;
-use premio_predict::subject::Subject;
 use premio_tests::parts::{cube_with_cuts, plate, tee};
 use premio_tests::random;
 use serde_json::{Value, json};
@@ -31,7 +31,7 @@ fn part(json: &Value) -> Evaluation {
 
 /// A small picture of a part from one direction, lit from another, both in the part's size about its
 /// middle.
-fn setup(subject: &Subject<'_>, eye: [f64; 3], light: [f64; 3], more: &str) -> Setup {
+fn setup(subject: &PreparedPart<'_>, eye: [f64; 3], light: [f64; 3], more: &str) -> Setup {
     let at = |d: [f64; 3]| {
         let [x, y, z] = [0, 1, 2].map(|i| subject.centre[i] + subject.radius * d[i]);
         format!("[{x}, {y}, {z}]")
@@ -45,9 +45,9 @@ fn setup(subject: &Subject<'_>, eye: [f64; 3], light: [f64; 3], more: &str) -> S
 }
 
 fn with_draft<T>(
-    subject: &Subject<'_>,
+    subject: &PreparedPart<'_>,
     setup: &Setup,
-    ask: impl FnOnce(&Draft<'_>) -> T,
+    ask: impl FnOnce(&PredictedImage<'_>) -> T,
 ) -> Result<T, StageError> {
     prediction::with_draft(subject, None, setup, &mut Memory::default(), ask)
 }
@@ -76,7 +76,11 @@ const PLACES: [([f64; 3], [f64; 3]); 3] = [
 
 /// What a region shows is what a ray through any of its points meets, and the lights that reach it are
 /// those that rays find, but next to arcs.
-fn regions_show_what_rays_meet(draft: &Draft<'_>, context: &str, wrong: &mut Vec<String>) -> usize {
+fn regions_show_what_rays_meet(
+    draft: &PredictedImage<'_>,
+    context: &str,
+    wrong: &mut Vec<String>,
+) -> usize {
     let [width, height] = draft.conditions.sensor.resolution;
     let near = draft.ink.bitmap().grown(1);
     let mut asked = 0;
@@ -113,7 +117,7 @@ fn regions_of_parts_show_what_rays_meet() {
     let mut wrong = Vec::new();
     for (name, json) in parts {
         let part = part(&json);
-        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
         for (k, (eye, light)) in PLACES.into_iter().enumerate() {
             let setup = setup(&subject, eye, light, "");
             let asked = with_draft(&subject, &setup, |draft| {
@@ -148,7 +152,7 @@ fn regions_of_named_cases_show_what_rays_meet() {
         let Some(band) = part.view_resolution() else {
             continue;
         };
-        let Ok(subject) = Subject::new(&part.brep, band) else {
+        let Ok(subject) = PreparedPart::new(&part.brep, band) else {
             continue;
         };
         let (eye, light) = PLACES[seen % PLACES.len()];
@@ -191,7 +195,7 @@ fn regions_of_random_trees_show_what_rays_meet() {
         let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
             continue;
         };
-        let Ok(subject) = Subject::new(&part.brep, part.resolution) else {
+        let Ok(subject) = PreparedPart::new(&part.brep, part.resolution) else {
             continue;
         };
         let (eye, light) = places[seed as usize % places.len()];
@@ -227,7 +231,7 @@ fn a_sliver_between_a_limb_and_an_edge_parts_what_is_beside_it() {
         {"prim": "block", "size": [6.0, 6.0, 6.0], "transform": [{"translate": [-3, -3, 1.0]}]},
     ]});
     let part = part(&ball);
-    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
     for k in 0..24 {
         // The limb touches the rim where it is seen from next to the plane of the tangent cone.
         let tilt = 0.2 + 0.04 * f64::from(k);
@@ -253,7 +257,7 @@ fn predicted_pixels_are_those_of_rays() {
         ("cone", cone_on_a_table()),
     ] {
         let part = part(&json);
-        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
         let (eye, light) = PLACES[0];
         let setup = setup(
             &subject,
@@ -290,7 +294,7 @@ fn features_are_found_as_predicted() {
     let mut all = Vec::new();
     for json in [cube_with_cuts(), ring(), cone_on_a_table(), plate(2, 1.0)] {
         let part = part(&json);
-        let subject = Subject::new(&part.brep, part.resolution).unwrap();
+        let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
         for (eye, light) in PLACES {
             let setup = setup(&subject, eye, light, more);
             with_draft(&subject, &setup, |draft| {
@@ -309,7 +313,7 @@ fn features_are_found_as_predicted() {
             .unwrap();
         }
     }
-    let agreement = Agreement::new(all.iter());
+    let agreement = PredictionScore::new(all.iter());
     assert!(agreement.features > 100, "{}", agreement.features);
     assert!(agreement.baseline_same < 0.9, "too easy: {agreement:?}");
     assert!(agreement.same >= 0.95, "{agreement:?}");
@@ -327,14 +331,14 @@ fn a_shadow_lies_where_it_is_cast() {
         {"prim": "block", "size": [1.0, 1.0, 2.0], "transform": [{"translate": [-1, 0, 0]}]},
     ]});
     let part = part(&json);
-    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
     let text = "[camera]\neye = [6, -14, 16]\n[[light]]\ndirection = [-1, 0, 1]\n";
     let setup = Setup::from_toml(text).unwrap();
     with_draft(&subject, &setup, |draft| {
         let shadows = draft
             .arcs
             .iter()
-            .filter(|a| matches!(a.source, Source::EdgeShadow { .. }));
+            .filter(|a| matches!(a.source, ArcSource::EdgeShadow { .. }));
         let project = |x: f64, y: f64| {
             let p = draft
                 .stage
@@ -395,17 +399,19 @@ fn a_shadow_lies_where_it_is_cast() {
 #[test]
 fn a_light_beside_the_camera_casts_no_shadow_that_is_seen() {
     let part = part(&ring());
-    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
     let place = PLACES[0].0;
-    let is_of_light = |source: &Source| {
+    let is_of_light = |source: &ArcSource| {
         matches!(
             source,
-            Source::EdgeShadow { .. } | Source::LimbShadow { .. } | Source::Terminator { .. }
+            ArcSource::EdgeShadow { .. }
+                | ArcSource::LimbShadow { .. }
+                | ArcSource::Terminator { .. }
         )
     };
     let shadows = |light: [f64; 3]| {
         let setup = setup(&subject, place, light, "");
-        let ask = |draft: &Draft<'_>| {
+        let ask = |draft: &PredictedImage<'_>| {
             let mut wrong = Vec::new();
             regions_show_what_rays_meet(draft, "a light by the camera", &mut wrong);
             assert!(wrong.is_empty(), "{wrong:#?}");
@@ -420,14 +426,14 @@ fn a_light_beside_the_camera_casts_no_shadow_that_is_seen() {
 #[test]
 fn a_highlight_lies_where_the_light_is_mirrored() {
     let part = part(&json!({"prim": "sphere", "r": 1.0}));
-    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
     let text = "material = \"plastic\"\n[camera]\neye = [50, 0, 0]\n[sensor]\nfocal = 150\n[[light]]\ndirection = [1, 1, 0]\n";
     let setup = Setup::from_toml(text).unwrap();
     with_draft(&subject, &setup, |draft| {
         let glow = draft
             .arcs
             .iter()
-            .find(|a| matches!(a.source, Source::Highlight { .. }))
+            .find(|a| matches!(a.source, ArcSource::Highlight { .. }))
             .unwrap();
         let count = glow.line.points.len() as f64;
         let sum = glow
@@ -453,7 +459,7 @@ fn a_highlight_lies_where_the_light_is_mirrored() {
 #[test]
 fn what_cannot_be_is_told() {
     let part = part(&cube_with_cuts());
-    let subject = Subject::new(&part.brep, part.resolution).unwrap();
+    let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
     let told = |text: &str| {
         let setup = Setup::from_toml(text).unwrap();
         with_draft(&subject, &setup, |_| ())

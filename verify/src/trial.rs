@@ -2,8 +2,8 @@
 //! nothing is outside the box, the volumes of unions and intersections add up, and, if asked for, no
 //! piece of a view is wrong and no contour missing.
 
-use crate::checks::{Check, Checker, Finding, Report, Subject, ViewChecks, views};
-use crate::generator::model::{Kind, Model, Operation};
+use crate::checks::{Check, CheckReport, CheckSubject, Checker, Finding, ViewChecks, views};
+use crate::generator::model::{ModelNodeKind, ModelOperation, PartModel};
 use crate::generator::write::{Format, read, write};
 use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
@@ -25,7 +25,7 @@ pub const VIEWS: [&str; 5] = [
 
 /// What to ask of a tree, and how.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
-pub struct Terms {
+pub struct TrialConfig {
     /// The resolution, in the model's unit; by default 1e-11 of its size.
     pub resolution: Option<f64>,
     /// Whether close calls are refused.
@@ -48,7 +48,7 @@ pub struct Terms {
 /// What can be wrong with an answer.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Wrong {
+pub enum FailureKind {
     /// The boundary breaks a rule.
     Topology,
     /// The volume is not the rays'.
@@ -81,7 +81,7 @@ pub enum Wrong {
     Input,
 }
 
-impl Wrong {
+impl FailureKind {
     /// The name, as it is written in the summary.
     pub fn name(self) -> &'static str {
         match self {
@@ -108,14 +108,14 @@ impl Wrong {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fault {
     /// Of what kind.
-    pub kind: Wrong,
+    pub kind: FailureKind,
     /// What is wrong.
     pub text: String,
 }
 
 /// The measures of a solid.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Measures {
+pub struct TrialMeasures {
     /// The volume, in cubic units.
     pub volume: f64,
     /// The area, in square units.
@@ -131,7 +131,7 @@ pub struct Measures {
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// All that was asked holds.
-    Right(Measures),
+    Right(TrialMeasures),
     /// There is no answer, for this reason.
     Refused(String),
     /// An answer, or none, that is wrong in these ways.
@@ -140,7 +140,7 @@ pub enum Verdict {
 
 /// The outcome of a trial.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Outcome {
+pub struct TrialOutcome {
     /// How it ended.
     pub verdict: Verdict,
     /// How many decisions were close.
@@ -150,9 +150,9 @@ pub struct Outcome {
     pub untold: Vec<String>,
 }
 
-impl Outcome {
+impl TrialOutcome {
     /// One thing wrong.
-    pub fn wrong(kind: Wrong, text: impl Into<String>) -> Self {
+    pub fn wrong(kind: FailureKind, text: impl Into<String>) -> Self {
         let text = text.into();
         Self {
             verdict: Verdict::Wrong(vec![Fault { kind, text }]),
@@ -184,9 +184,9 @@ pub fn reason(text: &str) -> String {
 }
 
 /// The same as [`examine`], with a panic as something wrong.
-pub fn guarded(model: &Model, terms: &Terms) -> Outcome {
+pub fn guarded(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     catch_unwind(AssertUnwindSafe(|| examine(model, terms)))
-        .unwrap_or_else(|panic| Outcome::wrong(Wrong::Panic, message(&*panic)))
+        .unwrap_or_else(|panic| TrialOutcome::wrong(FailureKind::Panic, message(&*panic)))
 }
 
 /// What a panic said.
@@ -199,11 +199,11 @@ pub fn message(panic: &(dyn Any + Send)) -> &str {
 }
 
 /// Puts a tree to the trial.
-pub fn examine(model: &Model, terms: &Terms) -> Outcome {
+pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     let description = match read(&write(model, Format::Json), Format::Json) {
         Ok(description) => description,
         Err(error) if error.kind == ErrorKind::Limit => return refused(error.to_string(), 0),
-        Err(error) => return Outcome::wrong(Wrong::Input, error.to_string()),
+        Err(error) => return TrialOutcome::wrong(FailureKind::Input, error.to_string()),
     };
     let evaluation = match evaluate(&description.tree, &options(terms)) {
         Ok(evaluation) => evaluation,
@@ -240,40 +240,40 @@ pub fn examine(model: &Model, terms: &Terms) -> Outcome {
         false => Verdict::Wrong(faults),
     };
     let untold = report.checks_with(Finding::Untold).map(text).collect();
-    Outcome {
+    TrialOutcome {
         verdict,
         close_calls,
         untold,
     }
 }
 
-fn refused(text: String, close_calls: usize) -> Outcome {
-    Outcome {
+fn refused(text: String, close_calls: usize) -> TrialOutcome {
+    TrialOutcome {
         verdict: Verdict::Refused(text),
         close_calls,
         untold: Vec::new(),
     }
 }
 
-fn options(terms: &Terms) -> EvaluationOptions {
+fn options(terms: &TrialConfig) -> EvaluationOptions {
     EvaluationOptions {
         resolution: terms.resolution,
         ..EvaluationOptions::default()
     }
 }
 
-fn faults(report: &Report) -> Vec<Fault> {
+fn faults(report: &CheckReport) -> Vec<Fault> {
     let fault = |check: &Check| {
         let kind = match check.subject {
-            Subject::Topology => Wrong::Topology,
-            Subject::Volume => Wrong::Volume,
-            Subject::Bounds => Wrong::Bounds,
-            Subject::View(_) => Wrong::View,
-            Subject::Contours(_) => Wrong::Contours,
-            Subject::Outline(_) => Wrong::Outline,
-            Subject::Sheet(_) => Wrong::Sheet,
-            Subject::Step => Wrong::Step,
-            Subject::Mesh => Wrong::Mesh,
+            CheckSubject::Topology => FailureKind::Topology,
+            CheckSubject::Volume => FailureKind::Volume,
+            CheckSubject::Bounds => FailureKind::Bounds,
+            CheckSubject::View(_) => FailureKind::View,
+            CheckSubject::Contours(_) => FailureKind::Contours,
+            CheckSubject::Outline(_) => FailureKind::Outline,
+            CheckSubject::Sheet(_) => FailureKind::Sheet,
+            CheckSubject::Step => FailureKind::Step,
+            CheckSubject::Mesh => FailureKind::Mesh,
         };
         let text = text(check);
         Fault { kind, text }
@@ -285,10 +285,10 @@ fn text(check: &Check) -> String {
     format!("{}: {}", check.subject, check.detail)
 }
 
-fn measures(evaluation: &Evaluation) -> Measures {
+fn measures(evaluation: &Evaluation) -> TrialMeasures {
     let (brep, mass) = (&evaluation.brep, evaluation.mass());
     let bounds = (!brep.topology.faces.is_empty()).then(|| evaluation.tight_bounds());
-    Measures {
+    TrialMeasures {
         volume: mass.volume,
         area: mass.area,
         bounds: bounds.map(|b| [b.min, b.max]),
@@ -297,13 +297,13 @@ fn measures(evaluation: &Evaluation) -> Measures {
 }
 
 /// Where the boundary is another with no decision made in doubles.
-fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &Terms) -> Option<Fault> {
+fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &TrialConfig) -> Option<Fault> {
     let unfiltered = EvaluationOptions {
         digits: Arithmetic::Extended,
         ..options(terms)
     };
     let fault = |text| Fault {
-        kind: Wrong::Filter,
+        kind: FailureKind::Filter,
         text,
     };
     let again = match evaluate(tree, &unfiltered) {
@@ -324,31 +324,31 @@ const OFF: f64 = 1.0 / (1u64 << 31) as f64;
 
 /// Where the volumes of the root's first child A, of what is done to it B, and of their union,
 /// intersection and difference do not add up.
-fn sums(model: &Model, evaluation: &Evaluation, terms: &Terms) -> Option<Fault> {
+fn sums(model: &PartModel, evaluation: &Evaluation, terms: &TrialConfig) -> Option<Fault> {
     if model.leaves().count() > FEW {
         return None;
     }
-    let Kind::Operation(op, _) = model.nodes().last()?.kind else {
+    let ModelNodeKind::Operation(op, _) = model.nodes().last()?.kind else {
         return None;
     };
     let [a, b] = sides(model, op)?;
-    let join = |op| Model::join(op, &[&a, &b], Vec::new());
+    let join = |op| PartModel::join(op, &[&a, &b], Vec::new());
     let known = evaluation.mass().volume;
-    let volume = |of: Operation| match of == op {
+    let volume = |of: ModelOperation| match of == op {
         true => Some(known),
         false => volume(&join(of), terms),
     };
     let [both, either, rest] = [
-        volume(Operation::Intersection)?,
-        volume(Operation::Union)?,
-        volume(Operation::Difference)?,
+        volume(ModelOperation::Intersection)?,
+        volume(ModelOperation::Union)?,
+        volume(ModelOperation::Difference)?,
     ];
     let [of_a, of_b] = [self::volume(&a, terms)?, self::volume(&b, terms)?];
     let off = [either + both - of_a - of_b, rest + both - of_a];
     let size = size(&[&a, &b]).max(evaluation.bounds.diagonal());
     let allowed = size.powi(3) * OFF + 6.0 * size.powi(2) * evaluation.resolution;
     off.iter().any(|v| v.abs() > allowed).then(|| Fault {
-        kind: Wrong::Sums,
+        kind: FailureKind::Sums,
         text: format!(
             "A {of_a}, B {of_b}, A or B {either}, A and B {both}, A less B {rest}: off by {off:?}"
         ),
@@ -356,30 +356,30 @@ fn sums(model: &Model, evaluation: &Evaluation, terms: &Terms) -> Option<Fault> 
 }
 
 /// The root's first child, and its other children as one: joined, or what they have in common.
-fn sides(model: &Model, op: Operation) -> Option<[Model; 2]> {
+fn sides(model: &PartModel, op: ModelOperation) -> Option<[PartModel; 2]> {
     let mut children = model.children();
     if children.len() < 2 {
         return None;
     }
-    let others: Vec<Model> = children.split_off(1);
-    let others: Vec<&Model> = others.iter().collect();
+    let others: Vec<PartModel> = children.split_off(1);
+    let others: Vec<&PartModel> = others.iter().collect();
     let b = match (op, others.as_slice()) {
         (_, [only]) => (*only).clone(),
-        (Operation::Intersection, _) => Model::join(op, &others, Vec::new()),
-        _ => Model::join(Operation::Union, &others, Vec::new()),
+        (ModelOperation::Intersection, _) => PartModel::join(op, &others, Vec::new()),
+        _ => PartModel::join(ModelOperation::Union, &others, Vec::new()),
     };
     Some([children.pop()?, b])
 }
 
 /// The volume of a tree; none where it is refused, which is for a trial of its own.
-fn volume(model: &Model, terms: &Terms) -> Option<f64> {
+fn volume(model: &PartModel, terms: &TrialConfig) -> Option<f64> {
     let tree = read(&write(model, Format::Json), Format::Json).ok()?.tree;
     let part = evaluate(&tree, &options(terms)).ok()?;
     Some(part.mass().volume)
 }
 
 /// The diagonal of a box that holds these models, or more.
-fn size(models: &[&Model]) -> f64 {
+fn size(models: &[&PartModel]) -> f64 {
     let boxes = models.iter().filter_map(|model| {
         let text = write(model, Format::Json);
         let tree = read(&text, Format::Json).ok()?.tree;
@@ -393,9 +393,9 @@ fn size(models: &[&Model]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generator::model::{Primitive, Step};
+    use crate::generator::model::{ModelPrimitive, ModelStep};
 
-    const TERMS: Terms = Terms {
+    const TERMS: TrialConfig = TrialConfig {
         resolution: None,
         strict: false,
         views: false,
@@ -405,25 +405,25 @@ mod tests {
         rays: 2000,
     };
 
-    fn two(op: Operation, apart: f64) -> Model {
-        let block = Model::new(Primitive::Block([1.0; 3]), Vec::new());
-        let other = Model::new(
-            Primitive::Block([1.0; 3]),
-            vec![Step::Shift([apart, 0.0, 0.0])],
+    fn two(op: ModelOperation, apart: f64) -> PartModel {
+        let block = PartModel::new(ModelPrimitive::Block([1.0; 3]), Vec::new());
+        let other = PartModel::new(
+            ModelPrimitive::Block([1.0; 3]),
+            vec![ModelStep::Shift([apart, 0.0, 0.0])],
         );
-        Model::join(op, &[&block, &other], Vec::new())
+        PartModel::join(op, &[&block, &other], Vec::new())
     }
 
     #[test]
     fn a_right_answer_has_its_measures() {
-        let outcome = examine(&two(Operation::Union, 0.5), &TERMS);
+        let outcome = examine(&two(ModelOperation::Union, 0.5), &TERMS);
         let Verdict::Right(measures) = outcome.verdict else {
             panic!("{outcome:?}")
         };
         assert!((measures.volume - 1.5).abs() < 1e-12 && (measures.area - 8.0).abs() < 1e-12);
         assert_eq!(measures.bounds, Some([[0.0; 3], [1.5, 1.0, 1.0]]));
         assert_eq!(measures.solids, 1);
-        let empty = examine(&two(Operation::Intersection, 2.0), &TERMS);
+        let empty = examine(&two(ModelOperation::Intersection, 2.0), &TERMS);
         let Verdict::Right(measures) = empty.verdict else {
             panic!("{empty:?}")
         };
@@ -432,10 +432,10 @@ mod tests {
 
     #[test]
     fn close_calls_are_counted_and_refused_if_strict() {
-        let model = two(Operation::Union, 1.0 + 1e-10);
+        let model = two(ModelOperation::Union, 1.0 + 1e-10);
         let outcome = examine(&model, &TERMS);
         assert!(matches!(outcome.verdict, Verdict::Right(_)) && outcome.close_calls > 0);
-        let strict = Terms {
+        let strict = TrialConfig {
             strict: true,
             ..TERMS
         };
@@ -447,11 +447,11 @@ mod tests {
 
     #[test]
     fn what_is_beyond_a_limit_is_refused() {
-        let coarse = Terms {
+        let coarse = TrialConfig {
             resolution: Some(1.0),
             ..TERMS
         };
-        let refused = examine(&two(Operation::Union, 0.5), &coarse);
+        let refused = examine(&two(ModelOperation::Union, 0.5), &coarse);
         assert!(
             matches!(refused.verdict, Verdict::Refused(_)),
             "{refused:?}"
@@ -460,11 +460,11 @@ mod tests {
 
     #[test]
     fn views_are_counted_again() {
-        let views = Terms {
+        let views = TrialConfig {
             views: true,
             ..TERMS
         };
-        let outcome = examine(&two(Operation::Difference, 0.5), &views);
+        let outcome = examine(&two(ModelOperation::Difference, 0.5), &views);
         assert!(matches!(outcome.verdict, Verdict::Right(_)), "{outcome:?}");
     }
 

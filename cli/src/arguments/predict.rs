@@ -161,7 +161,7 @@ pub struct ModelRunOptions {
     pub output: ModelOutput,
     /// Predict one of N shards only, I from 1: for `model merge`
     #[arg(long, value_name = "I/N", value_parser = shard)]
-    pub shard: Option<Shard>,
+    pub shard: Option<ShardChoice>,
     /// Go on with a run that was interrupted
     #[arg(long, conflicts_with = "shard", requires = "output")]
     pub resume: bool,
@@ -172,14 +172,14 @@ pub struct ModelRunOptions {
 
 /// One of several shards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
+pub struct ShardChoice {
     /// Which, from 1.
     pub index: usize,
     /// Of how many.
     pub of: usize,
 }
 
-fn shard(text: &str) -> Result<Shard, String> {
+fn shard(text: &str) -> Result<ShardChoice, String> {
     let wrong = || "expected a shard and their number, as 2/5".to_owned();
     let (index, of) = text.split_once('/').ok_or_else(wrong)?;
     let (index, of) = (
@@ -187,7 +187,7 @@ fn shard(text: &str) -> Result<Shard, String> {
         of.parse().map_err(|_| wrong())?,
     );
     match (1..=of).contains(&index) {
-        true => Ok(Shard { index, of }),
+        true => Ok(ShardChoice { index, of }),
         false => Err(wrong()),
     }
 }

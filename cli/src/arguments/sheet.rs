@@ -6,7 +6,7 @@ use premio_drawing::sheet::{Angle, Paper, Scale, StandardView};
 
 /// A sheet of paper with a frame and a title block; any of these asks for it.
 #[derive(Debug, Args)]
-pub struct SheetOptions {
+pub struct SheetArguments {
     /// Views beside one another on a sheet, in place of a camera (svg, dxf)
     #[arg(long, value_enum, value_name = "VIEWS", value_delimiter = ',',
           conflicts_with_all = ["view", "camera", "eye", "target", "up", "focal", "ortho"])]
@@ -29,7 +29,7 @@ pub struct SheetOptions {
     pub projection: Option<ProjectionAngle>,
 }
 
-impl SheetOptions {
+impl SheetArguments {
     /// Whether a sheet is asked for.
     pub fn is_asked(&self) -> bool {
         !self.views.is_empty()

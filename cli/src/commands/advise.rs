@@ -1,15 +1,15 @@
 //! `premio advise`: where camera and light are best.
 
 use crate::arguments::{AdviseOptions, GoalName};
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::{CliError, Reporter};
 use crate::interrupt::pool;
 use crate::session::Session;
 use crate::setup::setups;
 use crate::{input, output};
 use nalgebra::Vector3;
-use premio_predict::advise::{Goal, Judge, Placing, SCHEMA, Score};
-use premio_predict::outline::Source;
+use premio_predict::image_arcs::ArcSource;
 use premio_predict::prediction::Memory;
+use premio_predict::sensor_planning::{Goal, Placing, SCHEMA, Score, SetupScorer};
 use premio_predict::setup::Setup;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -26,7 +26,7 @@ struct Advised {
     /// are greater.
     cost: Cost,
     /// The features that the best is likely to find, and this one is not.
-    lost: Vec<Source>,
+    lost: Vec<ArcSource>,
 }
 
 #[derive(Debug, Serialize)]
@@ -52,14 +52,14 @@ struct Advice {
 const STEP: f64 = 0.1;
 
 /// Runs the command.
-pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &AdviseOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let file = setups(&options.setups, session)?;
     let setups = &file.value;
     let part = input::part(&options.description, session)?;
     let (subject, finishes) = file.subject(&part, &setups.conditions)?;
     file.check_places(&subject, session)?;
-    let predicates = Judge {
+    let predicates = SetupScorer {
         subject: &subject,
         finishes: &finishes,
         setups,
@@ -74,7 +74,7 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
     let tried = setups.len();
     let Some(first) = scored.first().cloned() else {
         let name = options.setups.display();
-        return Err(Failure::input(format!(
+        return Err(CliError::input(format!(
             "{name}: in none of {tried} setups the part is seen"
         )));
     };
@@ -104,7 +104,11 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), Failure> {
 const BATCH: usize = 256;
 
 /// The best of all setups, the best first, and in how many something is seen.
-fn scores(predicates: &Judge<'_>, keep: usize, voice: Voice) -> (Vec<(Placing, Score)>, usize) {
+fn scores(
+    predicates: &SetupScorer<'_>,
+    keep: usize,
+    voice: Reporter,
+) -> (Vec<(Placing, Score)>, usize) {
     let count = predicates.setups.len();
     let bar = voice.progress(count as u64);
     let (mut best, mut seen) = (Vec::new(), 0);
@@ -131,7 +135,11 @@ fn scores(predicates: &Judge<'_>, keep: usize, voice: Voice) -> (Vec<(Placing, S
     (best, seen)
 }
 
-fn advised(predicates: &Judge<'_>, (placing, score): &(Placing, Score), best: &Score) -> Advised {
+fn advised(
+    predicates: &SetupScorer<'_>,
+    (placing, score): &(Placing, Score),
+    best: &Score,
+) -> Advised {
     let Setup { camera, lights, .. } =
         predicates
             .setups

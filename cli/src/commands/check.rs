@@ -1,14 +1,14 @@
 //! `premio check`: every self-check there is, on one description.
 
 use crate::arguments::CheckOptions;
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::session::Session;
 use crate::{input, output};
-use premio_verify::checks::{Check, Checker, Finding, Report};
+use premio_verify::checks::{Check, CheckReport, Checker, Finding};
 use serde::Serialize;
 
 /// Runs the command.
-pub fn run(options: &CheckOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &CheckOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let part = input::part(&options.description, session)?;
     let checker = Checker::new(&part.description.tree, &part.evaluation);
@@ -22,7 +22,7 @@ pub fn run(options: &CheckOptions, session: Session) -> Result<(), Failure> {
     // A check that does not tell has not failed.
     match report.checks_with(Finding::Fails).next() {
         None => Ok(()),
-        Some(_) => Err(Failure::Check),
+        Some(_) => Err(CliError::Check),
     }
 }
 
@@ -42,7 +42,7 @@ struct One<'a> {
 }
 
 impl<'a> Checked<'a> {
-    fn new(report: &'a Report) -> Self {
+    fn new(report: &'a CheckReport) -> Self {
         let one = |check: &'a Check| One {
             subject: check.subject.to_string(),
             finding: match check.finding {

@@ -2,15 +2,15 @@
 
 use super::render::rendered;
 use crate::arguments::CompareOptions;
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::output::Outputs;
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input};
 use premio_detect::PixelMask;
-use premio_predict::agreement::{Agreement, Match, SCHEMA, matches};
-use premio_predict::outline::Source;
+use premio_predict::image_arcs::ArcSource;
 use premio_predict::prediction::prediction;
+use premio_predict::prediction_score::{MatchedArc, PredictionScore, SCHEMA, matches};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -19,17 +19,17 @@ use std::fmt::Write;
 struct Comparison {
     schema: &'static str,
     /// Edges and limbs.
-    outlines: Agreement,
+    outlines: PredictionScore,
     /// Boundaries of shadows, and outlines of highlights.
-    lighting: Agreement,
-    features: Vec<Match>,
+    lighting: PredictionScore,
+    features: Vec<MatchedArc>,
 }
 
 /// The seed of a rendered image's noise, other than that of the predicted one.
 const OTHER: u64 = 0x5eed;
 
 /// Runs the command.
-pub fn run(options: &CompareOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &CompareOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     if let Some(path) = &options.overlay {
         imaging::overlay_format(path)?;
@@ -44,7 +44,7 @@ pub fn run(options: &CompareOptions, session: Session) -> Result<(), Failure> {
         .filter(|i| [i.width, i.height] != [width, height])
     {
         let path = options.image.as_deref().unwrap_or(&options.setup).display();
-        return Err(Failure::input(format!(
+        return Err(CliError::input(format!(
             "{path}: found {} x {} pixels, expected the setup's {width} x {height}",
             image.width, image.height
         )));
@@ -56,11 +56,12 @@ pub fn run(options: &CompareOptions, session: Session) -> Result<(), Failure> {
         let image = taken.unwrap_or_else(|| rendered(draft, seed, voice));
         let (_, found) = draft.evidence_in(&image, &PixelMask::full(width, height));
         let features = matches(&predicted.arcs, &found, setup.conditions.detector.shortest);
-        let outline = |m: &&Match| matches!(m.source, Source::Edge { .. } | Source::Limb { .. });
+        let outline =
+            |m: &&MatchedArc| matches!(m.source, ArcSource::Edge { .. } | ArcSource::Limb { .. });
         let comparison = Comparison {
             schema: SCHEMA,
-            outlines: Agreement::new(features.iter().filter(outline)),
-            lighting: Agreement::new(features.iter().filter(|m| !outline(m))),
+            outlines: PredictionScore::new(features.iter().filter(outline)),
+            lighting: PredictionScore::new(features.iter().filter(|m| !outline(m))),
             features,
         };
         (comparison, predicted, image)

@@ -1,8 +1,8 @@
 //! `premio contours`: what a camera sees.
 
 use crate::arguments::{CameraChoice, ContoursFormat, ContoursOptions, ViewName};
-use crate::diagnostics::Failure;
-use crate::input::Part;
+use crate::diagnostics::CliError;
+use crate::input::EvaluatedPart;
 use crate::session::Session;
 use crate::{input, output};
 use nalgebra::Point3;
@@ -15,14 +15,14 @@ use premio_visibility::{Camera, Contours, contours};
 use std::path::Path;
 
 /// Runs the command.
-pub fn run(options: &ContoursOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &ContoursOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let to = options.output.path();
     let format = options
         .output
         .format(options.format)
-        .map_err(Failure::input)?;
-    let chosen = options.camera.choice().map_err(Failure::input)?;
+        .map_err(CliError::input)?;
+    let chosen = options.camera.choice().map_err(CliError::input)?;
     if options.sheet.is_asked() {
         return output::write(on_sheet(options, format, session)?, to);
     }
@@ -45,10 +45,14 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), Failure> {
 }
 
 /// What a camera sees; `given` is how it was given, where that was not by the name of a view.
-fn seen(part: &Part, camera: &Camera, given: Option<&Given<'_>>) -> Result<Contours, Failure> {
+fn seen(
+    part: &EvaluatedPart,
+    camera: &Camera,
+    given: Option<&Given<'_>>,
+) -> Result<Contours, CliError> {
     let resolution = input::view_resolution(part)?;
     let failed = |error: ViewError| {
-        let beyond = || Failure::limit(format!("{}: {error}", part.name));
+        let beyond = || CliError::limit(format!("{}: {error}", part.name));
         let refused = given.and_then(|given| given.refused(&error));
         refused.unwrap_or_else(beyond)
     };
@@ -69,10 +73,10 @@ fn on_sheet(
     options: &ContoursOptions,
     format: ContoursFormat,
     session: Session,
-) -> Result<String, Failure> {
+) -> Result<String, CliError> {
     let write = match format {
         ContoursFormat::Json => {
-            return Err(Failure::input(
+            return Err(CliError::input(
                 "a sheet goes with --format svg and dxf only",
             ));
         }
@@ -82,7 +86,7 @@ fn on_sheet(
     let asked = &options.sheet;
     let given = match asked.views.is_empty() {
         true => {
-            let chosen = options.camera.choice().map_err(Failure::input)?;
+            let chosen = options.camera.choice().map_err(CliError::input)?;
             Some(Given::read(chosen, session)?)
         }
         false => None,
@@ -111,7 +115,7 @@ fn on_sheet(
         scale: asked.scale,
         angle: asked.projection.map(Angle::from).unwrap_or_default(),
     };
-    let sheet = Sheet::new(views, how).map_err(|e| Failure::input(e.to_string()))?;
+    let sheet = Sheet::new(views, how).map_err(|e| CliError::input(e.to_string()))?;
     Ok(write(&sheet))
 }
 
@@ -131,7 +135,7 @@ enum Given<'a> {
 }
 
 impl<'a> Given<'a> {
-    fn read(choice: CameraChoice<'a>, session: Session) -> Result<Self, Failure> {
+    fn read(choice: CameraChoice<'a>, session: Session) -> Result<Self, CliError> {
         match choice {
             CameraChoice::File(path) => {
                 let (camera, text) = input::camera_of_file(path, session)?;
@@ -141,12 +145,12 @@ impl<'a> Given<'a> {
         }
     }
 
-    fn camera(&self, part: &Part) -> Result<Camera, Failure> {
-        let failed = |e: CameraError| Failure::input(e.to_string());
+    fn camera(&self, part: &EvaluatedPart) -> Result<Camera, CliError> {
+        let failed = |e: CameraError| CliError::input(e.to_string());
         match self {
             Self::File { camera, .. } => Ok(camera.clone()),
             Self::Choice(CameraChoice::File(path)) => {
-                Err(Failure::input(format!("{}: is not read", path.display())))
+                Err(CliError::input(format!("{}: is not read", path.display())))
             }
             Self::Choice(CameraChoice::Named(name)) => {
                 let Extent { middle, size } = Extent::new(part);
@@ -172,7 +176,7 @@ impl<'a> Given<'a> {
     }
 
     /// That the camera is refused where the eye is; none where that is not what is wrong.
-    fn refused(&self, error: &ViewError) -> Option<Failure> {
+    fn refused(&self, error: &ViewError) -> Option<CliError> {
         let words = match error {
             ViewError::EyeInside(_) => "lies inside the material of the part",
             ViewError::EyeFar { .. } => "is too far from the part for its resolution",
@@ -184,7 +188,7 @@ impl<'a> Given<'a> {
                 Some(input::refused_camera(path, text, &error))
             }
             Self::Choice(CameraChoice::Eye { .. }) => {
-                Some(Failure::input(format!("`--eye` is wrong: {error}")))
+                Some(CliError::input(format!("`--eye` is wrong: {error}")))
             }
             Self::Choice(_) => None,
         }
@@ -193,16 +197,16 @@ impl<'a> Given<'a> {
 
 /// The cameras of views of a part about its middle, each once.
 fn cameras(
-    part: &Part,
+    part: &EvaluatedPart,
     names: &[ViewName],
-) -> Result<Vec<(Option<StandardView>, Camera)>, Failure> {
+) -> Result<Vec<(Option<StandardView>, Camera)>, CliError> {
     let Extent { middle, size } = Extent::new(part);
     let mut cameras: Vec<(Option<StandardView>, Camera)> = Vec::new();
     for &name in names {
         let view = StandardView::from(name);
         if !cameras.iter().any(|(known, _)| *known == Some(view)) {
             let camera = view.camera(middle, size);
-            let camera = camera.map_err(|e| Failure::limit(e.to_string()))?;
+            let camera = camera.map_err(|e| CliError::limit(e.to_string()))?;
             cameras.push((Some(view), camera));
         }
     }
@@ -216,7 +220,7 @@ struct Extent {
 }
 
 impl Extent {
-    fn new(part: &Part) -> Self {
+    fn new(part: &EvaluatedPart) -> Self {
         let evaluation = &part.evaluation;
         if evaluation.brep.topology.faces.is_empty() {
             let middle = Point3::origin();

@@ -1,7 +1,7 @@
 //! `premio convert`: a description in another language.
 
 use crate::arguments::ConvertOptions;
-use crate::diagnostics::{Failure, counted};
+use crate::diagnostics::{CliError, counted};
 use crate::session::Session;
 use crate::{input, output};
 use premio_csg::reader::{self, Format, Program, ReadOptions};
@@ -9,12 +9,12 @@ use premio_csg::tree::Tree;
 use premio_csg::writer;
 
 /// Runs the command.
-pub fn run(options: &ConvertOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &ConvertOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let name = options.file.display().to_string();
     let target = input::format(&options.output)?;
     let source = source(&name, options, session)?;
-    let failed = |e: &dyn std::fmt::Display| Failure::limit(format!("{name}: {e}"));
+    let failed = |e: &dyn std::fmt::Display| CliError::limit(format!("{name}: {e}"));
     let tree = source.builder.finish(source.part).map_err(|e| failed(&e))?;
     if tree.is_empty() {
         voice.note(&name, input::EMPTY);
@@ -22,29 +22,29 @@ pub fn run(options: &ConvertOptions, session: Session) -> Result<(), Failure> {
     let text = match writer::write(&source.builder, source.part, target) {
         Err(e @ writer::WriteError::ReadOnly) => {
             let file = options.output.display();
-            return Err(Failure::input(format!("{file}: {e}")));
+            return Err(CliError::input(format!("{file}: {e}")));
         }
         written => written.map_err(|e| failed(&e))?,
     };
     // What was written is read again: only that tells what the language could not hold.
     let read = reader::read(&name, text.as_bytes(), target, &ReadOptions::default());
-    let again = read.map_err(|e| Failure::limit(format!("what was written is not read: {e}")))?;
+    let again = read.map_err(|e| CliError::limit(format!("what was written is not read: {e}")))?;
     let digits = source.digits.filter(|_| again.digits.is_none());
     let lost = [lost(&tree, &again.tree, target), digits.map(coarse)];
     for told in lost.into_iter().flatten() {
         if options.exact {
-            return Err(Failure::limit(format!("{name}: {told}")));
+            return Err(CliError::limit(format!("{name}: {told}")));
         }
         voice.note(&name, &told);
     }
     output::write(&text, Some(&options.output))
 }
 
-fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Program, Failure> {
+fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Program, CliError> {
     let format = input::format(&options.file)?;
     let text = session.limits.read(&options.file)?;
     let how = options.reading.options();
-    let source = reader::parse(name, &text, format, &how).map_err(|e| Failure::read(&e, &text))?;
+    let source = reader::parse(name, &text, format, &how).map_err(|e| CliError::read(&e, &text))?;
     session.voice.notes(name, &text, &source.notes);
     Ok(source)
 }

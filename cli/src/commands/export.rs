@@ -1,8 +1,8 @@
 //! `premio export`: the boundary in a format of choice.
 
 use crate::arguments::{ExportFormat, ExportOptions, StepProtocol};
-use crate::diagnostics::{Failure, Voice, counted};
-use crate::input::Part;
+use crate::diagnostics::{CliError, Reporter, counted};
+use crate::input::EvaluatedPart;
 use crate::session::Session;
 use crate::{input, output};
 use premio_csg::object_model::ObjectModel;
@@ -14,12 +14,12 @@ use premio_kernel::unit::Unit;
 use premio_text::number;
 
 /// Runs the command.
-pub fn run(options: &ExportOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &ExportOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let format = options
         .output
         .format(options.format)
-        .map_err(Failure::input)?;
+        .map_err(CliError::input)?;
     refuse_what_is_not_asked(options, format)?;
     let part = input::part(&options.description, session)?;
     let to = options.output.path();
@@ -29,7 +29,7 @@ pub fn run(options: &ExportOptions, session: Session) -> Result<(), Failure> {
         ExportFormat::Step => as_step(&part, options)?.into_bytes(),
         ExportFormat::Stl | ExportFormat::Obj | ExportFormat::Glb | ExportFormat::ThreeMf => {
             check_fineness(&part, options)?;
-            let failed = |e| Failure::limit(format!("{}: {e}", part.name));
+            let failed = |e| CliError::limit(format!("{}: {e}", part.name));
             as_triangles(&part, options, format).map_err(failed)?
         }
     };
@@ -40,7 +40,7 @@ pub fn run(options: &ExportOptions, session: Session) -> Result<(), Failure> {
 }
 
 /// An option that says nothing in the format is a mistake.
-fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Result<(), Failure> {
+fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Result<(), CliError> {
     use ExportFormat::{Glb, Obj, Step, Stl, ThreeMf};
     let meshes: &[ExportFormat] = &[Stl, Obj, Glb, ThreeMf];
     let given: [(&str, bool, &[ExportFormat]); 6] = [
@@ -55,7 +55,7 @@ fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Re
         if is_given && !formats.contains(&format) {
             let formats: Vec<&str> = formats.iter().map(|f| f.name()).collect();
             let formats = formats.join(", ");
-            return Err(Failure::input(format!(
+            return Err(CliError::input(format!(
                 "`--{option}` does not go with `--format {}`, only with {formats}",
                 format.name()
             )));
@@ -64,7 +64,7 @@ fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Re
     Ok(())
 }
 
-fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
+fn as_step(part: &EvaluatedPart, options: &ExportOptions) -> Result<String, CliError> {
     let evaluation = &part.evaluation;
     let size = evaluation.tight_bounds().diagonal();
     let how = step::StepOptions {
@@ -77,7 +77,7 @@ fn as_step(part: &Part, options: &ExportOptions) -> Result<String, Failure> {
         accuracy: options.accuracy.unwrap_or(step::ACCURACY * size),
         resolution: evaluation.resolution_of_doubles(),
     };
-    step::write(&evaluation.brep, &how).map_err(|e| Failure::limit(format!("{}: {e}", part.name)))
+    step::write(&evaluation.brep, &how).map_err(|e| CliError::limit(format!("{}: {e}", part.name)))
 }
 
 /// The finest triangles that are made: of the part's size, and in degrees. A circle has some thousand
@@ -86,7 +86,7 @@ const FINEST_DEVIATION: f64 = 1.0 / 16_777_216.0;
 const FINEST_ANGLE: f64 = 1.0 / 16.0;
 
 /// Refuses what would take more triangles than anybody waits for; flat faces take few at any fineness.
-fn check_fineness(part: &Part, options: &ExportOptions) -> Result<(), Failure> {
+fn check_fineness(part: &EvaluatedPart, options: &ExportOptions) -> Result<(), CliError> {
     let evaluation = &part.evaluation;
     let brep = &evaluation.brep;
     let is_flat = |face| matches!(brep.surface(face), Surface::Plane(_));
@@ -100,7 +100,7 @@ fn check_fineness(part: &Part, options: &ExportOptions) -> Result<(), Failure> {
     ];
     for (option, asked, least) in finer {
         if let Some(asked) = asked.filter(|asked| *asked < least) {
-            return Err(Failure::limit(format!(
+            return Err(CliError::limit(format!(
                 "{}: `--{option} {}` is beyond the limit, expected at least {least:.1e}",
                 part.name,
                 number(asked)
@@ -111,7 +111,7 @@ fn check_fineness(part: &Part, options: &ExportOptions) -> Result<(), Failure> {
 }
 
 fn as_triangles(
-    part: &Part,
+    part: &EvaluatedPart,
     options: &ExportOptions,
     format: ExportFormat,
 ) -> Result<Vec<u8>, MeshError> {
@@ -143,7 +143,7 @@ fn unit(options: &ExportOptions) -> Unit {
 }
 
 /// Says what became of edges of more than two faces.
-fn tell_parted(part: &Part, format: ExportFormat, voice: Voice) {
+fn tell_parted(part: &EvaluatedPart, format: ExportFormat, voice: Reporter) {
     let parted = part.evaluation.brep.topology.edges_of_many_faces();
     if parted == 0 {
         return;

@@ -1,30 +1,30 @@
 //! `premio fuzz`: random trees by the thousand.
 
 use crate::arguments::{FuzzOptions, ModelFormat, ProfileChoice};
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::{CliError, Reporter};
 use crate::fuzz::Error;
 use crate::fuzz::archive::Archive;
-use crate::fuzz::run::{How, run as run_all};
-use crate::fuzz::state::{Plan, State, Writing};
-use crate::fuzz::summary::Summary;
+use crate::fuzz::run::{RunConfig, run as run_all};
+use crate::fuzz::state::{Plan, RunState, Writing};
+use crate::fuzz::summary::RunSummary;
 use crate::fuzz::worker::{Worker, serve};
 use crate::interrupt::{stop, threads};
 use crate::output;
 use crate::session::Session;
 use premio_verify::generator::profile::Profile;
 use premio_verify::generator::write::Format;
-use premio_verify::trial::Terms;
+use premio_verify::trial::TrialConfig;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-impl From<Error> for Failure {
+impl From<Error> for CliError {
     fn from(error: Error) -> Self {
         Self::input(error.to_string())
     }
 }
 
 /// Runs the command.
-pub fn run(options: &FuzzOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &FuzzOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let limit = Duration::from_secs_f64(options.limit);
     if let Some(terms) = &options.worker {
@@ -36,11 +36,11 @@ pub fn run(options: &FuzzOptions, session: Session) -> Result<(), Failure> {
         None => None,
     };
     let state = match &options.state {
-        Some(path) => State::load(path, plan, &session.limits)?,
-        None => State::new(plan),
+        Some(path) => RunState::load(path, plan, &session.limits)?,
+        None => RunState::new(plan),
     };
     let stop = stop()?;
-    let how = How {
+    let how = RunConfig {
         threads: threads(options.threads),
         stop: &stop,
         state: options.state.as_deref(),
@@ -64,37 +64,37 @@ pub fn run(options: &FuzzOptions, session: Session) -> Result<(), Failure> {
         archive.finish(&state)?;
     }
     let stopped = stop.load(Ordering::Relaxed);
-    tell(options, voice, &Summary::new(&state), stopped)
+    tell(options, voice, &RunSummary::new(&state), stopped)
 }
 
 fn tell(
     options: &FuzzOptions,
-    voice: Voice,
-    summary: &Summary,
+    voice: Reporter,
+    summary: &RunSummary,
     stopped: bool,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let to = options.output.as_deref();
     match voice.is_json() {
         true => output::json(summary, to)?,
         false => output::write(summary.to_string(), to)?,
     }
     match (stopped, summary.wrong) {
-        (true, _) => Err(Failure::Interrupted),
+        (true, _) => Err(CliError::Interrupted),
         (false, 0) => Ok(()),
-        (false, _) => Err(Failure::Check),
+        (false, _) => Err(CliError::Check),
     }
 }
 
-fn worker(terms: &str, limit: Duration) -> Result<(), Failure> {
-    let terms: Terms = serde_json::from_str(terms)
-        .map_err(|e| Failure::input(format!("the terms of a worker: {e}")))?;
+fn worker(terms: &str, limit: Duration) -> Result<(), CliError> {
+    let terms: TrialConfig = serde_json::from_str(terms)
+        .map_err(|e| CliError::input(format!("the terms of a worker: {e}")))?;
     serve(&terms, limit).map_err(|e| Error::Worker(e).into())
 }
 
-fn plan(options: &FuzzOptions) -> Result<Plan, Failure> {
+fn plan(options: &FuzzOptions) -> Result<Plan, CliError> {
     if options.from.checked_add(options.count).is_none() {
         let text = "--from and --count: expected seeds of at most 64 bits";
-        return Err(Failure::input(text));
+        return Err(CliError::input(text));
     }
     let mut profiles: Vec<Profile> = Vec::new();
     for choice in &options.profile {
@@ -109,7 +109,7 @@ fn plan(options: &FuzzOptions) -> Result<Plan, Failure> {
         profiles,
         from: options.from,
         count: options.count,
-        terms: Terms {
+        terms: TrialConfig {
             resolution: options.resolution,
             strict: options.strict,
             views: options.views,

@@ -1,8 +1,8 @@
 //! `premio info`: measures of the solid.
 
 use crate::arguments::InfoOptions;
-use crate::diagnostics::Failure;
-use crate::input::{self, Part};
+use crate::diagnostics::CliError;
+use crate::input::{self, EvaluatedPart};
 use crate::output;
 use crate::session::Session;
 use premio_kernel::number::predicates::{CloseCall, DecisionStats};
@@ -65,7 +65,7 @@ struct Seconds {
 }
 
 /// Runs the command.
-pub fn run(options: &InfoOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &InfoOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let part = input::part(&options.description, session)?;
     let working = voice.working("measuring");
@@ -79,7 +79,7 @@ pub fn run(options: &InfoOptions, session: Session) -> Result<(), Failure> {
 }
 
 impl Info {
-    fn new(part: &Part) -> Self {
+    fn new(part: &EvaluatedPart) -> Self {
         let brep = &part.evaluation.brep;
         let topology = &brep.topology;
         let mut faces_by_surface = BTreeMap::new();
@@ -120,7 +120,7 @@ impl Info {
 
 impl Bounds {
     /// The box of the boundary; a point at the origin for an empty solid.
-    fn new(part: &Part) -> Self {
+    fn new(part: &EvaluatedPart) -> Self {
         let evaluation = &part.evaluation;
         if evaluation.brep.topology.faces.is_empty() {
             let (min, max) = ([0.0; 3], [0.0; 3]);

@@ -1,13 +1,13 @@
 //! `premio man` and `premio completions`: what the command line says of itself, for the shell.
 
 use crate::arguments::{Arguments, CompletionsOptions, ManOptions};
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::output;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 
 /// Writes the manual page of the program, or of one of its commands.
-pub fn man(options: &ManOptions) -> Result<(), Failure> {
+pub fn man(options: &ManOptions) -> Result<(), CliError> {
     let program = built();
     let page = match &options.command {
         None => Man::new(program),
@@ -15,12 +15,12 @@ pub fn man(options: &ManOptions) -> Result<(), Failure> {
     };
     let mut text = Vec::new();
     let rendered = page.render(&mut text);
-    rendered.map_err(|e| Failure::input(e.to_string()))?;
+    rendered.map_err(|e| CliError::input(e.to_string()))?;
     output::write(text, options.output.path())
 }
 
 /// Writes the completions of a shell.
-pub fn completions(options: &CompletionsOptions) -> Result<(), Failure> {
+pub fn completions(options: &CompletionsOptions) -> Result<(), CliError> {
     let mut text = Vec::new();
     clap_complete::generate(options.shell, &mut built(), "premio", &mut text);
     output::write(text, options.output.path())
@@ -33,12 +33,12 @@ fn built() -> Command {
 }
 
 /// A command of the program.
-fn command(program: &Command, name: &str) -> Result<Command, Failure> {
+fn command(program: &Command, name: &str) -> Result<Command, CliError> {
     let found = program.find_subcommand(name).cloned();
     found.ok_or_else(|| {
         let names: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
         let names = names.join(", ");
-        Failure::input(format!(
+        CliError::input(format!(
             "found no command `{name}`, expected one of {names}"
         ))
     })

@@ -1,8 +1,8 @@
 //! `premio match` and `premio track`: where the part is in pictures.
 
 use crate::arguments::{MatchOptions, SoughtOptions, StrategyName, TrackOptions};
-use crate::diagnostics::Failure;
-use crate::input::{self, Part as Described, PinholeFile};
+use crate::diagnostics::CliError;
+use crate::input::{self, EvaluatedPart, PinholeFile};
 use crate::interrupt::stop;
 use crate::model::file::ReadModel;
 use crate::output::Outputs;
@@ -12,14 +12,14 @@ use nalgebra::Isometry3;
 use premio_csg::reader::Format;
 use premio_detect::{Detector, Grey};
 use premio_matching::camera::Pinhole;
+use premio_matching::detectability_prior::DetectabilityPrior;
 use premio_matching::explain::explained;
-use premio_matching::finding::{Finding, Match, Options};
-use premio_matching::learned::Learned;
-use premio_matching::look::Look;
-use premio_matching::part::Part;
-use premio_matching::picture::{Picture, detector, reduced};
-use premio_matching::report::{BOP, Report, Seconds};
+use premio_matching::image_features::{ImageFeatures, detector, downsampled};
+use premio_matching::matcher::Matcher;
+use premio_matching::part::SoughtPart;
+use premio_matching::report::{BOP, MatchReport, MatchSeconds};
 use premio_matching::search::Strategy;
+use premio_matching::search_result::{PartMatch, SearchOptions, SearchResult};
 use premio_predict::model::file::ModelFile;
 use premio_predict::model::record::Record;
 use std::fmt::Write;
@@ -30,28 +30,28 @@ use std::time::Instant;
 /// What is looked for.
 struct Sought {
     name: String,
-    described: Described,
+    described: EvaluatedPart,
     band: f64,
     records: Vec<Record>,
     detector: Detector,
     camera: PinholeFile,
-    options: Options,
+    options: SearchOptions,
 }
 
 /// What was seen in one picture.
 struct Sight {
     grey: Grey,
-    picture: Picture,
-    finding: Finding,
-    report: Report,
+    picture: ImageFeatures,
+    finding: SearchResult,
+    report: MatchReport,
 }
 
 /// Runs `match`.
-pub fn find(options: &MatchOptions, session: Session) -> Result<(), Failure> {
+pub fn find(options: &MatchOptions, session: Session) -> Result<(), CliError> {
     let sought_for = read(&options.sought, session)?;
     let learned = sought_for.learned(&options.sought);
     let part = sought_for.part(&learned);
-    let look = |picture: &Picture, camera: &Pinhole| {
+    let look = |picture: &ImageFeatures, camera: &Pinhole| {
         let look = sought_for.look(&part, &learned, picture, camera);
         (look.find(), None)
     };
@@ -63,43 +63,45 @@ pub fn find(options: &MatchOptions, session: Session) -> Result<(), Failure> {
 }
 
 /// Runs `track`.
-pub fn track(options: &TrackOptions, session: Session) -> Result<(), Failure> {
+pub fn track(options: &TrackOptions, session: Session) -> Result<(), CliError> {
     let sought = read(&options.sought, session)?;
     let learned = sought.learned(&options.sought);
     let part = sought.part(&learned);
     let mut last: Option<Isometry3<f64>> = None;
-    let look = |picture: &Picture, camera: &Pinhole| {
+    let look = |picture: &ImageFeatures, camera: &Pinhole| {
         let look = sought.look(&part, &learned, picture, camera);
         let (finding, anew) = look.next(last.as_ref());
         let accepted = finding.best().filter(|m| m.is_accepted());
-        last = accepted.map(|m: &Match| m.pose);
+        last = accepted.map(|m: &PartMatch| m.pose);
         (finding, Some(anew))
     };
     each(&options.sought, &sought, &part, look, |_| None, session)
 }
 
 impl Sought {
-    fn learned(&self, options: &SoughtOptions) -> Learned {
+    fn learned(&self, options: &SoughtOptions) -> DetectabilityPrior {
         match (options.uniform, self.records.is_empty()) {
-            (true, _) => Learned::uniform(),
-            (false, true) => Learned::nothing(),
-            (false, false) => Learned::new(&self.records, &self.described.evaluation.brep),
+            (true, _) => DetectabilityPrior::uniform(),
+            (false, true) => DetectabilityPrior::nothing(),
+            (false, false) => {
+                DetectabilityPrior::new(&self.records, &self.described.evaluation.brep)
+            }
         }
     }
 
-    fn part(&self, learned: &Learned) -> Part<'_> {
-        Part::new(&self.described.evaluation.brep, self.band, learned)
+    fn part(&self, learned: &DetectabilityPrior) -> SoughtPart<'_> {
+        SoughtPart::new(&self.described.evaluation.brep, self.band, learned)
     }
 
     /// The part looked for in a picture.
     fn look<'a>(
         &'a self,
-        part: &'a Part<'a>,
-        learned: &'a Learned,
-        picture: &'a Picture,
+        part: &'a SoughtPart<'a>,
+        learned: &'a DetectabilityPrior,
+        picture: &'a ImageFeatures,
         camera: &'a Pinhole,
-    ) -> Look<'a> {
-        Look {
+    ) -> Matcher<'a> {
+        Matcher {
             part,
             learned,
             picture,
@@ -110,12 +112,12 @@ impl Sought {
 }
 
 /// Reads what is looked for.
-fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
+fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
     let path = &options.model;
     let name = path.display().to_string();
     if options.overlay.is_some() && options.images.len() != 1 {
         let said = "--overlay is of one picture, and there are";
-        return Err(Failure::input(format!("{said} {}", options.images.len())));
+        return Err(CliError::input(format!("{said} {}", options.images.len())));
     }
     if let Some(path) = &options.overlay {
         imaging::format(path)?;
@@ -136,7 +138,7 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
             let expected =
                 "expected a model (.model), or a description (.padl, .csg, .json, .asc or .pov)";
             let said = format!("{name}: found a file of an unknown kind, {expected}");
-            return Err(Failure::input(said));
+            return Err(CliError::input(said));
         }
     };
     let detector = match &options.detector {
@@ -145,7 +147,7 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
     };
     let band = input::view_resolution(&described)?;
     if described.evaluation.brep.topology.faces.is_empty() {
-        return Err(Failure::input(format!(
+        return Err(CliError::input(format!(
             "{name}: the part is empty: there is nothing to be found"
         )));
     }
@@ -156,13 +158,13 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
         records,
         detector,
         camera,
-        options: Options {
+        options: SearchOptions {
             strategy: match options.strategy {
                 StrategyName::Bounded => Strategy::Bounded,
                 StrategyName::Deepening => Strategy::Deepening,
                 StrategyName::Stepped => Strategy::Stepped,
             },
-            ..Options::default()
+            ..SearchOptions::default()
         },
     })
 }
@@ -171,11 +173,11 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, Failure> {
 fn each(
     options: &SoughtOptions,
     sought: &Sought,
-    part: &Part<'_>,
-    mut look: impl FnMut(&Picture, &Pinhole) -> (Finding, Option<bool>),
+    part: &SoughtPart<'_>,
+    mut look: impl FnMut(&ImageFeatures, &Pinhole) -> (SearchResult, Option<bool>),
     told: impl Fn(&Sight) -> Option<String>,
     session: Session,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let voice = session.voice;
     let stop = stop()?;
     let bar = voice.progress(options.images.len() as u64);
@@ -185,7 +187,7 @@ fn each(
     for (number, path) in (1..).zip(&options.images) {
         if stop.load(Ordering::Relaxed) {
             bar.finish_and_clear();
-            return Err(Failure::Interrupted);
+            return Err(CliError::Interrupted);
         }
         let sight = match at(sought, part, path, &mut look, session) {
             Ok(sight) => sight,
@@ -239,26 +241,26 @@ fn each(
 /// Looks at one picture.
 fn at(
     sought: &Sought,
-    part: &Part<'_>,
+    part: &SoughtPart<'_>,
     path: &Path,
-    look: &mut impl FnMut(&Picture, &Pinhole) -> (Finding, Option<bool>),
+    look: &mut impl FnMut(&ImageFeatures, &Pinhole) -> (SearchResult, Option<bool>),
     session: Session,
-) -> Result<Sight, Failure> {
+) -> Result<Sight, CliError> {
     let grey = imaging::read(path, session)?;
     let size = [grey.width, grey.height];
     let camera = sought.camera.for_picture(path, size)?;
     let started = Instant::now();
-    let (grey, camera, scale) = reduced(grey, camera);
-    let picture = Picture::new(&grey, &sought.detector);
+    let (grey, camera, scale) = downsampled(grey, camera);
+    let picture = ImageFeatures::new(&grey, &sought.detector);
     let features = started.elapsed().as_secs_f64();
     let (finding, anew) = look(&picture, &camera);
-    let seconds = Seconds {
+    let seconds = MatchSeconds {
         features,
         matching: started.elapsed().as_secs_f64() - features,
     };
     let image = path.display().to_string();
     let names = [image.as_str(), sought.name.as_str()];
-    let mut report = Report::new(part, names, &picture, &finding, (scale, seconds));
+    let mut report = MatchReport::new(part, names, &picture, &finding, (scale, seconds));
     report.anew = anew;
     Ok(Sight {
         grey,

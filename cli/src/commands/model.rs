@@ -1,12 +1,12 @@
 //! `premio model`: what many predictions come to.
 
 use crate::arguments::{MergeOptions, ModelCommand, ModelOptions, ModelRunOptions, RecordsFormat};
-use crate::diagnostics::Failure;
-use crate::input::Part;
+use crate::diagnostics::CliError;
+use crate::input::EvaluatedPart;
 use crate::interrupt::{pool, stop};
 use crate::model::format;
 use crate::model::run::{Workers, summed};
-use crate::model::shard::{Head, Run, Shard, digest};
+use crate::model::shard::{Run, Shard, ShardHead, digest};
 use crate::session::Session;
 use crate::setup::{SetupFile, setups};
 use crate::{input, output};
@@ -22,22 +22,22 @@ use std::path::{Path, PathBuf};
 const SHARD: usize = 256;
 
 /// Runs the command.
-pub fn run(options: &ModelOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &ModelOptions, session: Session) -> Result<(), CliError> {
     match (&options.command, &options.run.0) {
         (Some(ModelCommand::Merge(merge)), _) => merged(merge, session),
         (None, Some(run)) => predicted(run, session),
-        (None, None) => Err(Failure::input(
+        (None, None) => Err(CliError::input(
             "expected a description and --setups, or `merge`",
         )),
     }
 }
 
-fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), Failure> {
+fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let format = format::asked(&options.output)?;
     if options.shard.is_some() && format != RecordsFormat::Jsonl {
         let said = "a shard is lines of JSON: what is a table is the model, by `model merge`";
-        return Err(Failure::input(said));
+        return Err(CliError::input(said));
     }
     let file = setups(&options.setups, session)?;
     let part = input::part(&options.description, session)?;
@@ -64,7 +64,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), Failure>
     let to = options.output.output.as_deref();
     if let Some(shard) = options.shard {
         let Some(path) = to else {
-            return Err(Failure::input("a shard is a file: expected -o OUT"));
+            return Err(CliError::input("a shard is a file: expected -o OUT"));
         };
         let shard = [shard.index, shard.of];
         bar.set_length((run.setups.len() / shard[1]) as u64);
@@ -82,7 +82,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), Failure>
     bar.finish_and_clear();
     match &made {
         // A run that is interrupted goes on from what there is.
-        Err(Failure::Interrupted) => (),
+        Err(CliError::Interrupted) => (),
         Err(_) if folder.was_there => (),
         _ => folder.remove(),
     }
@@ -95,8 +95,8 @@ fn whole(
     folder: &Parts,
     bar: &ProgressBar,
     session: Session,
-    write: impl Fn(Vec<Record>) -> Result<(), Failure>,
-) -> Result<(), Failure> {
+    write: impl Fn(Vec<Record>) -> Result<(), CliError>,
+) -> Result<(), CliError> {
     let run = workers.run;
     let of = run.setups.len().div_ceil(SHARD).max(1);
     for index in 1..=of {
@@ -114,7 +114,7 @@ fn whole(
 }
 
 /// What this part in these setups is told from others by: all that observations depend on.
-fn told_apart(part: &Part, options: &ModelRunOptions, setups: &str) -> String {
+fn told_apart(part: &EvaluatedPart, options: &ModelRunOptions, setups: &str) -> String {
     let description = part.written.text.as_bytes();
     let taken = options.description.reading.part.clone().unwrap_or_default();
     let resolution = part.evaluation.resolution.to_bits().to_le_bytes();
@@ -138,9 +138,9 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(output: Option<&Path>, resume: bool) -> Result<Self, Failure> {
+    fn new(output: Option<&Path>, resume: bool) -> Result<Self, CliError> {
         let Some(output) = output.filter(|path| !output::is_no_file(path)) else {
-            let folder = tempfile::tempdir().map_err(|e| Failure::input(e.to_string()))?;
+            let folder = tempfile::tempdir().map_err(|e| CliError::input(e.to_string()))?;
             let path = folder.path().to_owned();
             return Ok(Self {
                 path,
@@ -151,12 +151,12 @@ impl Parts {
         let mut name = output.as_os_str().to_owned();
         name.push(".parts");
         let path = PathBuf::from(name);
-        let failed = |e: std::io::Error| Failure::input(format!("{}: {e}", path.display()));
+        let failed = |e: std::io::Error| CliError::input(format!("{}: {e}", path.display()));
         let was_there = path.exists();
         if was_there && !resume {
             let said =
                 "is left of a run that was interrupted: --resume goes on with it; or remove it";
-            return Err(Failure::input(format!("{}: {said}", path.display())));
+            return Err(CliError::input(format!("{}: {said}", path.display())));
         }
         if !was_there {
             fs::create_dir(&path).map_err(failed)?;
@@ -175,14 +175,14 @@ impl Parts {
         run: &Run,
         shard: [usize; 2],
         session: Session,
-    ) -> Result<bool, Failure> {
+    ) -> Result<bool, CliError> {
         if !path.exists() {
             return Ok(false);
         }
         let found = Shard::open(path, session)?.head;
-        match found == Head::new(run, shard) {
+        match found == ShardHead::new(run, shard) {
             true => Ok(true),
-            false => Err(Failure::input(format!(
+            false => Err(CliError::input(format!(
                 "{}: found a shard of another run, of {}: remove {}",
                 path.display(),
                 found.part,
@@ -210,7 +210,7 @@ impl Parts {
     }
 }
 
-fn opened(paths: &[PathBuf], session: Session) -> Result<Vec<Shard>, Failure> {
+fn opened(paths: &[PathBuf], session: Session) -> Result<Vec<Shard>, CliError> {
     let open = |path: &PathBuf| Shard::open(path, session);
     paths.iter().map(open).collect()
 }
@@ -220,7 +220,7 @@ fn summed_up(
     shards: &[Shard],
     brep: &Brep,
     session: Session,
-) -> Result<Vec<Record>, Failure> {
+) -> Result<Vec<Record>, CliError> {
     let bar = session.voice.progress(2 * run.setups.len() as u64);
     let limits = SourceLimits::of_part(brep).with_setups(&run.setups);
     let all = summed(run, shards, &limits, &bar);
@@ -229,10 +229,10 @@ fn summed_up(
 }
 
 /// Whether shards are all those of one run, in order.
-fn check_run(shards: &[Shard]) -> Result<(), Failure> {
+fn check_run(shards: &[Shard]) -> Result<(), CliError> {
     let first = &shards[0].head;
     let said = |shard: &Shard, words: String| {
-        Err(Failure::input(format!(
+        Err(CliError::input(format!(
             "{}:1:1: {words}",
             shard.path().display()
         )))
@@ -255,25 +255,25 @@ fn check_run(shards: &[Shard]) -> Result<(), Failure> {
     }
     match (shards.len(), first.shard[1]) {
         (found, of) if found == of => Ok(()),
-        (found, of) => Err(Failure::input(format!(
+        (found, of) => Err(CliError::input(format!(
             "expected {of} shards, found {found}"
         ))),
     }
 }
 
-fn merged(options: &MergeOptions, session: Session) -> Result<(), Failure> {
+fn merged(options: &MergeOptions, session: Session) -> Result<(), CliError> {
     let format = format::asked(&options.output)?;
     let mut shards = opened(&options.shards, session)?;
     shards.sort_by_key(|shard| shard.head.shard[0]);
     check_run(&shards)?;
     let first = shards[0].head.clone();
     let setups = Setups::from_toml(&first.setups)
-        .map_err(|error| Failure::setup("the setups of the shards", &error, &first.setups))?;
+        .map_err(|error| CliError::setup("the setups of the shards", &error, &first.setups))?;
     if setups.len() != first.count {
         let (name, found) = (shards[0].path().display(), first.count);
         let expected = setups.len();
         let said = format!("{name}:1:1: found `count` {found}, expected {expected} setups");
-        return Err(Failure::input(said));
+        return Err(CliError::input(said));
     }
     let run = Run {
         part: first.part,

@@ -1,7 +1,7 @@
 //! `premio predict`: which features a sensor and a detector will find.
 
 use crate::arguments::PredictOptions;
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::output::Outputs;
 use crate::session::Session;
 use crate::setup::setup;
@@ -9,7 +9,7 @@ use crate::{imaging, input};
 use premio_predict::prediction::prediction;
 
 /// Runs the command.
-pub fn run(options: &PredictOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &PredictOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     if let Some(path) = &options.overlay {
         imaging::overlay_format(path)?;

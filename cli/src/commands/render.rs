@@ -1,17 +1,17 @@
 //! `premio render`: the image of a setup, by rays.
 
 use crate::arguments::RenderOptions;
-use crate::diagnostics::{Failure, Voice};
+use crate::diagnostics::{CliError, Reporter};
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input, output};
 use premio_detect::Grey;
-use premio_predict::prediction::Draft;
+use premio_predict::prediction::PredictedImage;
 use premio_predict::render;
 use rayon::prelude::*;
 
 /// Runs the command.
-pub fn run(options: &RenderOptions, session: Session) -> Result<(), Failure> {
+pub fn run(options: &RenderOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     imaging::format(&options.output)?;
     let setup = setup(&options.setup, session)?;
@@ -28,7 +28,7 @@ pub fn run(options: &RenderOptions, session: Session) -> Result<(), Failure> {
 }
 
 /// The image of a draft's setup, by a line of sight through every pixel.
-pub fn rendered(draft: &Draft<'_>, seed: u64, voice: Voice) -> Grey {
+pub fn rendered(draft: &PredictedImage<'_>, seed: u64, voice: Reporter) -> Grey {
     let sensor = &draft.conditions.sensor;
     let [width, height] = sensor.resolution;
     let shading = &draft.shading;

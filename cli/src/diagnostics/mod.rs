@@ -8,7 +8,7 @@ use message::{Level, Message};
 use premio_csg::evaluate::EvaluationError;
 use premio_csg::reader::{ErrorKind, Note, ReadError};
 use premio_kernel::number::predicates::CloseCall;
-use premio_predict::outline::stage::StageError;
+use premio_predict::image_arcs::lit_scene::StageError;
 use premio_predict::setup::SetupError;
 use premio_text::{LineColumn, escape};
 use std::ffi::OsString;
@@ -19,7 +19,7 @@ use std::time::Duration;
 
 /// Why a command ended without its result.
 #[derive(Debug)]
-pub enum Failure {
+pub enum CliError {
     /// The input or the arguments are wrong.
     Input(Box<Message>),
     /// The geometry is beyond a stated limit, or a close call under `--strict`.
@@ -32,7 +32,7 @@ pub enum Failure {
     BrokenPipe,
 }
 
-impl Failure {
+impl CliError {
     /// Wrong input, in a line.
     pub fn input(text: impl Into<String>) -> Self {
         Self::Input(Box::new(Message::plain(text)))
@@ -98,7 +98,7 @@ impl Failure {
 
 /// For whom the program speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Voice {
+pub enum Reporter {
     /// For people.
     #[default]
     Words,
@@ -106,7 +106,7 @@ pub enum Voice {
     Json,
 }
 
-impl Voice {
+impl Reporter {
     /// For programs, if JSON is asked for.
     pub fn new(json: bool) -> Self {
         match json {
@@ -126,13 +126,13 @@ impl Voice {
     }
 
     /// Says what happened, and how the program ends.
-    pub fn fail(self, failure: Failure) -> ExitCode {
+    pub fn fail(self, failure: CliError) -> ExitCode {
         let (message, status) = match failure {
-            Failure::Input(message) => (message, 2),
-            Failure::Limit(message) => (message, 3),
-            Failure::Check => return ExitCode::from(1),
-            Failure::Interrupted => return ExitCode::from(130),
-            Failure::BrokenPipe => return ExitCode::SUCCESS,
+            CliError::Input(message) => (message, 2),
+            CliError::Limit(message) => (message, 3),
+            CliError::Check => return ExitCode::from(1),
+            CliError::Interrupted => return ExitCode::from(130),
+            CliError::BrokenPipe => return ExitCode::SUCCESS,
         };
         match self {
             Self::Words => say(&message.render()),
@@ -146,7 +146,7 @@ impl Voice {
         let text = message.render().to_string();
         let shown = escape::terminal(&text);
         match (message.use_stderr(), self) {
-            (true, Self::Json) => return self.fail(Failure::input(text.trim_end())),
+            (true, Self::Json) => return self.fail(CliError::input(text.trim_end())),
             // Arguments may hold anything.
             (true, Self::Words) if shown != text => say(&shown),
             // A broken pipe behind `--help` is nobody's concern.

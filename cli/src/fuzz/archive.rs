@@ -1,11 +1,11 @@
 //! The models written to a folder, with a manifest of their true measures.
 
 use super::Error;
-use super::state::{Item, State};
+use super::state::{Item, RunState};
 use crate::output;
-use premio_verify::generator::model::Model;
+use premio_verify::generator::model::PartModel;
 use premio_verify::generator::write::{Format, read, write};
-use premio_verify::trial::{Measures, Outcome, Verdict};
+use premio_verify::trial::{TrialMeasures, TrialOutcome, Verdict};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ struct Line<'a> {
     seed: u64,
     /// `right`, and then there are measures; `refused` or `wrong`.
     verdict: &'static str,
-    measures: Option<&'a Measures>,
+    measures: Option<&'a TrialMeasures>,
     files: Vec<Written>,
 }
 
@@ -50,7 +50,12 @@ impl Archive {
     }
 
     /// Writes a model in every format; gives its line of the manifest.
-    pub fn put(&self, item: Item, model: &Model, outcome: &Outcome) -> Result<String, Error> {
+    pub fn put(
+        &self,
+        item: Item,
+        model: &PartModel,
+        outcome: &TrialOutcome,
+    ) -> Result<String, Error> {
         let tree = |text: &str, format| read(text, format).map(|d| d.tree).ok();
         let exact = tree(&write(model, Format::Json), Format::Json);
         let mut files = Vec::new();
@@ -78,7 +83,7 @@ impl Archive {
     }
 
     /// Writes the manifest of all that is done.
-    pub fn finish(&self, state: &State) -> Result<(), Error> {
+    pub fn finish(&self, state: &RunState) -> Result<(), Error> {
         let path = self.folder.join(MANIFEST);
         let mut text = String::new();
         for line in state.tallies.values().flat_map(|t| t.lines.values()) {

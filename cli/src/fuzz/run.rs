@@ -2,12 +2,12 @@
 
 use super::Error;
 use super::archive::Archive;
-use super::state::{Finds, Item, State};
+use super::state::{Finds, Item, RunState};
 use super::worker::Examine;
-use premio_verify::generator::model::Model;
+use premio_verify::generator::model::PartModel;
 use premio_verify::generator::shrink::shrink;
 use premio_verify::generator::write::{Format, write};
-use premio_verify::trial::{Outcome, Verdict, Wrong, reason};
+use premio_verify::trial::{FailureKind, TrialOutcome, Verdict, reason};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 /// How a run is done, besides its plan.
 #[derive(Clone, Copy, Debug)]
-pub struct How<'a> {
+pub struct RunConfig<'a> {
     /// How many threads there are.
     pub threads: usize,
     /// Set where the run is to stop.
@@ -43,13 +43,13 @@ const TRIES_IN_TIME: usize = 30;
 /// What all threads share.
 #[derive(Clone, Copy)]
 struct Shared<'a> {
-    how: &'a How<'a>,
-    state: &'a Mutex<State>,
+    how: &'a RunConfig<'a>,
+    state: &'a Mutex<RunState>,
 }
 
 impl<'a> Shared<'a> {
     /// No thread leaves the state half changed.
-    fn state(&self) -> MutexGuard<'a, State> {
+    fn state(&self) -> MutexGuard<'a, RunState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -61,11 +61,11 @@ impl<'a> Shared<'a> {
 /// Tries what is left of a plan, then makes small what failed, and gives what was found; less where
 /// it is stopped. `make` makes what examines trees, for each thread; `tell` is told how far it is.
 pub fn run<E: Examine>(
-    state: State,
-    how: &How<'_>,
+    state: RunState,
+    how: &RunConfig<'_>,
     make: impl Fn() -> E + Sync,
-    mut tell: impl FnMut(&State),
-) -> Result<State, Error> {
+    mut tell: impl FnMut(&RunState),
+) -> Result<RunState, Error> {
     let shrink = state.plan.shrink;
     let state = Mutex::new(state);
     let shared = Shared { how, state: &state };
@@ -79,7 +79,7 @@ pub fn run<E: Examine>(
 fn try_all<E: Examine>(
     shared: Shared<'_>,
     make: &(impl Fn() -> E + Sync),
-    tell: &mut impl FnMut(&State),
+    tell: &mut impl FnMut(&RunState),
 ) -> Result<(), Error> {
     let next = AtomicU64::new(0);
     let left = {
@@ -124,7 +124,7 @@ fn take(shared: Shared<'_>, next: &AtomicU64) -> Option<(u64, Item)> {
 fn shrink_all<E: Examine>(
     shared: Shared<'_>,
     make: &(impl Fn() -> E + Sync),
-    tell: &mut impl FnMut(&State),
+    tell: &mut impl FnMut(&RunState),
 ) -> Result<(), Error> {
     let jobs = jobs(&shared.state());
     let next = AtomicUsize::new(0);
@@ -155,7 +155,7 @@ fn dispatch<E: Examine>(
     threads: usize,
     make: &(impl Fn() -> E + Sync),
     work: &(impl Fn(&mut E) -> Result<bool, Error> + Sync),
-    tell: &mut impl FnMut(&State),
+    tell: &mut impl FnMut(&RunState),
 ) -> Result<(), Error> {
     let before = shared.state().seconds;
     let started = Instant::now();
@@ -221,7 +221,7 @@ impl Saver {
         last.elapsed() > SAVE.max(SAVING * took)
     }
 
-    fn save(&mut self, state: &State, path: &Path) -> Result<(), Error> {
+    fn save(&mut self, state: &RunState, path: &Path) -> Result<(), Error> {
         let started = Instant::now();
         let saved = state.save(path);
         self.last = Some((Instant::now(), started.elapsed()));
@@ -232,7 +232,7 @@ impl Saver {
 /// In which way a tree fails.
 #[derive(Clone, Debug)]
 enum Way {
-    Wrong(Wrong),
+    Wrong(FailureKind),
     Refused(String),
 }
 
@@ -244,7 +244,7 @@ struct Job {
 }
 
 /// The first finds of each kind and profile that are not small yet.
-fn jobs(state: &State) -> Vec<Job> {
+fn jobs(state: &RunState) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (&profile, tally) in &state.tallies {
         let mut add = |finds: &Finds, most: usize, way: Way| {
@@ -265,7 +265,7 @@ fn jobs(state: &State) -> Vec<Job> {
 }
 
 impl Way {
-    fn is_that_of(&self, outcome: &Outcome) -> bool {
+    fn is_that_of(&self, outcome: &TrialOutcome) -> bool {
         match (self, &outcome.verdict) {
             (Self::Wrong(kind), Verdict::Wrong(faults)) => faults.iter().any(|f| f.kind == *kind),
             (Self::Refused(kind), Verdict::Refused(text)) => reason(text) == *kind,
@@ -276,9 +276,9 @@ impl Way {
 
 impl Job {
     /// The smallest tree that fails in the same way.
-    fn small(&self, examiner: &mut impl Examine) -> Result<Model, Error> {
+    fn small(&self, examiner: &mut impl Examine) -> Result<PartModel, Error> {
         let tries = match self.way {
-            Way::Wrong(Wrong::Time) => TRIES_IN_TIME,
+            Way::Wrong(FailureKind::Time) => TRIES_IN_TIME,
             _ => TRIES,
         };
         let mut error = None;
@@ -294,7 +294,7 @@ impl Job {
         error.map_or(Ok(small), |e| Err(Error::Worker(e)))
     }
 
-    fn put(&self, state: &mut State, text: String) {
+    fn put(&self, state: &mut RunState, text: String) {
         let Some(tally) = state.tallies.get_mut(&self.item.profile) else {
             return;
         };
@@ -312,10 +312,10 @@ impl Job {
 mod tests {
     use super::*;
     use crate::fuzz::state::Plan;
-    use crate::fuzz::summary::Summary;
-    use premio_verify::generator::model::{Kind, Primitive};
+    use crate::fuzz::summary::RunSummary;
+    use premio_verify::generator::model::{ModelNodeKind, ModelPrimitive};
     use premio_verify::generator::profile::Profile;
-    use premio_verify::trial::{Measures, Terms};
+    use premio_verify::trial::{TrialConfig, TrialMeasures};
     use std::io;
 
     /// Holds that tori are wrong and spheres refused; stops after some trees.
@@ -325,31 +325,31 @@ mod tests {
     }
 
     impl Examine for Planted<'_> {
-        fn examine(&mut self, model: &Model) -> io::Result<Option<Outcome>> {
+        fn examine(&mut self, model: &PartModel) -> io::Result<Option<TrialOutcome>> {
             let left = self.left.load(Ordering::Relaxed);
             self.left.store(left.saturating_sub(1), Ordering::Relaxed);
             if left == 0 {
                 self.stop.store(true, Ordering::Relaxed);
                 return Ok(None);
             }
-            let has = |is: fn(&Primitive) -> bool| {
-                let leaf = |kind: &Kind| matches!(kind, Kind::Leaf(p) if is(p));
+            let has = |is: fn(&ModelPrimitive) -> bool| {
+                let leaf = |kind: &ModelNodeKind| matches!(kind, ModelNodeKind::Leaf(p) if is(p));
                 model.nodes().iter().any(|node| leaf(&node.kind))
             };
-            if has(|p| matches!(p, Primitive::Torus { .. })) {
-                return Ok(Some(Outcome::wrong(Wrong::Volume, "a torus")));
+            if has(|p| matches!(p, ModelPrimitive::Torus { .. })) {
+                return Ok(Some(TrialOutcome::wrong(FailureKind::Volume, "a torus")));
             }
-            let measures = Measures {
+            let measures = TrialMeasures {
                 volume: 1.0,
                 area: 1.0,
                 bounds: None,
                 solids: 1,
             };
-            let verdict = match has(|p| matches!(p, Primitive::Sphere(_))) {
+            let verdict = match has(|p| matches!(p, ModelPrimitive::Sphere(_))) {
                 true => Verdict::Refused(format!("{} nodes", model.nodes().len())),
                 false => Verdict::Right(measures),
             };
-            Ok(Some(Outcome {
+            Ok(Some(TrialOutcome {
                 verdict,
                 close_calls: 1,
                 untold: Vec::new(),
@@ -362,7 +362,7 @@ mod tests {
             profiles: vec![Profile::Grid, Profile::Tangent],
             from: 100,
             count: 50,
-            terms: Terms::default(),
+            terms: TrialConfig::default(),
             limit: 1.0,
             shrink: true,
             write: None,
@@ -370,9 +370,9 @@ mod tests {
     }
 
     /// A run that is stopped after so many questions.
-    fn ran(state: State, threads: usize, questions: usize, path: Option<&Path>) -> State {
+    fn ran(state: RunState, threads: usize, questions: usize, path: Option<&Path>) -> RunState {
         let (stop, left) = (AtomicBool::new(false), AtomicUsize::new(questions));
-        let how = How {
+        let how = RunConfig {
             threads,
             stop: &stop,
             state: path,
@@ -386,24 +386,24 @@ mod tests {
     }
 
     /// What does not depend on time.
-    fn told(state: &State) -> serde_json::Value {
-        let mut told = serde_json::to_value(Summary::new(state)).unwrap();
+    fn told(state: &RunState) -> serde_json::Value {
+        let mut told = serde_json::to_value(RunSummary::new(state)).unwrap();
         told.as_object_mut().unwrap().remove("seconds");
         told
     }
 
     #[test]
     fn the_summary_is_the_same_for_any_number_of_threads() {
-        let one = ran(State::new(plan()), 1, usize::MAX, None);
-        let many = ran(State::new(plan()), 7, usize::MAX, None);
+        let one = ran(RunState::new(plan()), 1, usize::MAX, None);
+        let many = ran(RunState::new(plan()), 7, usize::MAX, None);
         assert_eq!(told(&one), told(&many));
-        let summary = Summary::new(&one);
+        let summary = RunSummary::new(&one);
         assert!(summary.complete && summary.wrong > 0 && summary.trees == 100);
     }
 
     #[test]
     fn failures_are_made_small() {
-        let state = ran(State::new(plan()), 2, usize::MAX, None);
+        let state = ran(RunState::new(plan()), 2, usize::MAX, None);
         for tally in state.tallies.values() {
             let [(_, wrong)] = tally.faults.iter().collect::<Vec<_>>()[..] else {
                 panic!("{tally:?}")
@@ -422,16 +422,16 @@ mod tests {
     fn a_run_that_is_stopped_goes_on() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state.json");
-        let whole = ran(State::new(plan()), 2, usize::MAX, None);
-        let half = ran(State::new(plan()), 2, 50, Some(&path));
+        let whole = ran(RunState::new(plan()), 2, usize::MAX, None);
+        let half = ran(RunState::new(plan()), 2, 50, Some(&path));
         assert!(half.done() > 0 && half.done() < 100);
         // Stopped again, while failures are made small.
-        let read = State::load(&path, plan(), &Default::default()).unwrap();
+        let read = RunState::load(&path, plan(), &Default::default()).unwrap();
         assert_eq!(told(&read), told(&half));
         let most = ran(read, 2, 100, Some(&path));
         assert_eq!(most.done(), 100);
         assert_ne!(told(&most), told(&whole));
-        let read = State::load(&path, plan(), &Default::default()).unwrap();
+        let read = RunState::load(&path, plan(), &Default::default()).unwrap();
         let rest = ran(read, 3, usize::MAX, Some(&path));
         assert_eq!(told(&rest), told(&whole));
     }

@@ -1,13 +1,13 @@
 //! What a run is, and how far it is: kept in a file, so that it goes on where it ended.
 
 use super::Error;
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::output;
-use crate::session::Limits;
+use crate::session::InputLimits;
 use premio_text::Document;
 use premio_text::escape::quote;
 use premio_verify::generator::profile::Profile;
-use premio_verify::trial::{Outcome, Terms, Verdict, Wrong, reason};
+use premio_verify::trial::{FailureKind, TrialConfig, TrialOutcome, Verdict, reason};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
@@ -25,7 +25,7 @@ pub struct Plan {
     /// How many seeds of each profile.
     pub count: u64,
     /// What is asked of each tree.
-    pub terms: Terms,
+    pub terms: TrialConfig,
     /// After how many seconds a tree is given up.
     pub limit: f64,
     /// Whether what failed is made small.
@@ -77,7 +77,7 @@ pub struct Tally {
     /// The refused ones, by reason.
     pub refusals: BTreeMap<String, Finds>,
     /// The wrong ones, by kind; one tree may be of several.
-    pub faults: BTreeMap<Wrong, Finds>,
+    pub faults: BTreeMap<FailureKind, Finds>,
     /// Those of which a check does not tell.
     #[serde(default)]
     pub untold: Finds,
@@ -103,7 +103,7 @@ const SCHEMA: &str = "premio.fuzz.state/1";
 
 /// How far a run is.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct State {
+pub struct RunState {
     schema: String,
     /// What to try.
     pub plan: Plan,
@@ -136,7 +136,7 @@ impl Tally {
         self.right + self.refused + self.wrong
     }
 
-    fn record(&mut self, seed: u64, outcome: Outcome, seconds: f64) {
+    fn record(&mut self, seed: u64, outcome: TrialOutcome, seconds: f64) {
         let find = |text| Find { text, shrunk: None };
         match outcome.verdict {
             Verdict::Right(_) => self.right += 1,
@@ -168,7 +168,7 @@ impl Tally {
     }
 }
 
-impl State {
+impl RunState {
     /// A run that has not begun.
     pub fn new(plan: Plan) -> Self {
         let tallies = plan.profiles.iter().map(|&p| (p, Tally::default()));
@@ -185,7 +185,7 @@ impl State {
     ///
     /// # Errors
     /// The file cannot be read, is longer than the limit, or holds no state of this plan.
-    pub fn load(path: &Path, plan: Plan, limits: &Limits) -> Result<Self, Failure> {
+    pub fn load(path: &Path, plan: Plan, limits: &InputLimits) -> Result<Self, CliError> {
         if fs::metadata(path).is_err_and(|e| e.kind() == io::ErrorKind::NotFound) {
             return Ok(Self::new(plan));
         }
@@ -193,7 +193,7 @@ impl State {
         let name = path.display().to_string();
         let refused = |span: Range<usize>, words: String| {
             let words = format!("{words}: expected the state of a run of `premio fuzz`");
-            Failure::in_bytes(&name, text.as_bytes(), span, &words)
+            CliError::in_bytes(&name, text.as_bytes(), span, &words)
         };
         // The document's own reader gives duplicate keys and non-finite numbers a place.
         let document = Document::from_json(&text)
@@ -253,7 +253,13 @@ impl State {
     }
 
     /// Puts down the outcome of a tree, how long it took, and its line of the manifest.
-    pub fn record(&mut self, number: u64, outcome: Outcome, seconds: f64, line: Option<String>) {
+    pub fn record(
+        &mut self,
+        number: u64,
+        outcome: TrialOutcome,
+        seconds: f64,
+        line: Option<String>,
+    ) {
         let Some(Item { profile, seed }) = self.plan.item(number) else {
             return;
         };
@@ -300,22 +306,22 @@ mod tests {
             profiles: vec![Profile::Near, Profile::Grid],
             from: 5,
             count: 10,
-            terms: Terms::default(),
+            terms: TrialConfig::default(),
             limit: 20.0,
             shrink: false,
             write: None,
         }
     }
 
-    fn outcome(number: u64) -> Outcome {
+    fn outcome(number: u64) -> TrialOutcome {
         match number % 3 {
-            0 => Outcome::wrong(Wrong::Volume, "off by 0.1"),
-            1 => Outcome {
+            0 => TrialOutcome::wrong(FailureKind::Volume, "off by 0.1"),
+            1 => TrialOutcome {
                 verdict: Verdict::Refused(format!("near ({number}, 1, 2)")),
                 close_calls: 2,
                 untold: Vec::new(),
             },
-            _ => Outcome::wrong(Wrong::Time, "none"),
+            _ => TrialOutcome::wrong(FailureKind::Time, "none"),
         }
     }
 
@@ -330,7 +336,7 @@ mod tests {
 
     #[test]
     fn any_order_is_the_same_state() {
-        let (mut a, mut b) = (State::new(plan()), State::new(plan()));
+        let (mut a, mut b) = (RunState::new(plan()), RunState::new(plan()));
         for n in 0..20 {
             a.record(n, outcome(n), 1.0, None);
             b.record((n * 7 + 3) % 20, outcome((n * 7 + 3) % 20), 1.0, None);
@@ -352,21 +358,21 @@ mod tests {
     fn a_file_is_read_as_it_was() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state.json");
-        let mut state = State::load(&path, plan(), &Limits::default()).unwrap();
-        assert_eq!(state, State::new(plan()));
+        let mut state = RunState::load(&path, plan(), &InputLimits::default()).unwrap();
+        assert_eq!(state, RunState::new(plan()));
         for n in [4, 9, 5, 12] {
             state.record(n, outcome(n), 0.1 + n as f64, Some("{}".to_owned()));
         }
         state.save(&path).unwrap();
         assert_eq!(
-            State::load(&path, plan(), &Limits::default()).unwrap(),
+            RunState::load(&path, plan(), &InputLimits::default()).unwrap(),
             state
         );
         let other = Plan { from: 6, ..plan() };
-        let error = State::load(&path, other, &Limits::default()).unwrap_err();
+        let error = RunState::load(&path, other, &InputLimits::default()).unwrap_err();
         assert!(format!("{error:?}").contains("other arguments"));
         fs::write(&path, "{").unwrap();
-        let error = State::load(&path, plan(), &Limits::default()).unwrap_err();
+        let error = RunState::load(&path, plan(), &InputLimits::default()).unwrap_err();
         assert!(format!("{error:?}").contains("state.json:1:2"));
     }
 }

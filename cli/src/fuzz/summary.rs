@@ -3,7 +3,7 @@
 //! All but the times is the same for any number of threads: finds are in the order of profiles,
 //! kinds and seeds, and the times stand apart, at the end.
 
-use super::state::{Find, Finds, Plan, State, Tally};
+use super::state::{Find, Finds, Plan, RunState, Tally};
 use premio_verify::generator::profile::Profile;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use std::fmt;
 
 /// The summary.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct RunSummary {
     schema: &'static str,
     plan: Plan,
     /// Whether every tree of the plan was tried.
@@ -82,9 +82,9 @@ struct Timed {
     seconds: f64,
 }
 
-impl Summary {
+impl RunSummary {
     /// The summary of a run.
-    pub fn new(state: &State) -> Self {
+    pub fn new(state: &RunState) -> Self {
         let sum = |of: fn(&Tally) -> u64| state.tallies.values().map(of).sum();
         let tallies = || state.tallies.iter();
         Self {
@@ -154,7 +154,7 @@ impl Times {
 /// How many finds of a kind are listed in the text; JSON has all.
 const LISTED: usize = 10;
 
-impl fmt::Display for Summary {
+impl fmt::Display for RunSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,

@@ -4,8 +4,8 @@
 //! it dies or takes too long; then it is ended, and the tree is tried once more in a new process,
 //! which alone counts: what went wrong must be the tree's doing, and not that of those before it.
 
-use premio_verify::generator::model::Model;
-use premio_verify::trial::{Outcome, Terms, Wrong, guarded};
+use premio_verify::generator::model::PartModel;
+use premio_verify::trial::{FailureKind, TrialConfig, TrialOutcome, guarded};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -17,13 +17,13 @@ use std::time::{Duration, Instant};
 /// What puts trees to the trial.
 pub trait Examine {
     /// The outcome of a tree; none where the run is to stop.
-    fn examine(&mut self, model: &Model) -> io::Result<Option<Outcome>>;
+    fn examine(&mut self, model: &PartModel) -> io::Result<Option<TrialOutcome>>;
 }
 
 /// A process that examines trees, started when it is needed.
 #[derive(Debug)]
 pub struct Worker<'a> {
-    terms: Terms,
+    terms: TrialConfig,
     limit: Duration,
     stop: &'a AtomicBool,
     process: Option<Process>,
@@ -42,7 +42,7 @@ struct Process {
 
 /// How one attempt ended.
 enum Attempt {
-    Answered(Outcome),
+    Answered(TrialOutcome),
     Stopped,
     TooLong,
     Died(String),
@@ -57,7 +57,7 @@ const LAST_WORDS: u64 = 300;
 impl<'a> Worker<'a> {
     /// A worker on these terms, with a limit of time for each tree, that gives up where `stop` is
     /// set.
-    pub fn new(terms: Terms, limit: Duration, stop: &'a AtomicBool) -> Self {
+    pub fn new(terms: TrialConfig, limit: Duration, stop: &'a AtomicBool) -> Self {
         Self {
             terms,
             limit,
@@ -81,7 +81,7 @@ impl<'a> Worker<'a> {
 }
 
 impl Examine for Worker<'_> {
-    fn examine(&mut self, model: &Model) -> io::Result<Option<Outcome>> {
+    fn examine(&mut self, model: &PartModel) -> io::Result<Option<TrialOutcome>> {
         let text = serde_json::to_string(model)?;
         let fresh = self.process.as_ref().is_none_or(|p| p.served == 0);
         let mut attempt = self.attempt(&text)?;
@@ -93,9 +93,9 @@ impl Examine for Worker<'_> {
             Attempt::Stopped => None,
             Attempt::TooLong => {
                 let text = format!("no answer within {} s", self.limit.as_secs_f64());
-                Some(Outcome::wrong(Wrong::Time, text))
+                Some(TrialOutcome::wrong(FailureKind::Time, text))
             }
-            Attempt::Died(text) => Some(Outcome::wrong(Wrong::Crash, text)),
+            Attempt::Died(text) => Some(TrialOutcome::wrong(FailureKind::Crash, text)),
         })
     }
 }
@@ -109,7 +109,7 @@ impl Drop for Worker<'_> {
 }
 
 impl Process {
-    fn start(terms: &Terms, limit: Duration) -> io::Result<Self> {
+    fn start(terms: &TrialConfig, limit: Duration) -> io::Result<Self> {
         let said = tempfile::tempfile()?;
         let mut command = Command::new(std::env::current_exe()?);
         command
@@ -198,7 +198,7 @@ impl Process {
 const MEMORY: u64 = 4 << 30;
 
 /// The worker's side: answers models from standard input until there are no more.
-pub fn serve(terms: &Terms, limit: Duration) -> io::Result<()> {
+pub fn serve(terms: &TrialConfig, limit: Duration) -> io::Result<()> {
     limit_memory();
     // Panics are caught and told as outcomes.
     std::panic::set_hook(Box::new(|_| {}));
@@ -211,7 +211,7 @@ pub fn serve(terms: &Terms, limit: Duration) -> io::Result<()> {
     };
     let mut output = io::stdout().lock();
     for line in io::stdin().lock().lines() {
-        let model: Model = serde_json::from_str(&line?)?;
+        let model: PartModel = serde_json::from_str(&line?)?;
         set(Some(Instant::now()));
         let outcome = guarded(&model, terms);
         set(None);

@@ -1,7 +1,7 @@
 //! Models in files.
 
-use crate::diagnostics::Failure;
-use crate::input::{self, Part};
+use crate::diagnostics::CliError;
+use crate::input::{self, EvaluatedPart};
 use crate::session::Session;
 use premio_predict::model::consistency::SourceLimits;
 use premio_predict::model::file::{ModelError, ModelFile, parse};
@@ -21,7 +21,7 @@ impl ReadModel {
     ///
     /// # Errors
     /// The file is none, is of another schema, says what does not add up, or is not as it was written.
-    pub fn read(path: &Path, session: Session) -> Result<Self, Failure> {
+    pub fn read(path: &Path, session: Session) -> Result<Self, CliError> {
         let text = session.limits.read_text(path)?;
         let name = path.display().to_string();
         match parse(&text) {
@@ -34,7 +34,7 @@ impl ReadModel {
     ///
     /// # Errors
     /// The description is none, or the model is of another part.
-    pub fn part(&self, session: Session) -> Result<Part, Failure> {
+    pub fn part(&self, session: Session) -> Result<EvaluatedPart, CliError> {
         let written = &self.file.head.description;
         let failed = |error: ModelError| refused(&self.name, &self.text, &error);
         if let Err(words) = input::language(written) {
@@ -50,6 +50,6 @@ impl ReadModel {
     }
 }
 
-fn refused(name: &str, text: &str, error: &ModelError) -> Failure {
-    Failure::at(name, text, Some(error.span.clone()), error)
+fn refused(name: &str, text: &str, error: &ModelError) -> CliError {
+    CliError::at(name, text, Some(error.span.clone()), error)
 }

@@ -1,7 +1,7 @@
 //! The bytes of a model, in the format that is asked for.
 
 use crate::arguments::{ModelOutput, RecordsFormat};
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::output;
 use premio_predict::model::file::hexadecimal;
 use premio_predict::model::record::Record;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// The format that is asked for, by its name or by the file's ending; refused where the program
 /// cannot write it, before anything is predicted.
-pub fn asked(output: &ModelOutput) -> Result<RecordsFormat, Failure> {
+pub fn asked(output: &ModelOutput) -> Result<RecordsFormat, CliError> {
     let ending = output.output.as_deref().and_then(Path::extension);
     let by_ending = match ending.is_some_and(|e| e.eq_ignore_ascii_case("parquet")) {
         true => RecordsFormat::Parquet,
@@ -23,21 +23,21 @@ pub fn asked(output: &ModelOutput) -> Result<RecordsFormat, Failure> {
     }
 }
 
-fn without() -> Failure {
-    Failure::input(
+fn without() -> CliError {
+    CliError::input(
         "this program is built without Parquet: build it with \
          `cargo build --release -p premio-cli --features parquet`, or ask for `--format jsonl`",
     )
 }
 
 /// The bytes of a model, which hold its digest.
-pub fn bytes(records: Vec<Record>, format: RecordsFormat) -> Result<Vec<u8>, Failure> {
+pub fn bytes(records: Vec<Record>, format: RecordsFormat) -> Result<Vec<u8>, CliError> {
     let records = sealed(records)?;
     match format {
         RecordsFormat::Jsonl => lines(&records),
         #[cfg(feature = "parquet")]
         RecordsFormat::Parquet => {
-            super::parquet::bytes(&records).map_err(|e| Failure::input(e.to_string()))
+            super::parquet::bytes(&records).map_err(|e| CliError::input(e.to_string()))
         }
         #[cfg(not(feature = "parquet"))]
         RecordsFormat::Parquet => Err(without()),
@@ -45,7 +45,7 @@ pub fn bytes(records: Vec<Record>, format: RecordsFormat) -> Result<Vec<u8>, Fai
 }
 
 /// The records with the digest of their lines in the head.
-fn sealed(mut records: Vec<Record>) -> Result<Vec<Record>, Failure> {
+fn sealed(mut records: Vec<Record>) -> Result<Vec<Record>, CliError> {
     let digest = hexadecimal(&Sha256::digest(lines(&records)?));
     for record in &mut records {
         if let Record::Model(head) = record {
@@ -55,7 +55,7 @@ fn sealed(mut records: Vec<Record>) -> Result<Vec<Record>, Failure> {
     Ok(records)
 }
 
-fn lines(records: &[Record]) -> Result<Vec<u8>, Failure> {
+fn lines(records: &[Record]) -> Result<Vec<u8>, CliError> {
     let mut text = Vec::new();
     for record in records {
         text.extend(output::json_text(record)?.into_bytes());
@@ -68,7 +68,7 @@ fn lines(records: &[Record]) -> Result<Vec<u8>, Failure> {
 mod tests {
     use super::*;
 
-    fn new(format: Option<RecordsFormat>, path: &str) -> Option<RecordsFormat> {
+    fn of(format: Option<RecordsFormat>, path: &str) -> Option<RecordsFormat> {
         let output = Some(path.into());
         asked(&ModelOutput { output, format }).ok()
     }

@@ -1,16 +1,16 @@
 //! Predicting the setups of shards, and summing them up.
 
-use super::shard::{Head, Run, Shard, Writer};
-use crate::diagnostics::Failure;
+use super::shard::{Run, Shard, ShardHead, Writer};
+use crate::diagnostics::CliError;
 use indicatif::ProgressBar;
 use premio_predict::image::shading::Finishes;
+use premio_predict::image_arcs::lit_scene::StageError;
 use premio_predict::model::consistency::SourceLimits;
 use premio_predict::model::record::{Record, records};
 use premio_predict::model::summary::Summary;
 use premio_predict::model::{Observation, observe};
-use premio_predict::outline::stage::StageError;
 use premio_predict::prediction::{Memory, with_draft};
-use premio_predict::subject::Subject;
+use premio_predict::prepared_part::PreparedPart;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::path::Path;
@@ -22,7 +22,7 @@ const BATCH: usize = 64;
 /// What predicts.
 pub struct Workers<'s> {
     /// The part.
-    pub subject: &'s Subject<'s>,
+    pub subject: &'s PreparedPart<'s>,
     /// The materials of its faces.
     pub finishes: &'s Finishes,
     /// The run.
@@ -37,8 +37,8 @@ pub struct Workers<'s> {
 
 impl Workers<'_> {
     /// Predicts the setups of a shard into its file; nothing is left of it if it is interrupted.
-    pub fn shard(&self, path: &Path, shard: [usize; 2]) -> Result<(), Failure> {
-        let head = Head::new(self.run, shard);
+    pub fn shard(&self, path: &Path, shard: [usize; 2]) -> Result<(), CliError> {
+        let head = ShardHead::new(self.run, shard);
         let mut writer = Writer::new(path, &head)?;
         let range = head.range();
         let mut from = range.start;
@@ -51,7 +51,7 @@ impl Workers<'_> {
                     .collect()
             });
             if self.stop.load(Ordering::Relaxed) {
-                return Err(Failure::Interrupted);
+                return Err(CliError::Interrupted);
             }
             for observation in &observed {
                 writer.line(observation)?;
@@ -87,7 +87,7 @@ pub fn summed(
     shards: &[Shard],
     limits: &SourceLimits,
     bar: &ProgressBar,
-) -> Result<Vec<Record>, Failure> {
+) -> Result<Vec<Record>, CliError> {
     let mut summary = Summary::default();
     for shard in shards {
         shard.each(limits, |observation| {

@@ -1,13 +1,13 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
-use crate::diagnostics::Failure;
+use crate::diagnostics::CliError;
 use crate::session::{Limited, Session};
 use crate::{input, output};
 use premio_predict::model::consistency::{
     Inconsistency, SourceLimits, check_description, check_observation,
 };
 use premio_predict::model::file::hexadecimal;
-use premio_predict::model::record::Description;
+use premio_predict::model::record::DescriptionRecord;
 use premio_predict::model::{Observation, Setups};
 use premio_text::escape::quote;
 use premio_text::{Content, Document, LineColumn, TextError};
@@ -24,12 +24,12 @@ const SCHEMA: &str = "premio.observations/2";
 /// The first line of a shard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Head {
+pub struct ShardHead {
     schema: String,
     /// The part's file.
     pub part: String,
     /// The part's description.
-    pub description: Description,
+    pub description: DescriptionRecord,
     /// What part and setups are told from others by.
     pub digest: String,
     /// The setups, as they were written.
@@ -40,7 +40,7 @@ pub struct Head {
     pub count: usize,
 }
 
-impl Head {
+impl ShardHead {
     /// The head of a shard.
     pub fn new(run: &Run, shard: [usize; 2]) -> Self {
         Self {
@@ -77,7 +77,7 @@ pub struct Run {
     /// The part's file.
     pub part: String,
     /// The part's description.
-    pub description: Description,
+    pub description: DescriptionRecord,
     /// What part and setups are told from others by.
     pub digest: String,
     /// The setups, as they were written.
@@ -117,7 +117,7 @@ pub struct Writer {
 
 impl Writer {
     /// A shard to be.
-    pub fn new(path: &Path, head: &Head) -> Result<Self, Failure> {
+    pub fn new(path: &Path, head: &ShardHead) -> Result<Self, CliError> {
         let path = output::target(path).map_err(|e| failed(path, &e))?;
         if output::is_no_file(&path) {
             return Err(failed(&path, &"a shard is a file, and this is none"));
@@ -135,7 +135,7 @@ impl Writer {
     }
 
     /// Adds a line.
-    pub fn line(&mut self, value: &impl Serialize) -> Result<(), Failure> {
+    pub fn line(&mut self, value: &impl Serialize) -> Result<(), CliError> {
         let text = output::json_text(value)? + "\n";
         self.hash.update(&text);
         self.lines += 1;
@@ -144,7 +144,7 @@ impl Writer {
     }
 
     /// Puts the shard in its place.
-    pub fn finish(mut self) -> Result<(), Failure> {
+    pub fn finish(mut self) -> Result<(), CliError> {
         let end = End {
             lines: self.lines,
             sha256: hexadecimal(&self.hash.clone().finalize()),
@@ -158,15 +158,15 @@ impl Writer {
     }
 }
 
-fn failed(path: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::input(format!("{}: {error}", path.display()))
+fn failed(path: &Path, error: &dyn std::fmt::Display) -> CliError {
+    CliError::input(format!("{}: {error}", path.display()))
 }
 
 /// A shard in a file, which is as it was written.
 #[derive(Debug)]
 pub struct Shard {
     /// Its first line.
-    pub head: Head,
+    pub head: ShardHead,
     path: PathBuf,
     session: Session,
 }
@@ -176,14 +176,14 @@ impl Shard {
     ///
     /// # Errors
     /// It is none, it is of another schema, or it is not as it was written.
-    pub fn open(path: &Path, session: Session) -> Result<Self, Failure> {
+    pub fn open(path: &Path, session: Session) -> Result<Self, CliError> {
         if output::is_no_file(path) {
             let said = "a shard is read twice: found a folder, a pipe or a device, expected a file";
             return Err(failed(path, &said));
         }
         let mut lines = Lines::open(path, session)?;
         let first = lines.next_line()?.unwrap_or_default();
-        let head = lines.parsed(&first, Head::from_json)?;
+        let head = lines.parsed(&first, ShardHead::from_json)?;
         let mut hash = Sha256::new();
         hash.update(&first);
         let (mut before, mut last) = (1, String::new());
@@ -228,7 +228,7 @@ impl Shard {
         &self,
         limits: &SourceLimits,
         mut report: impl FnMut(&Observation),
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         let mut lines = Lines::open(&self.path, self.session)?;
         lines.next_line()?;
         for setup in self.head.range() {
@@ -254,7 +254,7 @@ fn observation(
     line: &str,
     setup: usize,
     limits: &SourceLimits,
-) -> Result<Observation, Failure> {
+) -> Result<Observation, CliError> {
     // What is right needs no places.
     let observation = match serde_json::from_str::<Observation>(line) {
         Ok(observation) => observation,
@@ -278,7 +278,7 @@ fn inconsistent(line: &str, error: &Inconsistency) -> TextError {
     TextError::at(span.unwrap_or(0..0), error.to_string())
 }
 
-impl Head {
+impl ShardHead {
     fn from_json(line: &str) -> Result<Self, TextError> {
         let document = Document::from_json(line)?;
         let refused = |key: &str, words: String| {
@@ -326,7 +326,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn open(path: &Path, session: Session) -> Result<Self, Failure> {
+    fn open(path: &Path, session: Session) -> Result<Self, CliError> {
         let reader = BufReader::new(session.limits.open(path)?);
         Ok(Self {
             reader,
@@ -335,7 +335,7 @@ impl Lines {
         })
     }
 
-    fn next_line(&mut self) -> Result<Option<String>, Failure> {
+    fn next_line(&mut self) -> Result<Option<String>, CliError> {
         let mut bytes = Vec::new();
         let read = self.reader.read_until(b'\n', &mut bytes);
         let read = read.map_err(|e| failed(&self.path, &e))?;
@@ -353,15 +353,15 @@ impl Lines {
         &self,
         line: &str,
         parse: impl Fn(&str) -> Result<T, TextError>,
-    ) -> Result<T, Failure> {
+    ) -> Result<T, CliError> {
         parse(line).map_err(|e| self.wrong(e.span.clone().unwrap_or(0..0), line, &e.to_string()))
     }
 
     /// What is wrong with the line that was read last.
-    fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> Failure {
+    fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> CliError {
         let LineColumn { column, .. } = LineColumn::new(line.as_bytes(), span.start);
         let (path, number) = (self.path.display(), self.count.max(1));
-        Failure::input(format!("{path}:{number}:{column}: {words}"))
+        CliError::input(format!("{path}:{number}:{column}: {words}"))
     }
 }
 
@@ -372,7 +372,7 @@ mod tests {
     #[test]
     fn shards_share_the_setups_without_rest() {
         for (count, of) in [(10, 3), (3, 10), (1000, 7), (0, 2)] {
-            let head = |index| Head {
+            let head = |index| ShardHead {
                 shard: [index, of],
                 count,
                 ..head()
@@ -382,10 +382,10 @@ mod tests {
         }
     }
 
-    fn head() -> Head {
-        Head {
+    fn head() -> ShardHead {
+        ShardHead {
             schema: SCHEMA.to_owned(),
-            description: Description::default(),
+            description: DescriptionRecord::default(),
             part: String::new(),
             digest: String::new(),
             setups: String::new(),

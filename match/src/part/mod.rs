@@ -1,27 +1,27 @@
 //! A part as it is looked for: points along its edges, the chains of its straight edges, its
 //! symmetries, and what it hides of itself.
 
-mod marks;
+mod edge_samples;
 mod symmetry;
-mod views;
+mod visibility_cache;
 
-pub use marks::{Mark, Stroke, View};
+pub use edge_samples::{EdgeSample, PartView, SampledEdge};
 pub use symmetry::Symmetry;
 
-use crate::learned::Learned;
-use crate::pose::chain::PartChain;
+use crate::detectability_prior::DetectabilityPrior;
+use crate::pose::p2p2l::PartChain;
 use nalgebra::{Isometry3, Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::bounding_box;
 use premio_kernel::brep::topology::{EdgeId, FaceId, VertexId};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
-use premio_predict::outline::Source;
-use views::Views;
+use premio_predict::image_arcs::ArcSource;
+use visibility_cache::VisibilityCache;
 
 /// A part that is looked for.
 #[derive(Debug)]
-pub struct Part<'a> {
+pub struct SoughtPart<'a> {
     /// Its boundary.
     pub brep: &'a Brep,
     /// Its resolution.
@@ -31,9 +31,9 @@ pub struct Part<'a> {
     /// Half the diagonal of its box.
     pub radius: f64,
     /// Its edges along which the normal jumps.
-    pub strokes: Vec<Stroke>,
+    pub strokes: Vec<SampledEdge>,
     /// Points along them.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<EdgeSample>,
     /// The turns that bring the part onto itself; the first does nothing.
     pub symmetries: Vec<Symmetry>,
     /// Of a part that is turned about one axis, all edges whole circles about it, the axis: z, through
@@ -43,26 +43,26 @@ pub struct Part<'a> {
     pub circles: Vec<usize>,
     /// The chains of straight edges with one edge, and with two, between their corners: one of each
     /// kind that symmetries bring onto each other.
-    pub chains: [Vec<Chain>; 2],
-    views: Views,
+    pub chains: [Vec<EdgePath>; 2],
+    views: VisibilityCache,
 }
 
 /// A chain of three or four straight edges.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chain {
+pub struct EdgePath {
     /// The strokes: that which leaves A, those from A to B, that which leaves B.
     pub strokes: Vec<usize>,
     /// Where they are.
     pub lines: PartChain,
 }
 
-impl<'a> Part<'a> {
+impl<'a> SoughtPart<'a> {
     /// A part with a boundary and a resolution, of whose features something is learned.
-    pub fn new(brep: &'a Brep, band: f64, learned: &Learned) -> Self {
-        let states = |edge: EdgeId| learned.states(&Source::Edge { edge: edge.0 });
+    pub fn new(brep: &'a Brep, band: f64, learned: &DetectabilityPrior) -> Self {
+        let states = |edge: EdgeId| learned.states(&ArcSource::Edge { edge: edge.0 });
         let hull = bounding_box::bounds(brep);
         let (centre, radius) = (hull.centre(), 0.5 * hull.diagonal());
-        let (strokes, marks) = marks::marks(brep, radius, states);
+        let (strokes, marks) = edge_samples::marks(brep, radius, states);
         let all = chains(brep, &strokes);
         let axis = symmetry::axis(brep, &strokes, radius);
         let symmetries = symmetry::symmetries(brep, (&strokes, &marks), radius, axis.as_ref());
@@ -73,7 +73,7 @@ impl<'a> Part<'a> {
             radius,
             axis,
             circles: circles(brep, &strokes, &symmetries),
-            views: Views::new(),
+            views: VisibilityCache::new(),
             chains: all.map(|all| representatives(&all, &symmetries, radius)),
             symmetries,
             strokes,
@@ -92,7 +92,7 @@ impl<'a> Part<'a> {
     }
 
     /// The faces on both sides of a mark of an edge.
-    fn faces(&self, mark: &Mark) -> [FaceId; 2] {
+    fn faces(&self, mark: &EdgeSample) -> [FaceId; 2] {
         let coedges = &self
             .brep
             .topology
@@ -117,12 +117,12 @@ impl<'a> Part<'a> {
     }
 
     /// What is seen of the part from about where an eye is, in the part's frame.
-    pub fn view(&self, eye: &Point3<f64>) -> &View {
+    pub fn view(&self, eye: &Point3<f64>) -> &PartView {
         self.views.from(self, eye)
     }
 
     /// The same of one mark in so many as [`Self::stride`] says.
-    pub fn glimpse(&self, eye: &Point3<f64>) -> &View {
+    pub fn glimpse(&self, eye: &Point3<f64>) -> &PartView {
         self.views.glimpse(self, eye)
     }
 
@@ -141,7 +141,7 @@ const THIRD: usize = 3;
 const MANY: usize = 256;
 
 /// The circles among strokes, one of those that symmetries bring onto each other.
-fn circles(brep: &Brep, strokes: &[Stroke], symmetries: &[Symmetry]) -> Vec<usize> {
+fn circles(brep: &Brep, strokes: &[SampledEdge], symmetries: &[Symmetry]) -> Vec<usize> {
     let round = |s: &usize| matches!(brep.curve(strokes[*s].edge), Curve::Circle(_));
     let first = |s: &usize| symmetries.iter().all(|known| known.images[*s] >= *s);
     let all = 0..strokes.len();
@@ -157,7 +157,7 @@ struct Leaving {
 }
 
 /// All chains of straight edges: with one edge, and with two, between the corners.
-fn chains(brep: &Brep, strokes: &[Stroke]) -> [Vec<Chain>; 2] {
+fn chains(brep: &Brep, strokes: &[SampledEdge]) -> [Vec<EdgePath>; 2] {
     let mut at: Vec<Vec<Leaving>> = vec![Vec::new(); brep.topology.vertices as usize];
     for (stroke, s) in strokes.iter().enumerate() {
         let straight = matches!(brep.curve(s.edge), Curve::Line(_));
@@ -188,7 +188,7 @@ fn chains(brep: &Brep, strokes: &[Stroke]) -> [Vec<Chain>; 2] {
 }
 
 /// Adds the chains that have given edges between their corners.
-fn add(brep: &Brep, at: &[Vec<Leaving>], a: VertexId, path: &[Leaving], all: &mut Vec<Chain>) {
+fn add(brep: &Brep, at: &[Vec<Leaving>], a: VertexId, path: &[Leaving], all: &mut Vec<EdgePath>) {
     let (Some(first), Some(last)) = (path.first(), path.last()) else {
         return;
     };
@@ -199,7 +199,7 @@ fn add(brep: &Brep, at: &[Vec<Leaving>], a: VertexId, path: &[Leaving], all: &mu
             let between = path.iter().map(|p| p.stroke);
             let distinct = from.stroke != to.stroke;
             if distinct && first.stroke != from.stroke {
-                all.push(Chain {
+                all.push(EdgePath {
                     strokes: std::iter::once(from.stroke)
                         .chain(between)
                         .chain([to.stroke])
@@ -215,8 +215,8 @@ fn add(brep: &Brep, at: &[Vec<Leaving>], a: VertexId, path: &[Leaving], all: &mu
 }
 
 /// One chain of each kind.
-fn representatives(all: &[Chain], symmetries: &[Symmetry], radius: f64) -> Vec<Chain> {
-    let mut kept: Vec<Chain> = Vec::new();
+fn representatives(all: &[EdgePath], symmetries: &[Symmetry], radius: f64) -> Vec<EdgePath> {
+    let mut kept: Vec<EdgePath> = Vec::new();
     let near = |a: &PartChain, b: &PartChain| {
         (0..2).all(|i| {
             (a.points[i] - b.points[i]).norm() < symmetry::SAME * radius

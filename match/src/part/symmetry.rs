@@ -3,7 +3,7 @@
 //! Such a turn keeps the middle of all edges where it is, and is told by where it brings two of them. Of
 //! the two that are the most unlike all others there are the fewest places to bring them.
 
-use super::marks::{Mark, Stroke};
+use super::edge_samples::{EdgeSample, SampledEdge};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
@@ -39,7 +39,7 @@ pub struct Symmetry {
 /// it.
 pub fn symmetries(
     brep: &Brep,
-    (strokes, marks): (&[Stroke], &[Mark]),
+    (strokes, marks): (&[SampledEdge], &[EdgeSample]),
     radius: f64,
     axis: Option<&Frame>,
 ) -> Vec<Symmetry> {
@@ -66,7 +66,7 @@ pub fn symmetries(
 }
 
 /// The axis that all edges are whole circles about, and what no edge bounds as well, if there is one.
-pub fn axis(brep: &Brep, strokes: &[Stroke], radius: f64) -> Option<Frame> {
+pub fn axis(brep: &Brep, strokes: &[SampledEdge], radius: f64) -> Option<Frame> {
     let circles = strokes.iter().map(|s| match brep.curve(s.edge) {
         Curve::Circle(circle) if s.ends.is_none() => Some(circle.frame),
         _ => None,
@@ -98,7 +98,7 @@ type Sides = [[Vector3<f64>; 2]; 2];
 /// The edges of a part.
 struct Edges<'a> {
     brep: &'a Brep,
-    strokes: &'a [Stroke],
+    strokes: &'a [SampledEdge],
     radius: f64,
     /// The middle of all.
     middle: Point3<f64>,
@@ -111,8 +111,8 @@ struct Edges<'a> {
 }
 
 impl<'a> Edges<'a> {
-    fn new(brep: &'a Brep, strokes: &'a [Stroke], marks: &[Mark], radius: f64) -> Self {
-        let mean = |s: &Stroke| {
+    fn new(brep: &'a Brep, strokes: &'a [SampledEdge], marks: &[EdgeSample], radius: f64) -> Self {
+        let mean = |s: &SampledEdge| {
             let own = &marks[s.marks.clone()];
             own.iter().map(|m| m.point.coords).sum::<Vector3<f64>>() / own.len() as f64
         };
@@ -120,7 +120,7 @@ impl<'a> Edges<'a> {
         let lengths: f64 = strokes.iter().map(|s| s.length).sum();
         let sum: Vector3<f64> = strokes.iter().zip(&means).map(|(s, m)| m * s.length).sum();
         let middle = sum / lengths.max(f64::MIN_POSITIVE);
-        let three = |s: &Stroke| {
+        let three = |s: &SampledEdge| {
             let own = &marks[s.marks.clone()];
             [0, own.len() / 2, own.len() - 1].map(|k| {
                 let mark = &own[k];
@@ -252,7 +252,7 @@ impl<'a> Edges<'a> {
 }
 
 /// The faces that no stroke bounds.
-fn others(brep: &Brep, strokes: &[Stroke]) -> Vec<FaceId> {
+fn others(brep: &Brep, strokes: &[SampledEdge]) -> Vec<FaceId> {
     let bounded = strokes.iter().flat_map(|s| brep.topology.faces_of(s.edge));
     let bounded: BTreeSet<u32> = bounded.map(|f| f.0).collect();
     let all = brep.topology.face_ids();

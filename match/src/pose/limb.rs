@@ -13,7 +13,7 @@ use premio_kernel::geometry::surface::Surface;
 
 /// How far a plane is from touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct LimbPoint {
     /// The signed distance, in the part's unit: above zero where the plane misses what it is to touch,
     /// below where it cuts it.
     pub distance: f64,
@@ -34,7 +34,7 @@ pub fn touches(
     pose: &Isometry3<f64>,
     surface: &Surface,
     heights: [f64; 2],
-) -> Vec<Touch> {
+) -> Vec<LimbPoint> {
     let plane = Plane { normal, pose };
     let frame = surface.frame();
     let at = |h: f64| frame.origin + frame.z * h;
@@ -77,24 +77,24 @@ struct Plane<'a> {
 
 impl Plane<'_> {
     /// The signed distance of a point of the part.
-    fn level(&self, p: &Point3<f64>) -> Touch {
+    fn level(&self, p: &Point3<f64>) -> LimbPoint {
         let turned = self.pose.rotation * p.coords;
         let turn = turned.cross(self.normal);
-        Touch {
+        LimbPoint {
             distance: self.normal.dot(&(turned + self.pose.translation.vector)),
             slope: stacked(&turn, self.normal),
         }
     }
 
     /// A length times the sine of the angle of the normal and an axis of the part.
-    fn across(&self, axis: &Vector3<f64>, length: f64) -> Touch {
+    fn across(&self, axis: &Vector3<f64>, length: f64) -> LimbPoint {
         let axis = self.pose.rotation * axis;
         let cosine = self.normal.dot(&axis);
         let cross = axis.cross(self.normal);
         let sine = cross.norm();
         // Where the plane is square to the axis the sine is least, and has no derivative.
         let rate = if sine > 0.0 { -cosine / sine } else { 0.0 };
-        Touch {
+        LimbPoint {
             distance: length * sine,
             slope: stacked(&(cross * (length * rate)), &Vector3::zeros()),
         }
@@ -105,7 +105,7 @@ fn stacked(turn: &Vector3<f64>, shift: &Vector3<f64>) -> Vector6<f64> {
     Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z)
 }
 
-impl Touch {
+impl LimbPoint {
     /// The same, seen from the side of the plane on which something is.
     fn on(self, side: f64) -> Self {
         let sign = 1.0f64.copysign(side);

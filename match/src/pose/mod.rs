@@ -1,12 +1,12 @@
 //! The pose of a part in the camera's frame: minimal solvers that propose, and least squares that
 //! decide.
 
-pub mod chain;
 pub mod circle;
 mod equations;
 pub mod limb;
-pub mod lines;
-pub mod points;
+pub mod p2p2l;
+pub mod p3l;
+pub mod p3p;
 mod polynomial;
 pub mod refine;
 #[cfg(test)]

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Matrix6, Point2, Point3, UnitQuaternion, Vector2, Vect
 
 /// A point of the part whose image lies off an edge by so much along a normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pull {
+pub struct PointToLine {
     /// The point, in the part's frame.
     pub point: Point3<f64>,
     /// Where the edge is in the image.
@@ -43,7 +43,7 @@ pub fn moved(pose: &Isometry3<f64>, step: &Vector6<f64>) -> Isometry3<f64> {
 pub(crate) fn residual(
     camera: &Pinhole,
     pose: &Isometry3<f64>,
-    pull: &Pull,
+    pull: &PointToLine,
 ) -> Option<(f64, Vector6<f64>)> {
     let turned = pose.rotation * pull.point.coords;
     let p = turned + pose.translation.vector;
@@ -76,7 +76,7 @@ fn tukey(off: f64, scale: f64) -> f64 {
 fn normal_equations(
     camera: &Pinhole,
     pose: &Isometry3<f64>,
-    pulls: &[Pull],
+    pulls: &[PointToLine],
     scale: f64,
 ) -> (Matrix6<f64>, Vector6<f64>, [f64; 3]) {
     let mut h = Matrix6::zeros();
@@ -106,7 +106,7 @@ fn normal_equations(
 pub fn refine(
     camera: &Pinhole,
     start: &Isometry3<f64>,
-    pulls: &[Pull],
+    pulls: &[PointToLine],
     scale: f64,
     rounds: usize,
 ) -> Option<Refined> {

@@ -6,21 +6,21 @@
 //! are assigned and the best of those that are not: each is maximised by itself, so no completion has
 //! more. Choices that are in no best assignment are eliminated before.
 
-mod bounded;
-mod dead_ends;
-mod deepening;
+mod branch_and_bound;
+mod dead_end_elimination;
+mod ida_star;
 mod path;
+mod potentials;
 mod problem;
-mod terms;
 #[cfg(test)]
 mod tests;
 
-pub use problem::{Assignment, Candidate, Feature, Problem, Relation};
+pub use problem::{Assignment, Candidate, Problem, ProblemFeature, ProblemRelation};
 
 use path::Path;
+use potentials::Potentials;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use terms::Terms;
 
 /// How the tree is searched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ pub enum Strategy {
 
 /// What a search did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize)]
-pub struct Effort {
+pub struct SearchStats {
     /// Paths opened: a path with one more assignment.
     pub opened: u64,
     /// Of them, those that were cut at once by their bound.
@@ -50,7 +50,7 @@ pub struct Effort {
     pub eliminated: u64,
 }
 
-impl Effort {
+impl SearchStats {
     /// Pruned over opened.
     pub fn ratio(&self) -> f64 {
         if self.opened == 0 {
@@ -69,7 +69,7 @@ pub struct Solution {
     /// Its score.
     pub score: f64,
     /// What it took.
-    pub effort: Effort,
+    pub effort: SearchStats,
     /// Whether it is known to be the best; else the work ran out.
     pub complete: bool,
 }
@@ -77,10 +77,10 @@ pub struct Solution {
 /// The best assignment of a problem; at most so many paths are opened, and as many again where rounds
 /// end without an answer.
 pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
-    let mut terms = Terms::new(problem);
-    let effort = Effort {
-        eliminated: dead_ends::eliminate(&mut terms),
-        ..Effort::default()
+    let mut terms = Potentials::new(problem);
+    let effort = SearchStats {
+        eliminated: dead_end_elimination::eliminate(&mut terms),
+        ..SearchStats::default()
     };
     let mut state = State {
         terms: &terms,
@@ -90,14 +90,14 @@ pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
     };
     // Rounds that run out of work have answered nothing: branch and bound has as much again.
     let rounds = |state: &mut State<'_>, step: Option<f64>| {
-        let complete = deepening::run(state, step);
+        let complete = ida_star::run(state, step);
         state.most = state.most.saturating_add(most);
-        complete || bounded::run(state)
+        complete || branch_and_bound::run(state)
     };
     let complete = match strategy {
-        Strategy::Bounded => bounded::run(&mut state),
+        Strategy::Bounded => branch_and_bound::run(&mut state),
         Strategy::Deepening => rounds(&mut state, None),
-        Strategy::Stepped => rounds(&mut state, Some(deepening::STEP)),
+        Strategy::Stepped => rounds(&mut state, Some(ida_star::STEP)),
     };
     // Where the work runs out before any path is complete, the most promising one tells more than none.
     let (score, assignment) = state.best.take().unwrap_or_else(|| {
@@ -114,8 +114,8 @@ pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
 
 /// A search under way.
 struct State<'a> {
-    terms: &'a Terms,
-    effort: Effort,
+    terms: &'a Potentials,
+    effort: SearchStats,
     most: u64,
     best: Option<(f64, Assignment)>,
 }

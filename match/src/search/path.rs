@@ -1,12 +1,12 @@
 //! A path from the root: the first features are assigned.
 
+use super::potentials::{Potentials, SearchChoice};
 use super::problem::Assignment;
-use super::terms::{Choice, Terms};
 
 /// A path, with its score and bound.
 pub struct Path<'a> {
-    terms: &'a Terms,
-    choices: Vec<Choice>,
+    terms: &'a Potentials,
+    choices: Vec<SearchChoice>,
     /// By length: the score up to there.
     scores: Vec<f64>,
     /// By piece: whether an assignment uses it.
@@ -21,7 +21,7 @@ pub struct Path<'a> {
 
 impl<'a> Path<'a> {
     /// The path of length zero.
-    pub fn new(terms: &'a Terms) -> Self {
+    pub fn new(terms: &'a Potentials) -> Self {
         let mut path = Self {
             terms,
             choices: Vec::new(),
@@ -37,7 +37,7 @@ impl<'a> Path<'a> {
     }
 
     /// The complete path of the most promising choices, one after another.
-    pub fn promising(terms: &'a Terms) -> Self {
+    pub fn promising(terms: &'a Potentials) -> Self {
         let mut path = Self::new(terms);
         while let Some(&choice) = path.next().first() {
             path.push(choice);
@@ -67,32 +67,33 @@ impl<'a> Path<'a> {
 
     /// The most that a feature that is left can add.
     fn most(&self, feature: usize) -> f64 {
-        let free = |c: &&Choice| self.is_free(feature, **c);
+        let free = |c: &&SearchChoice| self.is_free(feature, **c);
         let choices = self.terms.live[feature].iter().filter(free);
         let added = choices.map(|&c| self.added(feature, c));
         added.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The choices for the next feature that use no piece twice, the most promising first.
-    pub fn next(&self) -> Vec<Choice> {
+    pub fn next(&self) -> Vec<SearchChoice> {
         let feature = self.choices.len();
         let Some(live) = self.terms.live.get(feature) else {
             return Vec::new();
         };
         let free = live.iter().filter(|c| self.is_free(feature, **c));
-        let mut all: Vec<(f64, Choice)> = free.map(|&c| (self.added(feature, c), c)).collect();
+        let mut all: Vec<(f64, SearchChoice)> =
+            free.map(|&c| (self.added(feature, c), c)).collect();
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         all.into_iter().map(|a| a.1).collect()
     }
 
-    fn is_free(&self, feature: usize, choice: Choice) -> bool {
+    fn is_free(&self, feature: usize, choice: SearchChoice) -> bool {
         let pieces = self.terms.pieces(feature, choice);
         pieces.iter().all(|&p| !self.used[p as usize])
     }
 
     /// What a choice adds by itself and with the features before it; with those that are not assigned,
     /// the most that it can.
-    fn added(&self, feature: usize, choice: Choice) -> f64 {
+    fn added(&self, feature: usize, choice: SearchChoice) -> f64 {
         let links = self.terms.closing[feature].iter().map(|&l| {
             let link = &self.terms.links[l];
             match self.choices.get(link.members[0]) {
@@ -104,7 +105,7 @@ impl<'a> Path<'a> {
     }
 
     /// Assigns the next feature.
-    pub fn push(&mut self, choice: Choice) {
+    pub fn push(&mut self, choice: SearchChoice) {
         let terms = self.terms;
         let feature = self.choices.len();
         let added = self.added(feature, choice);
@@ -132,7 +133,7 @@ impl<'a> Path<'a> {
         }
     }
 
-    fn uses(&mut self, feature: usize, choice: Choice, used: bool) {
+    fn uses(&mut self, feature: usize, choice: SearchChoice, used: bool) {
         for &piece in self.terms.pieces(feature, choice) {
             self.used[piece as usize] = used;
         }

@@ -16,7 +16,7 @@ pub struct Candidate {
 
 /// A feature of the part that should be visible.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Feature {
+pub struct ProblemFeature {
     /// The feature that its detection depends on; it comes before.
     pub parent: Option<usize>,
     /// The logarithms of how likely it is found, where the parent is missed, and where it is found.
@@ -29,7 +29,7 @@ pub struct Feature {
 
 /// A relation of two features that are both found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Relation {
+pub struct ProblemRelation {
     /// The features; the first comes before the second.
     pub members: [usize; 2],
     /// By pair of their candidates, in order, what it adds; nothing for pairs that are not listed.
@@ -40,12 +40,12 @@ pub struct Relation {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Problem {
     /// The features.
-    pub features: Vec<Feature>,
+    pub features: Vec<ProblemFeature>,
     /// Their relations.
-    pub relations: Vec<Relation>,
+    pub relations: Vec<ProblemRelation>,
 }
 
-impl Feature {
+impl ProblemFeature {
     /// What it adds as a candidate, or missed, where its parent is missed or found.
     pub fn score(&self, choice: Option<usize>, parent: bool) -> f64 {
         let parent = usize::from(parent);
@@ -56,7 +56,7 @@ impl Feature {
     }
 }
 
-impl Relation {
+impl ProblemRelation {
     /// What it adds for two candidates.
     pub fn score(&self, pair: (usize, usize)) -> f64 {
         self.scores.get(&pair).copied().unwrap_or_default()

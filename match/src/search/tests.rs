@@ -1,7 +1,7 @@
 //! Searches against all assignments there are.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use super::{Assignment, Candidate, Feature, Problem, Relation, Strategy, search};
+use super::{Assignment, Candidate, Problem, ProblemFeature, ProblemRelation, Strategy, search};
 use proptest::prelude::*;
 
 const ALL: [Strategy; 3] = [Strategy::Bounded, Strategy::Deepening, Strategy::Stepped];
@@ -33,12 +33,12 @@ fn best(problem: &Problem) -> f64 {
     best_score
 }
 
-fn feature(index: usize) -> impl Strategy2<Value = Feature> {
+fn feature(index: usize) -> impl Strategy2<Value = ProblemFeature> {
     let candidate = (-4.0..6.0f64, prop::collection::btree_set(0..7u32, 1..3));
     let candidates = prop::collection::vec(candidate, 0..4);
     let rates = prop::array::uniform2(0.02..0.98f64);
-    let parent = prop::option::new(0..index.max(1));
-    (candidates, rates, parent).prop_map(move |(candidates, rates, parent)| Feature {
+    let parent = prop::option::of(0..index.max(1));
+    (candidates, rates, parent).prop_map(move |(candidates, rates, parent)| ProblemFeature {
         parent: parent.filter(|_| index > 0),
         found: rates.map(f64::ln),
         missed: rates.map(|r| (1.0 - r).ln()),
@@ -65,7 +65,7 @@ fn problem() -> impl Strategy2<Value = Problem> {
         let n = features.len();
         let relations = relations
             .into_iter()
-            .map(|((a, b), scores)| Relation {
+            .map(|((a, b), scores)| ProblemRelation {
                 members: [a.min(b) % n, a.max(b) % n],
                 scores,
             })
@@ -106,7 +106,7 @@ proptest! {
 #[test]
 fn a_piece_is_of_one_feature() {
     // Both want piece 7; the second has nothing else.
-    let feature = |scores: &[(f64, u32)]| Feature {
+    let feature = |scores: &[(f64, u32)]| ProblemFeature {
         parent: None,
         found: [0.9f64.ln(); 2],
         missed: [0.1f64.ln(); 2],
@@ -130,7 +130,7 @@ fn a_piece_is_of_one_feature() {
 
 #[test]
 fn work_that_runs_out_leaves_the_most_promising_path() {
-    let feature = Feature {
+    let feature = ProblemFeature {
         parent: None,
         found: [0.9f64.ln(); 2],
         missed: [0.1f64.ln(); 2],

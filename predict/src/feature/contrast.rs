@@ -1,8 +1,8 @@
 //! The brightness on both sides along an arc.
 
 use crate::image::shading::Shading;
-use crate::outline::arc::Side;
-use crate::outline::{Arc, Regions};
+use crate::image_arcs::arc::ArcSide;
+use crate::image_arcs::{PredictedArc, Regions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,13 +30,13 @@ impl Contrast {
 }
 
 /// The regions on the sides of an arc: by section, the left and the right one.
-pub fn sides(regions: &Regions, (arc, shown): (usize, &Arc)) -> Vec<[u32; 2]> {
+pub fn sides(regions: &Regions, (arc, shown): (usize, &PredictedArc)) -> Vec<[u32; 2]> {
     if let Some(region) = shown.within {
         return vec![[region; 2]];
     }
     let sections = regions.sections.of_arc(arc);
     sections
-        .map(|s| [Side::Left, Side::Right].map(|on| regions.beside(s, on)))
+        .map(|s| [ArcSide::Left, ArcSide::Right].map(|on| regions.beside(s, on)))
         .collect()
 }
 
@@ -44,7 +44,7 @@ pub fn sides(regions: &Regions, (arc, shown): (usize, &Arc)) -> Vec<[u32; 2]> {
 pub fn contrast(
     shading: &Shading<'_>,
     regions: &Regions,
-    (number, arc): (usize, &Arc),
+    (number, arc): (usize, &PredictedArc),
     [start, end]: [f64; 2],
 ) -> Vec<Contrast> {
     let sides = sides(regions, (number, arc));

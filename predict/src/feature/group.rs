@@ -1,15 +1,15 @@
 //! Groups of arcs: boundaries of regions, chains, triplets.
 
-use super::junction::{Form, Junction, Nodes};
-use crate::outline::arc::Side;
-use crate::outline::{Arc, Regions};
+use super::junction::{JunctionForm, Nodes, PredictedJunction};
+use crate::image_arcs::arc::ArcSide;
+use crate::image_arcs::{PredictedArc, Regions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A boundary of a region.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
-pub struct Boundary {
+pub struct BoundaryGroup {
     /// Its arcs, in order; the region is to the left of the way along them.
     pub arcs: Vec<u32>,
     /// Whether it comes back to where it starts.
@@ -32,12 +32,16 @@ struct Step {
 }
 
 /// By region: its boundaries.
-pub fn boundaries(arcs: &[Arc], nodes: &Nodes, regions: &Regions) -> Vec<Vec<Boundary>> {
+pub fn boundaries(
+    arcs: &[PredictedArc],
+    nodes: &Nodes,
+    regions: &Regions,
+) -> Vec<Vec<BoundaryGroup>> {
     let mut steps: Vec<Vec<Step>> = vec![Vec::new(); regions.all.len()];
     for (i, arc) in arcs.iter().enumerate() {
         for (slot, section) in regions.sections.of_arc(i).enumerate() {
             let ends = [nodes.of_arcs[i][slot], nodes.of_arcs[i][slot + 1]];
-            for (on, along) in [(Side::Left, true), (Side::Right, false)] {
+            for (on, along) in [(ArcSide::Left, true), (ArcSide::Right, false)] {
                 let region = regions.beside(section, on) as usize;
                 steps[region].push(step(arc, (i, section), ends, along, regions));
             }
@@ -50,7 +54,7 @@ pub fn boundaries(arcs: &[Arc], nodes: &Nodes, regions: &Regions) -> Vec<Vec<Bou
 }
 
 fn step(
-    arc: &Arc,
+    arc: &PredictedArc,
     (number, section): (usize, u32),
     ends: [u32; 2],
     along: bool,
@@ -78,7 +82,7 @@ fn step(
 }
 
 /// The closed and open walks that steps with the region on their left make.
-fn walks(arcs: &[Arc], steps: &[Step], regions: &Regions) -> Vec<Boundary> {
+fn walks(arcs: &[PredictedArc], steps: &[Step], regions: &Regions) -> Vec<BoundaryGroup> {
     let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (i, step) in steps.iter().enumerate() {
         at_node.entry(step.from).or_default().push(i);
@@ -124,7 +128,12 @@ fn turn(before: &Step, after: &Step) -> f64 {
     }
 }
 
-fn boundary(arcs: &[Arc], steps: &[Step], walk: &[usize], regions: &Regions) -> Boundary {
+fn boundary(
+    arcs: &[PredictedArc],
+    steps: &[Step],
+    walk: &[usize],
+    regions: &Regions,
+) -> BoundaryGroup {
     let mut own: Vec<u32> = Vec::new();
     let mut twice_area = 0.0;
     for &i in walk {
@@ -143,7 +152,7 @@ fn boundary(arcs: &[Arc], steps: &[Step], walk: &[usize], regions: &Regions) -> 
     if own.len() > 1 && own.first() == own.last() {
         own.pop();
     }
-    Boundary {
+    BoundaryGroup {
         arcs: own,
         closed: first.from == last.to,
         // Against the clock on a page whose y points down is a negative area.
@@ -155,7 +164,7 @@ fn boundary(arcs: &[Arc], steps: &[Step], walk: &[usize], regions: &Regions) -> 
 #[derive(
     Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
 )]
-pub struct Chain {
+pub struct ArcChain {
     /// The arcs, in order.
     pub arcs: Vec<u32>,
     /// Whether the last is followed by the first.
@@ -163,7 +172,7 @@ pub struct Chain {
 }
 
 /// By arc: the ends (start and end) with the junction there.
-fn ends_of(count: usize, junctions: &[Junction]) -> Vec<[Option<u32>; 2]> {
+fn ends_of(count: usize, junctions: &[PredictedJunction]) -> Vec<[Option<u32>; 2]> {
     let mut ends = vec![[None; 2]; count];
     for (j, junction) in junctions.iter().enumerate() {
         let branches = &junction.branches;
@@ -182,7 +191,7 @@ fn ends_of(count: usize, junctions: &[Junction]) -> Vec<[Option<u32>; 2]> {
 }
 
 /// The arcs other than `arc` that end in a junction.
-fn others(junction: &Junction, arc: u32) -> BTreeSet<u32> {
+fn others(junction: &PredictedJunction, arc: u32) -> BTreeSet<u32> {
     junction
         .branches
         .iter()
@@ -192,12 +201,14 @@ fn others(junction: &Junction, arc: u32) -> BTreeSet<u32> {
 }
 
 /// The longest chains of arcs through junctions of two.
-pub fn chains(count: usize, junctions: &[Junction]) -> Vec<Chain> {
+pub fn chains(count: usize, junctions: &[PredictedJunction]) -> Vec<ArcChain> {
     let ends = ends_of(count, junctions);
     let next = |arc: u32, junction: Option<u32>| -> Option<u32> {
         let junction = &junctions[junction? as usize];
         match junction.form {
-            Form::L | Form::Continuation => others(junction, arc).into_iter().next(),
+            JunctionForm::L | JunctionForm::Continuation => {
+                others(junction, arc).into_iter().next()
+            }
             _ => None,
         }
     };
@@ -229,14 +240,14 @@ pub fn chains(count: usize, junctions: &[Junction]) -> Vec<Chain> {
         }
         if line.len() > 1 {
             let arcs = line.into_iter().collect();
-            found.push(Chain { arcs, closed });
+            found.push(ArcChain { arcs, closed });
         }
     }
     found
 }
 
 /// Three arcs, the middle one of which meets the others at its ends (Henikoff and Shapiro 1990).
-pub fn triplets(count: usize, junctions: &[Junction]) -> Vec<[u32; 3]> {
+pub fn triplets(count: usize, junctions: &[PredictedJunction]) -> Vec<[u32; 3]> {
     let mut found = BTreeSet::new();
     for (arc, ends) in ends_of(count, junctions).iter().enumerate() {
         let arc = arc as u32;

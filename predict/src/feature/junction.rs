@@ -1,8 +1,8 @@
 //! Where arcs meet in the image.
 
-use super::evidence::Evidence;
-use super::ink::Ink;
-use crate::outline::Arc;
+use super::arc_raster::ArcRaster;
+use super::detected_arc::DetectedArc;
+use crate::image_arcs::PredictedArc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -21,7 +21,7 @@ pub const NEAR: f64 = 3.0;
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
-pub enum Form {
+pub enum JunctionForm {
     /// One arc ends.
     End,
     /// Two arcs go on into one another.
@@ -40,7 +40,7 @@ pub enum Form {
 
 /// A branch of a junction.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
-pub struct Branch {
+pub struct JunctionBranch {
     /// The arc.
     pub arc: u32,
     /// How far along the arc it leaves the junction, in pixels.
@@ -55,16 +55,16 @@ pub struct Branch {
 
 /// A point at which arcs meet.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
-pub struct Junction {
+pub struct PredictedJunction {
     /// Its place in pixels.
     pub at: [f64; 2],
     /// Its form.
-    pub form: Form,
+    pub form: JunctionForm,
     /// Its branches, by angle.
-    pub branches: Vec<Branch>,
+    pub branches: Vec<JunctionBranch>,
 }
 
-impl Junction {
+impl PredictedJunction {
     /// Whether the detector found all branches up to it.
     pub fn is_found(&self) -> bool {
         self.branches.iter().all(|b| b.found)
@@ -82,7 +82,7 @@ pub struct Nodes {
 
 impl Nodes {
     /// The nodes of arcs.
-    pub fn new(arcs: &[Arc]) -> Self {
+    pub fn new(arcs: &[PredictedArc]) -> Self {
         let mut ends: Vec<([f64; 2], usize, usize)> = Vec::new();
         for (i, arc) in arcs.iter().enumerate() {
             let last = arc.line.points.len() - 1;
@@ -120,13 +120,13 @@ impl Nodes {
 
 /// The junctions of the arcs that may be found.
 pub fn junctions(
-    arcs: &[Arc],
+    arcs: &[PredictedArc],
     nodes: &Nodes,
-    evidence: &[Evidence],
-    ink: &Ink,
+    evidence: &[DetectedArc],
+    ink: &ArcRaster,
     margin: f64,
-) -> Vec<Junction> {
-    let mut branches: Vec<Vec<Branch>> = vec![Vec::new(); nodes.places.len()];
+) -> Vec<PredictedJunction> {
+    let mut branches: Vec<Vec<JunctionBranch>> = vec![Vec::new(); nodes.places.len()];
     for (i, arc) in arcs.iter().enumerate().filter(|(_, arc)| !arc.smooth) {
         let last = arc.line.points.len() - 1;
         let places: Vec<usize> = [0]
@@ -155,12 +155,19 @@ pub fn junctions(
         .map(|(&at, mut branches)| {
             branches.sort_by(|a, b| a.angle.total_cmp(&b.angle).then(a.arc.cmp(&b.arc)));
             let form = form(&branches);
-            Junction { at, form, branches }
+            PredictedJunction { at, form, branches }
         })
         .collect()
 }
 
-fn branch(arc: &Arc, number: usize, k: usize, way: i64, found: &Evidence, margin: f64) -> Branch {
+fn branch(
+    arc: &PredictedArc,
+    number: usize,
+    k: usize,
+    way: i64,
+    found: &DetectedArc,
+    margin: f64,
+) -> JunctionBranch {
     let points = &arc.line.points;
     let p = points[k];
     let mut towards = p;
@@ -178,7 +185,7 @@ fn branch(arc: &Arc, number: usize, k: usize, way: i64, found: &Evidence, margin
         let end = if way > 0 { f.along[0] } else { f.along[1] };
         (end - along).abs() <= margin + NEAR
     };
-    Branch {
+    JunctionBranch {
         arc: number as u32,
         along,
         leaves: way > 0,
@@ -192,7 +199,7 @@ fn branch(arc: &Arc, number: usize, k: usize, way: i64, found: &Evidence, margin
 }
 
 /// The form of a junction with branches in the order of their angles.
-fn form(branches: &[Branch]) -> Form {
+fn form(branches: &[JunctionBranch]) -> JunctionForm {
     let angle = |i: usize| branches[i].angle;
     let between = |i: usize, j: usize| {
         let d = (angle(j) - angle(i)).rem_euclid(TAU);
@@ -200,18 +207,18 @@ fn form(branches: &[Branch]) -> Form {
     };
     let straight = |i: usize, j: usize| PI - between(i, j) <= STRAIGHT;
     match branches.len() {
-        0 | 1 => Form::End,
-        2 if straight(0, 1) => Form::Continuation,
-        2 => Form::L,
-        3 if straight(0, 1) || straight(1, 2) || straight(0, 2) => Form::T,
+        0 | 1 => JunctionForm::End,
+        2 if straight(0, 1) => JunctionForm::Continuation,
+        2 => JunctionForm::L,
+        3 if straight(0, 1) || straight(1, 2) || straight(0, 2) => JunctionForm::T,
         3 => {
             let gaps = [0, 1, 2].map(|i| (angle((i + 1) % 3) - angle(i)).rem_euclid(TAU));
             match gaps.iter().any(|gap| *gap > PI) {
-                true => Form::Arrow,
-                false => Form::Y,
+                true => JunctionForm::Arrow,
+                false => JunctionForm::Y,
             }
         }
-        _ => Form::Multi,
+        _ => JunctionForm::Multi,
     }
 }
 
@@ -219,8 +226,8 @@ fn form(branches: &[Branch]) -> Form {
 mod tests {
     use super::*;
 
-    fn of(degrees: &[f64]) -> Form {
-        let branch = |d: &f64| Branch {
+    fn of(degrees: &[f64]) -> JunctionForm {
+        let branch = |d: &f64| JunctionBranch {
             arc: 0,
             along: 0.0,
             leaves: true,
@@ -232,13 +239,13 @@ mod tests {
 
     #[test]
     fn forms_are_told_by_angles() {
-        assert_eq!(of(&[10.0]), Form::End);
-        assert_eq!(of(&[-175.0, 0.0]), Form::Continuation);
-        assert_eq!(of(&[-90.0, 0.0]), Form::L);
-        assert_eq!(of(&[-90.0, 0.0, 91.0]), Form::T);
-        assert_eq!(of(&[-90.0, 30.0, 150.0]), Form::Y);
-        assert_eq!(of(&[-40.0, 0.0, 40.0]), Form::Arrow);
-        assert_eq!(of(&[-179.0, -140.0, 140.0]), Form::Arrow);
-        assert_eq!(of(&[-90.0, 0.0, 90.0, 180.0]), Form::Multi);
+        assert_eq!(of(&[10.0]), JunctionForm::End);
+        assert_eq!(of(&[-175.0, 0.0]), JunctionForm::Continuation);
+        assert_eq!(of(&[-90.0, 0.0]), JunctionForm::L);
+        assert_eq!(of(&[-90.0, 0.0, 91.0]), JunctionForm::T);
+        assert_eq!(of(&[-90.0, 30.0, 150.0]), JunctionForm::Y);
+        assert_eq!(of(&[-40.0, 0.0, 40.0]), JunctionForm::Arrow);
+        assert_eq!(of(&[-179.0, -140.0, 140.0]), JunctionForm::Arrow);
+        assert_eq!(of(&[-90.0, 0.0, 90.0, 180.0]), JunctionForm::Multi);
     }
 }

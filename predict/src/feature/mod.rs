@@ -1,13 +1,13 @@
 //! Features of an image: arcs with what a detector finds of them, and what they are grouped to.
 
+pub mod arc_raster;
 pub mod contrast;
-pub mod evidence;
+pub mod detected_arc;
 pub mod group;
-pub mod ink;
 pub mod junction;
 pub mod reason;
 
-pub use evidence::{Evidence, Fragment, State};
+pub use detected_arc::{DetectedArc, DetectionState, Fragment};
 pub use reason::Reason;
 
 use crate::setup::SetupError;

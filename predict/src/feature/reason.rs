@@ -1,8 +1,8 @@
 //! Why an arc is not whole.
 
+use super::arc_raster::ArcRaster;
 use super::contrast::Contrast;
-use super::evidence::{Evidence, State};
-use super::ink::Ink;
+use super::detected_arc::{DetectedArc, DetectionState};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -88,13 +88,13 @@ pub struct Measure {
 /// Why an arc is not whole; none where it is.
 pub fn reason(
     arc: usize,
-    evidence: &[Evidence],
+    evidence: &[DetectedArc],
     contrast: &[Contrast],
-    ink: &Ink,
+    ink: &ArcRaster,
     measure: &Measure,
 ) -> Option<Reason> {
     let own = &evidence[arc];
-    if own.state == State::Whole {
+    if own.state == DetectionState::Whole {
         return None;
     }
     let [start, end] = ink.spans[arc];
@@ -146,7 +146,7 @@ pub fn reason(
 }
 
 /// The arc that is found next to most of an arc.
-fn crowd(arc: usize, evidence: &[Evidence], ink: &Ink, within: i64) -> Option<u32> {
+fn crowd(arc: usize, evidence: &[DetectedArc], ink: &ArcRaster, within: i64) -> Option<u32> {
     let own = &ink.pixels[ink.ranges[arc].clone()];
     let mut counts: Vec<(u32, usize)> = Vec::new();
     for pixel in own {
@@ -154,7 +154,7 @@ fn crowd(arc: usize, evidence: &[Evidence], ink: &Ink, within: i64) -> Option<u3
         for y in -within..=within {
             for x in -within..=within {
                 for other in ink.at(i64::from(pixel.x) + x, i64::from(pixel.y) + y) {
-                    let found = evidence[other.arc as usize].state != State::Missed;
+                    let found = evidence[other.arc as usize].state != DetectionState::Missed;
                     if other.arc as usize != arc && found && !near.contains(&other.arc) {
                         near.push(other.arc);
                     }

@@ -3,8 +3,8 @@
 
 use super::field::Field;
 use super::shading::Shading;
-use crate::outline::scanline::{LINES, line_y};
-use crate::outline::{Region, Regions};
+use crate::image_arcs::scanline::{LINES, line_y};
+use crate::image_arcs::{Region, Regions};
 use premio_detect::{Grey, PixelMask};
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! The light of flat regions, by the corners of cells where it runs straight between them.
 
 use super::shading::Shading;
-use crate::outline::{Region, Seen};
+use crate::image_arcs::{Region, RegionSample};
 use premio_kernel::geometry::surface::Surface;
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ enum Course {
 /// The light of one flat region.
 #[derive(Clone, Debug)]
 pub struct Field {
-    seen: Seen,
+    seen: RegionSample,
     /// The place of the first corner, in cells.
     first: [i64; 2],
     /// Corners in a row of cells.

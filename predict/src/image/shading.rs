@@ -1,12 +1,12 @@
 //! The light that a point of the part sends to the camera (equation 1 of the paper).
 
-use crate::outline::pierce::front;
-use crate::outline::stage::StageError;
-use crate::outline::{Seen, Stage};
-use crate::reflectance::{GREEN, Material, Polarisation, Surface};
-use crate::setup::light::Source;
+use crate::image_arcs::lit_scene::StageError;
+use crate::image_arcs::pierce::front;
+use crate::image_arcs::{LitScene, RegionSample};
+use crate::prepared_part::PreparedPart;
+use crate::reflectance::{GREEN, Material, Polarisation, SurfaceFinish};
+use crate::setup::light::LightSource;
 use crate::setup::{Conditions, SetupError};
-use crate::subject::Subject;
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use std::f64::consts::PI;
@@ -20,7 +20,7 @@ pub struct Finishes {
 
 impl Finishes {
     /// The materials that conditions give the faces of a part.
-    pub fn new(subject: &Subject<'_>, conditions: &Conditions) -> Result<Self, StageError> {
+    pub fn new(subject: &PreparedPart<'_>, conditions: &Conditions) -> Result<Self, StageError> {
         let count = subject.brep.topology.faces.len();
         let mut by_face = vec![0; count];
         for (i, finish) in conditions.surfaces.iter().enumerate() {
@@ -42,11 +42,11 @@ impl Finishes {
 struct Beam {
     polarisation: Polarisation,
     /// By material: what it reflects at the light's wavelength.
-    surfaces: Vec<Surface>,
+    surfaces: Vec<SurfaceFinish>,
 }
 
 impl Beam {
-    fn new(source: &Source, conditions: &Conditions) -> Result<Self, SetupError> {
+    fn new(source: &LightSource, conditions: &Conditions) -> Result<Self, SetupError> {
         let [parallel, perpendicular] = source.polarisation;
         let negative = || SetupError::value("light.parallel", "or `perpendicular` is negative");
         let materials = conditions.materials(source.wavelength)?;
@@ -69,7 +69,7 @@ pub struct Radiance {
 /// The light of a stage, in grey levels of the sensor before noise and steps.
 #[derive(Debug)]
 pub struct Shading<'s> {
-    stage: &'s Stage<'s>,
+    stage: &'s LitScene<'s>,
     finishes: &'s Finishes,
     unblocked_fraction: &'s [f64],
     ambient: f64,
@@ -79,13 +79,13 @@ pub struct Shading<'s> {
     /// By light.
     beams: Vec<Beam>,
     /// By material: what of it is the same at every wavelength.
-    surfaces: Vec<Surface>,
+    surfaces: Vec<SurfaceFinish>,
 }
 
 impl<'s> Shading<'s> {
     /// The light of a stage under conditions.
     pub fn new(
-        stage: &'s Stage<'s>,
+        stage: &'s LitScene<'s>,
         finishes: &'s Finishes,
         conditions: &Conditions,
     ) -> Result<Self, SetupError> {
@@ -160,12 +160,12 @@ impl<'s> Shading<'s> {
     }
 
     /// Grey levels, before noise and steps, at a point of the image where `seen` is seen.
-    pub fn level(&self, at: [f64; 2], seen: &Seen, hint: &mut f64) -> f64 {
+    pub fn level(&self, at: [f64; 2], seen: &RegionSample, hint: &mut f64) -> f64 {
         self.levels(at, seen, hint).total
     }
 
     /// The same, with what of it lights are mirrored with.
-    pub fn levels(&self, at: [f64; 2], seen: &Seen, hint: &mut f64) -> Radiance {
+    pub fn levels(&self, at: [f64; 2], seen: &RegionSample, hint: &mut f64) -> Radiance {
         let placed = seen
             .face
             .and_then(|face| Some((face, self.place(at, face, hint)?)));
@@ -227,9 +227,9 @@ impl<'s> Shading<'s> {
     }
 
     /// What a line of sight through a point of the image meets, and which lights reach it.
-    pub fn asked(&self, at: [f64; 2]) -> Seen {
+    pub fn asked(&self, at: [f64; 2]) -> RegionSample {
         let Some((face, point)) = self.stage.seen(at) else {
-            return Seen {
+            return RegionSample {
                 face: None,
                 point: self.stage.subject.centre,
                 lit: 0,
@@ -241,7 +241,7 @@ impl<'s> Shading<'s> {
             normal.dot(&towards) > 0.0 && self.stage.is_lit(*i, &point, face)
         };
         let lit = (0..self.stage.lights.len()).filter(reaches);
-        Seen {
+        RegionSample {
             face: Some(face),
             point,
             lit: lit.fold(0, |all, i| all | 1 << i),

@@ -2,12 +2,12 @@
 
 use super::observation::{ATTRIBUTES, Observation};
 use super::record::{
-    Aspect, Attributes, Codetection, Description, Feature, Head, NO_DIGEST, Rate, Record, SCHEMA,
-    Tuple,
+    Aspect, Attributes, Codetection, DescriptionRecord, FeatureRecord, ModelHead, NO_DIGEST, Rate,
+    Record, RelationRecord, SCHEMA,
 };
 use super::setups::Setups;
 use super::summary::MOST_PAIRED;
-use crate::outline::Source;
+use crate::image_arcs::ArcSource;
 use premio_kernel::brep::Brep;
 use premio_text::number;
 
@@ -74,7 +74,7 @@ impl SourceLimits {
     ///
     /// # Errors
     /// It is beyond the limits.
-    pub fn check(&self, key: &str, source: &Source) -> Result<(), Inconsistency> {
+    pub fn check(&self, key: &str, source: &ArcSource) -> Result<(), Inconsistency> {
         let [face, caster] = [source.face(), source.caster()];
         let all = [
             source.edge().map(|id| ("edge", id.0, self.edges, "edges")),
@@ -96,7 +96,7 @@ impl SourceLimits {
 ///
 /// # Errors
 /// Its resolution is no distance.
-pub fn check_description(description: &Description) -> Result<(), Inconsistency> {
+pub fn check_description(description: &DescriptionRecord) -> Result<(), Inconsistency> {
     let Some(resolution) = description.resolution else {
         return Ok(());
     };
@@ -142,7 +142,7 @@ pub fn check_observation(observation: &Observation, limits: &SourceLimits) -> Ch
 /// How many records of each kind have been seen.
 #[derive(Clone, Debug)]
 pub struct Consistency {
-    head: Head,
+    head: ModelHead,
     features: usize,
     aspects: usize,
     tuples: usize,
@@ -154,7 +154,7 @@ impl Consistency {
     ///
     /// # Errors
     /// What it says does not add up.
-    pub fn new(head: &Head) -> Result<Self, Inconsistency> {
+    pub fn new(head: &ModelHead) -> Result<Self, Inconsistency> {
         let schema = format!("is \"{}\", expected \"{SCHEMA}\"", head.schema);
         check(head.schema == SCHEMA, "schema", schema)?;
         check_description(&head.description)?;
@@ -235,7 +235,7 @@ impl Consistency {
         check(self.codetections == 1, "record", reason)
     }
 
-    fn feature(&self, feature: &Feature) -> Checked {
+    fn feature(&self, feature: &FeatureRecord) -> Checked {
         let visible = self.states("states", &feature.states)?;
         rate("detectability", &feature.detectability, self.head.count)?;
         rate(
@@ -275,7 +275,7 @@ impl Consistency {
         Ok(())
     }
 
-    fn tuple(&self, tuple: &Tuple) -> Checked {
+    fn tuple(&self, tuple: &RelationRecord) -> Checked {
         for (i, member) in tuple.members.iter().enumerate() {
             self.rank(&format!("members[{i}]"), *member)?;
         }

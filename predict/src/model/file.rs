@@ -2,7 +2,9 @@
 //! counts and the digest.
 
 use super::consistency::{Consistency, Inconsistency, SourceLimits};
-use super::record::{Aspect, Codetection, Feature, Head, NO_DIGEST, Record, SCHEMA, Tuple};
+use super::record::{
+    Aspect, Codetection, FeatureRecord, ModelHead, NO_DIGEST, Record, RelationRecord, SCHEMA,
+};
 use premio_text::{Content, Document, TextError, Value};
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
@@ -12,7 +14,7 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub struct ModelFile {
     /// Its first record.
-    pub head: Head,
+    pub head: ModelHead,
     /// All of its records.
     pub records: Vec<Record>,
 }
@@ -70,7 +72,7 @@ pub fn parse(text: &str) -> Result<ModelFile, ModelError> {
     }
     let line = Line::new(first, 0)?;
     line.check_schema()?;
-    let head: Head = match line.record()? {
+    let head: ModelHead = match line.record()? {
         Record::Model(head) => *head,
         _ => return Err(line.wrong("record", "is not `model` in the first line")),
     };
@@ -178,11 +180,13 @@ impl Line {
         };
         match kind.as_str() {
             "model" => self
-                .read::<Head>()
+                .read::<ModelHead>()
                 .map(|head| Record::Model(Box::new(head))),
-            "feature" => self.read::<Feature>().map(|f| Record::Feature(Box::new(f))),
+            "feature" => self
+                .read::<FeatureRecord>()
+                .map(|f| Record::Feature(Box::new(f))),
             "aspect" => self.read::<Aspect>().map(Record::Aspect),
-            "tuple" => self.read::<Tuple>().map(Record::Tuple),
+            "tuple" => self.read::<RelationRecord>().map(Record::Tuple),
             "codetection" => self.read::<Codetection>().map(Record::Codetection),
             other => Err(self.wrong("record", &format!("is \"{other}\", {kinds}"))),
         }

@@ -6,9 +6,9 @@
 //! such points, and the covariance of the pose its inverse (JᵀΣ⁻¹J)⁻¹. A limb tells as much as a curve
 //! that is fixed on the part: by which it slides along the surface is along the line of sight.
 
-use crate::feature::Evidence;
-use crate::outline::Arc;
-use crate::prediction::Draft;
+use crate::feature::DetectedArc;
+use crate::image_arcs::PredictedArc;
+use crate::prediction::PredictedImage;
 use nalgebra::{Matrix6, Point2, Vector3, Vector6};
 
 /// How far apart found points are that tell independently, in pixels.
@@ -17,13 +17,13 @@ const APART: f64 = 4.0;
 const LEAST: f64 = 1.0 / 8.0;
 
 /// The information on the pose of each arc.
-pub fn information(draft: &Draft<'_>, evidence: &[Evidence]) -> Vec<Matrix6<f64>> {
+pub fn information(draft: &PredictedImage<'_>, evidence: &[DetectedArc]) -> Vec<Matrix6<f64>> {
     (0..draft.arcs.len())
         .map(|arc| of_arc(draft, arc, &evidence[arc]))
         .collect()
 }
 
-fn of_arc(draft: &Draft<'_>, number: usize, evidence: &Evidence) -> Matrix6<f64> {
+fn of_arc(draft: &PredictedImage<'_>, number: usize, evidence: &DetectedArc) -> Matrix6<f64> {
     let mut sum = Matrix6::zeros();
     let arc = &draft.arcs[number];
     // Shadows and highlights move with the light as well.
@@ -49,7 +49,7 @@ fn of_arc(draft: &Draft<'_>, number: usize, evidence: &Evidence) -> Matrix6<f64>
 }
 
 /// The unit direction of an arc in the image at a length along it.
-fn direction(arc: &Arc, along: f64) -> [f64; 2] {
+fn direction(arc: &PredictedArc, along: f64) -> [f64; 2] {
     let (i, _) = arc.line.place_at(along);
     let [a, b] = [arc.line.points[i], arc.line.points[i + 1]];
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
@@ -57,7 +57,11 @@ fn direction(arc: &Arc, along: f64) -> [f64; 2] {
 }
 
 /// n·J of a point: by how many pixels its image moves across the arc, with the pose.
-fn row(draft: &Draft<'_>, p: &nalgebra::Point3<f64>, [u, v]: [f64; 2]) -> Option<Vector6<f64>> {
+fn row(
+    draft: &PredictedImage<'_>,
+    p: &nalgebra::Point3<f64>,
+    [u, v]: [f64; 2],
+) -> Option<Vector6<f64>> {
     let matrices = &draft.stage.matrices;
     let x = matrices.r * p.coords + matrices.t;
     let c = matrices.r * draft.stage.subject.centre.coords + matrices.t;
@@ -100,7 +104,7 @@ pub fn deviation(information: &Matrix6<f64>) -> Option<[f64; 2]> {
 }
 
 /// Where the middle of the part is in the image, and how long its radius is there, in pixels.
-pub fn frame(draft: &Draft<'_>) -> ([f64; 2], f64) {
+pub fn frame(draft: &PredictedImage<'_>) -> ([f64; 2], f64) {
     let projection = draft.stage.view.scene.projection;
     let subject = draft.stage.subject;
     let Point2 { coords } = projection.project(&subject.centre);

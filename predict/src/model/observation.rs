@@ -2,11 +2,11 @@
 
 use super::information::{deviation, frame, information};
 use super::setups::Setups;
-use crate::feature::evidence::State;
+use crate::feature::detected_arc::DetectionState;
 use crate::feature::group::chains;
-use crate::feature::junction::{Form, Junction, Nodes, junctions};
-use crate::outline::Source;
-use crate::prediction::{Draft, Outcome};
+use crate::feature::junction::{JunctionForm, Nodes, PredictedJunction, junctions};
+use crate::image_arcs::ArcSource;
+use crate::prediction::{DetectionOutcome, PredictedImage};
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -16,13 +16,13 @@ pub const ATTRIBUTES: usize = 5;
 
 /// A feature in one setup: all arcs that are images of one thing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sight {
+pub struct FeatureObservation {
     /// What it is the image of.
-    pub source: Source,
+    pub source: ArcSource,
     /// The length that is visible, in pixels.
     pub length: f64,
     /// What is found of it.
-    pub state: State,
+    pub state: DetectionState,
     /// How many fragments are found.
     pub fragments: usize,
     /// The share of the visible length that is found.
@@ -39,9 +39,9 @@ pub struct Sight {
 
 /// A relation between features in one setup.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Tuple {
+pub struct RelationObservation {
     /// What kind of relation.
-    pub kind: Relation,
+    pub kind: RelationKind,
     /// The features, as indices of the setup's sights; of a chain in order.
     pub members: Vec<u32>,
     /// Whether all members are found, as far as they have to be for the relation to be seen.
@@ -53,7 +53,7 @@ pub struct Tuple {
 /// A kind of relation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Relation {
+pub enum RelationKind {
     /// Two meet at an angle.
     L,
     /// Three meet, two of which go straight on.
@@ -76,9 +76,9 @@ pub struct Observation {
     /// The direction of the camera from the part's middle.
     pub view: [f64; 3],
     /// The features that are visible.
-    pub sights: Vec<Sight>,
+    pub sights: Vec<FeatureObservation>,
     /// The relations between them.
-    pub tuples: Vec<Tuple>,
+    pub tuples: Vec<RelationObservation>,
     /// How often two features that do not meet have found ends as near as those that do, of how many
     /// pairs: what a relation holds by chance.
     pub chance: [u32; 2],
@@ -109,13 +109,13 @@ fn view(setups: &Setups, setup: usize) -> [f64; 3] {
 }
 
 /// What a setup shows of a part.
-pub fn observe(draft: &Draft<'_>, setups: &Setups, setup: usize) -> Observation {
+pub fn observe(draft: &PredictedImage<'_>, setups: &Setups, setup: usize) -> Observation {
     let outcome = draft.outcome();
     let groups = groups(draft);
     let told = information(draft, &outcome.evidence);
     let all: Matrix6<f64> = told.iter().sum();
     let pose = deviation(&all);
-    let sights: Vec<Sight> = groups
+    let sights: Vec<FeatureObservation> = groups
         .iter()
         .map(|(source, arcs)| {
             let mut sight = sight(draft, &outcome, *source, arcs);
@@ -141,8 +141,8 @@ pub fn observe(draft: &Draft<'_>, setups: &Setups, setup: usize) -> Observation 
 }
 
 /// The arcs in the image, by what they are the image of.
-fn groups(draft: &Draft<'_>) -> BTreeMap<Source, Vec<u32>> {
-    let mut groups: BTreeMap<Source, Vec<u32>> = BTreeMap::new();
+fn groups(draft: &PredictedImage<'_>) -> BTreeMap<ArcSource, Vec<u32>> {
+    let mut groups: BTreeMap<ArcSource, Vec<u32>> = BTreeMap::new();
     for (i, arc) in draft.arcs.iter().enumerate() {
         let [start, end] = draft.ink.spans[i];
         // What is shorter the detector drops, and so does the model.
@@ -154,7 +154,7 @@ fn groups(draft: &Draft<'_>) -> BTreeMap<Source, Vec<u32>> {
 }
 
 /// By arc: the feature it is of.
-fn index(arcs: usize, groups: &BTreeMap<Source, Vec<u32>>) -> Vec<Option<u32>> {
+fn index(arcs: usize, groups: &BTreeMap<ArcSource, Vec<u32>>) -> Vec<Option<u32>> {
     let mut index = vec![None; arcs];
     for (feature, arcs) in groups.values().enumerate() {
         arcs.iter()
@@ -163,7 +163,12 @@ fn index(arcs: usize, groups: &BTreeMap<Source, Vec<u32>>) -> Vec<Option<u32>> {
     index
 }
 
-fn sight(draft: &Draft<'_>, outcome: &Outcome, source: Source, arcs: &[u32]) -> Sight {
+fn sight(
+    draft: &PredictedImage<'_>,
+    outcome: &DetectionOutcome,
+    source: ArcSource,
+    arcs: &[u32],
+) -> FeatureObservation {
     let of = |a: &u32| &outcome.evidence[*a as usize];
     let length = |a: &u32| {
         let [start, end] = draft.ink.spans[*a as usize];
@@ -171,29 +176,36 @@ fn sight(draft: &Draft<'_>, outcome: &Outcome, source: Source, arcs: &[u32]) -> 
     };
     let total: f64 = arcs.iter().map(length).sum();
     let found: f64 = arcs.iter().map(|a| length(a) * of(a).share).sum();
-    let all = |state: State| arcs.iter().all(|a| of(a).state == state);
-    let state = match (all(State::Missed), all(State::Whole) && arcs.len() == 1) {
-        (true, _) => State::Missed,
-        (false, true) => State::Whole,
-        (false, false) => State::Broken,
+    let all = |state: DetectionState| arcs.iter().all(|a| of(a).state == state);
+    let state = match (
+        all(DetectionState::Missed),
+        all(DetectionState::Whole) && arcs.len() == 1,
+    ) {
+        (true, _) => DetectionState::Missed,
+        (false, true) => DetectionState::Whole,
+        (false, false) => DetectionState::Broken,
     };
     let longest = arcs.iter().filter(|a| !of(a).fragments.is_empty());
     let longest = longest.max_by(|a, b| length(a).total_cmp(&length(b)));
-    Sight {
+    FeatureObservation {
         source,
         length: total,
         state,
         fragments: arcs.iter().map(|a| of(a).fragments.len()).sum(),
         share: found / total,
         attributes: longest
-            .filter(|_| state != State::Missed)
+            .filter(|_| state != DetectionState::Missed)
             .and_then(|&a| attributes(draft, outcome, a)),
         growth: None,
     }
 }
 
 /// The attributes of what is found of an arc.
-fn attributes(draft: &Draft<'_>, outcome: &Outcome, arc: u32) -> Option<[f64; ATTRIBUTES]> {
+fn attributes(
+    draft: &PredictedImage<'_>,
+    outcome: &DetectionOutcome,
+    arc: u32,
+) -> Option<[f64; ATTRIBUTES]> {
     let fragments = &outcome.evidence[arc as usize].fragments;
     let (from, to) = (fragments.first()?.along[0], fragments.last()?.along[1]);
     let line = &draft.arcs[arc as usize].line;
@@ -213,19 +225,23 @@ fn attributes(draft: &Draft<'_>, outcome: &Outcome, arc: u32) -> Option<[f64; AT
     values.iter().all(|v| v.is_finite()).then_some(values)
 }
 
-fn relation(form: Form) -> Option<Relation> {
+fn relation(form: JunctionForm) -> Option<RelationKind> {
     match form {
-        Form::End | Form::Continuation => None,
-        Form::L => Some(Relation::L),
-        Form::T => Some(Relation::T),
-        Form::Arrow => Some(Relation::Arrow),
-        Form::Y => Some(Relation::Y),
-        Form::Multi => Some(Relation::Multi),
+        JunctionForm::End | JunctionForm::Continuation => None,
+        JunctionForm::L => Some(RelationKind::L),
+        JunctionForm::T => Some(RelationKind::T),
+        JunctionForm::Arrow => Some(RelationKind::Arrow),
+        JunctionForm::Y => Some(RelationKind::Y),
+        JunctionForm::Multi => Some(RelationKind::Multi),
     }
 }
 
-fn tuples(junctions: &[Junction], index: &[Option<u32>], sights: &[Sight]) -> Vec<Tuple> {
-    let found = |m: &u32| sights[*m as usize].state != State::Missed;
+fn tuples(
+    junctions: &[PredictedJunction],
+    index: &[Option<u32>],
+    sights: &[FeatureObservation],
+) -> Vec<RelationObservation> {
+    let found = |m: &u32| sights[*m as usize].state != DetectionState::Missed;
     let mut tuples = Vec::new();
     for junction in junctions {
         let Some(kind) = relation(junction.form) else {
@@ -238,7 +254,7 @@ fn tuples(junctions: &[Junction], index: &[Option<u32>], sights: &[Sight]) -> Ve
         members.sort_unstable();
         members.dedup();
         if members.len() > 1 {
-            tuples.push(Tuple {
+            tuples.push(RelationObservation {
                 kind,
                 seen: members.iter().all(found),
                 kept: junction.is_found(),
@@ -259,8 +275,8 @@ fn tuples(junctions: &[Junction], index: &[Option<u32>], sights: &[Sight]) -> Ve
             if members.first() > members.last() {
                 members.reverse();
             }
-            let kind = Relation::Chain;
-            tuples.push(Tuple {
+            let kind = RelationKind::Chain;
+            tuples.push(RelationObservation {
                 kind,
                 members,
                 seen,
@@ -274,15 +290,24 @@ fn tuples(junctions: &[Junction], index: &[Option<u32>], sights: &[Sight]) -> Ve
 }
 
 /// Whether all junctions between the arcs of a chain are found.
-fn chain_is_kept(arcs: &[u32], junctions: &[Junction]) -> bool {
+fn chain_is_kept(arcs: &[u32], junctions: &[PredictedJunction]) -> bool {
     arcs.windows(2).all(|pair| {
-        let joins = |j: &&Junction| pair.iter().all(|a| j.branches.iter().any(|b| b.arc == *a));
-        junctions.iter().filter(joins).any(Junction::is_found)
+        let joins =
+            |j: &&PredictedJunction| pair.iter().all(|a| j.branches.iter().any(|b| b.arc == *a));
+        junctions
+            .iter()
+            .filter(joins)
+            .any(PredictedJunction::is_found)
     })
 }
 
 /// How often found ends of arcs that do not meet are near to one another.
-fn chance(draft: &Draft<'_>, outcome: &Outcome, junctions: &[Junction], margin: f64) -> [u32; 2] {
+fn chance(
+    draft: &PredictedImage<'_>,
+    outcome: &DetectionOutcome,
+    junctions: &[PredictedJunction],
+    margin: f64,
+) -> [u32; 2] {
     let near = 2.0 * (margin + crate::feature::junction::NEAR);
     let mut ends: Vec<(u32, [f64; 2])> = Vec::new();
     for (i, found) in outcome.evidence.iter().enumerate() {
@@ -295,7 +320,7 @@ fn chance(draft: &Draft<'_>, outcome: &Outcome, junctions: &[Junction], margin: 
         }
     }
     let meet = |a: u32, b: u32| {
-        let has = |j: &Junction, arc: u32| j.branches.iter().any(|x| x.arc == arc);
+        let has = |j: &PredictedJunction, arc: u32| j.branches.iter().any(|x| x.arc == arc);
         junctions.iter().any(|j| has(j, a) && has(j, b))
     };
     let mut counts = [0; 2];

@@ -1,10 +1,10 @@
 //! The model as it is handed on: a record a line (`premio.model/1`).
 
-use super::observation::{ATTRIBUTES, Relation};
+use super::observation::{ATTRIBUTES, RelationKind};
 use super::setups::Setups;
 use super::summary::{AspectSums, FLOOR, FRAGMENTS, FeatureSums, Summary};
-use crate::outline::Source;
-use crate::statistics::{Interval, Moments, Proportion, Smoothing, Tree};
+use crate::image_arcs::ArcSource;
+use crate::statistics::{CredibleInterval, DependenceTree, Moments, Proportion, Smoothing};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -16,13 +16,13 @@ pub const SCHEMA: &str = "premio.model/1";
 #[serde(tag = "record", rename_all = "lowercase")]
 pub enum Record {
     /// The first line.
-    Model(Box<Head>),
+    Model(Box<ModelHead>),
     /// A feature, in falling order of detectability.
-    Feature(Box<Feature>),
+    Feature(Box<FeatureRecord>),
     /// An aspect, in falling order of setups.
     Aspect(Aspect),
     /// A relation, in falling order of how often it is kept.
-    Tuple(Tuple),
+    Tuple(RelationRecord),
     /// Which features are found together.
     Codetection(Codetection),
 }
@@ -30,7 +30,7 @@ pub enum Record {
 /// A part's description, and how it is read: a model is of use without the file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Description {
+pub struct DescriptionRecord {
     /// The language: the ending of its files.
     pub language: String,
     /// The text.
@@ -52,13 +52,13 @@ pub struct Description {
 /// What the model is of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Head {
+pub struct ModelHead {
     /// [`SCHEMA`].
     pub schema: String,
     /// The part's file.
     pub part: String,
     /// The part's description.
-    pub description: Description,
+    pub description: DescriptionRecord,
     /// What part and setups are told from others by.
     pub digest: String,
     /// The setups.
@@ -105,7 +105,7 @@ pub struct Rate {
 
 impl Rate {
     fn new(proportion: &Proportion) -> Self {
-        let Interval { low, high } = proportion.interval(Proportion::LEVEL);
+        let CredibleInterval { low, high } = proportion.interval(Proportion::LEVEL);
         Self {
             mean: proportion.mean(),
             interval: [low, high],
@@ -147,11 +147,11 @@ impl Attributes {
 /// What is known of a feature.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Feature {
+pub struct FeatureRecord {
     /// Its place in the order of detectability, from 0.
     pub rank: usize,
     /// What it is the image of.
-    pub source: Source,
+    pub source: ArcSource,
     /// In how many setups it is whole, broken, missed, of those in which it is visible.
     pub states: [u64; 3],
     /// How likely it is found in a setup.
@@ -201,11 +201,11 @@ pub struct Aspect {
 /// What is known of a relation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Tuple {
+pub struct RelationRecord {
     /// Its place in the order of how often it is kept.
     pub rank: usize,
     /// Its kind.
-    pub kind: Relation,
+    pub kind: RelationKind,
     /// The ranks of its features.
     pub members: Vec<usize>,
     /// In how many setups it is visible, all its members are found, and it is kept.
@@ -219,7 +219,7 @@ pub struct Tuple {
 /// A feature in the tree of which are found together.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Together {
+pub struct CodetectionNode {
     /// Its rank.
     pub feature: usize,
     /// The rank of the feature that it depends on.
@@ -237,22 +237,22 @@ pub struct Together {
 #[serde(deny_unknown_fields)]
 pub struct Codetection {
     /// The nodes, parents first.
-    pub tree: Vec<Together>,
+    pub tree: Vec<CodetectionNode>,
 }
 
 /// The records of a summary, whose two rounds are done.
 pub fn records(
     summary: &Summary,
-    (part, description): (&str, &Description),
+    (part, description): (&str, &DescriptionRecord),
     digest: &str,
     setups: &Setups,
 ) -> Vec<Record> {
     let order = summary.ranked();
-    let rank: BTreeMap<Source, usize> = order.iter().enumerate().map(|(i, s)| (*s, i)).collect();
+    let rank: BTreeMap<ArcSource, usize> = order.iter().enumerate().map(|(i, s)| (*s, i)).collect();
     let aspects = aspects(summary, &rank);
     let tuples = tuples(summary, &rank);
     let root = |m: &Moments<2>| m.mean().map(|v| [v[0].exp(), v[1].exp()]);
-    let head = Head {
+    let head = ModelHead {
         schema: SCHEMA.to_owned(),
         part: part.to_owned(),
         description: description.clone(),
@@ -286,9 +286,9 @@ pub fn records(
     all
 }
 
-fn feature(rank: usize, source: Source, sums: &FeatureSums, setups: u64) -> Feature {
+fn feature(rank: usize, source: ArcSource, sums: &FeatureSums, setups: u64) -> FeatureRecord {
     let growth = sums.growth.mean();
-    Feature {
+    FeatureRecord {
         rank,
         source,
         states: sums.sights.states,
@@ -302,7 +302,7 @@ fn feature(rank: usize, source: Source, sums: &FeatureSums, setups: u64) -> Feat
     }
 }
 
-fn aspects(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Vec<Aspect> {
+fn aspects(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Vec<Aspect> {
     let mut all: Vec<&AspectSums> = summary.aspects.values().collect();
     all.sort_by_key(|sums| std::cmp::Reverse(sums.setups));
     let told = |(i, sums): (usize, &AspectSums)| {
@@ -339,11 +339,11 @@ fn chance(summary: &Summary, members: usize) -> f64 {
     pair.powi(members.saturating_sub(1).min(64) as i32)
 }
 
-fn tuples(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Vec<Tuple> {
-    let mut all: Vec<Tuple> = summary
+fn tuples(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Vec<RelationRecord> {
+    let mut all: Vec<RelationRecord> = summary
         .tuples
         .iter()
-        .map(|((kind, members), sums)| Tuple {
+        .map(|((kind, members), sums)| RelationRecord {
             rank: 0,
             kind: *kind,
             members: members.iter().map(|m| rank[m]).collect(),
@@ -357,12 +357,12 @@ fn tuples(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Vec<Tuple> {
     all
 }
 
-fn codetection(summary: &Summary, rank: &BTreeMap<Source, usize>) -> Option<Codetection> {
-    let tree = Tree::new(summary.pairs.as_ref()?, Smoothing::Jeffreys);
+fn codetection(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Option<Codetection> {
+    let tree = DependenceTree::new(summary.pairs.as_ref()?, Smoothing::Jeffreys);
     let nodes = tree.order().iter().map(|&i| {
         let node = &tree.nodes()[i];
         let of = |k: usize| rank[&summary.paired[k]];
-        Together {
+        CodetectionNode {
             feature: of(i),
             parent: node.parent.map(of),
             information: node.information,

@@ -1,18 +1,18 @@
 //! Many setups: cameras on the viewing sphere, each with lights on the illumination sphere.
 
+use crate::prepared_part::PreparedPart;
 use crate::setup::light::Light;
 use crate::setup::viewpoint::Viewpoint;
-use crate::setup::{Conditions, MOST_LIGHTS, Setup, SetupError, Written, above_zero};
-use crate::sphere::{Cone, Lattice, Sampling, SphereError, points};
+use crate::setup::{Conditions, MOST_LIGHTS, Setup, SetupError, SetupToml, above_zero};
+use crate::sphere::{Lattice, SphereError, SphereSampling, ViewCone, points};
 use crate::statistics::hash;
-use crate::subject::Subject;
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Points on a sphere about the middle of the part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Sphere {
+pub struct SetupSphere {
     /// Its radius, in the part's unit; three times that of the part's own ball if it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
@@ -27,18 +27,18 @@ pub struct Sphere {
     pub angle: Option<f64>,
     /// The directions from the middle that are meant; all if there is none.
     #[serde(default)]
-    pub cones: Vec<Cone>,
+    pub cones: Vec<ViewCone>,
 }
 
-impl Sphere {
+impl SetupSphere {
     /// The directions from the middle of the part.
     fn directions(&self, key: &str) -> Result<Vec<Vector3<f64>>, SetupError> {
         if let Some(radius) = self.radius {
             above_zero(&format!("{key}.radius"), radius)?;
         }
         let sampling = match (self.count, self.angle) {
-            (Some(count), None) => Sampling::Count(count),
-            (None, Some(angle)) => Sampling::Angle(angle),
+            (Some(count), None) => SphereSampling::Count(count),
+            (None, Some(angle)) => SphereSampling::Angle(angle),
             _ => {
                 let reason = "or `angle` is needed, and only one of them";
                 return Err(SetupError::value(format!("{key}.count"), reason));
@@ -58,22 +58,22 @@ impl Sphere {
         points(self.lattice, sampling, &self.cones).map_err(failed)
     }
 
-    fn radius_about(&self, subject: &Subject<'_>) -> f64 {
+    fn radius_about(&self, subject: &PreparedPart<'_>) -> f64 {
         self.radius.unwrap_or(3.0 * subject.radius)
     }
 }
 
 /// Many setups.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Written")]
+#[serde(try_from = "SetupToml")]
 pub struct Setups {
     /// What they share.
     #[serde(flatten)]
     pub conditions: Conditions,
     /// Where cameras are, all of which look at the middle of the part.
-    pub viewing: Sphere,
+    pub viewing: SetupSphere,
     /// Where the light is that moves; none moves if it is not given.
-    pub illumination: Option<Sphere>,
+    pub illumination: Option<SetupSphere>,
     /// Lights that stand still.
     #[serde(rename = "light")]
     pub lights: Vec<Light>,
@@ -86,10 +86,10 @@ pub struct Setups {
 /// The most setups of one model.
 const MOST: usize = 1 << 32;
 
-impl TryFrom<Written> for Setups {
+impl TryFrom<SetupToml> for Setups {
     type Error = SetupError;
 
-    fn try_from(written: Written) -> Result<Self, SetupError> {
+    fn try_from(written: SetupToml) -> Result<Self, SetupError> {
         written.setups()
     }
 }
@@ -97,14 +97,14 @@ impl TryFrom<Written> for Setups {
 impl Setups {
     /// The setups that a TOML text describes.
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
-        Written::from_toml(text)?.setups()
+        SetupToml::from_toml(text)?.setups()
     }
 
     /// The setups of spheres under conditions.
     pub fn new(
         conditions: Conditions,
-        viewing: Sphere,
-        illumination: Option<Sphere>,
+        viewing: SetupSphere,
+        illumination: Option<SetupSphere>,
         lights: Vec<Light>,
     ) -> Result<Self, SetupError> {
         let views = viewing.directions("viewing")?;
@@ -160,21 +160,21 @@ impl Setups {
     }
 
     /// Where the cameras are, about a part.
-    pub fn eyes(&self, subject: &Subject<'_>) -> Vec<Point3<f64>> {
+    pub fn eyes(&self, subject: &PreparedPart<'_>) -> Vec<Point3<f64>> {
         let radius = self.viewing.radius_about(subject);
         let about = |direction: &Vector3<f64>| subject.centre + direction * radius;
         self.views.iter().map(about).collect()
     }
 
     /// Where the light is that moves, about a part.
-    pub fn moving_lights(&self, subject: &Subject<'_>) -> Vec<Point3<f64>> {
+    pub fn moving_lights(&self, subject: &PreparedPart<'_>) -> Vec<Point3<f64>> {
         let radius = self.illumination.as_ref().map(|s| s.radius_about(subject));
         let at = |direction: &Vector3<f64>| Some(subject.centre + direction * radius?);
         self.moving.iter().filter_map(at).collect()
     }
 
     /// One of the setups, about a part.
-    pub fn setup(&self, index: usize, subject: &Subject<'_>) -> Setup {
+    pub fn setup(&self, index: usize, subject: &PreparedPart<'_>) -> Setup {
         let [view, light] = self.directions(index);
         self.looking(view.unwrap_or_else(Vector3::x), light, index, subject)
     }
@@ -185,7 +185,7 @@ impl Setups {
         view: Vector3<f64>,
         light: Option<Vector3<f64>>,
         index: usize,
-        subject: &Subject<'_>,
+        subject: &PreparedPart<'_>,
     ) -> Setup {
         let eye: Point3<f64> = subject.centre + view * self.viewing.radius_about(subject);
         // Up is z, and over the poles, where that is no direction, x as next to them.

@@ -1,8 +1,10 @@
 //! Sums over observations: the same whichever way the setups were split among shards.
 
-use super::observation::{ATTRIBUTES, Observation, Relation, Sight, Tuple};
-use crate::feature::evidence::State;
-use crate::outline::Source;
+use super::observation::{
+    ATTRIBUTES, FeatureObservation, Observation, RelationKind, RelationObservation,
+};
+use crate::feature::detected_arc::DetectionState;
+use crate::image_arcs::ArcSource;
 use crate::statistics::{Histogram, Moments, Pairs, Proportion, hash};
 use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeMap;
@@ -41,7 +43,7 @@ impl SightSums {
         self.states[0] + self.states[1]
     }
 
-    fn add(&mut self, sight: &Sight) {
+    fn add(&mut self, sight: &FeatureObservation) {
         self.states[sight.state.index()] += 1;
         if let Some(attributes) = &sight.attributes {
             // What is out of bounds, which no attribute is, is left out of the mean.
@@ -66,12 +68,15 @@ pub struct FeatureSums {
 }
 
 impl FeatureSums {
-    fn add(&mut self, sight: &Sight) {
+    fn add(&mut self, sight: &FeatureObservation) {
         self.sights.add(sight);
         self.fragments.record(sight.fragments);
         // What is out of bounds, which no share is, is left out of the mean.
         let _ = self.share.record(&[sight.share]);
-        if let Some(growth) = sight.growth.filter(|_| sight.state != State::Missed) {
+        if let Some(growth) = sight
+            .growth
+            .filter(|_| sight.state != DetectionState::Missed)
+        {
             let _ = self.growth.record(&growth.map(f64::ln));
         }
     }
@@ -86,9 +91,9 @@ pub struct AspectSums {
     pub view: Moments<3>,
     /// What is counted of the features in it. Aspects are many: a map's nodes have room for many
     /// sums, so that these are kept outside of them.
-    pub features: BTreeMap<Source, Box<SightSums>>,
+    pub features: BTreeMap<ArcSource, Box<SightSums>>,
     /// The same of the setups that are learnt from, to match the others by.
-    learnt: BTreeMap<Source, Box<SightSums>>,
+    learnt: BTreeMap<ArcSource, Box<SightSums>>,
 }
 
 /// What is counted of a relation.
@@ -110,13 +115,13 @@ pub struct Summary {
     /// Why in some of them nothing is seen, and how many these are.
     pub unseen: BTreeMap<String, u64>,
     /// By feature.
-    pub features: BTreeMap<Source, FeatureSums>,
+    pub features: BTreeMap<ArcSource, FeatureSums>,
     /// By the edges and limbs that are visible.
-    pub aspects: BTreeMap<Vec<Source>, AspectSums>,
+    pub aspects: BTreeMap<Vec<ArcSource>, AspectSums>,
     /// How many setups are of aspects beyond those that are kept apart.
     pub other_aspects: u64,
     /// By relation: its kind and its features.
-    pub tuples: BTreeMap<(Relation, Vec<Source>), TupleSums>,
+    pub tuples: BTreeMap<(RelationKind, Vec<ArcSource>), TupleSums>,
     /// How often relations beyond those that are kept apart are visible.
     pub other_tuples: u64,
     /// How often ends are near to one another by chance, of how many pairs.
@@ -124,7 +129,7 @@ pub struct Summary {
     /// The logarithms of the pose's deviations: turn and move.
     pub pose: Moments<2>,
     /// The features that are counted together.
-    pub paired: Vec<Source>,
+    pub paired: Vec<ArcSource>,
     /// How often they are not visible, missed and found together.
     pub pairs: Option<Pairs<3>>,
 }
@@ -135,8 +140,8 @@ fn is_learnt(setup: usize) -> bool {
 }
 
 /// The edges and limbs that are visible: their aspect.
-fn aspect(observation: &Observation) -> Vec<Source> {
-    let is_outline = |s: &&Source| matches!(s, Source::Edge { .. } | Source::Limb { .. });
+fn aspect(observation: &Observation) -> Vec<ArcSource> {
+    let is_outline = |s: &&ArcSource| matches!(s, ArcSource::Edge { .. } | ArcSource::Limb { .. });
     let sources = observation.sights.iter().map(|s| &s.source);
     sources.filter(is_outline).copied().collect()
 }
@@ -164,7 +169,7 @@ impl Summary {
         }
     }
 
-    fn add_tuple(&mut self, observation: &Observation, tuple: &Tuple) {
+    fn add_tuple(&mut self, observation: &Observation, tuple: &RelationObservation) {
         let source = |m: &u32| observation.sights[*m as usize].source;
         let key = (tuple.kind, tuple.members.iter().map(source).collect());
         if self.tuples.len() >= MOST_TUPLES && !self.tuples.contains_key(&key) {
@@ -195,8 +200,8 @@ impl Summary {
     }
 
     /// The features in falling order of how often they are found.
-    pub fn ranked(&self) -> Vec<Source> {
-        let mut all: Vec<(u64, Source)> = self
+    pub fn ranked(&self) -> Vec<ArcSource> {
+        let mut all: Vec<(u64, ArcSource)> = self
             .features
             .iter()
             .map(|(s, f)| (f.sights.found(), *s))
@@ -218,11 +223,11 @@ impl Summary {
         if observation.unseen.is_some() {
             return;
         }
-        let state = |source: &Source| {
+        let state = |source: &ArcSource| {
             let sights = &observation.sights;
             match sights.binary_search_by(|s| s.source.cmp(source)) {
                 Err(_) => 0,
-                Ok(i) if sights[i].state == State::Missed => 1,
+                Ok(i) if sights[i].state == DetectionState::Missed => 1,
                 Ok(_) => 2,
             }
         };
@@ -241,7 +246,7 @@ impl Summary {
         let Some(sums) = self.aspects.get(&aspect(observation)) else {
             return;
         };
-        let known: Vec<(Source, Likeness)> = sums
+        let known: Vec<(ArcSource, Likeness)> = sums
             .learnt
             .iter()
             .filter_map(|(source, sums)| Some((*source, Likeness::new(sums)?)))
@@ -299,17 +304,17 @@ mod tests {
 
     #[test]
     fn relations_beyond_those_kept_apart_are_counted() {
-        let sight = |edge| Sight {
-            source: Source::Edge { edge },
+        let sight = |edge| FeatureObservation {
+            source: ArcSource::Edge { edge },
             length: 1.0,
-            state: State::Missed,
+            state: DetectionState::Missed,
             fragments: 0,
             share: 0.0,
             attributes: None,
             growth: None,
         };
-        let pair = |a, b| Tuple {
-            kind: Relation::L,
+        let pair = |a, b| RelationObservation {
+            kind: RelationKind::L,
             members: vec![a, b],
             seen: false,
             kept: false,

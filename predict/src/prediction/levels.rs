@@ -1,12 +1,12 @@
 //! The five levels, as they are handed on (`premio.prediction/1`).
 
-use super::draft::{Draft, Outcome};
+use super::predicted_image::{DetectionOutcome, PredictedImage};
 use crate::feature::contrast::{Contrast, sides};
-use crate::feature::evidence::State;
-use crate::feature::group::{Boundary, Chain, boundaries, chains, triplets};
-use crate::feature::junction::{Junction, Nodes, junctions};
+use crate::feature::detected_arc::DetectionState;
+use crate::feature::group::{ArcChain, BoundaryGroup, boundaries, chains, triplets};
+use crate::feature::junction::{Nodes, PredictedJunction, junctions};
 use crate::feature::reason::Reason;
-use crate::outline::{Arc, Source};
+use crate::image_arcs::{ArcSource, PredictedArc};
 use crate::setup::Setup;
 use premio_detect::SegmentShape;
 use schemars::JsonSchema;
@@ -31,7 +31,7 @@ pub struct Prediction {
     /// The arcs that boundaries consist of, by id.
     pub arcs: Vec<ArcLevel>,
     /// What the detector makes of the image, by id.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<ImageSegment>,
 }
 
 /// The image level: under which conditions the image is made.
@@ -63,9 +63,9 @@ pub struct ObjectLevel {
     /// The arcs that may be found: all but where the normal does not jump.
     pub features: Vec<u32>,
     /// Where arcs meet.
-    pub junctions: Vec<Junction>,
+    pub junctions: Vec<PredictedJunction>,
     /// Arcs that follow one another through junctions of two.
-    pub chains: Vec<Chain>,
+    pub chains: Vec<ArcChain>,
     /// Three arcs, the middle one of which meets the others at its ends.
     pub triplets: Vec<[u32; 3]>,
     /// The closed boundaries.
@@ -100,7 +100,7 @@ pub struct BoundaryLevel {
     pub region: u32,
     /// Its arcs.
     #[serde(flatten)]
-    pub boundary: Boundary,
+    pub boundary: BoundaryGroup,
     /// The share of its length that is found.
     pub found: f64,
 }
@@ -108,7 +108,7 @@ pub struct BoundaryLevel {
 /// The form of an arc in the image, in pixels.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
-pub enum Geometry {
+pub enum ArcGeometry {
     /// A straight line.
     Line {
         /// Its ends.
@@ -141,7 +141,7 @@ pub struct Chances {
 
 /// A piece of an arc that is found.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Piece {
+pub struct ArcPiece {
     /// The range of the curve's parameter.
     pub t: [f64; 2],
     /// From where to where along the arc, in pixels.
@@ -156,7 +156,7 @@ pub struct ArcLevel {
     /// Its place in the list.
     pub id: u32,
     /// What it is the image of.
-    pub source: Source,
+    pub source: ArcSource,
     /// The contour of the view that it is a piece of.
     pub contour: Option<u32>,
     /// The range of the parameter of the curve in space; of a shadow's boundary that of what casts it.
@@ -166,17 +166,17 @@ pub struct ArcLevel {
     /// Whether the normal does not jump across it.
     pub smooth: bool,
     /// Its form.
-    pub geometry: Geometry,
+    pub geometry: ArcGeometry,
     /// Its length within the image, in pixels.
     pub length: f64,
     /// The grey levels on both sides along it, before noise and steps.
     pub contrast: Vec<Contrast>,
     /// What is found of it.
-    pub fragments: Vec<Piece>,
+    pub fragments: Vec<ArcPiece>,
     /// The share of it that is found, its ends left out.
     pub share: f64,
     /// Its most frequent state.
-    pub state: State,
+    pub state: DetectionState,
     /// How likely each state is.
     pub chances: Chances,
     /// Why it is not whole.
@@ -185,7 +185,7 @@ pub struct ArcLevel {
 
 /// What the detector makes of edge pixels, and which arcs these are of.
 #[derive(Clone, Debug, JsonSchema, Serialize)]
-pub struct Segment {
+pub struct ImageSegment {
     /// Its place in the list.
     pub id: u32,
     /// Its form, in pixels.
@@ -197,7 +197,7 @@ pub struct Segment {
 }
 
 /// The prediction of a draft's image.
-pub fn prediction(draft: &Draft<'_>, setup: &Setup) -> Prediction {
+pub fn prediction(draft: &PredictedImage<'_>, setup: &Setup) -> Prediction {
     let outcome = draft.outcome();
     let measure = draft.measure();
     let arcs: Vec<ArcLevel> = (0..draft.arcs.len())
@@ -239,8 +239,8 @@ pub fn prediction(draft: &Draft<'_>, setup: &Setup) -> Prediction {
 }
 
 fn object_level(
-    draft: &Draft<'_>,
-    junctions: Vec<Junction>,
+    draft: &PredictedImage<'_>,
+    junctions: Vec<PredictedJunction>,
     regions: &[RegionLevel],
     boundaries: &[BoundaryLevel],
     arcs: &[ArcLevel],
@@ -274,7 +274,7 @@ fn object_level(
     }
 }
 
-fn region_levels(draft: &Draft<'_>) -> Vec<RegionLevel> {
+fn region_levels(draft: &PredictedImage<'_>) -> Vec<RegionLevel> {
     let levels = draft.regions.all.iter().enumerate().map(|(i, region)| {
         let (mut sum, mut weight) = (0.0, 0.0);
         for &(at, gap) in &region.points {
@@ -298,7 +298,12 @@ fn region_levels(draft: &Draft<'_>) -> Vec<RegionLevel> {
     levels.collect()
 }
 
-fn boundary_level(id: u32, region: u32, boundary: Boundary, arcs: &[ArcLevel]) -> BoundaryLevel {
+fn boundary_level(
+    id: u32,
+    region: u32,
+    boundary: BoundaryGroup,
+    arcs: &[ArcLevel],
+) -> BoundaryLevel {
     let own = boundary.arcs.iter().map(|&a| &arcs[a as usize]);
     let length: f64 = own.clone().map(|a| a.length).sum();
     let found: f64 = own.map(|a| a.length * a.share).sum();
@@ -311,8 +316,8 @@ fn boundary_level(id: u32, region: u32, boundary: Boundary, arcs: &[ArcLevel]) -
 }
 
 fn arc_level(
-    draft: &Draft<'_>,
-    outcome: &Outcome,
+    draft: &PredictedImage<'_>,
+    outcome: &DetectionOutcome,
     i: usize,
     measure: &crate::feature::reason::Measure,
 ) -> ArcLevel {
@@ -322,8 +327,9 @@ fn arc_level(
     let reason = draft.reason(i, &outcome.evidence, &contrast, measure);
     let [start, end] = draft.ink.spans[i];
     let total: u32 = outcome.counts[i].iter().sum();
-    let chance = |state: State| f64::from(outcome.counts[i][state.index()]) / f64::from(total);
-    let fragments = evidence.fragments.iter().map(|f| Piece {
+    let chance =
+        |state: DetectionState| f64::from(outcome.counts[i][state.index()]) / f64::from(total);
+    let fragments = evidence.fragments.iter().map(|f| ArcPiece {
         t: f.along.map(|a| arc.line.parameter_at(a)),
         along: f.along,
         segments: f.segments.clone(),
@@ -342,37 +348,37 @@ fn arc_level(
         share: evidence.share,
         state: evidence.state,
         chances: Chances {
-            whole: chance(State::Whole),
-            broken: chance(State::Broken),
-            missed: chance(State::Missed),
+            whole: chance(DetectionState::Whole),
+            broken: chance(DetectionState::Broken),
+            missed: chance(DetectionState::Missed),
         },
         reason: if arc.smooth { None } else { reason },
     }
 }
 
-fn geometry(arc: &Arc) -> Geometry {
+fn geometry(arc: &PredictedArc) -> ArcGeometry {
     let points = &arc.line.points;
     let ends = [points[0], points[points.len() - 1]];
     match arc.coefficients.len() {
-        3 => Geometry::Line { ends },
-        6 => Geometry::Conic {
+        3 => ArcGeometry::Line { ends },
+        6 => ArcGeometry::Conic {
             coefficients: arc.coefficients.clone(),
             points: points.clone(),
         },
-        _ if points.len() == 2 => Geometry::Line { ends },
-        _ => Geometry::Sampled {
+        _ if points.len() == 2 => ArcGeometry::Line { ends },
+        _ => ArcGeometry::Sampled {
             points: points.clone(),
         },
     }
 }
 
-fn segments(outcome: &Outcome, arcs: usize) -> Vec<Segment> {
+fn segments(outcome: &DetectionOutcome, arcs: usize) -> Vec<ImageSegment> {
     let found = outcome
         .detection
         .segments
         .iter()
         .enumerate()
-        .map(|(i, segment)| Segment {
+        .map(|(i, segment)| ImageSegment {
             id: i as u32,
             shape: segment.shape,
             rms: segment.rms,

@@ -1,13 +1,13 @@
 //! The prediction of an image: five levels with their relations (section 4.3 of the paper).
 
-mod draft;
 mod levels;
+mod predicted_image;
 
-pub use draft::{Draft, Memory, Outcome, with_draft};
 pub use levels::{
-    ArcLevel, BoundaryLevel, Chances, Geometry, ImageLevel, ObjectLevel, Piece, Prediction,
-    RegionLevel, SCHEMA, Segment, prediction,
+    ArcGeometry, ArcLevel, ArcPiece, BoundaryLevel, Chances, ImageLevel, ImageSegment, ObjectLevel,
+    Prediction, RegionLevel, SCHEMA, prediction,
 };
+pub use predicted_image::{DetectionOutcome, Memory, PredictedImage, with_draft};
 
 /// The schema of [`Prediction`], as JSON Schema has it.
 pub fn schema() -> schemars::Schema {

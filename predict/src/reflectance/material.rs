@@ -1,6 +1,6 @@
 //! What is known of a surface's material: the constants of the physical object model.
 
-use super::{Optics, Polarisation, Reflectance, Surface};
+use super::{Optics, Polarisation, Reflectance, SurfaceFinish};
 use nalgebra::Vector3;
 use premio_text::number;
 use schemars::JsonSchema;
@@ -145,11 +145,11 @@ impl Material {
     }
 
     /// The material made ready to be asked of many directions.
-    pub fn surface(&self) -> Surface {
-        Surface::new(self)
+    pub fn surface(&self) -> SurfaceFinish {
+        SurfaceFinish::new(self)
     }
 
-    /// [`Surface::reflectance`] of one set of directions.
+    /// [`SurfaceFinish::reflectance`] of one set of directions.
     pub fn reflectance(
         &self,
         normal: &Vector3<f64>,

@@ -17,7 +17,7 @@ pub use library::{GREEN, Named};
 pub use material::{Constants, Material, MaterialError, SpecularForm};
 pub use microfacet::{attenuation, distribution};
 pub use optics::{Optics, Polarisation, Reflectivity};
-pub use surface::{Reflectance, Surface};
+pub use surface::{Reflectance, SurfaceFinish};
 
 #[cfg(test)]
 mod tests;

@@ -16,7 +16,7 @@ pub struct Reflectance {
 
 /// A material with what does not depend on the directions reckoned beforehand.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct SurfaceFinish {
     optics: Optics,
     m: f64,
     specular: f64,
@@ -24,7 +24,7 @@ pub struct Surface {
     ambient: f64,
 }
 
-impl Surface {
+impl SurfaceFinish {
     pub(super) fn new(material: &Material) -> Self {
         let constants = material.constants();
         let divisor = match constants.form {

@@ -96,8 +96,8 @@ impl Light {
 
 /// A light, ready to shine on a part.
 #[derive(Clone, Copy, Debug)]
-pub struct Source {
-    place: Place,
+pub struct LightSource {
+    place: LightPlace,
     /// I_l.
     pub intensity: f64,
     /// The shares of I_l that are polarised along and across the plane of incidence.
@@ -111,22 +111,22 @@ pub struct Source {
 
 /// Where a light is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum LightPlace {
     /// At a point.
     Near(Point3<f64>),
     /// Infinitely far in this unit direction.
     Far(Vector3<f64>),
 }
 
-impl Source {
+impl LightSource {
     /// A light that shines on a part with this middle.
     pub fn new(light: &Light, centre: &Point3<f64>) -> Self {
         let place = match (light.position, light.direction) {
-            (Some(p), _) => Place::Near(Point3::from(p)),
-            (None, d) => Place::Far(Vector3::from(d.unwrap_or([0.0, 0.0, 1.0])).normalize()),
+            (Some(p), _) => LightPlace::Near(Point3::from(p)),
+            (None, d) => LightPlace::Far(Vector3::from(d.unwrap_or([0.0, 0.0, 1.0])).normalize()),
         };
         let distance = match place {
-            Place::Near(p) if light.falloff => Some((p - centre).norm()),
+            LightPlace::Near(p) if light.falloff => Some((p - centre).norm()),
             _ => None,
         };
         let intensity = light.intensity();
@@ -148,15 +148,15 @@ impl Source {
     }
 
     /// Where it is.
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> LightPlace {
         self.place
     }
 
     /// L, the unit vector from a point towards the light, with I_l dω_l there.
     pub fn from(&self, p: &Point3<f64>) -> (Vector3<f64>, f64) {
         match self.place {
-            Place::Far(d) => (d, self.intensity * self.solid_angle),
-            Place::Near(o) => {
+            LightPlace::Far(d) => (d, self.intensity * self.solid_angle),
+            LightPlace::Near(o) => {
                 let d = o - p;
                 let square = d.norm_squared();
                 let falloff = self.distance.map_or(1.0, |known| known * known / square);
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn a_near_light_falls_off_with_the_square_of_the_distance() {
         let light = Light::at(Point3::new(0.0, 0.0, 10.0));
-        let source = Source::new(&light, &Point3::origin());
+        let source = LightSource::new(&light, &Point3::origin());
         let (l, at_centre) = source.from(&Point3::origin());
         assert_eq!(l, Vector3::z());
         assert_eq!(at_centre, 1.0);

@@ -5,8 +5,8 @@
 
 pub mod light;
 pub mod sensor;
+mod setup_toml;
 pub mod viewpoint;
-mod written;
 
 use crate::feature::Criteria;
 use crate::reflectance::{Constants, GREEN, Material, Named};
@@ -18,10 +18,10 @@ use sensor::Sensor;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
+pub use setup_toml::SetupToml;
 use std::fmt;
 use std::ops::Range;
 use viewpoint::Viewpoint;
-pub use written::Written;
 
 /// Why a setup cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -262,7 +262,7 @@ pub fn detector_from_toml(text: &str) -> Result<Detector, SetupError> {
 impl Setup {
     /// The setup that a TOML text describes.
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
-        Written::from_toml(text)?.setup()
+        SetupToml::from_toml(text)?.setup()
     }
 
     /// Whether all values are in their ranges.

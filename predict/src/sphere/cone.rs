@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 /// All directions within an angle of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Cone {
+pub struct ViewCone {
     /// The direction of the axis, of any length.
     pub axis: [f64; 3],
     /// The angle between the axis and the cone's side, in degrees: more than 0, at most 180.
@@ -35,7 +35,7 @@ impl Cap {
         }
     }
 
-    fn new(index: usize, cone: &Cone) -> Result<Self, SphereError> {
+    fn new(index: usize, cone: &ViewCone) -> Result<Self, SphereError> {
         let angle = cone.half_angle;
         if !is_angle(angle) {
             let cone = index;
@@ -96,7 +96,7 @@ fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
 }
 
 /// The caps of the cones, the largest first; the whole sphere if there is no cone.
-pub(super) fn caps(cones: &[Cone]) -> Result<Vec<Cap>, SphereError> {
+pub(super) fn caps(cones: &[ViewCone]) -> Result<Vec<Cap>, SphereError> {
     if cones.is_empty() {
         return Ok(vec![Cap::all()]);
     }

@@ -6,7 +6,7 @@
 //! their number is reached, and what is then too many is left out, spread over all.
 
 use super::cone::Cap;
-use super::{MOST_POINTS, Sampling, SphereError};
+use super::{MOST_POINTS, SphereError, SphereSampling};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -42,14 +42,17 @@ fn at_density(caps: &[Cap], density: f64) -> Result<Vec<Vector3<f64>>, SphereErr
 }
 
 /// The points that are wished.
-pub(super) fn points(sampling: Sampling, caps: &[Cap]) -> Result<Vec<Vector3<f64>>, SphereError> {
+pub(super) fn points(
+    sampling: SphereSampling,
+    caps: &[Cap],
+) -> Result<Vec<Vector3<f64>>, SphereError> {
     let Some(largest) = caps.first() else {
         return Ok(Vec::new());
     };
     match sampling {
-        Sampling::Count(count) if caps.len() == 1 => Ok(spiral(largest, count).collect()),
-        Sampling::Count(count) => counted(caps, largest, count),
-        Sampling::Angle(degrees) => {
+        SphereSampling::Count(count) if caps.len() == 1 => Ok(spiral(largest, count).collect()),
+        SphereSampling::Count(count) => counted(caps, largest, count),
+        SphereSampling::Angle(degrees) => {
             let density = degrees.to_radians().powi(-2);
             // A cap smaller than what a point has for its own has one all the same.
             let least = 1.0 / largest.area();

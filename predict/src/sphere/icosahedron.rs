@@ -1,7 +1,7 @@
 //! The icosahedral lattice: a geodesic grid (Kenner, 1976), class I.
 
 use super::cone::Cap;
-use super::{MOST_POINTS, Sampling, SphereError};
+use super::{MOST_POINTS, SphereError, SphereSampling};
 use nalgebra::Vector3;
 
 /// The largest frequency: 10f² + 2 points are just within the most that are made.
@@ -113,11 +113,14 @@ fn within(f: usize, caps: &[Cap]) -> impl Iterator<Item = Vector3<f64>> {
 }
 
 /// The points of the smallest frequency that has as many, or as small an angle, as is wished.
-pub(super) fn points(sampling: Sampling, caps: &[Cap]) -> Result<Vec<Vector3<f64>>, SphereError> {
+pub(super) fn points(
+    sampling: SphereSampling,
+    caps: &[Cap],
+) -> Result<Vec<Vector3<f64>>, SphereError> {
     let f = match sampling {
-        Sampling::Count(count) => (1..=MOST)
+        SphereSampling::Count(count) => (1..=MOST)
             .find(|&f| may_hold(f, caps, count) && within(f, caps).nth(count - 1).is_some()),
-        Sampling::Angle(degrees) => (1..=MOST).find(|&f| longest(f) <= degrees.to_radians()),
+        SphereSampling::Angle(degrees) => (1..=MOST).find(|&f| longest(f) <= degrees.to_radians()),
     };
     let f = f.ok_or(SphereError::TooMany)?;
     Ok(within(f, caps).collect())

@@ -5,7 +5,7 @@ mod cone;
 mod fibonacci;
 mod icosahedron;
 
-pub use cone::Cone;
+pub use cone::ViewCone;
 use nalgebra::Vector3;
 use premio_text::number;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub enum Lattice {
 /// How many points are wished.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Sampling {
+pub enum SphereSampling {
     /// So many points within the cones: just so many on a Fibonacci lattice, at least so many on an
     /// icosahedral one.
     Count(usize),
@@ -72,13 +72,13 @@ pub enum SphereError {
 /// unit vectors, in an order that depends on nothing else.
 pub fn points(
     lattice: Lattice,
-    sampling: Sampling,
-    cones: &[Cone],
+    sampling: SphereSampling,
+    cones: &[ViewCone],
 ) -> Result<Vec<Vector3<f64>>, SphereError> {
     match sampling {
-        Sampling::Count(0) => return Err(SphereError::NoCount),
-        Sampling::Count(n) if n > MOST_POINTS => return Err(SphereError::TooMany),
-        Sampling::Angle(angle) if !is_angle(angle) => return Err(SphereError::Angle(angle)),
+        SphereSampling::Count(0) => return Err(SphereError::NoCount),
+        SphereSampling::Count(n) if n > MOST_POINTS => return Err(SphereError::TooMany),
+        SphereSampling::Angle(angle) if !is_angle(angle) => return Err(SphereError::Angle(angle)),
         _ => (),
     }
     let caps = cone::caps(cones)?;

@@ -1,15 +1,15 @@
 use super::*;
 use std::f64::consts::PI;
 
-fn cone(axis: [f64; 3], half_angle: f64) -> Cone {
-    Cone { axis, half_angle }
+fn cone(axis: [f64; 3], half_angle: f64) -> ViewCone {
+    ViewCone { axis, half_angle }
 }
 
-fn fibonacci(n: usize, cones: &[Cone]) -> Vec<Vector3<f64>> {
-    points(Lattice::Fibonacci, Sampling::Count(n), cones).unwrap()
+fn fibonacci(n: usize, cones: &[ViewCone]) -> Vec<Vector3<f64>> {
+    points(Lattice::Fibonacci, SphereSampling::Count(n), cones).unwrap()
 }
 
-fn icosahedral(sampling: Sampling, cones: &[Cone]) -> Vec<Vector3<f64>> {
+fn icosahedral(sampling: SphereSampling, cones: &[ViewCone]) -> Vec<Vector3<f64>> {
     points(Lattice::Icosahedral, sampling, cones).unwrap()
 }
 
@@ -24,7 +24,7 @@ fn nearest(all: &[Vector3<f64>]) -> Vec<f64> {
         .collect()
 }
 
-fn inside(p: &Vector3<f64>, cone: &Cone) -> bool {
+fn inside(p: &Vector3<f64>, cone: &ViewCone) -> bool {
     p.angle(&Vector3::from(cone.axis)) <= cone.half_angle.to_radians() + 1e-7
 }
 
@@ -106,7 +106,7 @@ fn unions_of_cones_have_the_count() {
 #[test]
 fn fibonacci_angles_are_the_distance_to_neighbours() {
     for degrees in [2.0, 5.0, 10.0_f64] {
-        let all = points(Lattice::Fibonacci, Sampling::Angle(degrees), &[]).unwrap();
+        let all = points(Lattice::Fibonacci, SphereSampling::Angle(degrees), &[]).unwrap();
         let spacings = nearest(&all);
         let mean = spacings.iter().sum::<f64>() / spacings.len() as f64;
         assert!(
@@ -115,7 +115,7 @@ fn fibonacci_angles_are_the_distance_to_neighbours() {
         );
     }
     let narrow = [cone([0.0, 1.0, 0.0], 0.1)];
-    let one = points(Lattice::Fibonacci, Sampling::Angle(90.0), &narrow).unwrap();
+    let one = points(Lattice::Fibonacci, SphereSampling::Angle(90.0), &narrow).unwrap();
     assert_eq!(one.len(), 1);
 }
 
@@ -129,16 +129,16 @@ fn icosahedral_lattices_are_the_smallest() {
         (163, 252),
         (1000, 1002),
     ] {
-        assert_eq!(icosahedral(Sampling::Count(wished), &[]).len(), found);
+        assert_eq!(icosahedral(SphereSampling::Count(wished), &[]).len(), found);
     }
     for degrees in [63.44, 40.0, 10.0, 4.0] {
-        let all = icosahedral(Sampling::Angle(degrees), &[]);
+        let all = icosahedral(SphereSampling::Angle(degrees), &[]);
         let f = (((all.len() - 2) / 10) as f64).sqrt().round();
         assert!(nearest(&all).iter().all(|a| a.to_degrees() <= degrees));
-        let finer = icosahedral(Sampling::Angle(degrees * 0.99 * f / (f + 1.0)), &[]);
+        let finer = icosahedral(SphereSampling::Angle(degrees * 0.99 * f / (f + 1.0)), &[]);
         assert!(finer.len() > all.len());
     }
-    assert_eq!(icosahedral(Sampling::Angle(180.0), &[]).len(), 12);
+    assert_eq!(icosahedral(SphereSampling::Angle(180.0), &[]).len(), 12);
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn icosahedral_lattices_keep_to_cones() {
     let cones = [cone([1.0, 0.0, 0.0], 25.0), cone([0.3, 1.0, -1.0], 12.0)];
     let by_trying = |count: usize| {
         (1..200)
-            .map(|f| icosahedral(Sampling::Count(10 * f * f + 2), &[]))
+            .map(|f| icosahedral(SphereSampling::Count(10 * f * f + 2), &[]))
             .map(|all| {
                 all.into_iter()
                     .filter(|p| cones.iter().any(|c| inside(p, c)))
@@ -156,7 +156,7 @@ fn icosahedral_lattices_keep_to_cones() {
             .unwrap()
     };
     for count in [1, 5, 40, 300] {
-        let all = icosahedral(Sampling::Count(count), &cones);
+        let all = icosahedral(SphereSampling::Count(count), &cones);
         assert!(all.len() >= count);
         assert_eq!(all, by_trying(count), "{count}");
     }
@@ -164,46 +164,49 @@ fn icosahedral_lattices_keep_to_cones() {
 
 #[test]
 fn wishes_that_cannot_be_are_told() {
-    let ask = |lattice, sampling, cones: &[Cone]| points(lattice, sampling, cones).unwrap_err();
+    let ask = |lattice, sampling, cones: &[ViewCone]| points(lattice, sampling, cones).unwrap_err();
     for lattice in [Lattice::Fibonacci, Lattice::Icosahedral] {
-        assert_eq!(ask(lattice, Sampling::Count(0), &[]), SphereError::NoCount);
         assert_eq!(
-            ask(lattice, Sampling::Count(usize::MAX), &[]),
+            ask(lattice, SphereSampling::Count(0), &[]),
+            SphereError::NoCount
+        );
+        assert_eq!(
+            ask(lattice, SphereSampling::Count(usize::MAX), &[]),
             SphereError::TooMany
         );
         assert_eq!(
-            ask(lattice, Sampling::Angle(1e-300), &[]),
+            ask(lattice, SphereSampling::Angle(1e-300), &[]),
             SphereError::TooMany
         );
         for angle in [0.0, -1.0, 180.5, f64::NAN] {
             assert!(matches!(
-                ask(lattice, Sampling::Angle(angle), &[]),
+                ask(lattice, SphereSampling::Angle(angle), &[]),
                 SphereError::Angle(_)
             ));
             let wrong = [cone([1.0; 3], 20.0), cone([1.0; 3], angle)];
-            let error = ask(lattice, Sampling::Count(5), &wrong);
+            let error = ask(lattice, SphereSampling::Count(5), &wrong);
             assert!(matches!(error, SphereError::HalfAngle { cone: 1, .. }));
         }
         for axis in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
-            let error = ask(lattice, Sampling::Count(5), &[cone(axis, 20.0)]);
+            let error = ask(lattice, SphereSampling::Count(5), &[cone(axis, 20.0)]);
             assert_eq!(error, SphereError::Axis(0));
         }
         for axis in [[1e-300, 0.0, 0.0], [1e300, 1e300, 0.0], [5e-324, 0.0, 0.0]] {
-            assert!(points(lattice, Sampling::Count(5), &[cone(axis, 20.0)]).is_ok());
+            assert!(points(lattice, SphereSampling::Count(5), &[cone(axis, 20.0)]).is_ok());
         }
     }
     let between = [cone([1.0, 1.0, 1.0], 0.01)];
-    let coarse = ask(Lattice::Icosahedral, Sampling::Angle(60.0), &between);
+    let coarse = ask(Lattice::Icosahedral, SphereSampling::Angle(60.0), &between);
     assert_eq!(coarse, SphereError::Empty);
 }
 
 #[test]
 fn wishes_are_read() {
-    let read = |text: &str| serde_json::from_str::<Sampling>(text).unwrap();
-    assert_eq!(read(r#"{"count": 12}"#), Sampling::Count(12));
-    assert_eq!(read(r#"{"angle": 7.5}"#), Sampling::Angle(7.5));
+    let read = |text: &str| serde_json::from_str::<SphereSampling>(text).unwrap();
+    assert_eq!(read(r#"{"count": 12}"#), SphereSampling::Count(12));
+    assert_eq!(read(r#"{"angle": 7.5}"#), SphereSampling::Angle(7.5));
     let lattice: Lattice = serde_json::from_str("\"icosahedral\"").unwrap();
     assert_eq!(lattice, Lattice::Icosahedral);
     let wrong = r#"{"axis": [0, 0, 1], "half_angle": 3, "colour": 1}"#;
-    assert!(serde_json::from_str::<Cone>(wrong).is_err());
+    assert!(serde_json::from_str::<ViewCone>(wrong).is_err());
 }

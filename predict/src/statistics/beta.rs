@@ -29,7 +29,7 @@ struct Written {
 /// The bounds that a proportion is within.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Interval {
+pub struct CredibleInterval {
     /// The lower bound.
     pub low: f64,
     /// The upper bound.
@@ -88,16 +88,16 @@ impl Proportion {
     /// The equal-tailed credible interval: the proportion is in it with the probability `level`, and
     /// as likely below as above, to 2e-7 of the probability up to 10^8 trials. All
     /// of 0 to 1 at a level of 1 or what is none.
-    pub fn interval(&self, level: f64) -> Interval {
+    pub fn interval(&self, level: f64) -> CredibleInterval {
         if level.is_nan() || level >= 1.0 {
-            return Interval {
+            return CredibleInterval {
                 low: 0.0,
                 high: 1.0,
             };
         }
         let tail = 0.5 * (1.0 - level.max(0.0));
         let (a, b) = self.parameters();
-        Interval {
+        CredibleInterval {
             low: proportion(|x, y| below(a, b, x, y) < tail),
             high: proportion(|x, y| below(b, a, y, x) > tail),
         }
@@ -190,7 +190,7 @@ fn bent(u: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn interval(successes: u64, trials: u64) -> Interval {
+    fn interval(successes: u64, trials: u64) -> CredibleInterval {
         let of = Proportion::new(successes, trials).unwrap();
         of.interval(Proportion::LEVEL)
     }
@@ -257,7 +257,7 @@ mod tests {
     fn levels_and_means() {
         let of = Proportion::new(3, 4).unwrap();
         assert_eq!(of.mean(), 0.7);
-        let whole = Interval {
+        let whole = CredibleInterval {
             low: 0.0,
             high: 1.0,
         };

@@ -23,7 +23,7 @@ impl Smoothing {
 
 /// A feature in the tree.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node<const K: usize> {
+pub struct DependenceNode<const K: usize> {
     /// The feature that it depends on; none of the root.
     pub parent: Option<usize>,
     /// Their mutual information in nats; 0 of the root.
@@ -43,8 +43,8 @@ pub struct Node<const K: usize> {
 /// most information about all others together. Of what is as good to 2^-40 nats, the feature of the
 /// lower index is taken, as the root, as the next to be joined, and as the parent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tree<const K: usize> {
-    nodes: Vec<Node<K>>,
+pub struct DependenceTree<const K: usize> {
+    nodes: Vec<DependenceNode<K>>,
     order: Vec<usize>,
 }
 
@@ -73,13 +73,13 @@ fn root<const K: usize>(pairs: &Pairs<K>) -> Option<usize> {
     features.clone().rev().max_by_key(|&i| about_others(i))
 }
 
-impl<const K: usize> Tree<K> {
+impl<const K: usize> DependenceTree<K> {
     /// The tree of counts.
     pub fn new(pairs: &Pairs<K>, smoothing: Smoothing) -> Self {
         let (parents, order) = spanning(pairs);
         let node = |(feature, &parent): (usize, &Option<usize>)| {
             let marginal = smoothed(pairs.counts(feature), smoothing);
-            Node {
+            DependenceNode {
                 parent,
                 information: parent.map_or(0.0, |p| pairs.information(p, feature)),
                 marginal,
@@ -95,7 +95,7 @@ impl<const K: usize> Tree<K> {
     }
 
     /// The features, by their index.
-    pub fn nodes(&self) -> &[Node<K>] {
+    pub fn nodes(&self) -> &[DependenceNode<K>] {
         &self.nodes
     }
 
@@ -199,7 +199,7 @@ mod tests {
 
     fn recovers<const K: usize>() {
         let pairs = sampled::<K>(4000);
-        let tree = Tree::new(&pairs, Smoothing::default());
+        let tree = DependenceTree::new(&pairs, Smoothing::default());
         let found = edges(tree.nodes().iter().map(|n| n.parent));
         assert_eq!(found, edges(PLANTED.into_iter()));
         let mut known = [false; 8];
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_tree_is_a_distribution() {
-        let tree = Tree::new(&sampled::<2>(100), Smoothing::Laplace);
+        let tree = DependenceTree::new(&sampled::<2>(100), Smoothing::Laplace);
         let all: f64 = (0..256_u32)
             .map(|bits| (0..8).map(|i| (bits >> i & 1) as u8).collect::<Vec<_>>())
             .map(|states| tree.log_probability(&states).unwrap().exp())
@@ -237,7 +237,7 @@ mod tests {
 
     #[test]
     fn ties_go_to_the_lower_index() {
-        let none = Tree::new(&Pairs::<2>::new(3), Smoothing::Jeffreys);
+        let none = DependenceTree::new(&Pairs::<2>::new(3), Smoothing::Jeffreys);
         let parents: Vec<_> = none.nodes().iter().map(|n| n.parent).collect();
         assert_eq!(parents, [None, Some(0), Some(0)]);
         assert_eq!(none.nodes()[1].table, [[0.5; 2]; 2]);
@@ -246,14 +246,14 @@ mod tests {
         for state in [0, 1, 1, 0, 0] {
             pairs.observe(&[state; 4]).unwrap();
         }
-        let tree = Tree::new(&pairs, Smoothing::Jeffreys);
+        let tree = DependenceTree::new(&pairs, Smoothing::Jeffreys);
         let parents: Vec<_> = tree.nodes().iter().map(|n| n.parent).collect();
         assert_eq!(parents, [None, Some(0), Some(0), Some(0)]);
         assert_eq!(tree.root(), Some(0));
         let row = tree.nodes()[1].table[0];
         assert_eq!(row, [3.5 / 4.0, 0.5 / 4.0]);
         assert_eq!(
-            Tree::new(&Pairs::<2>::new(0), Smoothing::Jeffreys).root(),
+            DependenceTree::new(&Pairs::<2>::new(0), Smoothing::Jeffreys).root(),
             None
         );
     }
@@ -267,7 +267,7 @@ mod tests {
             let states: Vec<u8> = (0..5).map(|_| (random.bits() & 1) as u8).collect();
             pairs.observe(&states).unwrap();
         }
-        let tree = Tree::new(&pairs, Smoothing::Jeffreys);
+        let tree = DependenceTree::new(&pairs, Smoothing::Jeffreys);
         let found: f64 = tree.nodes().iter().map(|n| n.information).sum();
         let mut best = 0.0_f64;
         for code in 0..125 {

@@ -11,8 +11,8 @@ mod pairs;
 mod random;
 mod whole;
 
-pub use beta::{Interval, Proportion};
-pub use chow_liu::{Node, Smoothing, Tree};
+pub use beta::{CredibleInterval, Proportion};
+pub use chow_liu::{DependenceNode, DependenceTree, Smoothing};
 pub use histogram::Histogram;
 pub use moments::Moments;
 pub use pairs::Pairs;

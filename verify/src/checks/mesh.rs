@@ -1,7 +1,7 @@
 //! The meshes of a part as their files hold them, in the precision of each: closed, oriented, no
 //! triangle without an area, and of one volume with the boundary but for the deviation.
 
-use super::{Check, Checker, Finding, Subject};
+use super::{Check, CheckSubject, Checker, Finding};
 use nalgebra::{Point3, Vector3};
 use premio_exchange::mesh::{self, Facets, MeshError, obj, stl};
 use premio_kernel::tessellation::Accuracy;
@@ -30,7 +30,7 @@ impl Checker<'_> {
     /// Writes meshes, reads them back and holds them against the rules.
     pub fn mesh(&self) -> Check {
         let told = |finding, detail| Check {
-            subject: Subject::Mesh,
+            subject: CheckSubject::Mesh,
             finding,
             detail,
         };

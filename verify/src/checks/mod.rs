@@ -40,7 +40,7 @@ const AROUND: usize = 2000;
 
 /// What a check is about.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Subject {
+pub enum CheckSubject {
     /// The rules of the boundary representation.
     Topology,
     /// The volume of the boundary against the tree's by rays.
@@ -76,7 +76,7 @@ pub enum Finding {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What it is about.
-    pub subject: Subject,
+    pub subject: CheckSubject,
     /// What it finds.
     pub finding: Finding,
     /// The figures, or what is wrong.
@@ -85,7 +85,7 @@ pub struct Check {
 
 /// The outcome of all checks.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Report {
+pub struct CheckReport {
     /// In the order made.
     pub checks: Vec<Check>,
 }
@@ -121,7 +121,7 @@ pub struct Checker<'a> {
     told: Aabb,
 }
 
-impl Report {
+impl CheckReport {
     /// Whether all checks hold.
     pub fn holds(&self) -> bool {
         self.checks.iter().all(Check::holds)
@@ -166,7 +166,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Every check there is: the boundary's rules, the volume by `rays` rays, the files, and the views.
-    pub fn all(&self, rays: usize) -> Report {
+    pub fn all(&self, rays: usize) -> CheckReport {
         let mut report = self.solid(rays);
         report.checks.extend([self.step(), self.mesh()]);
         for view in views::around(&self.evaluation.bounds) {
@@ -177,8 +177,8 @@ impl<'a> Checker<'a> {
     }
 
     /// The checks of the solid alone.
-    pub fn solid(&self, rays: usize) -> Report {
-        Report {
+    pub fn solid(&self, rays: usize) -> CheckReport {
+        CheckReport {
             checks: vec![self.topology(), self.volume(rays), self.bounds()],
         }
     }
@@ -187,7 +187,7 @@ impl<'a> Checker<'a> {
         let violations = self.evaluation.violations();
         let texts: Vec<String> = violations.iter().map(ToString::to_string).collect();
         Check {
-            subject: Subject::Topology,
+            subject: CheckSubject::Topology,
             finding: Finding::new(texts.is_empty()),
             detail: if texts.is_empty() {
                 "no violation".to_owned()
@@ -212,7 +212,7 @@ impl<'a> Checker<'a> {
             standard_error,
         } = estimate;
         Check {
-            subject: Subject::Volume,
+            subject: CheckSubject::Volume,
             finding: Finding::new(off <= DEVIATIONS),
             detail: format!(
                 "{volume} of the boundary, {value} ± {standard_error:.1e} by rays: {off:.1} standard errors"
@@ -227,7 +227,7 @@ impl<'a> Checker<'a> {
         // Of nothing met by rays the box is empty, and no difference a number or positive.
         let off = (0..3).map(beyond).fold(f64::NEG_INFINITY, f64::max);
         Check {
-            subject: Subject::Bounds,
+            subject: CheckSubject::Bounds,
             finding: Finding::new(off <= slack || met == Aabb::EMPTY),
             detail: if off <= slack || met == Aabb::EMPTY {
                 format!("{AROUND} rays meet nothing outside the box")
@@ -253,7 +253,7 @@ impl<'a> Checker<'a> {
     /// The checks of a view that are asked for.
     pub fn view_with(&self, name: &str, camera: &Camera, checks: ViewChecks) -> Vec<Check> {
         let failed = |finding, detail| {
-            let subject = Subject::View(name.to_owned());
+            let subject = CheckSubject::View(name.to_owned());
             vec![Check {
                 subject,
                 finding,
@@ -285,12 +285,12 @@ impl<'a> Checker<'a> {
         let outlines = Outlines::new(&self.material, seen, &clearance);
         [
             Check {
-                subject: Subject::View(name.to_owned()),
+                subject: CheckSubject::View(name.to_owned()),
                 finding: counted.finding(),
                 detail: counted.to_string(),
             },
             Check {
-                subject: Subject::Contours(name.to_owned()),
+                subject: CheckSubject::Contours(name.to_owned()),
                 finding: Finding::new(outlines.missing.is_empty()),
                 detail: outlines.to_string(),
             },
@@ -313,12 +313,12 @@ impl<'a> Checker<'a> {
         let sheet = SheetReport::new(seen, &self.evaluation.bounds, size);
         [
             Check {
-                subject: Subject::Outline(name.to_owned()),
+                subject: CheckSubject::Outline(name.to_owned()),
                 finding: outline.finding(),
                 detail: outline.to_string(),
             },
             Check {
-                subject: Subject::Sheet(name.to_owned()),
+                subject: CheckSubject::Sheet(name.to_owned()),
                 finding: Finding::new(sheet.faults.is_empty()),
                 detail: sheet.to_string(),
             },
@@ -341,7 +341,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-impl fmt::Display for Subject {
+impl fmt::Display for CheckSubject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Topology => f.write_str("topology"),
@@ -368,7 +368,7 @@ impl fmt::Display for Check {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for CheckReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for check in &self.checks {
             writeln!(f, "{check}")?;

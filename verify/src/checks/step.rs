@@ -9,11 +9,11 @@ mod rules;
 mod shape;
 mod surface;
 
-use super::{Check, Checker, Finding, Subject};
+use super::{Check, CheckSubject, Checker, Finding};
 use premio_exchange::step::{self, Protocol, StepOptions};
 use premio_kernel::unit::Unit;
 use rules::{Known, Measured};
-use shape::Shape;
+use shape::StepShape;
 
 /// So many broken rules are told.
 const TOLD: usize = 3;
@@ -21,7 +21,7 @@ const TOLD: usize = 3;
 impl Checker<'_> {
     /// Writes the STEP file, reads it back and holds it against the rules.
     pub fn step(&self) -> Check {
-        let subject = Subject::Step;
+        let subject = CheckSubject::Step;
         let told = |finding, detail| Check {
             subject,
             finding,
@@ -42,7 +42,7 @@ impl Checker<'_> {
             Ok(text) => text,
             Err(error) => return told(Finding::Holds, format!("refused: {error}")),
         };
-        let shape = part21::read(&text).and_then(|instances| Shape::new(&instances));
+        let shape = part21::read(&text).and_then(|instances| StepShape::new(&instances));
         let shape = match shape {
             Ok(shape) => shape,
             Err(error) => return told(Finding::Fails, error.to_string()),
@@ -87,7 +87,7 @@ fn told_of(measured: &Measured, (solids, known): (usize, usize), volume: f64) ->
         (false, _) => (Finding::Fails, wrong.join("; ")),
     };
     Check {
-        subject: Subject::Step,
+        subject: CheckSubject::Step,
         finding,
         detail,
     }
@@ -100,7 +100,7 @@ mod tests {
     use nalgebra::Point3;
     use premio_csg::evaluate::{EvaluationOptions, evaluate};
     use premio_csg::reader::{Format, ReadOptions as Reading, read};
-    use rules::Rule;
+    use rules::StepRule;
 
     const ACCURACY: f64 = 1e-4;
 
@@ -128,7 +128,7 @@ mod tests {
     }
 
     fn measured(text: &str, known: &Known) -> Measured {
-        let shape = Shape::new(&part21::read(text).unwrap()).unwrap();
+        let shape = StepShape::new(&part21::read(text).unwrap()).unwrap();
         rules::measure(&shape, known)
     }
 
@@ -192,9 +192,9 @@ mod tests {
         let line = line.unwrap();
         let wide = file.replace(line, &line.replace(",2.)", ",2.01)"));
         let broken = measured(&wide, &known).broken;
-        let off = |b: &rules::Broken| matches!(b.rule, Rule::EdgeOnSurface(off) if (off - 0.01).abs() < 1e-9);
+        let off = |b: &rules::Broken| matches!(b.rule, StepRule::EdgeOnSurface(off) if (off - 0.01).abs() < 1e-9);
         assert!(broken.iter().any(off), "{broken:?}");
-        assert!(broken.iter().any(|b| matches!(b.rule, Rule::Volume(_))));
+        assert!(broken.iter().any(|b| matches!(b.rule, StepRule::Volume(_))));
     }
 
     #[test]
@@ -206,8 +206,11 @@ mod tests {
             false => line.replace(".F.", ".T."),
         };
         let broken = measured(&file.replace(line, &turned), &known).broken;
-        assert!(broken.iter().any(|b| b.rule == Rule::Chain), "{broken:?}");
-        let uses = |b: &rules::Broken| matches!(b.rule, Rule::TwoUses(2, 2 | -2));
+        assert!(
+            broken.iter().any(|b| b.rule == StepRule::Chain),
+            "{broken:?}"
+        );
+        let uses = |b: &rules::Broken| matches!(b.rule, StepRule::TwoUses(2, 2 | -2));
         assert!(broken.iter().any(uses), "{broken:?}");
     }
 
@@ -224,7 +227,7 @@ mod tests {
             .unwrap();
         let turned = other.replace(line, &line.replace(".T.", ".F."));
         let broken = measured(&turned, &known).broken;
-        let inside_out = |b: &rules::Broken| matches!(b.rule, Rule::Orientation(v) if v < 0.0);
+        let inside_out = |b: &rules::Broken| matches!(b.rule, StepRule::Orientation(v) if v < 0.0);
         assert!(broken.iter().any(inside_out), "{broken:?}");
     }
 
@@ -233,7 +236,7 @@ mod tests {
         let (file, _) = written("A = SPH(R=2)");
         let error = part21::read(&file.replacen("=(", "=", 1)).unwrap_err();
         assert!(
-            matches!(error, part21::ReadError::Grammar { .. }),
+            matches!(error, part21::StepReadError::Grammar { .. }),
             "{error}"
         );
     }

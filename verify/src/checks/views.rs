@@ -7,7 +7,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 /// A camera with a name for messages.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct CheckedView {
     /// What messages call it.
     pub name: String,
     /// The camera.
@@ -22,7 +22,7 @@ const ORTHOGRAPHIC: usize = 2;
 
 /// Eight perspective and two orthographic views in general position, and one along each axis.
 /// None of an empty box.
-pub fn around(bounds: &Aabb) -> Vec<View> {
+pub fn around(bounds: &Aabb) -> Vec<CheckedView> {
     let size = bounds.diagonal();
     if !size.is_finite() || size <= 0.0 {
         return Vec::new();
@@ -47,8 +47,8 @@ pub fn around(bounds: &Aabb) -> Vec<View> {
     perspective.chain(orthographic).chain(along).collect()
 }
 
-fn view(name: String, camera: Camera) -> View {
-    View { name, camera }
+fn view(name: String, camera: Camera) -> CheckedView {
+    CheckedView { name, camera }
 }
 
 /// The k-th of n unit directions spread over the sphere, none parallel to an axis or a plane of a

@@ -3,12 +3,12 @@
 //! It lies in one arena, children before their parents and the root last, so that models of any
 //! depth can be made, walked, changed and dropped without recursion.
 
-use super::random::Random;
+use super::random::RandomChoices;
 use serde::{Deserialize, Serialize};
 
 /// A primitive as a description gives it; lengths in the model's unit.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub enum Primitive {
+pub enum ModelPrimitive {
     /// A block with a corner at the origin and these edges along x, y and z.
     Block([f64; 3]),
     /// The half of that block where x/X + z/Z <= 1.
@@ -42,7 +42,7 @@ pub enum Primitive {
 
 /// A coordinate axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub enum Axis {
+pub enum ModelAxis {
     /// The first.
     X,
     /// The second.
@@ -53,16 +53,16 @@ pub enum Axis {
 
 /// A step of a transform, in the frame around the node.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub enum Step {
+pub enum ModelStep {
     /// A shift along x, y and z.
     Shift([f64; 3]),
     /// A turn about an axis through the origin, in degrees.
-    Turn(Axis, f64),
+    Turn(ModelAxis, f64),
 }
 
 /// A regularised set operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub enum Operation {
+pub enum ModelOperation {
     /// What is in any child.
     Union,
     /// What is in every child.
@@ -72,24 +72,24 @@ pub enum Operation {
 }
 
 /// The index of a node in its model.
-pub type NodeId = usize;
+pub type ModelNodeId = usize;
 
 /// What a node is.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub enum Kind {
+pub enum ModelNodeKind {
     /// A primitive.
-    Leaf(Primitive),
+    Leaf(ModelPrimitive),
     /// An operation on one child or more.
-    Operation(Operation, Vec<NodeId>),
+    Operation(ModelOperation, Vec<ModelNodeId>),
 }
 
 /// A node.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Node {
+pub struct ModelNode {
     /// What it is.
-    pub kind: Kind,
+    pub kind: ModelNodeKind,
     /// Where it is put: steps in the order in which they are made.
-    pub steps: Vec<Step>,
+    pub steps: Vec<ModelStep>,
 }
 
 /// Which exact number a length or an angle of a model stands for.
@@ -104,8 +104,8 @@ pub enum Notation {
 
 /// A tree. Every node but the root, which is the last one, is the child of exactly one other.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
-pub struct Model {
-    nodes: Vec<Node>,
+pub struct PartModel {
+    nodes: Vec<ModelNode>,
     /// What its numbers stand for.
     #[serde(default)]
     pub notation: Notation,
@@ -115,24 +115,24 @@ pub struct Model {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visit {
     /// A node, before its children.
-    Enter(NodeId),
+    Enter(ModelNodeId),
     /// The operation between two of its children.
-    Between(NodeId),
+    Between(ModelNodeId),
     /// An operation after its children.
-    Leave(NodeId),
+    Leave(ModelNodeId),
 }
 
-impl Operation {
+impl ModelOperation {
     /// The operations.
     pub const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
 }
 
-impl Axis {
+impl ModelAxis {
     /// The axes.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
     /// One of them.
-    pub fn any(random: &mut Random) -> Self {
+    pub fn any(random: &mut RandomChoices) -> Self {
         random.choose(&Self::ALL)
     }
 
@@ -151,9 +151,9 @@ impl Axis {
     }
 }
 
-impl Model {
+impl PartModel {
     /// A model of one primitive.
-    pub fn new(primitive: Primitive, steps: Vec<Step>) -> Self {
+    pub fn new(primitive: ModelPrimitive, steps: Vec<ModelStep>) -> Self {
         let mut model = Self::default();
         model.leaf(primitive, steps);
         model
@@ -166,21 +166,26 @@ impl Model {
     }
 
     /// Adds a primitive.
-    pub fn leaf(&mut self, primitive: Primitive, steps: Vec<Step>) -> NodeId {
-        let kind = Kind::Leaf(primitive);
-        self.nodes.push(Node { kind, steps });
+    pub fn leaf(&mut self, primitive: ModelPrimitive, steps: Vec<ModelStep>) -> ModelNodeId {
+        let kind = ModelNodeKind::Leaf(primitive);
+        self.nodes.push(ModelNode { kind, steps });
         self.nodes.len() - 1
     }
 
     /// Adds an operation on nodes that are there already, and have no parent yet.
-    pub fn operation(&mut self, op: Operation, of: Vec<NodeId>, steps: Vec<Step>) -> NodeId {
-        let kind = Kind::Operation(op, of);
-        self.nodes.push(Node { kind, steps });
+    pub fn operation(
+        &mut self,
+        op: ModelOperation,
+        of: Vec<ModelNodeId>,
+        steps: Vec<ModelStep>,
+    ) -> ModelNodeId {
+        let kind = ModelNodeKind::Operation(op, of);
+        self.nodes.push(ModelNode { kind, steps });
         self.nodes.len() - 1
     }
 
     /// An operation on whole models.
-    pub fn join(op: Operation, models: &[&Self], steps: Vec<Step>) -> Self {
+    pub fn join(op: ModelOperation, models: &[&Self], steps: Vec<ModelStep>) -> Self {
         let mut all = Self::with_notation(
             models
                 .first()
@@ -192,11 +197,11 @@ impl Model {
     }
 
     /// Adds the nodes of another model; its root's index here.
-    fn take_in(&mut self, other: &Self) -> NodeId {
+    fn take_in(&mut self, other: &Self) -> ModelNodeId {
         let before = self.nodes.len();
         self.nodes.extend(other.nodes.iter().cloned());
         for node in &mut self.nodes[before..] {
-            if let Kind::Operation(_, children) = &mut node.kind {
+            if let ModelNodeKind::Operation(_, children) = &mut node.kind {
                 children.iter_mut().for_each(|child| *child += before);
             }
         }
@@ -204,30 +209,30 @@ impl Model {
     }
 
     /// All nodes, children before their parents.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[ModelNode] {
         &self.nodes
     }
 
     /// A node to be changed in place; its children must stay what they are.
-    pub fn node_mut(&mut self, id: NodeId) -> Option<&mut Node> {
+    pub fn node_mut(&mut self, id: ModelNodeId) -> Option<&mut ModelNode> {
         self.nodes.get_mut(id)
     }
 
     /// The root; none of a model without nodes.
-    pub fn root(&self) -> Option<NodeId> {
+    pub fn root(&self) -> Option<ModelNodeId> {
         self.nodes.len().checked_sub(1)
     }
 
     /// The nodes that are primitives.
-    pub fn leaves(&self) -> impl Iterator<Item = NodeId> {
-        let is_leaf = |id: &NodeId| matches!(self.nodes[*id].kind, Kind::Leaf(_));
+    pub fn leaves(&self) -> impl Iterator<Item = ModelNodeId> {
+        let is_leaf = |id: &ModelNodeId| matches!(self.nodes[*id].kind, ModelNodeKind::Leaf(_));
         (0..self.nodes.len()).filter(is_leaf)
     }
 
     /// The subtrees below the root; none of a primitive.
     pub fn children(&self) -> Vec<Self> {
         match self.nodes.last().map(|root| &root.kind) {
-            Some(Kind::Operation(_, children)) => {
+            Some(ModelNodeKind::Operation(_, children)) => {
                 children.iter().map(|&child| self.subtree(child)).collect()
             }
             _ => Vec::new(),
@@ -235,11 +240,13 @@ impl Model {
     }
 
     /// What hangs on a node.
-    pub fn subtree(&self, root: NodeId) -> Self {
+    pub fn subtree(&self, root: ModelNodeId) -> Self {
         let mut wanted = vec![false; self.nodes.len()];
         wanted[root] = true;
         for id in (0..=root).rev() {
-            if let (true, Kind::Operation(_, children)) = (wanted[id], &self.nodes[id].kind) {
+            if let (true, ModelNodeKind::Operation(_, children)) =
+                (wanted[id], &self.nodes[id].kind)
+            {
                 children.iter().for_each(|&child| wanted[child] = true);
             }
         }
@@ -248,7 +255,7 @@ impl Model {
         for (id, node) in self.nodes.iter().enumerate().filter(|&(id, _)| wanted[id]) {
             new_id[id] = part.nodes.len();
             let mut node = node.clone();
-            if let Kind::Operation(_, children) = &mut node.kind {
+            if let ModelNodeKind::Operation(_, children) = &mut node.kind {
                 children
                     .iter_mut()
                     .for_each(|child| *child = new_id[*child]);
@@ -260,16 +267,17 @@ impl Model {
 
     /// The model without some of its primitives. Operations that have no child left go, too, and
     /// those with one child become that child.
-    pub fn without(&self, gone: impl Fn(NodeId) -> bool) -> Self {
+    pub fn without(&self, gone: impl Fn(ModelNodeId) -> bool) -> Self {
         let mut fewer = Self::with_notation(self.notation);
-        let mut new_id: Vec<Option<NodeId>> = vec![None; self.nodes.len()];
+        let mut new_id: Vec<Option<ModelNodeId>> = vec![None; self.nodes.len()];
         for (id, node) in self.nodes.iter().enumerate() {
             let steps = node.steps.clone();
             new_id[id] = match &node.kind {
-                Kind::Leaf(_) if gone(id) => None,
-                Kind::Leaf(primitive) => Some(fewer.leaf(*primitive, steps)),
-                Kind::Operation(op, children) => {
-                    let left: Vec<NodeId> = children.iter().filter_map(|&c| new_id[c]).collect();
+                ModelNodeKind::Leaf(_) if gone(id) => None,
+                ModelNodeKind::Leaf(primitive) => Some(fewer.leaf(*primitive, steps)),
+                ModelNodeKind::Operation(op, children) => {
+                    let left: Vec<ModelNodeId> =
+                        children.iter().filter_map(|&c| new_id[c]).collect();
                     match left.as_slice() {
                         [] => None,
                         &[only] => {
@@ -290,7 +298,7 @@ impl Model {
         while let Some(next) = ahead.pop() {
             visit(next);
             if let Visit::Enter(id) = next
-                && let Kind::Operation(_, children) = &self.nodes[id].kind
+                && let ModelNodeKind::Operation(_, children) = &self.nodes[id].kind
             {
                 ahead.push(Visit::Leave(id));
                 for (k, &child) in children.iter().enumerate().rev() {
@@ -308,10 +316,10 @@ impl Model {
 mod tests {
     use super::*;
 
-    fn three() -> Model {
-        let ball = |r| Model::new(Primitive::Sphere(r), Vec::new());
-        let two = Model::join(Operation::Union, &[&ball(1.0), &ball(2.0)], Vec::new());
-        Model::join(Operation::Difference, &[&two, &ball(3.0)], Vec::new())
+    fn three() -> PartModel {
+        let ball = |r| PartModel::new(ModelPrimitive::Sphere(r), Vec::new());
+        let two = PartModel::join(ModelOperation::Union, &[&ball(1.0), &ball(2.0)], Vec::new());
+        PartModel::join(ModelOperation::Difference, &[&two, &ball(3.0)], Vec::new())
     }
 
     #[test]
@@ -331,7 +339,7 @@ mod tests {
             Leave(4),
         ];
         assert_eq!(met, order);
-        Model::default().walk(|visit| panic!("{visit:?}"));
+        PartModel::default().walk(|visit| panic!("{visit:?}"));
     }
 
     #[test]
@@ -346,6 +354,6 @@ mod tests {
         assert_eq!((fewer.nodes().len(), fewer.leaves().count()), (3, 2));
         let fewer = model.without(|id| id < 2);
         assert_eq!((fewer.nodes().len(), fewer.leaves().count()), (1, 1));
-        assert_eq!(model.without(|_| true), Model::default());
+        assert_eq!(model.without(|_| true), PartModel::default());
     }
 }

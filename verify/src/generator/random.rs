@@ -4,9 +4,9 @@ use premio_predict::statistics::Random as Bits;
 
 /// Choices out of random bits.
 #[derive(Clone, Debug)]
-pub struct Random(Bits);
+pub struct RandomChoices(Bits);
 
-impl Random {
+impl RandomChoices {
     /// The numbers of a seed.
     pub fn new(seed: u64) -> Self {
         Self(Bits::new(seed))
@@ -61,29 +61,35 @@ mod tests {
 
     #[test]
     fn numbers_are_of_their_seed_and_purpose() {
-        let draw = |mut random: Random| [0; 8].map(|_| random.below(1000));
-        assert_eq!(draw(Random::new(3)), draw(Random::new(3)));
-        assert_ne!(draw(Random::new(3)), draw(Random::new(4)));
-        assert_ne!(draw(Random::apart(3, 1)), draw(Random::apart(3, 2)));
-        assert_ne!(draw(Random::apart(3, 1)), draw(Random::apart(4, 1)));
+        let draw = |mut random: RandomChoices| [0; 8].map(|_| random.below(1000));
+        assert_eq!(draw(RandomChoices::new(3)), draw(RandomChoices::new(3)));
+        assert_ne!(draw(RandomChoices::new(3)), draw(RandomChoices::new(4)));
+        assert_ne!(
+            draw(RandomChoices::apart(3, 1)),
+            draw(RandomChoices::apart(3, 2))
+        );
+        assert_ne!(
+            draw(RandomChoices::apart(3, 1)),
+            draw(RandomChoices::apart(4, 1))
+        );
     }
 
     #[test]
     fn trees_of_earlier_versions_are_those_of_this_one() {
-        let draw = |mut random: Random| [0; 6].map(|_| random.below(1_000_000));
+        let draw = |mut random: RandomChoices| [0; 6].map(|_| random.below(1_000_000));
         assert_eq!(
-            draw(Random::new(1_234_567)),
+            draw(RandomChoices::new(1_234_567)),
             [365_317, 807_973, 370_423, 82_431, 223_821, 864_054]
         );
         assert_eq!(
-            draw(Random::apart(3, 2)),
+            draw(RandomChoices::apart(3, 2)),
             [659_373, 115_999, 618_322, 600_060, 791_917, 713_778]
         );
     }
 
     #[test]
     fn numbers_keep_their_range() {
-        let mut random = Random::new(0);
+        let mut random = RandomChoices::new(0);
         for _ in 0..1000 {
             assert!((3..=5).contains(&random.between(3, 5)));
             assert!((0.5..=2.0).contains(&random.half(1, 4)));

@@ -1,11 +1,15 @@
 //! Making a failing tree as small as it still fails.
 
-use super::model::{Kind, Model, NodeId, Primitive, Step};
+use super::model::{ModelNodeId, ModelNodeKind, ModelPrimitive, ModelStep, PartModel};
 use std::iter;
 
 /// A smaller tree for which `fails` holds as it does for this one; after `tries` questions the
 /// smallest so far.
-pub fn shrink(model: &Model, tries: usize, mut fails: impl FnMut(&Model) -> bool) -> Model {
+pub fn shrink(
+    model: &PartModel,
+    tries: usize,
+    mut fails: impl FnMut(&PartModel) -> bool,
+) -> PartModel {
     let mut best = model.clone();
     let mut left = tries;
     loop {
@@ -22,13 +26,14 @@ pub fn shrink(model: &Model, tries: usize, mut fails: impl FnMut(&Model) -> bool
 
 /// The trees that are simpler than this one, large steps first: without half of its primitives, a
 /// quarter, and so on down to one; with a step of a transform less; with rounder numbers.
-pub fn simpler(model: &Model) -> impl Iterator<Item = Model> {
-    let leaves: Vec<NodeId> = model.leaves().collect();
+pub fn simpler(model: &PartModel) -> impl Iterator<Item = PartModel> {
+    let leaves: Vec<ModelNodeId> = model.leaves().collect();
     let halves = iter::successors(Some(leaves.len() / 2), |n| (*n > 1).then_some(n / 2));
     let fewer = halves.filter(|n| *n > 0).flat_map({
         let leaves = leaves.clone();
         move |n| {
-            let chunks: Vec<Vec<NodeId>> = leaves.chunks(n).map(<[NodeId]>::to_vec).collect();
+            let chunks: Vec<Vec<ModelNodeId>> =
+                leaves.chunks(n).map(<[ModelNodeId]>::to_vec).collect();
             chunks
                 .into_iter()
                 .map(|gone| model.without(|id| gone.binary_search(&id).is_ok()))
@@ -43,32 +48,32 @@ pub fn simpler(model: &Model) -> impl Iterator<Item = Model> {
 }
 
 /// What grows less with every step: primitives, operations, steps, and digits.
-fn weight(model: &Model) -> [usize; 4] {
+fn weight(model: &PartModel) -> [usize; 4] {
     let steps = model.nodes().iter().map(|node| node.steps.len()).sum();
     let digits = model.nodes().iter().map(digits).sum();
     let leaves = model.leaves().count();
     [leaves, model.nodes().len(), steps, digits]
 }
 
-fn digits(node: &super::model::Node) -> usize {
+fn digits(node: &super::model::ModelNode) -> usize {
     let count = |x: &f64| match *x {
         0.0 => 0,
         1.0 => 1,
         _ => format!("{x}").len() + 1,
     };
     let steps = node.steps.iter().map(|step| match step {
-        Step::Shift(by) => by.iter().map(count).sum::<usize>(),
-        Step::Turn(_, degrees) => count(degrees),
+        ModelStep::Shift(by) => by.iter().map(count).sum::<usize>(),
+        ModelStep::Turn(_, degrees) => count(degrees),
     });
     let lengths = match &node.kind {
-        Kind::Leaf(primitive) => lengths(primitive).iter().map(count).sum(),
-        Kind::Operation(..) => 0,
+        ModelNodeKind::Leaf(primitive) => lengths(primitive).iter().map(count).sum(),
+        ModelNodeKind::Operation(..) => 0,
     };
     lengths + steps.sum::<usize>()
 }
 
 /// The tree with one node's steps gone: all of them, or one.
-fn without_steps(model: &Model, id: NodeId) -> Vec<Model> {
+fn without_steps(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
     let steps = &model.nodes()[id].steps;
     let mut found = Vec::new();
     if steps.len() > 1 {
@@ -83,30 +88,30 @@ fn without_steps(model: &Model, id: NodeId) -> Vec<Model> {
 }
 
 /// The tree with simpler numbers in one node's steps: a coordinate zero or whole, two shifts as one.
-fn rounder_steps(model: &Model, id: NodeId) -> Vec<Model> {
+fn rounder_steps(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
     let steps = &model.nodes()[id].steps;
     let mut found = Vec::new();
     for (k, step) in steps.iter().enumerate() {
-        let mut put = |step: Step| {
+        let mut put = |step: ModelStep| {
             let mut changed = steps.clone();
             changed[k] = step;
             found.push(with_steps(model, id, changed));
         };
         match step {
-            Step::Shift(by) => {
+            ModelStep::Shift(by) => {
                 for (i, x) in by.iter().enumerate() {
                     for y in [0.0, 1.0, x.trunc()] {
                         let mut by = *by;
                         by[i] = y;
-                        put(Step::Shift(by));
+                        put(ModelStep::Shift(by));
                     }
                 }
             }
-            Step::Turn(axis, _) => put(Step::Turn(*axis, 90.0)),
+            ModelStep::Turn(axis, _) => put(ModelStep::Turn(*axis, 90.0)),
         }
-        if let [Step::Shift(a), Step::Shift(b)] = steps[k..(k + 2).min(steps.len())] {
+        if let [ModelStep::Shift(a), ModelStep::Shift(b)] = steps[k..(k + 2).min(steps.len())] {
             let mut changed = steps.clone();
-            changed[k] = Step::Shift(std::array::from_fn(|i| a[i] + b[i]));
+            changed[k] = ModelStep::Shift(std::array::from_fn(|i| a[i] + b[i]));
             changed.remove(k + 1);
             found.push(with_steps(model, id, changed));
         }
@@ -114,7 +119,7 @@ fn rounder_steps(model: &Model, id: NodeId) -> Vec<Model> {
     found
 }
 
-fn with_steps(model: &Model, id: NodeId, steps: Vec<Step>) -> Model {
+fn with_steps(model: &PartModel, id: ModelNodeId, steps: Vec<ModelStep>) -> PartModel {
     let mut changed = model.clone();
     if let Some(node) = changed.node_mut(id) {
         node.steps = steps;
@@ -123,8 +128,8 @@ fn with_steps(model: &Model, id: NodeId, steps: Vec<Step>) -> Model {
 }
 
 /// The tree with simpler lengths of one primitive, or a block in its place.
-fn rounder(model: &Model, id: NodeId) -> Vec<Model> {
-    let Kind::Leaf(primitive) = &model.nodes()[id].kind else {
+fn rounder(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
+    let ModelNodeKind::Leaf(primitive) = &model.nodes()[id].kind else {
         return Vec::new();
     };
     let mut found = Vec::new();
@@ -137,7 +142,7 @@ fn rounder(model: &Model, id: NodeId) -> Vec<Model> {
             found.extend(changed.map(|primitive| {
                 let mut changed = model.clone();
                 if let Some(node) = changed.node_mut(id) {
-                    node.kind = Kind::Leaf(primitive);
+                    node.kind = ModelNodeKind::Leaf(primitive);
                 }
                 changed
             }));
@@ -146,30 +151,30 @@ fn rounder(model: &Model, id: NodeId) -> Vec<Model> {
     found
 }
 
-fn lengths(primitive: &Primitive) -> Vec<f64> {
+fn lengths(primitive: &ModelPrimitive) -> Vec<f64> {
     match *primitive {
-        Primitive::Block(size) | Primitive::Wedge(size) => size.to_vec(),
-        Primitive::Cylinder { r, h } => vec![r, h],
-        Primitive::Frustum { r1, r2, h } => vec![r1, r2, h],
-        Primitive::Sphere(r) => vec![r],
-        Primitive::Torus { major, minor } => vec![major, minor],
+        ModelPrimitive::Block(size) | ModelPrimitive::Wedge(size) => size.to_vec(),
+        ModelPrimitive::Cylinder { r, h } => vec![r, h],
+        ModelPrimitive::Frustum { r1, r2, h } => vec![r1, r2, h],
+        ModelPrimitive::Sphere(r) => vec![r],
+        ModelPrimitive::Torus { major, minor } => vec![major, minor],
     }
 }
 
 /// The same primitive with other lengths; none where these make no solid.
-fn with_lengths(primitive: &Primitive, lengths: &[f64]) -> Option<Primitive> {
+fn with_lengths(primitive: &ModelPrimitive, lengths: &[f64]) -> Option<ModelPrimitive> {
     let changed = match (primitive, lengths) {
-        (Primitive::Block(_), &[x, y, z]) => Primitive::Block([x, y, z]),
-        (Primitive::Wedge(_), &[x, y, z]) => Primitive::Wedge([x, y, z]),
-        (Primitive::Cylinder { .. }, &[r, h]) => Primitive::Cylinder { r, h },
-        (Primitive::Frustum { .. }, &[r1, r2, h]) => Primitive::Frustum { r1, r2, h },
-        (Primitive::Sphere(_), &[r]) => Primitive::Sphere(r),
-        (Primitive::Torus { .. }, &[major, minor]) => Primitive::Torus { major, minor },
+        (ModelPrimitive::Block(_), &[x, y, z]) => ModelPrimitive::Block([x, y, z]),
+        (ModelPrimitive::Wedge(_), &[x, y, z]) => ModelPrimitive::Wedge([x, y, z]),
+        (ModelPrimitive::Cylinder { .. }, &[r, h]) => ModelPrimitive::Cylinder { r, h },
+        (ModelPrimitive::Frustum { .. }, &[r1, r2, h]) => ModelPrimitive::Frustum { r1, r2, h },
+        (ModelPrimitive::Sphere(_), &[r]) => ModelPrimitive::Sphere(r),
+        (ModelPrimitive::Torus { .. }, &[major, minor]) => ModelPrimitive::Torus { major, minor },
         _ => return None,
     };
     let sound = match changed {
-        Primitive::Frustum { r1, r2, h } => r1 > 0.0 && r2 >= 0.0 && h > 0.0,
-        Primitive::Torus { major, minor } => minor > 0.0 && major > minor,
+        ModelPrimitive::Frustum { r1, r2, h } => r1 > 0.0 && r2 >= 0.0 && h > 0.0,
+        ModelPrimitive::Torus { major, minor } => minor > 0.0 && major > minor,
         _ => lengths.iter().all(|x| *x > 0.0),
     };
     sound.then_some(changed)
@@ -178,12 +183,12 @@ fn with_lengths(primitive: &Primitive, lengths: &[f64]) -> Option<Primitive> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generator::model::Operation;
+    use crate::generator::model::ModelOperation;
     use crate::generator::profile::Profile;
     use crate::generator::write::{Format, read, write};
 
-    fn is_ball(node: &crate::generator::model::Node) -> bool {
-        matches!(node.kind, Kind::Leaf(Primitive::Sphere(_)))
+    fn is_ball(node: &crate::generator::model::ModelNode) -> bool {
+        matches!(node.kind, ModelNodeKind::Leaf(ModelPrimitive::Sphere(_)))
     }
 
     #[test]
@@ -198,7 +203,7 @@ mod tests {
 
     #[test]
     fn a_planted_failure_is_all_that_stays() {
-        let planted = |model: &Model| model.nodes().iter().any(is_ball);
+        let planted = |model: &PartModel| model.nodes().iter().any(is_ball);
         let mut asked = 0;
         let seeds = (0..60).filter(|&seed| planted(&Profile::Grid.model(seed)));
         for seed in seeds {
@@ -213,9 +218,14 @@ mod tests {
 
     #[test]
     fn two_out_of_a_long_chain() {
-        let planted = |model: &Model| {
+        let planted = |model: &PartModel| {
             let balls = model.nodes().iter().filter(|node| is_ball(node));
-            let less = |kind: &Kind| matches!(kind, Kind::Operation(Operation::Difference, _));
+            let less = |kind: &ModelNodeKind| {
+                matches!(
+                    kind,
+                    ModelNodeKind::Operation(ModelOperation::Difference, _)
+                )
+            };
             balls.count() >= 2 && model.nodes().iter().any(|node| less(&node.kind))
         };
         let mut asked = 0;

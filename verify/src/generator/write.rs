@@ -1,6 +1,8 @@
 //! Models as text: padl, csg (as OpenSCAD flattens) and json.
 
-use super::model::{Axis, Kind, Model, Notation, Operation, Primitive, Step};
+use super::model::{
+    ModelAxis, ModelNodeKind, ModelOperation, ModelPrimitive, ModelStep, Notation, PartModel,
+};
 use premio_csg::builder::{Builder, SolidId};
 use premio_csg::primitive::{self, PrimitiveError};
 use premio_csg::reader::{self, Description, ReadError, ReadOptions};
@@ -16,7 +18,7 @@ pub use premio_csg::reader::Format;
 /// What is read from padl and json is the same tree. A csg has matrices, which the reader makes
 /// turns by whole quarters of a degree where that explains their digits, and else rigid to the
 /// last digits: other turns are read as near as doubles are.
-pub fn write(model: &Model, format: Format) -> String {
+pub fn write(model: &PartModel, format: Format) -> String {
     let (builder, part) = built(model);
     // A model is small, and made of primitives.
     writer::write(&builder, part, format).unwrap_or_default()
@@ -27,18 +29,18 @@ pub fn read(text: &str, format: Format) -> Result<Description, ReadError> {
     reader::read("model", text.as_bytes(), format, &ReadOptions::default())
 }
 
-fn built(model: &Model) -> (Builder, SolidId) {
+fn built(model: &PartModel) -> (Builder, SolidId) {
     let mut builder = Builder::new();
     let mut parts: Vec<SolidId> = Vec::with_capacity(model.nodes().len());
     let exact = |value: f64| number(value, model.notation);
     for node in model.nodes() {
         let part = match &node.kind {
             // A length that makes no solid makes nothing.
-            Kind::Leaf(primitive) => match solid(primitive, &exact) {
+            ModelNodeKind::Leaf(primitive) => match solid(primitive, &exact) {
                 Ok(primitive) => builder.primitive(primitive),
                 Err(_) => SolidId::EMPTY,
             },
-            Kind::Operation(op, children) => {
+            ModelNodeKind::Operation(op, children) => {
                 let children: Vec<SolidId> = children.iter().map(|&child| parts[child]).collect();
                 builder.operation(operation(*op), &children)
             }
@@ -58,35 +60,35 @@ fn number(value: f64, notation: Notation) -> Rational {
 }
 
 fn solid(
-    primitive: &Primitive,
+    primitive: &ModelPrimitive,
     number: &impl Fn(f64) -> Rational,
 ) -> Result<primitive::Primitive, PrimitiveError> {
     use primitive::Primitive as Exact;
     match *primitive {
-        Primitive::Block(size) => Exact::block(size.map(number)),
-        Primitive::Wedge(size) => Exact::wedge(size.map(number)),
-        Primitive::Cylinder { r, h } => Exact::cylinder(number(r), number(h)),
-        Primitive::Frustum { r1, r2, h } => Exact::frustum(number(r1), number(r2), number(h)),
-        Primitive::Sphere(r) => Exact::sphere(number(r)),
-        Primitive::Torus { major, minor } => Exact::torus(number(major), number(minor)),
+        ModelPrimitive::Block(size) => Exact::block(size.map(number)),
+        ModelPrimitive::Wedge(size) => Exact::wedge(size.map(number)),
+        ModelPrimitive::Cylinder { r, h } => Exact::cylinder(number(r), number(h)),
+        ModelPrimitive::Frustum { r1, r2, h } => Exact::frustum(number(r1), number(r2), number(h)),
+        ModelPrimitive::Sphere(r) => Exact::sphere(number(r)),
+        ModelPrimitive::Torus { major, minor } => Exact::torus(number(major), number(minor)),
     }
 }
 
-fn operation(op: Operation) -> tree::Operation {
+fn operation(op: ModelOperation) -> tree::Operation {
     match op {
-        Operation::Union => tree::Operation::Union,
-        Operation::Intersection => tree::Operation::Intersection,
-        Operation::Difference => tree::Operation::Difference,
+        ModelOperation::Union => tree::Operation::Union,
+        ModelOperation::Intersection => tree::Operation::Intersection,
+        ModelOperation::Difference => tree::Operation::Difference,
     }
 }
 
-fn placed(steps: &[Step], number: &impl Fn(f64) -> Rational) -> Transform {
+fn placed(steps: &[ModelStep], number: &impl Fn(f64) -> Rational) -> Transform {
     let mut moves = Transform::new();
     for step in steps {
         let step = match *step {
-            Step::Shift(by) => transform::TransformStep::Shift(by.map(number)),
-            Step::Turn(axis, degrees) => transform::TransformStep::Turn {
-                axis: Axis::vector(axis, 1.0).map(number),
+            ModelStep::Shift(by) => transform::TransformStep::Shift(by.map(number)),
+            ModelStep::Turn(axis, degrees) => transform::TransformStep::Turn {
+                axis: ModelAxis::vector(axis, 1.0).map(number),
                 degrees: number(degrees),
             },
         };
@@ -149,8 +151,8 @@ mod tests {
 
     #[test]
     fn small_numbers_have_no_exponent() {
-        let step = Step::Shift([2f64.powi(-60), 0.0, -1e-9]);
-        let model = Model::new(Primitive::Sphere(0.5), vec![step]);
+        let step = ModelStep::Shift([2f64.powi(-60), 0.0, -1e-9]);
+        let model = PartModel::new(ModelPrimitive::Sphere(0.5), vec![step]);
         for format in [Format::Padl, Format::Csg, Format::Json] {
             let text = write(&model, format);
             assert!(text.contains("0.000000000000000000867"), "{text}");

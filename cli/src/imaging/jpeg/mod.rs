@@ -8,7 +8,7 @@ mod entropy;
 mod scan;
 
 use entropy::{Huffman, word};
-use scan::{Component, Sampling, Scan};
+use scan::{Component, SamplingFactors, Scan};
 
 /// Why a JPEG is not read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -142,7 +142,7 @@ impl Picture {
             let [across, down] = [sampling >> 4, sampling & 15].map(usize::from);
             let fits = |n: usize| (1..=4).contains(&n);
             let is_known = fits(across) && fits(down);
-            is_known.then(|| Component::new(identifier, Sampling { across, down }))
+            is_known.then(|| Component::new(identifier, SamplingFactors { across, down }))
         };
         self.components = each.iter().map(component).collect::<Option<_>>()?;
         (1..=4).contains(&count).then_some(())

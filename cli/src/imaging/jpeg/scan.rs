@@ -20,7 +20,7 @@ pub struct Scan {
 
 /// How many blocks of a component a unit of several components has.
 #[derive(Clone, Copy, Debug)]
-pub struct Sampling {
+pub struct SamplingFactors {
     /// In a row.
     pub across: usize,
     /// In a column.
@@ -31,7 +31,7 @@ pub struct Sampling {
 #[derive(Debug)]
 pub struct Component {
     pub identifier: u8,
-    sampling: Sampling,
+    sampling: SamplingFactors,
     /// The lowest bit of each coefficient that is known.
     known: [Option<u8>; 64],
     /// By block: the coefficients that are not zero, as far as they are known.
@@ -39,7 +39,7 @@ pub struct Component {
 }
 
 impl Component {
-    pub fn new(identifier: u8, sampling: Sampling) -> Self {
+    pub fn new(identifier: u8, sampling: SamplingFactors) -> Self {
         Self {
             identifier,
             sampling,
@@ -117,7 +117,7 @@ impl Picture {
         let is_single = scan.members.len() == 1;
         for &(component, [mean, other]) in &scan.members {
             let component = &mut components[component];
-            let Sampling { across, down } = component.sampling;
+            let SamplingFactors { across, down } = component.sampling;
             let blocks = if is_single { 1 } else { across * down };
             for _ in 0..blocks {
                 let mean = || means[mean].as_ref().ok_or(EntropyError::Code);

@@ -1,14 +1,14 @@
 //! The columns of a model's table.
 
 use super::TableError;
-use Kind::{Real, Reals, Text, Whole, Wholes};
+use ColumnKind::{Real, Reals, Text, Whole, Wholes};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::file::writer::SerializedColumnWriter;
 use serde_json::Value;
 
 /// What the cells of a column hold, if they hold anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnKind {
     /// A text.
     Text,
     /// A whole number.
@@ -23,7 +23,7 @@ pub enum Kind {
 
 /// A column: its name, what it holds, and where that is in a row's JSON.
 #[derive(Clone, Copy, Debug)]
-pub struct Column(pub &'static str, pub Kind, pub &'static str);
+pub struct Column(pub &'static str, pub ColumnKind, pub &'static str);
 
 /// All columns; a row has values of those that its `record` is told by.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 //! What is written is read back, and held against the JSON Lines of the same run.
 
-use super::column::{COLUMNS, Kind};
+use super::column::{COLUMNS, ColumnKind};
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::record::Field;
 use serde_json::{Map, Value, json};
@@ -150,7 +150,7 @@ fn a_table_holds_what_the_lines_hold() {
         let told = row.values().filter(|v| !v.is_null()).count();
         assert_eq!(told, values.len(), "{row:?}");
     }
-    let of_lists = COLUMNS.iter().filter(|c| c.1 == Kind::Reals);
+    let of_lists = COLUMNS.iter().filter(|c| c.1 == ColumnKind::Reals);
     assert!(of_lists.clone().all(|c| used.contains(c.0)), "{used:?}");
     for name in [
         "detectability_low",

@@ -1,8 +1,8 @@
 //! How many turns bring a part onto itself, by hand.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use crate::learned::Learned;
-use crate::part::Part;
+use crate::detectability_prior::DetectabilityPrior;
+use crate::part::SoughtPart;
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use std::fmt::Write;
@@ -16,7 +16,11 @@ fn check(text: &str, turns: usize, circles: usize) {
     )
     .unwrap();
     let evaluation = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
-    let part = Part::new(&evaluation.brep, evaluation.resolution, &Learned::nothing());
+    let part = SoughtPart::new(
+        &evaluation.brep,
+        evaluation.resolution,
+        &DetectabilityPrior::nothing(),
+    );
     let found = (part.symmetries.len(), part.circles.len());
     assert_eq!(found, (turns, circles), "{text}");
     for symmetry in &part.symmetries {

@@ -91,13 +91,13 @@ fn wire() -> Vec<(Point3<f64>, Vector3<f64>)> {
 }
 
 /// Edges next to the images of the wire in a pose.
-fn pulls(pose: &Isometry3<f64>, random: &mut Random, sigma: f64) -> Vec<Pull> {
+fn pulls(pose: &Isometry3<f64>, random: &mut Random, sigma: f64) -> Vec<PointToLine> {
     let pull = |(point, tangent): (Point3<f64>, Vector3<f64>)| {
         let at = CAMERA.project(&(pose * point));
         let along = CAMERA.project(&(pose * (point + tangent * 1e-4))) - at;
         let normal = Vector2::new(-along.y, along.x).normalize();
         let target = at + normal * (sigma * random.normal());
-        Pull {
+        PointToLine {
             point,
             target,
             normal,
@@ -125,7 +125,12 @@ fn squared_error(planted: &Isometry3<f64>, refined: &Refined) -> f64 {
 const NEVER: f64 = 43.0;
 
 /// From coarse to fine, with so many rounds at each scale.
-fn refined(start: &Isometry3<f64>, pulls: &[Pull], scales: &[f64], rounds: usize) -> Refined {
+fn refined(
+    start: &Isometry3<f64>,
+    pulls: &[PointToLine],
+    scales: &[f64],
+    rounds: usize,
+) -> Refined {
     let (first, rest) = scales.split_first().unwrap();
     let mut found = refine(&CAMERA, start, pulls, *first, rounds).unwrap();
     for scale in rest {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::checks::Checker;
-use crate::checks::views::{View, around};
+use crate::checks::views::{CheckedView, around};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::tree::Tree;
@@ -36,12 +36,12 @@ impl Part {
         }
     }
 
-    fn view(&self, name: &str) -> View {
+    fn view(&self, name: &str) -> CheckedView {
         let all = around(&self.evaluation.bounds);
         all.into_iter().find(|v| v.name == name).unwrap()
     }
 
-    fn contours(&self, view: &View) -> Contours {
+    fn contours(&self, view: &CheckedView) -> Contours {
         let Evaluation {
             brep, resolution, ..
         } = &self.evaluation;
@@ -189,7 +189,7 @@ fn a_camera_inside_a_hole_sees_contours_too() {
     let up = nalgebra::Vector3::y();
     let camera = premio_visibility::Camera::perspective(eye, target, up, 1.0).unwrap();
     let name = "inside".to_owned();
-    let mut seen = part.contours(&View { name, camera });
+    let mut seen = part.contours(&CheckedView { name, camera });
     let found = part.outlines(&seen);
     assert!(found.missing.is_empty() && found.explained > 10, "{found}");
     seen.contours.clear();

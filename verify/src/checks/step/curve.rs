@@ -26,14 +26,14 @@ impl Placement {
 
 /// A B-spline of any degree.
 #[derive(Clone, Debug)]
-pub struct Spline<const D: usize> {
+pub struct StepSpline<const D: usize> {
     pub degree: usize,
     /// Every knot as often as it counts.
     pub knots: Vec<f64>,
     pub points: Vec<[f64; D]>,
 }
 
-impl<const D: usize> Spline<D> {
+impl<const D: usize> StepSpline<D> {
     /// Whether there are as many knots as degree and control points ask for, in order.
     pub fn is_sound(&self) -> bool {
         self.degree > 0
@@ -71,7 +71,7 @@ impl<const D: usize> Spline<D> {
 
 /// A curve in space.
 #[derive(Clone, Debug)]
-pub enum Curve {
+pub enum StepCurve {
     Line {
         origin: Point3<f64>,
         direction: Vector3<f64>,
@@ -91,10 +91,10 @@ pub enum Curve {
         place: Placement,
         focal: f64,
     },
-    Spline(Spline<3>),
+    Spline(StepSpline<3>),
 }
 
-impl Curve {
+impl StepCurve {
     /// Whether the parameter has the period of a turn.
     pub fn is_periodic(&self) -> bool {
         matches!(self, Self::Ellipse { .. })

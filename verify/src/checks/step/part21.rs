@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 /// A parameter of an instance.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum StepValue {
     /// A number, whole or not.
     Number(f64),
     /// Another instance.
@@ -14,21 +14,21 @@ pub enum Value {
     /// A name between points.
     Enumeration(String),
     /// Values in brackets.
-    List(Vec<Value>),
+    List(Vec<StepValue>),
     /// `$` or `*`.
     Absent,
 }
 
 /// An instance: its entity and the parameters; of a complex instance every part with its own.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Instance {
+pub struct StepInstance {
     /// The entities with their parameters.
-    pub parts: Vec<(String, Vec<Value>)>,
+    pub parts: Vec<(String, Vec<StepValue>)>,
 }
 
 /// What is wrong with a file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ReadError {
+pub enum StepReadError {
     /// The text breaks the grammar.
     #[error("line {line}: found {found:?}, expected {expected}")]
     Grammar {
@@ -50,10 +50,10 @@ pub enum ReadError {
 }
 
 /// The instances of a file by their numbers.
-pub type Instances = HashMap<u32, Instance>;
+pub type Instances = HashMap<u32, StepInstance>;
 
 /// Reads the data section of a file.
-pub fn read(text: &str) -> Result<Instances, ReadError> {
+pub fn read(text: &str) -> Result<Instances, StepReadError> {
     let mut instances = Instances::new();
     let data = text.lines().enumerate();
     for (number, line) in data.filter(|(_, line)| line.starts_with('#')) {
@@ -62,7 +62,7 @@ pub fn read(text: &str) -> Result<Instances, ReadError> {
             at: 0,
             number,
         };
-        let Value::Instance(id) = cursor.value()? else {
+        let StepValue::Instance(id) = cursor.value()? else {
             return Err(cursor.error("the number of an instance"));
         };
         cursor.take('=', "`=`")?;
@@ -70,7 +70,7 @@ pub fn read(text: &str) -> Result<Instances, ReadError> {
         cursor.take(';', "`;`")?;
         if instances.insert(id, instance).is_some() {
             let expected = "no second instance of this number";
-            return Err(ReadError::Instance { id, expected });
+            return Err(StepReadError::Instance { id, expected });
         }
     }
     Ok(instances)
@@ -88,15 +88,15 @@ impl Cursor<'_> {
         &self.line[self.at..]
     }
 
-    fn error(&self, expected: &'static str) -> ReadError {
-        ReadError::Grammar {
+    fn error(&self, expected: &'static str) -> StepReadError {
+        StepReadError::Grammar {
             line: self.number + 1,
             found: self.rest().chars().take(12).collect(),
             expected,
         }
     }
 
-    fn take(&mut self, c: char, expected: &'static str) -> Result<(), ReadError> {
+    fn take(&mut self, c: char, expected: &'static str) -> Result<(), StepReadError> {
         match self.rest().starts_with(c) {
             true => {
                 self.at += c.len_utf8();
@@ -115,32 +115,32 @@ impl Cursor<'_> {
         taken
     }
 
-    fn instance(&mut self) -> Result<Instance, ReadError> {
+    fn instance(&mut self) -> Result<StepInstance, StepReadError> {
         let mut parts = Vec::new();
         if !self.rest().starts_with('(') {
             parts.push(self.part()?);
-            return Ok(Instance { parts });
+            return Ok(StepInstance { parts });
         }
         self.take('(', "`(`")?;
         while !self.rest().starts_with(')') {
             parts.push(self.part()?);
         }
         self.take(')', "`)`")?;
-        Ok(Instance { parts })
+        Ok(StepInstance { parts })
     }
 
-    fn part(&mut self) -> Result<(String, Vec<Value>), ReadError> {
+    fn part(&mut self) -> Result<(String, Vec<StepValue>), StepReadError> {
         let name = self.while_is(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
         if name.is_empty() {
             return Err(self.error("the name of an entity"));
         }
         match self.value()? {
-            Value::List(values) => Ok((name, values)),
+            StepValue::List(values) => Ok((name, values)),
             _ => Err(self.error("parameters in brackets")),
         }
     }
 
-    fn value(&mut self) -> Result<Value, ReadError> {
+    fn value(&mut self) -> Result<StepValue, StepReadError> {
         let Some(first) = self.rest().chars().next() else {
             return Err(self.error("a value"));
         };
@@ -150,18 +150,18 @@ impl Cursor<'_> {
                 self.at += 1;
                 let digits = self.while_is(|c| c.is_ascii_digit());
                 let id = digits.parse().map_err(|_| self.error("a number"))?;
-                Ok(Value::Instance(id))
+                Ok(StepValue::Instance(id))
             }
             '\'' => self.text(),
             '.' => {
                 self.at += 1;
                 let name = self.while_is(|c| c.is_ascii_alphanumeric() || c == '_');
                 self.take('.', "`.`")?;
-                Ok(Value::Enumeration(name))
+                Ok(StepValue::Enumeration(name))
             }
             '$' | '*' => {
                 self.at += 1;
-                Ok(Value::Absent)
+                Ok(StepValue::Absent)
             }
             'A'..='Z' => {
                 // A typed value stands for the value.
@@ -172,12 +172,12 @@ impl Cursor<'_> {
                 let is_part = |c: char| c.is_ascii_digit() || "+-.E".contains(c);
                 let digits = self.while_is(is_part);
                 let number = digits.parse().map_err(|_| self.error("a number"))?;
-                Ok(Value::Number(number))
+                Ok(StepValue::Number(number))
             }
         }
     }
 
-    fn list(&mut self) -> Result<Value, ReadError> {
+    fn list(&mut self) -> Result<StepValue, StepReadError> {
         self.take('(', "`(`")?;
         let mut values = Vec::new();
         while !self.rest().starts_with(')') {
@@ -187,10 +187,10 @@ impl Cursor<'_> {
             values.push(self.value()?);
         }
         self.take(')', "`)`")?;
-        Ok(Value::List(values))
+        Ok(StepValue::List(values))
     }
 
-    fn text(&mut self) -> Result<Value, ReadError> {
+    fn text(&mut self) -> Result<StepValue, StepReadError> {
         let mut text = String::new();
         loop {
             self.take('\'', "a string")?;
@@ -198,7 +198,7 @@ impl Cursor<'_> {
             self.take('\'', "the end of a string")?;
             // Two quotes are one in the string.
             if !self.rest().starts_with('\'') {
-                return Ok(Value::Text(text));
+                return Ok(StepValue::Text(text));
             }
             text.push('\'');
         }

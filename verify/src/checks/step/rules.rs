@@ -1,8 +1,8 @@
 //! The rules that hold for the solids of a STEP file.
 
-use super::curve::Curve;
-use super::shape::{Edge, Face, Shape, Use};
-use super::surface::{Pole, Surface};
+use super::curve::StepCurve;
+use super::shape::{StepEdge, StepEdgeUse, StepFace, StepShape};
+use super::surface::{Pole, StepSurface};
 use nalgebra::Point3;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -26,13 +26,13 @@ pub struct Known {
 /// A rule that is broken, with a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broken {
-    pub rule: Rule,
+    pub rule: StepRule,
     pub place: Point3<f64>,
 }
 
 /// The rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rule {
+pub enum StepRule {
     /// Vertices lie on their curves; an edge's points are off its curve by this.
     VertexOnCurve(f64),
     /// An edge is longer than the resolution; one is so long.
@@ -59,22 +59,22 @@ pub enum Rule {
 impl fmt::Display for Broken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.rule {
-            Rule::VertexOnCurve(off) => write!(f, "a vertex is {off:.1e} off its curve")?,
-            Rule::EdgeLength(length) => write!(f, "an edge is {length:.1e} long")?,
-            Rule::StartParameter(t) => write!(f, "an edge starts at the parameter {t:e}")?,
-            Rule::EdgeOnSurface(off) => write!(f, "an edge is {off:.1e} off its surface")?,
-            Rule::ParametricCurve(off) => {
+            StepRule::VertexOnCurve(off) => write!(f, "a vertex is {off:.1e} off its curve")?,
+            StepRule::EdgeLength(length) => write!(f, "an edge is {length:.1e} long")?,
+            StepRule::StartParameter(t) => write!(f, "an edge starts at the parameter {t:e}")?,
+            StepRule::EdgeOnSurface(off) => write!(f, "an edge is {off:.1e} off its surface")?,
+            StepRule::ParametricCurve(off) => {
                 write!(f, "a curve in parameters is {off:.1e} off the one in space")?;
             }
-            Rule::Chain => f.write_str("the edges of a loop do not follow one another")?,
-            Rule::ClosedLoop([u, v]) => {
+            StepRule::Chain => f.write_str("the edges of a loop do not follow one another")?,
+            StepRule::ClosedLoop([u, v]) => {
                 write!(f, "a loop is open by ({u:.3}, {v:.3}) in its parameters")?;
             }
-            Rule::TwoUses(uses, sum) => {
+            StepRule::TwoUses(uses, sum) => {
                 write!(f, "an edge has {uses} uses in a shell, of senses {sum:+}")?;
             }
-            Rule::Orientation(volume) => write!(f, "a shell encloses {volume}")?,
-            Rule::Volume(volume) => write!(f, "the file's volume is {volume}")?,
+            StepRule::Orientation(volume) => write!(f, "a shell encloses {volume}")?,
+            StepRule::Volume(volume) => write!(f, "the file's volume is {volume}")?,
         }
         let p = self.place;
         write!(f, " at ({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
@@ -94,12 +94,12 @@ pub struct Measured {
 }
 
 /// Holds a shape against all rules.
-pub fn measure(shape: &Shape, known: &Known) -> Measured {
+pub fn measure(shape: &StepShape, known: &Known) -> Measured {
     let mut measured = Measured {
         edges: shape.edges.len(),
         ..Measured::default()
     };
-    let mut edges: Vec<(&u32, &Edge)> = shape.edges.iter().collect();
+    let mut edges: Vec<(&u32, &StepEdge)> = shape.edges.iter().collect();
     edges.sort_by_key(|(id, _)| **id);
     for (_, edge) in edges {
         measured.broken.extend(broken_edge(edge, known));
@@ -120,7 +120,7 @@ pub fn measure(shape: &Shape, known: &Known) -> Measured {
                 && enclosed.abs() > least
                 && (enclosed > 0.0) != (k == 0)
             {
-                let rule = Rule::Orientation(enclosed);
+                let rule = StepRule::Orientation(enclosed);
                 let place = known.middle;
                 measured.broken.push(Broken { rule, place });
             }
@@ -133,7 +133,7 @@ pub fn measure(shape: &Shape, known: &Known) -> Measured {
     if let Some(volume) = volume
         && (volume - known.volume).abs() > allowed
     {
-        let rule = Rule::Volume(volume);
+        let rule = StepRule::Volume(volume);
         let place = known.middle;
         measured.broken.push(Broken { rule, place });
     }
@@ -149,13 +149,13 @@ const FINE: f64 = 1.0 / (1u64 << 42) as f64;
 /// A start nearer to a period than this may be taken for its end.
 const PERIOD: f64 = 1.0 / (1u64 << 26) as f64;
 
-fn broken_edge(edge: &Edge, known: &Known) -> Vec<Broken> {
+fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
     let mut broken = Vec::new();
     for k in 0..2 {
         let (p, _) = edge.curve.at(edge.range[k]);
         let off = (p - edge.points[k]).norm();
         if off.is_nan() || off > known.accuracy {
-            let rule = Rule::VertexOnCurve(off);
+            let rule = StepRule::VertexOnCurve(off);
             let place = edge.points[k];
             broken.push(Broken { rule, place });
         }
@@ -177,19 +177,19 @@ fn broken_edge(edge: &Edge, known: &Known) -> Vec<Broken> {
         false => length,
     };
     if shortest.is_nan() || shortest <= known.resolution {
-        let (rule, place) = (Rule::EdgeLength(shortest), from);
+        let (rule, place) = (StepRule::EdgeLength(shortest), from);
         broken.push(Broken { rule, place });
     }
     let start = edge.range[0];
     if is_open && edge.curve.is_periodic() && start.min(TAU - start) < PERIOD {
-        let (rule, place) = (Rule::StartParameter(start), from);
+        let (rule, place) = (StepRule::StartParameter(start), from);
         broken.push(Broken { rule, place });
     }
     broken
 }
 
 /// Edges of a shell that are not used twice, with opposite senses.
-fn misused(shape: &Shape, shell: &[Face]) -> Vec<Broken> {
+fn misused(shape: &StepShape, shell: &[StepFace]) -> Vec<Broken> {
     let mut uses: HashMap<u32, (usize, i32)> = HashMap::new();
     for used in shell.iter().flat_map(|face| &face.loops).flatten() {
         let (count, sum) = uses.entry(used.edge).or_default();
@@ -199,7 +199,7 @@ fn misused(shape: &Shape, shell: &[Face]) -> Vec<Broken> {
     let wrong = uses.into_iter().filter(|(_, u)| *u != (2, 0));
     wrong
         .map(|(edge, (count, sum))| Broken {
-            rule: Rule::TwoUses(count, sum),
+            rule: StepRule::TwoUses(count, sum),
             place: shape.edges[&edge].points[0],
         })
         .collect()
@@ -207,7 +207,7 @@ fn misused(shape: &Shape, shell: &[Face]) -> Vec<Broken> {
 
 /// A place in the parameters of a surface that moves along a loop.
 struct Walk<'s> {
-    surface: &'s Surface,
+    surface: &'s StepSurface,
     about: Point3<f64>,
     /// u and v, followed without leaps; none at a pole before the first edge.
     at: Option<[f64; 2]>,
@@ -231,7 +231,7 @@ struct Walk<'s> {
 
 impl Measured {
     /// Holds a face's loops against the rules; what flows out of it, where that is told.
-    fn add_face(&mut self, shape: &Shape, face: &Face, known: &Known) -> Option<f64> {
+    fn add_face(&mut self, shape: &StepShape, face: &StepFace, known: &Known) -> Option<f64> {
         let surface = &shape.surfaces[&face.surface];
         let mut flow = 0.0;
         let mut is_clear = true;
@@ -244,7 +244,7 @@ impl Measured {
                 let edge = &shape.edges[&used.edge];
                 self.hold(edge, face.surface, surface, known);
                 if head(shape, used).0 != tail(shape, next).0 {
-                    let rule = Rule::Chain;
+                    let rule = StepRule::Chain;
                     self.broken.push(Broken { rule, place });
                 }
             }
@@ -273,7 +273,7 @@ impl Measured {
                 open[1].abs() > GAP * known.size.max(1.0),
             ];
             if walk.is_clear && (is_open[0] || is_open[1]) {
-                let rule = Rule::ClosedLoop(open);
+                let rule = StepRule::ClosedLoop(open);
                 self.broken.push(Broken { rule, place });
             }
         }
@@ -281,7 +281,7 @@ impl Measured {
     }
 
     /// Holds an edge against a surface on which it lies.
-    fn hold(&mut self, edge: &Edge, id: u32, surface: &Surface, known: &Known) {
+    fn hold(&mut self, edge: &StepEdge, id: u32, surface: &StepSurface, known: &Known) {
         let mut off: f64 = 0.0;
         let mut off_parametric: f64 = 0.0;
         let mut places = [edge.points[0]; 2];
@@ -304,11 +304,11 @@ impl Measured {
         }
         let [place, parametric_place] = places;
         if off.is_nan() || off > known.accuracy {
-            let rule = Rule::EdgeOnSurface(off);
+            let rule = StepRule::EdgeOnSurface(off);
             self.broken.push(Broken { rule, place });
         }
         if off_parametric.is_nan() || off_parametric > known.accuracy {
-            let rule = Rule::ParametricCurve(off_parametric);
+            let rule = StepRule::ParametricCurve(off_parametric);
             let place = parametric_place;
             self.broken.push(Broken { rule, place });
         }
@@ -325,13 +325,13 @@ const POLE: f64 = 1.0 / (1u64 << 30) as f64;
 /// Loops may be open by this part: vertices and curves are doubles, and splines are followed.
 const GAP: f64 = 1.0 / 1024.0;
 
-fn tail(shape: &Shape, used: &Use) -> (u32, Point3<f64>) {
+fn tail(shape: &StepShape, used: &StepEdgeUse) -> (u32, Point3<f64>) {
     let edge = &shape.edges[&used.edge];
     let k = usize::from(!used.along);
     (edge.ends[k], edge.points[k])
 }
 
-fn head(shape: &Shape, used: &Use) -> (u32, Point3<f64>) {
+fn head(shape: &StepShape, used: &StepEdgeUse) -> (u32, Point3<f64>) {
     let edge = &shape.edges[&used.edge];
     let k = usize::from(used.along);
     (edge.ends[k], edge.points[k])
@@ -350,7 +350,7 @@ const HALVED: u32 = 12;
 
 impl Walk<'_> {
     /// Goes along an edge.
-    fn add(&mut self, edge: &Edge, Use { edge: id, along }: Use) {
+    fn add(&mut self, edge: &StepEdge, StepEdgeUse { edge: id, along }: StepEdgeUse) {
         let mut stops = edge.curve.stops(edge.range);
         if !along {
             stops.reverse();
@@ -384,7 +384,7 @@ impl Walk<'_> {
     }
 
     /// Comes to the start of an edge.
-    fn enter(&mut self, curve: &Curve, t: f64, pole: Option<(Pole, u32)>) {
+    fn enter(&mut self, curve: &StepCurve, t: f64, pole: Option<(Pole, u32)>) {
         let (p, _) = curve.at(t);
         let there = self.surface.parameters(&p);
         let Some(at) = self.at else {
@@ -430,10 +430,10 @@ impl Walk<'_> {
 
     /// The same parameters next to others.
     fn beside(&self, mut there: [f64; 2], at: [f64; 2]) -> [f64; 2] {
-        use super::surface::Form;
+        use super::surface::SurfaceForm;
         let periodic = [
             self.surface.has_angle(),
-            matches!(self.surface.form, Form::Torus { .. }),
+            matches!(self.surface.form, SurfaceForm::Torus { .. }),
         ];
         for i in 0..2 {
             if periodic[i] {
@@ -445,7 +445,7 @@ impl Walk<'_> {
 
     /// Goes along a piece of a curve: in halves, until each of them turns little and quadrature of
     /// both halves agrees with that of the whole.
-    fn piece(&mut self, curve: &Curve, range: [f64; 2], halvings: u32) {
+    fn piece(&mut self, curve: &StepCurve, range: [f64; 2], halvings: u32) {
         let Some(at) = self.at else { return };
         let [from, to] = range;
         let middle = 0.5 * (from + to);
@@ -470,7 +470,7 @@ impl Walk<'_> {
     }
 
     /// The integral of P du along a piece that starts at parameters, and the parameters at its end.
-    fn integral(&self, curve: &Curve, [a, b]: [f64; 2], mut at: [f64; 2]) -> (f64, [f64; 2]) {
+    fn integral(&self, curve: &StepCurve, [a, b]: [f64; 2], mut at: [f64; 2]) -> (f64, [f64; 2]) {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let [[inner, inner_weight], [outer, outer_weight]] = GAUSS;
         let places = [

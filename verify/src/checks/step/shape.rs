@@ -1,54 +1,54 @@
 //! The solids of a STEP file: shells, faces, loops and edges with their curves and surfaces.
 
-use super::curve::{Curve, Placement, Spline};
-use super::part21::{Instance, Instances, ReadError, Value};
-use super::surface::{Form, Surface};
+use super::curve::{Placement, StepCurve, StepSpline};
+use super::part21::{Instances, StepInstance, StepReadError, StepValue};
+use super::surface::{StepSurface, SurfaceForm};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 /// An edge.
 #[derive(Clone, Debug)]
-pub struct Edge {
+pub struct StepEdge {
     /// The numbers of the vertices at its start and its end.
     pub ends: [u32; 2],
     pub points: [Point3<f64>; 2],
-    pub curve: Curve,
+    pub curve: StepCurve,
     /// The curves in the parameters of surfaces, by the number of the surface.
-    pub on: Vec<(u32, Spline<2>)>,
+    pub on: Vec<(u32, StepSpline<2>)>,
     /// The parameters of its ends, as a reader finds them.
     pub range: [f64; 2],
 }
 
 /// An edge as a loop runs along it.
 #[derive(Clone, Copy, Debug)]
-pub struct Use {
+pub struct StepEdgeUse {
     pub edge: u32,
     pub along: bool,
 }
 
 /// A face.
 #[derive(Clone, Debug)]
-pub struct Face {
+pub struct StepFace {
     /// The number of its surface.
     pub surface: u32,
     /// Whether the outward normal is the surface's.
     pub along: bool,
-    pub loops: Vec<Vec<Use>>,
+    pub loops: Vec<Vec<StepEdgeUse>>,
 }
 
 /// What a file holds.
 #[derive(Clone, Debug, Default)]
-pub struct Shape {
-    pub edges: HashMap<u32, Edge>,
-    pub surfaces: HashMap<u32, Surface>,
+pub struct StepShape {
+    pub edges: HashMap<u32, StepEdge>,
+    pub surfaces: HashMap<u32, StepSurface>,
     /// The faces of each shell of each solid, the outer shell first.
-    pub solids: Vec<Vec<Vec<Face>>>,
+    pub solids: Vec<Vec<Vec<StepFace>>>,
 }
 
-impl Shape {
+impl StepShape {
     /// The solids of a file.
-    pub fn new(instances: &Instances) -> Result<Self, ReadError> {
+    pub fn new(instances: &Instances) -> Result<Self, StepReadError> {
         let mut reader = Reader {
             instances,
             shape: Self::default(),
@@ -71,7 +71,7 @@ impl Shape {
 
 struct Reader<'i> {
     instances: &'i Instances,
-    shape: Shape,
+    shape: StepShape,
 }
 
 /// An instance with its number: where errors are.
@@ -79,61 +79,61 @@ struct Reader<'i> {
 struct Entity<'i> {
     id: u32,
     name: &'i str,
-    values: &'i [Value],
+    values: &'i [StepValue],
 }
 
 impl<'i> Entity<'i> {
-    fn wrong(&self, expected: &'static str) -> ReadError {
+    fn wrong(&self, expected: &'static str) -> StepReadError {
         let id = self.id;
-        ReadError::Instance { id, expected }
+        StepReadError::Instance { id, expected }
     }
 
-    fn value(&self, k: usize) -> Result<&'i Value, ReadError> {
+    fn value(&self, k: usize) -> Result<&'i StepValue, StepReadError> {
         self.values
             .get(k)
             .ok_or_else(|| self.wrong("more parameters"))
     }
 
-    fn instance(&self, k: usize) -> Result<u32, ReadError> {
+    fn instance(&self, k: usize) -> Result<u32, StepReadError> {
         match self.value(k)? {
-            Value::Instance(id) => Ok(*id),
+            StepValue::Instance(id) => Ok(*id),
             _ => Err(self.wrong("an instance")),
         }
     }
 
-    fn number(&self, k: usize) -> Result<f64, ReadError> {
+    fn number(&self, k: usize) -> Result<f64, StepReadError> {
         match self.value(k)? {
-            Value::Number(x) => Ok(*x),
+            StepValue::Number(x) => Ok(*x),
             _ => Err(self.wrong("a number")),
         }
     }
 
-    fn truth(&self, k: usize) -> Result<bool, ReadError> {
+    fn truth(&self, k: usize) -> Result<bool, StepReadError> {
         match self.value(k)? {
-            Value::Enumeration(name) if name == "T" => Ok(true),
-            Value::Enumeration(name) if name == "F" => Ok(false),
+            StepValue::Enumeration(name) if name == "T" => Ok(true),
+            StepValue::Enumeration(name) if name == "F" => Ok(false),
             _ => Err(self.wrong("a truth value")),
         }
     }
 
-    fn list(&self, k: usize) -> Result<&'i [Value], ReadError> {
+    fn list(&self, k: usize) -> Result<&'i [StepValue], StepReadError> {
         match self.value(k)? {
-            Value::List(values) => Ok(values),
+            StepValue::List(values) => Ok(values),
             _ => Err(self.wrong("a list")),
         }
     }
 
-    fn instances(&self, k: usize) -> Result<Vec<u32>, ReadError> {
-        let of = |value: &Value| match value {
-            Value::Instance(id) => Ok(*id),
+    fn instances(&self, k: usize) -> Result<Vec<u32>, StepReadError> {
+        let of = |value: &StepValue| match value {
+            StepValue::Instance(id) => Ok(*id),
             _ => Err(self.wrong("a list of instances")),
         };
         self.list(k)?.iter().map(of).collect()
     }
 
-    fn numbers(&self, k: usize) -> Result<Vec<f64>, ReadError> {
-        let of = |value: &Value| match value {
-            Value::Number(x) => Ok(*x),
+    fn numbers(&self, k: usize) -> Result<Vec<f64>, StepReadError> {
+        let of = |value: &StepValue| match value {
+            StepValue::Number(x) => Ok(*x),
             _ => Err(self.wrong("a list of numbers")),
         };
         self.list(k)?.iter().map(of).collect()
@@ -141,19 +141,19 @@ impl<'i> Entity<'i> {
 }
 
 impl<'i> Reader<'i> {
-    fn entity(&self, id: u32) -> Result<Entity<'i>, ReadError> {
+    fn entity(&self, id: u32) -> Result<Entity<'i>, StepReadError> {
         let expected = "an instance of one entity";
         match self.instances.get(&id) {
-            Some(Instance { parts }) if parts.len() == 1 => Ok(Entity {
+            Some(StepInstance { parts }) if parts.len() == 1 => Ok(Entity {
                 id,
                 name: &parts[0].0,
                 values: &parts[0].1,
             }),
-            _ => Err(ReadError::Instance { id, expected }),
+            _ => Err(StepReadError::Instance { id, expected }),
         }
     }
 
-    fn named(&self, id: u32, name: &'static str) -> Result<Entity<'i>, ReadError> {
+    fn named(&self, id: u32, name: &'static str) -> Result<Entity<'i>, StepReadError> {
         let entity = self.entity(id)?;
         match entity.name == name {
             true => Ok(entity),
@@ -161,7 +161,7 @@ impl<'i> Reader<'i> {
         }
     }
 
-    fn solid(&mut self, id: u32) -> Result<Vec<Vec<Face>>, ReadError> {
+    fn solid(&mut self, id: u32) -> Result<Vec<Vec<StepFace>>, StepReadError> {
         let solid = self.entity(id)?;
         let mut shells = vec![self.shell(solid.instance(1)?)?];
         if solid.name == "BREP_WITH_VOIDS" {
@@ -176,12 +176,12 @@ impl<'i> Reader<'i> {
         Ok(shells)
     }
 
-    fn shell(&mut self, id: u32) -> Result<Vec<Face>, ReadError> {
+    fn shell(&mut self, id: u32) -> Result<Vec<StepFace>, StepReadError> {
         let faces = self.named(id, "CLOSED_SHELL")?.instances(1)?;
         faces.into_iter().map(|face| self.face(face)).collect()
     }
 
-    fn face(&mut self, id: u32) -> Result<Face, ReadError> {
+    fn face(&mut self, id: u32) -> Result<StepFace, StepReadError> {
         let face = self.named(id, "ADVANCED_FACE")?;
         let surface = face.instance(2)?;
         if !self.shape.surfaces.contains_key(&surface) {
@@ -201,18 +201,18 @@ impl<'i> Reader<'i> {
                 let edge = oriented.instance(3)?;
                 self.add_edge(edge)?;
                 let along = oriented.truth(4)?;
-                uses.push(Use { edge, along });
+                uses.push(StepEdgeUse { edge, along });
             }
             loops.push(uses);
         }
-        Ok(Face {
+        Ok(StepFace {
             surface,
             along: face.truth(3)?,
             loops,
         })
     }
 
-    fn add_edge(&mut self, id: u32) -> Result<(), ReadError> {
+    fn add_edge(&mut self, id: u32) -> Result<(), StepReadError> {
         if self.shape.edges.contains_key(&id) {
             return Ok(());
         }
@@ -243,7 +243,7 @@ impl<'i> Reader<'i> {
         if curve.is_periodic() && (hi <= lo || ends[0] == ends[1]) {
             hi += if hi - lo > 0.5 * TAU { 0.0 } else { TAU };
         }
-        let edge = Edge {
+        let edge = StepEdge {
             ends,
             points,
             curve,
@@ -254,40 +254,40 @@ impl<'i> Reader<'i> {
         Ok(())
     }
 
-    fn curve(&self, curve: &Entity<'i>) -> Result<Curve, ReadError> {
+    fn curve(&self, curve: &Entity<'i>) -> Result<StepCurve, StepReadError> {
         match curve.name {
             "LINE" => {
                 let vector = self.named(curve.instance(2)?, "VECTOR")?;
-                Ok(Curve::Line {
+                Ok(StepCurve::Line {
                     origin: self.point(curve.instance(1)?)?,
                     direction: self.direction(vector.instance(1)?)? * vector.number(2)?,
                 })
             }
-            "CIRCLE" => Ok(Curve::Ellipse {
+            "CIRCLE" => Ok(StepCurve::Ellipse {
                 place: self.placement(curve.instance(1)?)?,
                 a: curve.number(2)?,
                 b: curve.number(2)?,
             }),
-            "ELLIPSE" => Ok(Curve::Ellipse {
+            "ELLIPSE" => Ok(StepCurve::Ellipse {
                 place: self.placement(curve.instance(1)?)?,
                 a: curve.number(2)?,
                 b: curve.number(3)?,
             }),
-            "HYPERBOLA" => Ok(Curve::Hyperbola {
+            "HYPERBOLA" => Ok(StepCurve::Hyperbola {
                 place: self.placement(curve.instance(1)?)?,
                 a: curve.number(2)?,
                 b: curve.number(3)?,
             }),
-            "PARABOLA" => Ok(Curve::Parabola {
+            "PARABOLA" => Ok(StepCurve::Parabola {
                 place: self.placement(curve.instance(1)?)?,
                 focal: curve.number(2)?,
             }),
-            "B_SPLINE_CURVE_WITH_KNOTS" => Ok(Curve::Spline(self.spline(curve.id)?)),
+            "B_SPLINE_CURVE_WITH_KNOTS" => Ok(StepCurve::Spline(self.spline(curve.id)?)),
             _ => Err(curve.wrong("a curve")),
         }
     }
 
-    fn spline<const D: usize>(&self, id: u32) -> Result<Spline<D>, ReadError> {
+    fn spline<const D: usize>(&self, id: u32) -> Result<StepSpline<D>, StepReadError> {
         let spline = self.named(id, "B_SPLINE_CURVE_WITH_KNOTS")?;
         let mut points = Vec::new();
         for point in spline.instances(2)? {
@@ -297,7 +297,7 @@ impl<'i> Reader<'i> {
         }
         let counted = spline.numbers(6)?.into_iter().zip(spline.numbers(7)?);
         let knots = counted.flat_map(|(count, knot)| std::iter::repeat_n(knot, count as usize));
-        let made = Spline {
+        let made = StepSpline {
             degree: spline.number(1)? as usize,
             knots: knots.collect(),
             points,
@@ -308,31 +308,31 @@ impl<'i> Reader<'i> {
         }
     }
 
-    fn surface(&self, id: u32) -> Result<Surface, ReadError> {
+    fn surface(&self, id: u32) -> Result<StepSurface, StepReadError> {
         let surface = self.entity(id)?;
         let form = match surface.name {
-            "PLANE" => Form::Plane,
-            "CYLINDRICAL_SURFACE" => Form::Cylinder {
+            "PLANE" => SurfaceForm::Plane,
+            "CYLINDRICAL_SURFACE" => SurfaceForm::Cylinder {
                 radius: surface.number(2)?,
             },
-            "CONICAL_SURFACE" => Form::Cone {
+            "CONICAL_SURFACE" => SurfaceForm::Cone {
                 radius: surface.number(2)?,
                 slope: surface.number(3)?.tan(),
             },
-            "SPHERICAL_SURFACE" => Form::Sphere {
+            "SPHERICAL_SURFACE" => SurfaceForm::Sphere {
                 radius: surface.number(2)?,
             },
-            "TOROIDAL_SURFACE" => Form::Torus {
+            "TOROIDAL_SURFACE" => SurfaceForm::Torus {
                 major: surface.number(2)?,
                 minor: surface.number(3)?,
             },
             _ => return Err(surface.wrong("a surface")),
         };
         let place = self.placement(surface.instance(1)?)?;
-        Ok(Surface { place, form })
+        Ok(StepSurface { place, form })
     }
 
-    fn placement(&self, id: u32) -> Result<Placement, ReadError> {
+    fn placement(&self, id: u32) -> Result<Placement, StepReadError> {
         let placement = self.named(id, "AXIS2_PLACEMENT_3D")?;
         let z = self.direction(placement.instance(2)?)?;
         let toward = self.direction(placement.instance(3)?)?;
@@ -345,15 +345,15 @@ impl<'i> Reader<'i> {
         })
     }
 
-    fn point(&self, id: u32) -> Result<Point3<f64>, ReadError> {
+    fn point(&self, id: u32) -> Result<Point3<f64>, StepReadError> {
         self.triple(id, "CARTESIAN_POINT").map(Point3::from)
     }
 
-    fn direction(&self, id: u32) -> Result<Vector3<f64>, ReadError> {
+    fn direction(&self, id: u32) -> Result<Vector3<f64>, StepReadError> {
         Ok(Vector3::from(self.triple(id, "DIRECTION")?).normalize())
     }
 
-    fn triple(&self, id: u32, name: &'static str) -> Result<[f64; 3], ReadError> {
+    fn triple(&self, id: u32, name: &'static str) -> Result<[f64; 3], StepReadError> {
         let entity = self.named(id, name)?;
         let numbers: Result<[f64; 3], _> = entity.numbers(1)?.try_into();
         numbers.map_err(|_| entity.wrong("three numbers"))

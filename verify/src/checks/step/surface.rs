@@ -11,14 +11,14 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// A surface.
 #[derive(Clone, Debug)]
-pub struct Surface {
+pub struct StepSurface {
     pub place: Placement,
-    pub form: Form,
+    pub form: SurfaceForm,
 }
 
 /// What kind of surface, with its sizes.
 #[derive(Clone, Copy, Debug)]
-pub enum Form {
+pub enum SurfaceForm {
     Plane,
     Cylinder {
         radius: f64,
@@ -46,25 +46,25 @@ pub enum Pole {
     North,
 }
 
-impl Surface {
+impl StepSurface {
     /// The distance of a point.
     pub fn distance(&self, p: &Point3<f64>) -> f64 {
         let q = self.place.local(p);
         let rho = q.x.hypot(q.y);
         match self.form {
-            Form::Plane => q.z,
-            Form::Cylinder { radius } => rho - radius,
-            Form::Cone { radius, slope } => {
+            SurfaceForm::Plane => q.z,
+            SurfaceForm::Cylinder { radius } => rho - radius,
+            SurfaceForm::Cone { radius, slope } => {
                 (rho - (radius + q.z * slope).abs()) / (1.0 + slope * slope).sqrt()
             }
-            Form::Sphere { radius } => q.norm() - radius,
-            Form::Torus { major, minor } => (rho - major).hypot(q.z) - minor,
+            SurfaceForm::Sphere { radius } => q.norm() - radius,
+            SurfaceForm::Torus { major, minor } => (rho - major).hypot(q.z) - minor,
         }
     }
 
     /// Whether u is an angle about the axis.
     pub fn has_angle(&self) -> bool {
-        !matches!(self.form, Form::Plane)
+        !matches!(self.form, SurfaceForm::Plane)
     }
 
     /// The point with the parameters that ISO 10303-42 gives to a surface.
@@ -72,11 +72,11 @@ impl Surface {
         let Placement { origin, x, y, z } = self.place;
         let about = x * u.cos() + y * u.sin();
         match self.form {
-            Form::Plane => origin + x * u + y * v,
-            Form::Cylinder { radius } => origin + about * radius + z * v,
-            Form::Cone { radius, slope } => origin + about * (radius + v * slope) + z * v,
-            Form::Sphere { radius } => origin + (about * v.cos() + z * v.sin()) * radius,
-            Form::Torus { major, minor } => {
+            SurfaceForm::Plane => origin + x * u + y * v,
+            SurfaceForm::Cylinder { radius } => origin + about * radius + z * v,
+            SurfaceForm::Cone { radius, slope } => origin + about * (radius + v * slope) + z * v,
+            SurfaceForm::Sphere { radius } => origin + (about * v.cos() + z * v.sin()) * radius,
+            SurfaceForm::Torus { major, minor } => {
                 origin + about * (major + minor * v.cos()) + z * (minor * v.sin())
             }
         }
@@ -87,11 +87,11 @@ impl Surface {
         let q = self.place.local(p);
         let is_on_axis = q.x.hypot(q.y) <= tolerance;
         match self.form {
-            Form::Cone { slope, .. } if is_on_axis => match slope > 0.0 {
+            SurfaceForm::Cone { slope, .. } if is_on_axis => match slope > 0.0 {
                 true => Some(Pole::South),
                 false => Some(Pole::North),
             },
-            Form::Sphere { .. } if is_on_axis => match q.z < 0.0 {
+            SurfaceForm::Sphere { .. } if is_on_axis => match q.z < 0.0 {
                 true => Some(Pole::South),
                 false => Some(Pole::North),
             },
@@ -105,10 +105,10 @@ impl Surface {
         let rho = q.x.hypot(q.y);
         let angle = q.y.atan2(q.x);
         match self.form {
-            Form::Plane => [q.x, q.y],
-            Form::Cylinder { .. } | Form::Cone { .. } => [angle, q.z],
-            Form::Sphere { .. } => [angle, q.z.atan2(rho)],
-            Form::Torus { major, .. } => [angle, q.z.atan2(rho - major)],
+            SurfaceForm::Plane => [q.x, q.y],
+            SurfaceForm::Cylinder { .. } | SurfaceForm::Cone { .. } => [angle, q.z],
+            SurfaceForm::Sphere { .. } => [angle, q.z.atan2(rho)],
+            SurfaceForm::Torus { major, .. } => [angle, q.z.atan2(rho - major)],
         }
     }
 
@@ -116,7 +116,7 @@ impl Surface {
     pub fn u_speed(&self, p: &Point3<f64>, d: &Vector3<f64>) -> f64 {
         let (q, d) = (self.place.local(p), self.place.turned(d));
         match self.form {
-            Form::Plane => d.x,
+            SurfaceForm::Plane => d.x,
             _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
         }
     }
@@ -128,17 +128,17 @@ impl Surface {
         let out = o.x * cos_u + o.y * sin_u;
         let (sin, cos) = v.sin_cos();
         let three = match self.form {
-            Form::Plane => v * o.z,
-            Form::Cylinder { radius } => v * radius * (radius + out),
-            Form::Cone { radius, slope } => {
+            SurfaceForm::Plane => v * o.z,
+            SurfaceForm::Cylinder { radius } => v * radius * (radius + out),
+            SurfaceForm::Cone { radius, slope } => {
                 let rho = radius + v * slope;
                 0.5 * rho * rho / slope * (out - slope * o.z + radius)
             }
-            Form::Sphere { radius } => {
+            SurfaceForm::Sphere { radius } => {
                 let level = radius * (sin + 1.0) - 0.5 * o.z * cos * cos;
                 radius * radius * (level + out * (0.5 * (v + sin * cos) + FRAC_PI_4))
             }
-            Form::Torus { major: a, minor: r } => {
+            SurfaceForm::Torus { major: a, minor: r } => {
                 let (out, up) = (out + a, o.z);
                 r * ((a * out + r * r) * sin - a * up * cos
                     + a * r * v
@@ -151,7 +151,7 @@ impl Surface {
 
     /// The integral of P du at a pole, from an angle to another.
     pub fn flow_at_pole(&self, pole: Pole, [from, to]: [f64; 2], about: &Point3<f64>) -> f64 {
-        let (Form::Sphere { radius }, Pole::North) = (self.form, pole) else {
+        let (SurfaceForm::Sphere { radius }, Pole::North) = (self.form, pole) else {
             return 0.0;
         };
         let o = self.place.turned(&(self.place.origin - about));

@@ -1,7 +1,9 @@
 //! Chains of operations: every level puts one primitive to all that is below.
 
-use crate::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
-use crate::generator::random::Random;
+use crate::generator::model::{
+    ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, PartModel,
+};
+use crate::generator::random::RandomChoices;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 3;
@@ -9,8 +11,8 @@ const PURPOSE: u64 = 3;
 /// A chain of 100 to 250 levels as a rule, one in 20 of up to 1000, one in 200 of up to 3000. A level
 /// adds a primitive of up to a unit in a lattice, or takes it away; some have the chain as a later
 /// child, cut it with a block, take it from one, or move it.
-pub(super) fn model(seed: u64) -> Model {
-    let random = &mut Random::apart(seed, PURPOSE);
+pub(super) fn model(seed: u64) -> PartModel {
+    let random = &mut RandomChoices::apart(seed, PURPOSE);
     let levels = match random.below(200) {
         0 => random.between(1000, 3000),
         1..10 => random.between(250, 1000),
@@ -18,7 +20,7 @@ pub(super) fn model(seed: u64) -> Model {
     };
     // The lattice's side, so that one cell in three is met.
     let side = (1.5 * (levels as f64).cbrt()).ceil() as usize;
-    let mut model = Model::default();
+    let mut model = PartModel::default();
     let mut chain = small(random, &mut model, side);
     for _ in 1..levels {
         chain = level(random, &mut model, chain, side);
@@ -26,8 +28,13 @@ pub(super) fn model(seed: u64) -> Model {
     model
 }
 
-fn level(random: &mut Random, model: &mut Model, chain: NodeId, side: usize) -> NodeId {
-    use Operation::{Difference, Intersection, Union};
+fn level(
+    random: &mut RandomChoices,
+    model: &mut PartModel,
+    chain: ModelNodeId,
+    side: usize,
+) -> ModelNodeId {
+    use ModelOperation::{Difference, Intersection, Union};
     match random.below(64) {
         0 => {
             let around = block(random, model, side, 0);
@@ -39,8 +46,8 @@ fn level(random: &mut Random, model: &mut Model, chain: NodeId, side: usize) -> 
         }
         2 => {
             let added = small(random, model, side);
-            let half = Axis::any(random).vector(0.5 * random.sign());
-            let steps = vec![Step::Shift(half)];
+            let half = ModelAxis::any(random).vector(0.5 * random.sign());
+            let steps = vec![ModelStep::Shift(half)];
             model.operation(Union, vec![chain, added], steps)
         }
         3..=17 => {
@@ -59,29 +66,37 @@ fn level(random: &mut Random, model: &mut Model, chain: NodeId, side: usize) -> 
 }
 
 /// A block about the lattice, by up to two halves wider.
-fn block(random: &mut Random, model: &mut Model, side: usize, least: usize) -> NodeId {
+fn block(
+    random: &mut RandomChoices,
+    model: &mut PartModel,
+    side: usize,
+    least: usize,
+) -> ModelNodeId {
     let margin = random.half(least, 2);
     let size = side as f64 + 2.0 * margin;
-    model.leaf(Primitive::Block([size; 3]), vec![Step::Shift([-margin; 3])])
+    model.leaf(
+        ModelPrimitive::Block([size; 3]),
+        vec![ModelStep::Shift([-margin; 3])],
+    )
 }
 
 /// A primitive of up to a unit in a cell of the lattice.
-fn small(random: &mut Random, model: &mut Model, side: usize) -> NodeId {
+fn small(random: &mut RandomChoices, model: &mut PartModel, side: usize) -> ModelNodeId {
     let primitive = match random.below(10) {
-        0..4 => Primitive::Block([0; 3].map(|_| random.half(1, 2))),
-        4..6 => Primitive::Cylinder {
+        0..4 => ModelPrimitive::Block([0; 3].map(|_| random.half(1, 2))),
+        4..6 => ModelPrimitive::Cylinder {
             r: random.choose(&[0.25, 0.5]),
             h: random.half(1, 2),
         },
-        6 | 7 => Primitive::Sphere(random.choose(&[0.25, 0.5])),
-        8 => Primitive::Frustum {
+        6 | 7 => ModelPrimitive::Sphere(random.choose(&[0.25, 0.5])),
+        8 => ModelPrimitive::Frustum {
             r1: 0.5,
             r2: random.choose(&[0.0, 0.25]),
             h: random.half(1, 2),
         },
         _ => match random.once_in(2) {
-            true => Primitive::Wedge([0; 3].map(|_| random.half(1, 2))),
-            false => Primitive::Torus {
+            true => ModelPrimitive::Wedge([0; 3].map(|_| random.half(1, 2))),
+            false => ModelPrimitive::Torus {
                 major: 0.5,
                 minor: 0.25,
             },
@@ -90,8 +105,13 @@ fn small(random: &mut Random, model: &mut Model, side: usize) -> NodeId {
     let mut steps = Vec::new();
     if random.once_in(4) {
         let degrees = random.choose(&[90.0, 90.0, 45.0, 17.0]);
-        steps.push(Step::Turn(Axis::any(random), degrees * random.sign()));
+        steps.push(ModelStep::Turn(
+            ModelAxis::any(random),
+            degrees * random.sign(),
+        ));
     }
-    steps.push(Step::Shift([0; 3].map(|_| random.half(0, 2 * side - 2))));
+    steps.push(ModelStep::Shift(
+        [0; 3].map(|_| random.half(0, 2 * side - 2)),
+    ));
     model.leaf(primitive, steps)
 }

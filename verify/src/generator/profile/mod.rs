@@ -7,7 +7,7 @@ mod parts;
 mod tangent;
 mod wide;
 
-use super::model::Model;
+use super::model::PartModel;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -76,7 +76,7 @@ impl Profile {
     }
 
     /// The tree of a seed.
-    pub fn model(self, seed: u64) -> Model {
+    pub fn model(self, seed: u64) -> PartModel {
         match self {
             Self::Grid => grid::model(seed),
             Self::Near => near::model(seed),

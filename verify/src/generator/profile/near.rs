@@ -2,8 +2,10 @@
 //! coincided is missed by all orders of magnitude, above the resolution and below.
 
 use super::grid;
-use crate::generator::model::{Axis, Kind, Model, NodeId, Primitive, Step};
-use crate::generator::random::Random;
+use crate::generator::model::{
+    ModelAxis, ModelNodeId, ModelNodeKind, ModelPrimitive, ModelStep, PartModel,
+};
+use crate::generator::random::RandomChoices;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 1;
@@ -11,10 +13,10 @@ const PURPOSE: u64 = 1;
 /// The tree of the grid for the same seed, of which one to three primitives are disturbed: moved
 /// along an axis or in space by a length, turned about an axis by an angle in degrees, or their
 /// lengths grown; by 2^-10 to 2^-60, or by 1e-4 to 1e-9, either way.
-pub(super) fn model(seed: u64) -> Model {
-    let random = &mut Random::apart(seed, PURPOSE);
+pub(super) fn model(seed: u64) -> PartModel {
+    let random = &mut RandomChoices::apart(seed, PURPOSE);
     let mut model = grid::model(seed);
-    let leaves: Vec<NodeId> = model.leaves().collect();
+    let leaves: Vec<ModelNodeId> = model.leaves().collect();
     for _ in 0..random.between(1, 3) {
         let leaf = random.choose(&leaves);
         disturb(random, &mut model, leaf);
@@ -22,27 +24,31 @@ pub(super) fn model(seed: u64) -> Model {
     model
 }
 
-fn disturb(random: &mut Random, model: &mut Model, leaf: NodeId) {
+fn disturb(random: &mut RandomChoices, model: &mut PartModel, leaf: ModelNodeId) {
     let Some(node) = model.node_mut(leaf) else {
         return;
     };
     let by = little(random) * random.sign();
     match (random.below(6), &mut node.kind) {
-        (0 | 1, _) => node.steps.push(Step::Shift(Axis::any(random).vector(by))),
+        (0 | 1, _) => node
+            .steps
+            .push(ModelStep::Shift(ModelAxis::any(random).vector(by))),
         (2, _) => {
             let each = [0; 3].map(|_| by * random.choose(&[0.5, 1.0, -1.0]));
-            node.steps.push(Step::Shift(each));
+            node.steps.push(ModelStep::Shift(each));
         }
         // About the primitive's own origin, or the grid's.
-        (3, _) => node.steps.insert(0, Step::Turn(Axis::any(random), by)),
-        (4, _) => node.steps.push(Step::Turn(Axis::any(random), by)),
-        (_, Kind::Leaf(primitive)) => *primitive = grown(primitive, by),
-        (_, Kind::Operation(..)) => {}
+        (3, _) => node
+            .steps
+            .insert(0, ModelStep::Turn(ModelAxis::any(random), by)),
+        (4, _) => node.steps.push(ModelStep::Turn(ModelAxis::any(random), by)),
+        (_, ModelNodeKind::Leaf(primitive)) => *primitive = grown(primitive, by),
+        (_, ModelNodeKind::Operation(..)) => {}
     }
 }
 
 /// A small number, of any order of magnitude.
-fn little(random: &mut Random) -> f64 {
+fn little(random: &mut RandomChoices) -> f64 {
     match random.once_in(3) {
         true => 10f64.powi(-(random.between(4, 9) as i32)),
         false => 2f64.powi(-(random.between(10, 60) as i32)),
@@ -50,14 +56,14 @@ fn little(random: &mut Random) -> f64 {
 }
 
 /// With radii or edges longer by a little; a part of it below the last digit is lost.
-fn grown(primitive: &Primitive, by: f64) -> Primitive {
+fn grown(primitive: &ModelPrimitive, by: f64) -> ModelPrimitive {
     match *primitive {
-        Primitive::Block(size) => Primitive::Block(size.map(|x| x + by)),
-        Primitive::Wedge(size) => Primitive::Wedge(size.map(|x| x + by)),
-        Primitive::Cylinder { r, h } => Primitive::Cylinder { r: r + by, h },
-        Primitive::Frustum { r1, r2, h } => Primitive::Frustum { r1: r1 + by, r2, h },
-        Primitive::Sphere(r) => Primitive::Sphere(r + by),
-        Primitive::Torus { major, minor } => Primitive::Torus {
+        ModelPrimitive::Block(size) => ModelPrimitive::Block(size.map(|x| x + by)),
+        ModelPrimitive::Wedge(size) => ModelPrimitive::Wedge(size.map(|x| x + by)),
+        ModelPrimitive::Cylinder { r, h } => ModelPrimitive::Cylinder { r: r + by, h },
+        ModelPrimitive::Frustum { r1, r2, h } => ModelPrimitive::Frustum { r1: r1 + by, r2, h },
+        ModelPrimitive::Sphere(r) => ModelPrimitive::Sphere(r + by),
+        ModelPrimitive::Torus { major, minor } => ModelPrimitive::Torus {
             major,
             minor: minor + by,
         },

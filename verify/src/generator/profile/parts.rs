@@ -9,15 +9,15 @@ mod hollow;
 mod round;
 mod turned;
 
-use crate::generator::model::{Axis, Model, NodeId, Step};
-use crate::generator::random::Random;
-use draft::Draft;
+use crate::generator::model::{ModelAxis, ModelNodeId, ModelStep, PartModel};
+use crate::generator::random::RandomChoices;
+use draft::PartDraft;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 5;
 
 /// The kinds of parts, those with many variants more often.
-const KINDS: [fn(&mut Draft<'_>) -> NodeId; 20] = [
+const KINDS: [fn(&mut PartDraft<'_>) -> ModelNodeId; 20] = [
     flat::plate,
     flat::plate,
     flat::bracket,
@@ -41,10 +41,10 @@ const KINDS: [fn(&mut Draft<'_>) -> NodeId; 20] = [
 ];
 
 /// A part of 2 to 60 primitives with lengths of 0 to 3 decimals, all of one part of as many.
-pub(super) fn model(seed: u64) -> Model {
-    let random = &mut Random::apart(seed, PURPOSE);
+pub(super) fn model(seed: u64) -> PartModel {
+    let random = &mut RandomChoices::apart(seed, PURPOSE);
     let kind = random.choose(&KINDS);
-    let mut draft = Draft::new(random);
+    let mut draft = PartDraft::new(random);
     let part = kind(&mut draft);
     let mut model = draft.model;
     let steps = match random.once_in(2) {
@@ -58,7 +58,7 @@ pub(super) fn model(seed: u64) -> Model {
 }
 
 /// One to three turns by whole degrees or tenths of them, and a shift as a rule.
-fn placement(random: &mut Random) -> Vec<Step> {
+fn placement(random: &mut RandomChoices) -> Vec<ModelStep> {
     let mut steps = Vec::new();
     for _ in 0..random.between(1, 3) {
         let degrees = match random.below(3) {
@@ -66,11 +66,11 @@ fn placement(random: &mut Random) -> Vec<Step> {
             1 => random.choose(&[15.0, 30.0, 45.0, 60.0, 90.0, 180.0]),
             _ => random.between(1, 359) as f64,
         };
-        steps.push(Step::Turn(Axis::any(random), degrees));
+        steps.push(ModelStep::Turn(ModelAxis::any(random), degrees));
     }
     if !random.once_in(3) {
         let unit = random.choose(&[1.0, 10.0, 1000.0]);
-        steps.push(Step::Shift([0; 3].map(|_| {
+        steps.push(ModelStep::Shift([0; 3].map(|_| {
             random.sign() * random.below(100_000) as f64 / (1000.0 * unit)
         })));
     }

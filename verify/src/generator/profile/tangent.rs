@@ -5,8 +5,10 @@
 //! same (from inside).
 
 use super::grid;
-use crate::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
-use crate::generator::random::Random;
+use crate::generator::model::{
+    ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, PartModel,
+};
+use crate::generator::random::RandomChoices;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 2;
@@ -23,9 +25,9 @@ struct Port {
 
 /// Two primitives that touch at a point or along a line or a face, joined by an operation; up to two
 /// more, half of them with a port at that point; all turned about an odd axis and moved, as a rule.
-pub(super) fn model(seed: u64) -> Model {
-    let random = &mut Random::apart(seed, PURPOSE);
-    let mut model = Model::default();
+pub(super) fn model(seed: u64) -> PartModel {
+    let random = &mut RandomChoices::apart(seed, PURPOSE);
+    let mut model = PartModel::default();
     let first = touching(random, &mut model);
     let second = touching(random, &mut model);
     let mut part = join(random, &mut model, [first, second]);
@@ -41,48 +43,56 @@ pub(super) fn model(seed: u64) -> Model {
     }
     if let (true, Some(root)) = (!random.once_in(4), model.node_mut(part)) {
         root.steps = vec![
-            Step::Turn(Axis::X, 17.0),
-            Step::Turn(Axis::Z, 31.0),
-            Step::Shift([0.3, 0.7, -0.2]),
+            ModelStep::Turn(ModelAxis::X, 17.0),
+            ModelStep::Turn(ModelAxis::Z, 31.0),
+            ModelStep::Shift([0.3, 0.7, -0.2]),
         ];
     }
     model
 }
 
-fn join(random: &mut Random, model: &mut Model, parts: [NodeId; 2]) -> NodeId {
-    let op = random.choose(&Operation::ALL);
+fn join(random: &mut RandomChoices, model: &mut PartModel, parts: [ModelNodeId; 2]) -> ModelNodeId {
+    let op = random.choose(&ModelOperation::ALL);
     model.operation(op, parts.to_vec(), Vec::new())
 }
 
 /// A primitive that touches the plane z = 0 at the origin, from above or below, turned about z.
-fn touching(random: &mut Random, model: &mut Model) -> NodeId {
+fn touching(random: &mut RandomChoices, model: &mut PartModel) -> ModelNodeId {
     let primitive = grid::primitive(random);
     let Port { at, yaw, tilt } = port(random, &primitive);
     let mut steps = vec![
-        Step::Shift(at.map(|x| 0.0 - x)),
-        Step::Turn(Axis::Z, -yaw),
-        Step::Turn(Axis::Y, tilt - 90.0),
-        Step::Turn(Axis::Z, random.choose(&[0.0, 0.0, 90.0, 45.0, 30.0, 17.0])),
-        Step::Turn(Axis::X, random.choose(&[0.0, 180.0])),
+        ModelStep::Shift(at.map(|x| 0.0 - x)),
+        ModelStep::Turn(ModelAxis::Z, -yaw),
+        ModelStep::Turn(ModelAxis::Y, tilt - 90.0),
+        ModelStep::Turn(
+            ModelAxis::Z,
+            random.choose(&[0.0, 0.0, 90.0, 45.0, 30.0, 17.0]),
+        ),
+        ModelStep::Turn(ModelAxis::X, random.choose(&[0.0, 180.0])),
     ];
-    steps.retain(|step| !matches!(step, Step::Turn(_, 0.0) | Step::Shift([0.0, 0.0, 0.0])));
+    steps.retain(|step| {
+        !matches!(
+            step,
+            ModelStep::Turn(_, 0.0) | ModelStep::Shift([0.0, 0.0, 0.0])
+        )
+    });
     model.leaf(primitive, steps)
 }
 
 /// A place on one of the primitive's faces, edges or corners.
-fn port(random: &mut Random, primitive: &Primitive) -> Port {
+fn port(random: &mut RandomChoices, primitive: &ModelPrimitive) -> Port {
     let port = |at, tilt| Port { at, yaw: 0.0, tilt };
     let part = random.choose(&[0.25, 0.5, 0.5, 0.75]);
     match *primitive {
-        Primitive::Block(size) => on_block(random, size, part),
-        Primitive::Wedge(size) => on_wedge(random, size, part),
-        Primitive::Cylinder { r, h } => on_profile(random, [r, r, h], part),
-        Primitive::Frustum { r1, r2, h } => on_profile(random, [r1, r2, h], part),
-        Primitive::Sphere(r) => {
+        ModelPrimitive::Block(size) => on_block(random, size, part),
+        ModelPrimitive::Wedge(size) => on_wedge(random, size, part),
+        ModelPrimitive::Cylinder { r, h } => on_profile(random, [r, r, h], part),
+        ModelPrimitive::Frustum { r1, r2, h } => on_profile(random, [r1, r2, h], part),
+        ModelPrimitive::Sphere(r) => {
             let tilt = random.choose(&[90.0, 90.0, 0.0, 30.0]);
             port(on_circle([0.0, 0.0], r, tilt), tilt)
         }
-        Primitive::Torus { major, minor } => {
+        ModelPrimitive::Torus { major, minor } => {
             let tilt = random.choose(&[0.0, 90.0, 180.0, 90.0, 60.0, 120.0, 37.0]);
             port(on_circle([major, 0.0], minor, tilt), tilt)
         }
@@ -100,7 +110,7 @@ fn on_circle([x, z]: [f64; 2], r: f64, degrees: f64) -> [f64; 3] {
     [x + r * cos, 0.0, z + r * sin]
 }
 
-fn on_block(random: &mut Random, [x, y, z]: [f64; 3], part: f64) -> Port {
+fn on_block(random: &mut RandomChoices, [x, y, z]: [f64; 3], part: f64) -> Port {
     let port = |at, yaw, tilt| Port { at, yaw, tilt };
     match random.below(6) {
         0 => port([x, part * y, 0.5 * z], 0.0, 0.0),
@@ -113,7 +123,7 @@ fn on_block(random: &mut Random, [x, y, z]: [f64; 3], part: f64) -> Port {
     }
 }
 
-fn on_wedge(random: &mut Random, [x, y, z]: [f64; 3], part: f64) -> Port {
+fn on_wedge(random: &mut RandomChoices, [x, y, z]: [f64; 3], part: f64) -> Port {
     let port = |at, yaw, tilt| Port { at, yaw, tilt };
     let slope = x.atan2(z).to_degrees();
     match random.below(6) {
@@ -126,7 +136,7 @@ fn on_wedge(random: &mut Random, [x, y, z]: [f64; 3], part: f64) -> Port {
 }
 
 /// On a cylinder or a frustum of two radii and a height.
-fn on_profile(random: &mut Random, [r1, r2, h]: [f64; 3], part: f64) -> Port {
+fn on_profile(random: &mut RandomChoices, [r1, r2, h]: [f64; 3], part: f64) -> Port {
     let port = |at, tilt| Port { at, yaw: 0.0, tilt };
     let slope = (r1 - r2).atan2(h).to_degrees();
     match random.below(7) {

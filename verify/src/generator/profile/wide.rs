@@ -1,7 +1,9 @@
 //! One operation on many primitives.
 
-use crate::generator::model::{Axis, Model, NodeId, Operation, Primitive, Step};
-use crate::generator::random::Random;
+use crate::generator::model::{
+    ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, PartModel,
+};
+use crate::generator::random::RandomChoices;
 
 /// What sets this profile's numbers apart.
 const PURPOSE: u64 = 4;
@@ -12,22 +14,22 @@ struct Lattice {
     /// From cell to cell, in units.
     pitch: f64,
     /// One primitive for all cells; a new one for each where there is none.
-    common: Option<Primitive>,
+    common: Option<ModelPrimitive>,
 }
 
 /// A union of primitives in a lattice, a block with such a lattice taken away, or the intersection
 /// of large primitives about the middle. 10 to 60 as a rule, one in 10 of up to 300, one in 100 of
 /// up to 1500; 8 to 24 that intersect.
-pub(super) fn model(seed: u64) -> Model {
-    let random = &mut Random::apart(seed, PURPOSE);
+pub(super) fn model(seed: u64) -> PartModel {
+    let random = &mut RandomChoices::apart(seed, PURPOSE);
     match random.below(8) {
         0 => intersection(random),
-        1..4 => lattice(random, Operation::Union),
-        _ => lattice(random, Operation::Difference),
+        1..4 => lattice(random, ModelOperation::Union),
+        _ => lattice(random, ModelOperation::Difference),
     }
 }
 
-fn lattice(random: &mut Random, op: Operation) -> Model {
+fn lattice(random: &mut RandomChoices, op: ModelOperation) -> PartModel {
     let count = match random.below(100) {
         0 => random.between(300, 1500),
         1..10 => random.between(60, 300),
@@ -39,9 +41,9 @@ fn lattice(random: &mut Random, op: Operation) -> Model {
         pitch: random.choose(&[1.0, 1.0, 1.5, 0.75]),
         common: (!random.once_in(4)).then(|| small(random)),
     };
-    let mut model = Model::default();
+    let mut model = PartModel::default();
     let mut children = Vec::new();
-    if op == Operation::Difference {
+    if op == ModelOperation::Difference {
         children.push(plate(random, &mut model, &lattice));
     }
     let left_out = random.choose(&[0, 0, 8]);
@@ -58,7 +60,7 @@ fn lattice(random: &mut Random, op: Operation) -> Model {
 }
 
 /// The sides of a lattice of about so many cells: in a row, in a plane, or in space.
-fn cells(random: &mut Random, count: usize) -> [usize; 3] {
+fn cells(random: &mut RandomChoices, count: usize) -> [usize; 3] {
     let count = count as f64;
     match random.below(8) {
         0 => [count as usize, 1, 1],
@@ -71,43 +73,48 @@ fn cells(random: &mut Random, count: usize) -> [usize; 3] {
 }
 
 /// A block with the lattice inside it, through its faces or flush with them.
-fn plate(random: &mut Random, model: &mut Model, lattice: &Lattice) -> NodeId {
+fn plate(random: &mut RandomChoices, model: &mut PartModel, lattice: &Lattice) -> ModelNodeId {
     let margin = random.choose(&[0.0, 0.5, 1.0]);
     let size = lattice
         .cells
         .map(|n| (n - 1) as f64 * lattice.pitch + 2.0 * margin + 0.5);
-    let shift = Step::Shift([-margin, -margin, -random.choose(&[0.0, 0.25, 0.5])]);
-    model.leaf(Primitive::Block(size), vec![shift])
+    let shift = ModelStep::Shift([-margin, -margin, -random.choose(&[0.0, 0.25, 0.5])]);
+    model.leaf(ModelPrimitive::Block(size), vec![shift])
 }
 
-fn in_cell(random: &mut Random, model: &mut Model, lattice: &Lattice, cell: usize) -> NodeId {
+fn in_cell(
+    random: &mut RandomChoices,
+    model: &mut PartModel,
+    lattice: &Lattice,
+    cell: usize,
+) -> ModelNodeId {
     let [nx, ny, _] = lattice.cells;
     let at = [cell % nx, cell / nx % ny, cell / (nx * ny)].map(|i| i as f64 * lattice.pitch);
     let primitive = lattice.common.unwrap_or_else(|| small(random));
     let mut steps = Vec::new();
     if lattice.common.is_none() && random.once_in(4) {
         let degrees = random.choose(&[90.0, 45.0, 30.0]);
-        steps.push(Step::Turn(Axis::any(random), degrees));
+        steps.push(ModelStep::Turn(ModelAxis::any(random), degrees));
     }
-    steps.push(Step::Shift(at));
+    steps.push(ModelStep::Shift(at));
     model.leaf(primitive, steps)
 }
 
 /// A primitive that reaches its neighbours in a lattice, stays away from them, or overlaps.
-fn small(random: &mut Random) -> Primitive {
+fn small(random: &mut RandomChoices) -> ModelPrimitive {
     let r = random.choose(&[0.25, 0.375, 0.5, 0.5, 0.625]);
     let h = random.half(1, 3);
     match random.below(8) {
-        0 | 1 => Primitive::Block([0; 3].map(|_| random.half(1, 3))),
-        2 => Primitive::Wedge([0; 3].map(|_| random.half(1, 2))),
-        3 | 4 => Primitive::Cylinder { r, h },
-        5 => Primitive::Frustum {
+        0 | 1 => ModelPrimitive::Block([0; 3].map(|_| random.half(1, 3))),
+        2 => ModelPrimitive::Wedge([0; 3].map(|_| random.half(1, 2))),
+        3 | 4 => ModelPrimitive::Cylinder { r, h },
+        5 => ModelPrimitive::Frustum {
             r1: r,
             r2: random.choose(&[0.0, 0.5 * r]),
             h,
         },
-        6 => Primitive::Sphere(r),
-        _ => Primitive::Torus {
+        6 => ModelPrimitive::Sphere(r),
+        _ => ModelPrimitive::Torus {
             major: 0.375,
             minor: random.choose(&[0.125, 0.25]),
         },
@@ -115,27 +122,27 @@ fn small(random: &mut Random) -> Primitive {
 }
 
 /// Large primitives, each of which holds the middle.
-fn intersection(random: &mut Random) -> Model {
-    let mut model = Model::default();
+fn intersection(random: &mut RandomChoices) -> PartModel {
+    let mut model = PartModel::default();
     let children = (0..random.between(8, 24))
         .map(|_| {
             let (primitive, middle) = match random.below(3) {
-                0 => (Primitive::Block([8.0; 3]), [-4.0; 3]),
-                1 => (Primitive::Sphere(4.0), [0.0; 3]),
+                0 => (ModelPrimitive::Block([8.0; 3]), [-4.0; 3]),
+                1 => (ModelPrimitive::Sphere(4.0), [0.0; 3]),
                 _ => {
-                    let cylinder = Primitive::Cylinder { r: 4.0, h: 8.0 };
+                    let cylinder = ModelPrimitive::Cylinder { r: 4.0, h: 8.0 };
                     (cylinder, [0.0, 0.0, -4.0])
                 }
             };
             let degrees = random.choose(&[0.0, 90.0, 45.0, 30.0, 17.0]);
-            let turn = Step::Turn(Axis::any(random), degrees);
+            let turn = ModelStep::Turn(ModelAxis::any(random), degrees);
             let shift = [0; 3].map(|_| random.half(0, 8) - 2.0);
             model.leaf(
                 primitive,
-                vec![Step::Shift(middle), turn, Step::Shift(shift)],
+                vec![ModelStep::Shift(middle), turn, ModelStep::Shift(shift)],
             )
         })
         .collect();
-    model.operation(Operation::Intersection, children, Vec::new());
+    model.operation(ModelOperation::Intersection, children, Vec::new());
     model
 }

@@ -1,53 +1,55 @@
 //! A part as it is put together: lengths, primitives in common positions, operations.
 
-use crate::generator::model::{Axis, Model, NodeId, Notation, Operation, Primitive, Step};
-use crate::generator::random::Random;
+use crate::generator::model::{
+    ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, Notation, PartModel,
+};
+use crate::generator::random::RandomChoices;
 
 /// A length in ten-thousandths of the unit, so that sums and halves of lengths are exact.
-pub type Length = i64;
+pub type PartLength = i64;
 
 /// The unit of length.
-pub const UNIT: Length = 10_000;
+pub const UNIT: PartLength = 10_000;
 
 /// A place.
-pub type Place = [Length; 3];
+pub type PlanePoint = [PartLength; 3];
 
 /// A part in the making.
-pub struct Draft<'r> {
+pub struct PartDraft<'r> {
     /// The numbers that it is made by.
-    pub random: &'r mut Random,
+    pub random: &'r mut RandomChoices,
     /// What is made.
-    pub model: Model,
+    pub model: PartModel,
     /// The smallest step of a length.
-    step: Length,
+    step: PartLength,
 }
 
 /// Bounds of a length, both included.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
     /// The smallest.
-    pub min: Length,
+    pub min: PartLength,
     /// The largest.
-    pub max: Length,
+    pub max: PartLength,
 }
 
 /// The part of a length from one percentage to another.
-pub fn percent(of: Length, from: Length, to: Length) -> Range {
+pub fn percent(of: PartLength, from: PartLength, to: PartLength) -> Range {
     Range {
         min: of * from / 100,
         max: of * to / 100,
     }
 }
 
-fn number(length: Length) -> f64 {
+fn number(length: PartLength) -> f64 {
     length as f64 / UNIT as f64
 }
 
-impl<'r> Draft<'r> {
+impl<'r> PartDraft<'r> {
     /// Nothing yet; lengths will have 0 to 3 decimals.
-    pub fn new(random: &'r mut Random) -> Self {
+    pub fn new(random: &'r mut RandomChoices) -> Self {
         let step = random.choose(&[UNIT, UNIT, UNIT / 10, UNIT / 10, UNIT / 100, UNIT / 1000]);
-        let model = Model::with_notation(Notation::Decimal);
+        let model = PartModel::with_notation(Notation::Decimal);
         Self {
             random,
             model,
@@ -56,7 +58,7 @@ impl<'r> Draft<'r> {
     }
 
     /// A length in units from one to another.
-    pub fn length(&mut self, min: Length, max: Length) -> Length {
+    pub fn length(&mut self, min: PartLength, max: PartLength) -> PartLength {
         self.between(Range {
             min: min * UNIT,
             max: max * UNIT,
@@ -64,13 +66,14 @@ impl<'r> Draft<'r> {
     }
 
     /// A length between bounds, with more decimals only where there is none with the part's own.
-    pub fn between(&mut self, Range { min, max }: Range) -> Length {
+    pub fn between(&mut self, Range { min, max }: Range) -> PartLength {
         let mut step = self.step;
         loop {
             let first = (min + step - 1).div_euclid(step);
             let last = max.div_euclid(step);
             if first <= last {
-                return step * (first + self.random.below((last - first + 1) as usize) as Length);
+                return step
+                    * (first + self.random.below((last - first + 1) as usize) as PartLength);
             }
             if step == 1 {
                 return min;
@@ -80,7 +83,7 @@ impl<'r> Draft<'r> {
     }
 
     /// The part of a length from one percentage to another.
-    pub fn part_of(&mut self, of: Length, from: Length, to: Length) -> Length {
+    pub fn part_of(&mut self, of: PartLength, from: PartLength, to: PartLength) -> PartLength {
         self.between(percent(of, from, to))
     }
 
@@ -89,86 +92,110 @@ impl<'r> Draft<'r> {
         self.random.once_in(n)
     }
 
-    fn leaf(&mut self, primitive: Primitive, mut steps: Vec<Step>, at: Place) -> NodeId {
+    fn leaf(
+        &mut self,
+        primitive: ModelPrimitive,
+        mut steps: Vec<ModelStep>,
+        at: PlanePoint,
+    ) -> ModelNodeId {
         if at != [0; 3] {
-            steps.push(Step::Shift(at.map(number)));
+            steps.push(ModelStep::Shift(at.map(number)));
         }
         self.model.leaf(primitive, steps)
     }
 
     /// A block with its lowest corner at a place.
-    pub fn block(&mut self, size: Place, at: Place) -> NodeId {
-        self.leaf(Primitive::Block(size.map(number)), Vec::new(), at)
+    pub fn block(&mut self, size: PlanePoint, at: PlanePoint) -> ModelNodeId {
+        self.leaf(ModelPrimitive::Block(size.map(number)), Vec::new(), at)
     }
 
     /// A block with x and y centred about a place, its base there.
-    pub fn centred(&mut self, [x, y, z]: Place, at: Place) -> NodeId {
+    pub fn centred(&mut self, [x, y, z]: PlanePoint, at: PlanePoint) -> ModelNodeId {
         self.block([x, y, z], [at[0] - x / 2, at[1] - y / 2, at[2]])
     }
 
     /// A wedge with its right-angled edge along y through a place, turned about z by right angles.
-    pub fn wedge(&mut self, size: Place, right_angles: usize, at: Place) -> NodeId {
+    pub fn wedge(&mut self, size: PlanePoint, right_angles: usize, at: PlanePoint) -> ModelNodeId {
         let steps = match right_angles % 4 {
             0 => Vec::new(),
-            n => vec![Step::Turn(Axis::Z, 90.0 * n as f64)],
+            n => vec![ModelStep::Turn(ModelAxis::Z, 90.0 * n as f64)],
         };
-        self.leaf(Primitive::Wedge(size.map(number)), steps, at)
+        self.leaf(ModelPrimitive::Wedge(size.map(number)), steps, at)
     }
 
     /// A cylinder from the middle of its base at a place, in the direction of an axis.
-    pub fn cylinder(&mut self, axis: Axis, r: Length, h: Length, at: Place) -> NodeId {
+    pub fn cylinder(
+        &mut self,
+        axis: ModelAxis,
+        r: PartLength,
+        h: PartLength,
+        at: PlanePoint,
+    ) -> ModelNodeId {
         let (r, h) = (number(r), number(h));
-        self.leaf(Primitive::Cylinder { r, h }, along(axis), at)
+        self.leaf(ModelPrimitive::Cylinder { r, h }, along(axis), at)
     }
 
     /// A frustum about z, or a cylinder where both radii are the same.
-    pub fn frustum(&mut self, r1: Length, r2: Length, h: Length, at: Place) -> NodeId {
+    pub fn frustum(
+        &mut self,
+        r1: PartLength,
+        r2: PartLength,
+        h: PartLength,
+        at: PlanePoint,
+    ) -> ModelNodeId {
         if r1 == r2 {
-            return self.cylinder(Axis::Z, r1, h, at);
+            return self.cylinder(ModelAxis::Z, r1, h, at);
         }
         let [r1, r2, h] = [r1, r2, h].map(number);
-        self.leaf(Primitive::Frustum { r1, r2, h }, Vec::new(), at)
+        self.leaf(ModelPrimitive::Frustum { r1, r2, h }, Vec::new(), at)
     }
 
     /// A sphere about a place.
-    pub fn sphere(&mut self, r: Length, at: Place) -> NodeId {
-        self.leaf(Primitive::Sphere(number(r)), Vec::new(), at)
+    pub fn sphere(&mut self, r: PartLength, at: PlanePoint) -> ModelNodeId {
+        self.leaf(ModelPrimitive::Sphere(number(r)), Vec::new(), at)
     }
 
     /// A torus about a place, with its axis in the direction of an axis.
-    pub fn torus(&mut self, axis: Axis, major: Length, minor: Length, at: Place) -> NodeId {
+    pub fn torus(
+        &mut self,
+        axis: ModelAxis,
+        major: PartLength,
+        minor: PartLength,
+        at: PlanePoint,
+    ) -> ModelNodeId {
         let (major, minor) = (number(major), number(minor));
-        self.leaf(Primitive::Torus { major, minor }, along(axis), at)
+        self.leaf(ModelPrimitive::Torus { major, minor }, along(axis), at)
     }
 
     /// What is in any of these.
-    pub fn union(&mut self, of: Vec<NodeId>) -> NodeId {
+    pub fn union(&mut self, of: Vec<ModelNodeId>) -> ModelNodeId {
         match of.as_slice() {
             &[only] => only,
-            _ => self.model.operation(Operation::Union, of, Vec::new()),
+            _ => self.model.operation(ModelOperation::Union, of, Vec::new()),
         }
     }
 
     /// What is in the first and in none of the tools.
-    pub fn difference(&mut self, of: NodeId, tools: Vec<NodeId>) -> NodeId {
+    pub fn difference(&mut self, of: ModelNodeId, tools: Vec<ModelNodeId>) -> ModelNodeId {
         if tools.is_empty() {
             return of;
         }
         let mut all = vec![of];
         all.extend(tools);
-        self.model.operation(Operation::Difference, all, Vec::new())
+        self.model
+            .operation(ModelOperation::Difference, all, Vec::new())
     }
 
     /// What is in both.
-    pub fn intersection(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub fn intersection(&mut self, a: ModelNodeId, b: ModelNodeId) -> ModelNodeId {
         self.model
-            .operation(Operation::Intersection, vec![a, b], Vec::new())
+            .operation(ModelOperation::Intersection, vec![a, b], Vec::new())
     }
 
     /// Turns a node about z.
-    pub fn turn_about_z(&mut self, node: NodeId, degrees: f64) -> NodeId {
+    pub fn turn_about_z(&mut self, node: ModelNodeId, degrees: f64) -> ModelNodeId {
         if let (true, Some(node)) = (degrees != 0.0, self.model.node_mut(node)) {
-            node.steps.push(Step::Turn(Axis::Z, degrees));
+            node.steps.push(ModelStep::Turn(ModelAxis::Z, degrees));
         }
         node
     }
@@ -177,8 +204,8 @@ impl<'r> Draft<'r> {
     pub fn circle(
         &mut self,
         count: usize,
-        mut make: impl FnMut(&mut Self) -> NodeId,
-    ) -> Vec<NodeId> {
+        mut make: impl FnMut(&mut Self) -> ModelNodeId,
+    ) -> Vec<ModelNodeId> {
         let start = self.random.choose(&[0.0, 0.0, 0.5]);
         let each = |k: usize| 360.0 * (k as f64 + start) / count as f64;
         (0..count)
@@ -191,7 +218,7 @@ impl<'r> Draft<'r> {
 
     /// A hole of radius `r` through `depth`: plain, blind, counterbored or countersunk to the radius
     /// `wide`.
-    pub fn hole(&mut self, r: Length, wide: Length, depth: Length) -> Hole {
+    pub fn hole(&mut self, r: PartLength, wide: PartLength, depth: PartLength) -> Hole {
         let form = match self.random.below(6) {
             0 => Form::Blind {
                 deep: self.part_of(depth, 40, 80),
@@ -212,11 +239,11 @@ impl<'r> Draft<'r> {
 
     /// The tools that make a hole down from a place: they stand out above, and below if they go
     /// through.
-    pub fn drill(&mut self, hole: &Hole, [x, y, top]: Place) -> Vec<NodeId> {
+    pub fn drill(&mut self, hole: &Hole, [x, y, top]: PlanePoint) -> Vec<ModelNodeId> {
         let Hole { r, depth, form } = *hole;
         if let Form::Blind { deep, pointed } = form {
             let floor = top - deep;
-            let mut tools = vec![self.cylinder(Axis::Z, r, deep + UNIT, [x, y, floor])];
+            let mut tools = vec![self.cylinder(ModelAxis::Z, r, deep + UNIT, [x, y, floor])];
             // As the drill leaves it.
             let point = (r / 2).min((depth - deep) / 2);
             if pointed && point > 0 {
@@ -225,11 +252,11 @@ impl<'r> Draft<'r> {
             return tools;
         }
         let low = top - depth - UNIT;
-        let mut tools = vec![self.cylinder(Axis::Z, r, depth + 2 * UNIT, [x, y, low])];
+        let mut tools = vec![self.cylinder(ModelAxis::Z, r, depth + 2 * UNIT, [x, y, low])];
         match form {
             Form::Plain | Form::Blind { .. } => {}
             Form::Counterbored { wide, deep } => {
-                tools.push(self.cylinder(Axis::Z, wide, deep + UNIT, [x, y, top - deep]));
+                tools.push(self.cylinder(ModelAxis::Z, wide, deep + UNIT, [x, y, top - deep]));
             }
             Form::Countersunk { wide, deep } => {
                 tools.push(self.frustum(r, wide, deep, [x, y, top - deep]));
@@ -242,8 +269,8 @@ impl<'r> Draft<'r> {
 /// A hole that is made in one place or many.
 #[derive(Clone, Copy, Debug)]
 pub struct Hole {
-    r: Length,
-    depth: Length,
+    r: PartLength,
+    depth: PartLength,
     form: Form,
 }
 
@@ -251,16 +278,16 @@ pub struct Hole {
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Plain,
-    Blind { deep: Length, pointed: bool },
-    Counterbored { wide: Length, deep: Length },
-    Countersunk { wide: Length, deep: Length },
+    Blind { deep: PartLength, pointed: bool },
+    Counterbored { wide: PartLength, deep: PartLength },
+    Countersunk { wide: PartLength, deep: PartLength },
 }
 
 /// From the direction of z to that of an axis.
-fn along(axis: Axis) -> Vec<Step> {
+fn along(axis: ModelAxis) -> Vec<ModelStep> {
     match axis {
-        Axis::X => vec![Step::Turn(Axis::Y, 90.0)],
-        Axis::Y => vec![Step::Turn(Axis::X, -90.0)],
-        Axis::Z => Vec::new(),
+        ModelAxis::X => vec![ModelStep::Turn(ModelAxis::Y, 90.0)],
+        ModelAxis::Y => vec![ModelStep::Turn(ModelAxis::X, -90.0)],
+        ModelAxis::Z => Vec::new(),
     }
 }

@@ -1,10 +1,10 @@
 //! Plates, brackets, clevises, links and wedges.
 
-use super::draft::{Draft, Length, Place, UNIT};
-use crate::generator::model::{Axis, NodeId};
+use super::draft::{PartDraft, PartLength, PlanePoint, UNIT};
+use crate::generator::model::{ModelAxis, ModelNodeId};
 
 /// A plate with sharp or rounded corners, holes at the corners, a bore and a slot.
-pub fn plate(d: &mut Draft<'_>) -> NodeId {
+pub fn plate(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (x, y, z) = (d.length(40, 120), d.length(30, 80), d.length(3, 15));
     let corner = d.part_of(x.min(y), 8, 18);
     let body = match d.once_in(4) {
@@ -44,35 +44,40 @@ pub fn plate(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// The middles of circles in the corners of a plate.
-fn corners([x, y, _]: Place, r: Length) -> [[Length; 2]; 4] {
+fn corners([x, y, _]: PlanePoint, r: PartLength) -> [[PartLength; 2]; 4] {
     [[r, r], [x - r, r], [r, y - r], [x - r, y - r]]
 }
 
 /// A plate with corners of a radius: two blocks and four cylinders.
-pub fn rounded_plate(d: &mut Draft<'_>, size: Place, r: Length, at: Place) -> NodeId {
+pub fn rounded_plate(
+    d: &mut PartDraft<'_>,
+    size: PlanePoint,
+    r: PartLength,
+    at: PlanePoint,
+) -> ModelNodeId {
     let [x, y, z] = size;
     let mut all = vec![
         d.block([x, y - 2 * r, z], [at[0], at[1] + r, at[2]]),
         d.block([x - 2 * r, y, z], [at[0] + r, at[1], at[2]]),
     ];
     for [u, v] in corners(size, r) {
-        all.push(d.cylinder(Axis::Z, r, z, [at[0] + u, at[1] + v, at[2]]));
+        all.push(d.cylinder(ModelAxis::Z, r, z, [at[0] + u, at[1] + v, at[2]]));
     }
     d.union(all)
 }
 
 /// A slot along x with round ends, about a place; its length is from axis to axis.
-fn slot(d: &mut Draft<'_>, [long, wide, deep]: Place, at: Place) -> Vec<NodeId> {
-    let end = |x: Length| [at[0] + x, at[1], at[2]];
+fn slot(d: &mut PartDraft<'_>, [long, wide, deep]: PlanePoint, at: PlanePoint) -> Vec<ModelNodeId> {
+    let end = |x: PartLength| [at[0] + x, at[1], at[2]];
     vec![
         d.centred([long, wide, deep], at),
-        d.cylinder(Axis::Z, wide / 2, deep, end(-long / 2)),
-        d.cylinder(Axis::Z, wide / 2, deep, end(long / 2)),
+        d.cylinder(ModelAxis::Z, wide / 2, deep, end(-long / 2)),
+        d.cylinder(ModelAxis::Z, wide / 2, deep, end(long / 2)),
     ]
 }
 
 /// A bracket of a base and a wall, with ribs, holes, a fillet between them or a round top.
-pub fn bracket(d: &mut Draft<'_>) -> NodeId {
+pub fn bracket(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (x, y, z) = (d.length(30, 80), d.length(20, 60), d.length(25, 70));
     let t = d.part_of(x.min(y).min(z), 12, 20);
     let mut body = vec![d.block([x, y, t], [0; 3])];
@@ -80,7 +85,7 @@ pub fn bracket(d: &mut Draft<'_>) -> NodeId {
     let high = if round { z - y / 2 } else { z };
     body.push(d.block([t, y, high], [0; 3]));
     if round {
-        body.push(d.cylinder(Axis::X, y / 2, t, [0, y / 2, high]));
+        body.push(d.cylinder(ModelAxis::X, y / 2, t, [0, y / 2, high]));
     }
     match d.random.below(4) {
         0 => {
@@ -97,7 +102,7 @@ pub fn bracket(d: &mut Draft<'_>) -> NodeId {
         2 => {
             let r = d.part_of(x.min(z) - t, 10, 25);
             let corner = d.block([r, y, r], [t, 0, t]);
-            let round = d.cylinder(Axis::Y, r, y + 2 * UNIT, [t + r, -UNIT, t + r]);
+            let round = d.cylinder(ModelAxis::Y, r, y + 2 * UNIT, [t + r, -UNIT, t + r]);
             body.push(d.difference(corner, vec![round]));
         }
         _ => {}
@@ -116,13 +121,13 @@ pub fn bracket(d: &mut Draft<'_>) -> NodeId {
     if round || d.once_in(2) {
         let r = d.part_of(y, 15, 35);
         let up = if round { high } else { z - y / 4 - r / 2 };
-        tools.push(d.cylinder(Axis::X, r.min(y / 3), t + 2 * UNIT, [-UNIT, y / 2, up]));
+        tools.push(d.cylinder(ModelAxis::X, r.min(y / 3), t + 2 * UNIT, [-UNIT, y / 2, up]));
     }
     d.difference(body, tools)
 }
 
 /// A base with two walls and a bore through both: a fork or a bearing block.
-pub fn clevis(d: &mut Draft<'_>) -> NodeId {
+pub fn clevis(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (x, y, z) = (d.length(30, 80), d.length(20, 50), d.length(30, 60));
     let t = d.part_of(x.min(y), 12, 22);
     let r = d.part_of(y, 18, 35);
@@ -131,7 +136,7 @@ pub fn clevis(d: &mut Draft<'_>) -> NodeId {
     for u in [0, x - t] {
         body.push(d.block([t, y, z - t], [u, 0, t]));
         if round {
-            body.push(d.cylinder(Axis::X, y / 2, t, [u, y / 2, z]));
+            body.push(d.cylinder(ModelAxis::X, y / 2, t, [u, y / 2, z]));
         }
     }
     if d.once_in(3) {
@@ -141,16 +146,16 @@ pub fn clevis(d: &mut Draft<'_>) -> NodeId {
     }
     let body = d.union(body);
     let up = if round { z } else { z - r - t / 2 };
-    let mut tools = vec![d.cylinder(Axis::X, r, x + 2 * UNIT, [-UNIT, y / 2, up])];
+    let mut tools = vec![d.cylinder(ModelAxis::X, r, x + 2 * UNIT, [-UNIT, y / 2, up])];
     if d.once_in(2) {
         let r = d.part_of(t.min(y), 15, 30);
-        tools.push(d.cylinder(Axis::Z, r, t + 2 * UNIT, [x / 2, y / 2, -UNIT]));
+        tools.push(d.cylinder(ModelAxis::Z, r, t + 2 * UNIT, [x / 2, y / 2, -UNIT]));
     }
     d.difference(body, tools)
 }
 
 /// A bar with round ends and a bore in each, one end perhaps higher or wider.
-pub fn link(d: &mut Draft<'_>) -> NodeId {
+pub fn link(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (long, r, z) = (d.length(30, 100), d.length(6, 18), d.length(4, 14));
     let wide = match d.random.below(3) {
         0 => 2 * r,
@@ -167,8 +172,8 @@ pub fn link(d: &mut Draft<'_>) -> NodeId {
     };
     let body = vec![
         d.block([long, wide, z], [0, -wide / 2, 0]),
-        d.cylinder(Axis::Z, r, boss, [0; 3]),
-        d.cylinder(Axis::Z, far, z, [long, 0, 0]),
+        d.cylinder(ModelAxis::Z, r, boss, [0; 3]),
+        d.cylinder(ModelAxis::Z, far, z, [long, 0, 0]),
     ];
     let body = d.union(body);
     let (near_bore, far_bore) = (d.part_of(r, 40, 70), d.part_of(far, 40, 70));
@@ -185,7 +190,7 @@ pub fn link(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// A ramp: a wedge on a base, or a block with a groove of two wedges, with holes.
-pub fn wedge(d: &mut Draft<'_>) -> NodeId {
+pub fn wedge(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (x, y, z) = (d.length(30, 80), d.length(20, 60), d.length(15, 50));
     let t = d.part_of(z, 15, 40);
     if d.once_in(3) {
@@ -204,8 +209,13 @@ pub fn wedge(d: &mut Draft<'_>) -> NodeId {
     let body = d.union(vec![base, ramp]);
     let r = d.part_of(x.min(y), 8, 18);
     let tool = match d.random.below(3) {
-        0 => d.cylinder(Axis::Z, r, t + z + 2 * UNIT, [x / 2, y / 2, -UNIT]),
-        1 => d.cylinder(Axis::Y, r.min(t / 3), y + 2 * UNIT, [x / 4, -UNIT, t / 2]),
+        0 => d.cylinder(ModelAxis::Z, r, t + z + 2 * UNIT, [x / 2, y / 2, -UNIT]),
+        1 => d.cylinder(
+            ModelAxis::Y,
+            r.min(t / 3),
+            y + 2 * UNIT,
+            [x / 4, -UNIT, t / 2],
+        ),
         _ => d.sphere(r, [x / 2, y / 2, t + z / 2]),
     };
     d.difference(body, vec![tool])

@@ -1,11 +1,11 @@
 //! Housings and pipe elbows.
 
-use super::draft::{Draft, Length, UNIT};
+use super::draft::{PartDraft, PartLength, UNIT};
 use super::flat::rounded_plate;
-use crate::generator::model::{Axis, NodeId};
+use crate::generator::model::{ModelAxis, ModelNodeId};
 
 /// A hollow box, open above or closed, with bosses in its corners, blind holes and a window.
-pub fn housing(d: &mut Draft<'_>) -> NodeId {
+pub fn housing(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (x, y, z) = (d.length(40, 100), d.length(30, 80), d.length(20, 60));
     let t = d.part_of(y.min(z), 6, 14);
     let r = match d.once_in(2) {
@@ -37,10 +37,10 @@ pub fn housing(d: &mut Draft<'_>) -> NodeId {
             let mut all = vec![body];
             for u in [t + boss, x - t - boss] {
                 for v in [t + boss, y - t - boss] {
-                    all.push(d.cylinder(Axis::Z, boss, up, [u, v, t]));
+                    all.push(d.cylinder(ModelAxis::Z, boss, up, [u, v, t]));
                     let (hole, deep) = (boss / 2, up * 2 / 3);
                     if !closed {
-                        tools.push(d.cylinder(Axis::Z, hole, z, [u, v, t + up - deep]));
+                        tools.push(d.cylinder(ModelAxis::Z, hole, z, [u, v, t + up - deep]));
                     }
                 }
             }
@@ -48,21 +48,21 @@ pub fn housing(d: &mut Draft<'_>) -> NodeId {
         }
         1 => {
             // One amid the floor, through it.
-            let boss = d.cylinder(Axis::Z, boss, up.min(z / 2), [x / 2, y / 2, t]);
+            let boss = d.cylinder(ModelAxis::Z, boss, up.min(z / 2), [x / 2, y / 2, t]);
             body = d.union(vec![body, boss]);
             let hole = d.part_of(x.min(y), 3, 6);
-            tools.push(d.cylinder(Axis::Z, hole, z + UNIT, [x / 2, y / 2, -UNIT]));
+            tools.push(d.cylinder(ModelAxis::Z, hole, z + UNIT, [x / 2, y / 2, -UNIT]));
         }
         _ => {}
     }
     match d.random.below(4) {
         0 => {
             let r = d.part_of(y.min(z) - 2 * t, 15, 35);
-            tools.push(d.cylinder(Axis::X, r, t + 2 * UNIT, [-UNIT, y / 2, z / 2]));
+            tools.push(d.cylinder(ModelAxis::X, r, t + 2 * UNIT, [-UNIT, y / 2, z / 2]));
         }
         1 => {
             let r = d.part_of(y.min(z) - 2 * t, 10, 30);
-            tools.push(d.cylinder(Axis::X, r, x + 2 * UNIT, [-UNIT, y / 2, z / 2]));
+            tools.push(d.cylinder(ModelAxis::X, r, x + 2 * UNIT, [-UNIT, y / 2, z / 2]));
         }
         2 => {
             let size = [x / 3, t + 2 * UNIT, z / 3];
@@ -74,7 +74,7 @@ pub fn housing(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// A bend of a pipe, a quarter of a torus, with straight ends, flanges and a bore along all.
-pub fn elbow(d: &mut Draft<'_>) -> NodeId {
+pub fn elbow(d: &mut PartDraft<'_>) -> ModelNodeId {
     let r = d.length(6, 20);
     let bend = r + d.part_of(r, 30, 150);
     let ends = [d.length(5, 40), d.length(5, 40)];
@@ -82,7 +82,7 @@ pub fn elbow(d: &mut Draft<'_>) -> NodeId {
     let t = d.part_of(r, 20, 40);
     if d.once_in(2) {
         let wide = d.part_of(r, 140, 180).min(bend + ends[1] - t);
-        let flange = d.cylinder(Axis::Y, wide, t, [bend, -ends[0], 0]);
+        let flange = d.cylinder(ModelAxis::Y, wide, t, [bend, -ends[0], 0]);
         body = d.union(vec![body, flange]);
     }
     if d.once_in(4) {
@@ -94,12 +94,17 @@ pub fn elbow(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// A pipe that comes along y at x = `bend`, and goes on along x at y = `bend`.
-fn pipe(d: &mut Draft<'_>, bend: Length, r: Length, [down, left]: [Length; 2]) -> NodeId {
-    let ring = d.torus(Axis::Z, bend, r, [0; 3]);
+fn pipe(
+    d: &mut PartDraft<'_>,
+    bend: PartLength,
+    r: PartLength,
+    [down, left]: [PartLength; 2],
+) -> ModelNodeId {
+    let ring = d.torus(ModelAxis::Z, bend, r, [0; 3]);
     let size = bend + 2 * r;
     let quarter = d.block([size, size, 4 * r], [0, 0, -2 * r]);
     let quarter = d.intersection(ring, quarter);
-    let first = d.cylinder(Axis::Y, r, down, [bend, -down, 0]);
-    let second = d.cylinder(Axis::X, r, left, [-left, bend, 0]);
+    let first = d.cylinder(ModelAxis::Y, r, down, [bend, -down, 0]);
+    let second = d.cylinder(ModelAxis::X, r, left, [-left, bend, 0]);
     d.union(vec![quarter, first, second])
 }

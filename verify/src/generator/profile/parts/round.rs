@@ -1,11 +1,11 @@
 //! Rounded boxes, domes and knobs.
 
-use super::draft::{Draft, Length, Place, UNIT};
+use super::draft::{PartDraft, PartLength, PlanePoint, UNIT};
 use super::flat::rounded_plate;
-use crate::generator::model::{Axis, NodeId};
+use crate::generator::model::{ModelAxis, ModelNodeId};
 
 /// A box with all edges rounded, or those along z and around the top, with a bore or a cavity.
-pub fn rounded_box(d: &mut Draft<'_>) -> NodeId {
+pub fn rounded_box(d: &mut PartDraft<'_>) -> ModelNodeId {
     let size = [d.length(20, 80), d.length(20, 60), d.length(12, 50)];
     let [x, y, z] = size;
     let r = d.part_of(x.min(y).min(z), 12, 35);
@@ -18,11 +18,11 @@ pub fn rounded_box(d: &mut Draft<'_>) -> NodeId {
     match d.random.below(5) {
         0 => {
             let bore = d.part_of(x.min(y), 12, 25);
-            tools.push(d.cylinder(Axis::Z, bore, z + 2 * UNIT, [x / 2, y / 2, -UNIT]));
+            tools.push(d.cylinder(ModelAxis::Z, bore, z + 2 * UNIT, [x / 2, y / 2, -UNIT]));
         }
         1 => {
             let bore = d.part_of(y.min(z), 12, 25);
-            tools.push(d.cylinder(Axis::X, bore, x + 2 * UNIT, [-UNIT, y / 2, z / 2]));
+            tools.push(d.cylinder(ModelAxis::X, bore, x + 2 * UNIT, [-UNIT, y / 2, z / 2]));
         }
         2 => {
             let t = r / 2;
@@ -38,7 +38,7 @@ pub fn rounded_box(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// Three blocks, a cylinder along each of twelve edges, a sphere in each of eight corners.
-fn rounded(d: &mut Draft<'_>, [x, y, z]: Place, r: Length) -> NodeId {
+fn rounded(d: &mut PartDraft<'_>, [x, y, z]: PlanePoint, r: PartLength) -> ModelNodeId {
     let mut all = vec![
         d.block([x, y - 2 * r, z - 2 * r], [0, r, r]),
         d.block([x - 2 * r, y, z - 2 * r], [r, 0, r]),
@@ -46,15 +46,15 @@ fn rounded(d: &mut Draft<'_>, [x, y, z]: Place, r: Length) -> NodeId {
     ];
     for u in [r, y - r] {
         for v in [r, z - r] {
-            all.push(d.cylinder(Axis::X, r, x - 2 * r, [r, u, v]));
+            all.push(d.cylinder(ModelAxis::X, r, x - 2 * r, [r, u, v]));
         }
     }
     for u in [r, x - r] {
         for v in [r, z - r] {
-            all.push(d.cylinder(Axis::Y, r, y - 2 * r, [u, r, v]));
+            all.push(d.cylinder(ModelAxis::Y, r, y - 2 * r, [u, r, v]));
         }
         for v in [r, y - r] {
-            all.push(d.cylinder(Axis::Z, r, z - 2 * r, [u, v, r]));
+            all.push(d.cylinder(ModelAxis::Z, r, z - 2 * r, [u, v, r]));
             all.extend([r, z - r].map(|w| d.sphere(r, [u, v, w])));
         }
     }
@@ -62,25 +62,25 @@ fn rounded(d: &mut Draft<'_>, [x, y, z]: Place, r: Length) -> NodeId {
 }
 
 /// A rounded plate with the edges around its top rounded, too.
-fn rounded_top(d: &mut Draft<'_>, [x, y, z]: Place, r: Length) -> NodeId {
+fn rounded_top(d: &mut PartDraft<'_>, [x, y, z]: PlanePoint, r: PartLength) -> ModelNodeId {
     let mut all = vec![
         rounded_plate(d, [x, y, z - r], r, [0; 3]),
         d.block([x - 2 * r, y - 2 * r, z], [r, r, 0]),
     ];
     for u in [r, x - r] {
-        all.push(d.cylinder(Axis::Y, r, y - 2 * r, [u, r, z - r]));
+        all.push(d.cylinder(ModelAxis::Y, r, y - 2 * r, [u, r, z - r]));
         for v in [r, y - r] {
             all.push(d.sphere(r, [u, v, z - r]));
         }
     }
     for v in [r, y - r] {
-        all.push(d.cylinder(Axis::X, r, x - 2 * r, [r, v, z - r]));
+        all.push(d.cylinder(ModelAxis::X, r, x - 2 * r, [r, v, z - r]));
     }
     d.union(all)
 }
 
 /// A dome on a cylinder or cut from a sphere, hollow or whole, with a hole on its top.
-pub fn dome(d: &mut Draft<'_>) -> NodeId {
+pub fn dome(d: &mut PartDraft<'_>) -> ModelNodeId {
     let r = d.length(15, 50);
     let t = d.part_of(r, 8, 25);
     let base = d.part_of(r, 20, 80);
@@ -99,24 +99,24 @@ pub fn dome(d: &mut Draft<'_>) -> NodeId {
         }
         _ => {
             let ball = d.sphere(r, [0; 3]);
-            let foot = d.cylinder(Axis::Z, r, base, [0, 0, -base]);
+            let foot = d.cylinder(ModelAxis::Z, r, base, [0, 0, -base]);
             d.union(vec![ball, foot])
         }
     };
     let mut tools = Vec::new();
     if !d.once_in(3) {
         tools.push(d.sphere(r - t, [0; 3]));
-        tools.push(d.cylinder(Axis::Z, r - t, base + r, [0, 0, -base - r]));
+        tools.push(d.cylinder(ModelAxis::Z, r - t, base + r, [0, 0, -base - r]));
     }
     match d.random.below(4) {
         0 => {
             let hole = d.part_of(r, 10, 40);
-            tools.push(d.cylinder(Axis::Z, hole, 2 * r, [0; 3]));
+            tools.push(d.cylinder(ModelAxis::Z, hole, 2 * r, [0; 3]));
         }
         1 => {
             let hole = d.part_of(r, 10, 20);
             let up = r / 2;
-            tools.push(d.cylinder(Axis::X, hole, 4 * r, [-2 * r, 0, up]));
+            tools.push(d.cylinder(ModelAxis::X, hole, 4 * r, [-2 * r, 0, up]));
         }
         _ => {}
     }
@@ -124,15 +124,15 @@ pub fn dome(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// A knob: a cylinder with a dome or a rounded rim, flats or grooves around, and a blind bore.
-pub fn knob(d: &mut Draft<'_>) -> NodeId {
+pub fn knob(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (r, z) = (d.length(10, 30), d.length(8, 25));
-    let mut body = vec![d.cylinder(Axis::Z, r, z, [0; 3])];
+    let mut body = vec![d.cylinder(ModelAxis::Z, r, z, [0; 3])];
     match d.random.below(4) {
         0 => body.push(d.sphere(r, [0, 0, z])),
         1 => {
             let minor = d.part_of(r, 20, 40);
-            body.push(d.torus(Axis::Z, r - minor, minor, [0, 0, z]));
-            body.push(d.cylinder(Axis::Z, r - minor, z + minor, [0; 3]));
+            body.push(d.torus(ModelAxis::Z, r - minor, minor, [0, 0, z]));
+            body.push(d.cylinder(ModelAxis::Z, r - minor, z + minor, [0; 3]));
         }
         2 => {
             let (narrow, up) = (d.part_of(r, 50, 80), d.part_of(r, 20, 50));
@@ -142,7 +142,7 @@ pub fn knob(d: &mut Draft<'_>) -> NodeId {
     }
     if d.once_in(2) {
         let (foot, down) = (d.part_of(r, 40, 70), d.length(4, 15));
-        body.push(d.cylinder(Axis::Z, foot, down, [0, 0, -down]));
+        body.push(d.cylinder(ModelAxis::Z, foot, down, [0, 0, -down]));
     }
     let body = d.union(body);
     let mut tools = Vec::new();
@@ -157,10 +157,10 @@ pub fn knob(d: &mut Draft<'_>) -> NodeId {
         }
         1 => {
             let count = d.random.choose(&[4, 6, 8, 10, 12]);
-            let groove = r * 3 / count as Length;
+            let groove = r * 3 / count as PartLength;
             let groove = d.part_of(groove, 30, 60);
             let at = [r, 0, -UNIT];
-            tools.extend(d.circle(count, |d| d.cylinder(Axis::Z, groove, z + 2 * r, at)));
+            tools.extend(d.circle(count, |d| d.cylinder(ModelAxis::Z, groove, z + 2 * r, at)));
         }
         2 => {
             let wide = d.part_of(r, 60, 120);
@@ -173,7 +173,7 @@ pub fn knob(d: &mut Draft<'_>) -> NodeId {
     }
     if !d.once_in(3) {
         let (bore, deep) = (d.part_of(r, 15, 35), d.part_of(z, 40, 80));
-        tools.push(d.cylinder(Axis::Z, bore, deep + 20 * UNIT, [0, 0, -20 * UNIT]));
+        tools.push(d.cylinder(ModelAxis::Z, bore, deep + 20 * UNIT, [0, 0, -20 * UNIT]));
     }
     d.difference(body, tools)
 }

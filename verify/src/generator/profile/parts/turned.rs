@@ -1,18 +1,18 @@
 //! Flanges, shafts, bearings and pulleys.
 
-use super::draft::{Draft, Length, UNIT};
-use crate::generator::model::{Axis, NodeId};
+use super::draft::{PartDraft, PartLength, UNIT};
+use crate::generator::model::{ModelAxis, ModelNodeId};
 
 /// A disc with a bore, a hub, a raised face and a circle of bolts.
-pub fn flange(d: &mut Draft<'_>) -> NodeId {
+pub fn flange(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (r, z) = (d.length(25, 60), d.length(5, 15));
-    let mut body = vec![d.cylinder(Axis::Z, r, z, [0; 3])];
+    let mut body = vec![d.cylinder(ModelAxis::Z, r, z, [0; 3])];
     let hub = d.part_of(r, 35, 55);
     let mut high = z;
     match d.random.below(4) {
         0 => {
             high += d.length(5, 30);
-            body.push(d.cylinder(Axis::Z, hub, high, [0; 3]));
+            body.push(d.cylinder(ModelAxis::Z, hub, high, [0; 3]));
         }
         1 => {
             let (up, narrow) = (d.length(5, 30), d.part_of(hub, 75, 95));
@@ -21,7 +21,7 @@ pub fn flange(d: &mut Draft<'_>) -> NodeId {
         }
         2 => {
             high += d.part_of(z, 10, 30);
-            body.push(d.cylinder(Axis::Z, hub, high, [0; 3]));
+            body.push(d.cylinder(ModelAxis::Z, hub, high, [0; 3]));
         }
         _ => {}
     }
@@ -32,7 +32,7 @@ pub fn flange(d: &mut Draft<'_>) -> NodeId {
     let mut tools = d.drill(&hole, [0, 0, high]);
     let count = d.random.choose(&[3, 4, 4, 5, 6, 6, 8, 12]);
     let circle = (r + hub) / 2;
-    let room = ((r - hub) / 2).min(circle * 2 / count as Length);
+    let room = ((r - hub) / 2).min(circle * 2 / count as PartLength);
     let (bolt, head) = (d.part_of(room, 30, 55), d.part_of(room, 60, 80));
     let hole = d.hole(bolt, head, z);
     tools.extend(d.circle(count, |d| {
@@ -48,7 +48,7 @@ pub fn flange(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// Steps about one axis, with chamfers, grooves, a cross hole, a keyway and centres.
-pub fn shaft(d: &mut Draft<'_>) -> NodeId {
+pub fn shaft(d: &mut PartDraft<'_>) -> ModelNodeId {
     let mut body = Vec::new();
     let mut tools = Vec::new();
     let mut up = 0;
@@ -68,24 +68,29 @@ pub fn shaft(d: &mut Draft<'_>) -> NodeId {
             top -= chamfer;
             body.push(d.frustum(r, r - chamfer, chamfer, [0, 0, top]));
         }
-        body.push(d.cylinder(Axis::Z, r, top - low, [0, 0, low]));
+        body.push(d.cylinder(ModelAxis::Z, r, top - low, [0, 0, low]));
         match d.random.below(8) {
             0 => {
                 // A groove of a rectangle's section.
                 let (wide, deep) = (d.part_of(h, 15, 30), d.part_of(r, 10, 25));
                 let at = [0, 0, up + (h - wide) / 2];
-                let ring = d.cylinder(Axis::Z, r + UNIT, wide, at);
-                let core = d.cylinder(Axis::Z, r - deep, wide, at);
+                let ring = d.cylinder(ModelAxis::Z, r + UNIT, wide, at);
+                let core = d.cylinder(ModelAxis::Z, r - deep, wide, at);
                 tools.push(d.difference(ring, vec![core]));
             }
             1 => {
                 // A round groove.
                 let minor = d.part_of(h.min(r), 10, 25);
-                tools.push(d.torus(Axis::Z, r, minor, [0, 0, up + h / 2]));
+                tools.push(d.torus(ModelAxis::Z, r, minor, [0, 0, up + h / 2]));
             }
             2 => {
                 let hole = d.part_of(h.min(r), 15, 40);
-                tools.push(d.cylinder(Axis::X, hole, 2 * r + 2 * UNIT, [-r - UNIT, 0, up + h / 2]));
+                tools.push(d.cylinder(
+                    ModelAxis::X,
+                    hole,
+                    2 * r + 2 * UNIT,
+                    [-r - UNIT, 0, up + h / 2],
+                ));
             }
             3 => {
                 // A keyway with round ends.
@@ -95,7 +100,7 @@ pub fn shaft(d: &mut Draft<'_>) -> NodeId {
                 let at = [r - deep, -wide / 2, up + h / 3];
                 tools.push(d.block([deep + UNIT, wide, long], at));
                 for v in [up + h / 3, up + h / 3 + long] {
-                    tools.push(d.cylinder(Axis::X, wide / 2, deep + UNIT, [r - deep, 0, v]));
+                    tools.push(d.cylinder(ModelAxis::X, wide / 2, deep + UNIT, [r - deep, 0, v]));
                 }
             }
             4 => {
@@ -108,7 +113,7 @@ pub fn shaft(d: &mut Draft<'_>) -> NodeId {
             }
             5 => {
                 let minor = d.part_of(h.min(r), 10, 25);
-                body.push(d.torus(Axis::Z, r, minor, [0, 0, up + h / 2]));
+                body.push(d.torus(ModelAxis::Z, r, minor, [0, 0, up + h / 2]));
             }
             _ => {}
         }
@@ -131,7 +136,7 @@ pub fn shaft(d: &mut Draft<'_>) -> NodeId {
             let r = last / 2;
             let hole = d.part_of(r, 20, 40);
             tools.push(d.cylinder(
-                Axis::Y,
+                ModelAxis::Y,
                 hole,
                 2 * widest + 2 * UNIT,
                 [0, -widest - UNIT, up / 2],
@@ -144,7 +149,7 @@ pub fn shaft(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// Two rings with grooves, and balls between them.
-pub fn bearing(d: &mut Draft<'_>) -> NodeId {
+pub fn bearing(d: &mut PartDraft<'_>) -> ModelNodeId {
     let ball = d.length(3, 8);
     let (bore, wide) = (d.length(8, 25), d.part_of(ball, 240, 320));
     let pitch = bore + d.part_of(ball, 150, 180);
@@ -156,13 +161,18 @@ pub fn bearing(d: &mut Draft<'_>) -> NodeId {
     let low = -wide / 2;
     let outside = pitch + (pitch - bore);
     let mut parts = Vec::new();
-    let solid = d.cylinder(Axis::Z, outside, wide, [0, 0, low]);
-    let hole = d.cylinder(Axis::Z, pitch + gap, wide + 2 * UNIT, [0, 0, low - UNIT]);
-    let tube = d.torus(Axis::Z, pitch, groove, [0; 3]);
+    let solid = d.cylinder(ModelAxis::Z, outside, wide, [0, 0, low]);
+    let hole = d.cylinder(
+        ModelAxis::Z,
+        pitch + gap,
+        wide + 2 * UNIT,
+        [0, 0, low - UNIT],
+    );
+    let tube = d.torus(ModelAxis::Z, pitch, groove, [0; 3]);
     parts.push(d.difference(solid, vec![hole, tube]));
-    let solid = d.cylinder(Axis::Z, pitch - gap, wide, [0, 0, low]);
-    let hole = d.cylinder(Axis::Z, bore, wide + 2 * UNIT, [0, 0, low - UNIT]);
-    let tube = d.torus(Axis::Z, pitch, groove, [0; 3]);
+    let solid = d.cylinder(ModelAxis::Z, pitch - gap, wide, [0, 0, low]);
+    let hole = d.cylinder(ModelAxis::Z, bore, wide + 2 * UNIT, [0, 0, low - UNIT]);
+    let tube = d.torus(ModelAxis::Z, pitch, groove, [0; 3]);
     parts.push(d.difference(solid, vec![hole, tube]));
     if groove > ball {
         // As many as there is room for, up to twelve.
@@ -174,7 +184,7 @@ pub fn bearing(d: &mut Draft<'_>) -> NodeId {
         0 => {
             // One ring alone.
             let both = d.union(parts);
-            let inside = d.cylinder(Axis::Z, pitch - gap, wide, [0, 0, low]);
+            let inside = d.cylinder(ModelAxis::Z, pitch - gap, wide, [0, 0, low]);
             d.intersection(both, inside)
         }
         _ => d.union(parts),
@@ -182,29 +192,29 @@ pub fn bearing(d: &mut Draft<'_>) -> NodeId {
 }
 
 /// A wheel with a groove for a belt or a rope, holes in its web, a hub and a bore.
-pub fn pulley(d: &mut Draft<'_>) -> NodeId {
+pub fn pulley(d: &mut PartDraft<'_>) -> ModelNodeId {
     let (r, z) = (d.length(25, 60), d.length(8, 24));
-    let disc = d.cylinder(Axis::Z, r, z, [0; 3]);
+    let disc = d.cylinder(ModelAxis::Z, r, z, [0; 3]);
     let hub = d.part_of(r, 25, 40);
     let high = z + d.part_of(z, 20, 60);
-    let hub_body = d.cylinder(Axis::Z, hub, high, [0; 3]);
+    let hub_body = d.cylinder(ModelAxis::Z, hub, high, [0; 3]);
     let body = d.union(vec![disc, hub_body]);
     let deep = d.part_of(z, 20, 40);
     let mut tools = Vec::new();
     match d.random.below(3) {
-        0 => tools.push(d.torus(Axis::Z, r, deep, [0, 0, z / 2])),
+        0 => tools.push(d.torus(ModelAxis::Z, r, deep, [0, 0, z / 2])),
         1 => {
             // A groove in the shape of a V.
             let at = [0, 0, z / 2 - deep];
-            let ring = d.cylinder(Axis::Z, r + UNIT, 2 * deep, at);
+            let ring = d.cylinder(ModelAxis::Z, r + UNIT, 2 * deep, at);
             let low = d.frustum(r, r - deep, deep, at);
             let top = d.frustum(r - deep, r, deep, [0, 0, z / 2]);
             tools.push(d.difference(ring, vec![low, top]));
         }
         _ => {
             let at = [0, 0, z / 2 - deep];
-            let ring = d.cylinder(Axis::Z, r + UNIT, 2 * deep, at);
-            let core = d.cylinder(Axis::Z, r - deep, 2 * deep, at);
+            let ring = d.cylinder(ModelAxis::Z, r + UNIT, 2 * deep, at);
+            let core = d.cylinder(ModelAxis::Z, r - deep, 2 * deep, at);
             tools.push(d.difference(ring, vec![core]));
         }
     }
@@ -216,7 +226,7 @@ pub fn pulley(d: &mut Draft<'_>) -> NodeId {
         let count = d.random.choose(&[3, 4, 5, 6]);
         let hole = d.part_of(free, 20, 35);
         let at = [hub + free / 2, 0, -UNIT];
-        tools.extend(d.circle(count, |d| d.cylinder(Axis::Z, hole, z + 2 * UNIT, at)));
+        tools.extend(d.circle(count, |d| d.cylinder(ModelAxis::Z, hole, z + 2 * UNIT, at)));
     }
     d.difference(body, tools)
 }

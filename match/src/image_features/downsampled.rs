@@ -1,0 +1,56 @@
+//! Pictures of many pixels, made smaller: what detectors and distances in pixels are made for.
+
+use crate::camera::Pinhole;
+use premio_detect::Grey;
+
+/// A picture with a longer side is halved, in pixels.
+const LONGEST: usize = 1280;
+
+/// A picture that is not too large, its camera, and how many of the pixels of the one that was given
+/// each of its sides has: one, two, four and so on.
+pub fn downsampled(grey: Grey, camera: Pinhole) -> (Grey, Pinhole, u32) {
+    let (mut grey, mut camera, mut scale) = (grey, camera, 1);
+    while grey.width.max(grey.height) > LONGEST {
+        grey = halved(&grey);
+        camera = camera.halved();
+        scale *= 2;
+    }
+    (grey, camera, scale)
+}
+
+/// The picture of the means of two by two pixels; what is left over at the right and below is cut off.
+fn halved(grey: &Grey) -> Grey {
+    let level = |x: usize, y: usize| {
+        let at = |dx: usize, dy: usize| grey.levels[(2 * y + dy) * grey.width + 2 * x + dx];
+        0.25 * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1))
+    };
+    Grey::new(grey.width / 2, grey.height / 2, level)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    /// A point is seen in the pixel that holds the one it was seen in.
+    #[test]
+    fn the_camera_shrinks_with_the_picture() {
+        let camera = Pinhole {
+            focal: [3000.0, 3100.0],
+            centre: [2000.0, 1499.0],
+            skew: 2.0,
+        };
+        let grey = Grey::new(4000, 3001, |x, y| ((x + 2 * y) % 251) as f32);
+        let (small, near, scale) = downsampled(grey, camera);
+        assert_eq!((small.width, small.height, scale), (1000, 750, 4));
+        for p in [[0.1, 0.2, 2.0], [-0.5, 0.3, 1.5], [0.0, 0.0, 1.0]] {
+            let p = Point3::from(p);
+            let (before, after) = (camera.project(&p), near.project(&p));
+            for i in 0..2 {
+                assert!((4.0 * (after[i] + 0.5) - 0.5 - before[i]).abs() < 1e-9);
+            }
+        }
+        let (same, whole, scale) = downsampled(small.clone(), near);
+        assert_eq!((same, whole, scale), (small, near, 1));
+    }
+}

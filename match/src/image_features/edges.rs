@@ -1,0 +1,255 @@
+//! Edge pixels by place and orientation.
+
+use nalgebra::{Point2, Vector2};
+use premio_detect::{Detection, SegmentShape};
+use std::f64::consts::PI;
+
+/// How many classes of orientation there are.
+pub const BINS: usize = 16;
+/// How near an edge has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Two pixels: the pose is known.
+    Fine,
+    /// Five pixels: it is about known.
+    Coarse,
+}
+
+impl Reach {
+    const ALL: [Self; 2] = [Self::Fine, Self::Coarse];
+
+    fn pixels(self) -> i32 {
+        match self {
+            Self::Fine => 2,
+            Self::Coarse => 5,
+        }
+    }
+}
+
+/// Next to the border of a picture, in pixels, edges are not found.
+const BORDER: f64 = 6.0;
+
+/// The class of the orientation of a normal, modulo half a turn.
+pub fn bin(normal: &Vector2<f64>) -> usize {
+    let turn = normal.y.atan2(normal.x) / PI;
+    ((turn + 1.0) * BINS as f64) as usize % BINS
+}
+
+/// Chains are cut into pieces of so many pixels.
+pub const PIECE: usize = 12;
+
+/// By edge pixel: the number of its piece.
+fn pieces(detection: &Detection) -> Vec<u32> {
+    let mut all = vec![0; detection.pixels.len()];
+    let mut next = 0;
+    for chain in &detection.chains {
+        for run in chain.pixels.chunks(PIECE) {
+            next += 1;
+            for &pixel in run {
+                all[pixel as usize] = next;
+            }
+        }
+    }
+    all
+}
+
+/// By edge pixel: the unit normal of the segment that it is of, and that one's length in pixels and
+/// number; of a curved one the pixel's gradient.
+fn segment_normals(detection: &Detection) -> Vec<Option<(Vector2<f64>, f64, u32)>> {
+    let mut all = vec![None; detection.pixels.len()];
+    for (number, segment) in (0..).zip(&detection.segments) {
+        let [from, to] = segment.range.map(|n| n as usize);
+        let pixels = &detection.chains[segment.chain as usize].pixels[from..to];
+        for &pixel in pixels {
+            let gradient = Vector2::from(detection.pixels[pixel as usize].gradient);
+            let normal = match segment.shape {
+                SegmentShape::Line { ends: [a, b] } => Vector2::new(a[1] - b[1], b[0] - a[0]),
+                _ => gradient,
+            };
+            all[pixel as usize] = normal
+                .try_normalize(0.0)
+                .map(|n| (n, pixels.len() as f64, number));
+        }
+    }
+    all
+}
+
+/// An edge pixel near a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeHit {
+    /// How far it is along the normal, in pixels.
+    pub offset: f64,
+    /// Its number in the detection.
+    pub pixel: u32,
+    /// The number of its segment.
+    pub segment: u32,
+    /// The number of the piece of a chain that it is of.
+    pub piece: u32,
+}
+
+/// Of longer segments than this, in pixels, none is preferred.
+const LONG: f64 = 60.0;
+/// How much less a pixel at the end of the reach is worth than one at the place.
+const NEARER: f64 = 0.8;
+
+/// An edge pixel.
+#[derive(Clone, Copy, Debug)]
+struct Pixel {
+    at: Point2<f64>,
+    /// The unit normal of its segment.
+    normal: Vector2<f64>,
+    /// The length of its segment in pixels.
+    length: f64,
+    /// The number of its segment.
+    segment: u32,
+    /// The number of its piece.
+    piece: u32,
+}
+
+/// The edge pixels of a picture.
+#[derive(Clone, Debug)]
+pub struct Edges {
+    width: usize,
+    height: usize,
+    /// By pixel: its number and one, or nothing.
+    numbers: Vec<u32>,
+    /// By reach and pixel: the orientations, by bit, of edge pixels within it.
+    near: [Vec<u16>; 2],
+    pixels: Vec<Pixel>,
+}
+
+impl Edges {
+    /// The edge pixels of a detection, but for those of chains that are too short to be segments.
+    pub fn new(detection: &Detection, [width, height]: [usize; 2]) -> Self {
+        let mut edges = Self {
+            width,
+            height,
+            numbers: vec![0; width * height],
+            near: Reach::ALL.map(|_| vec![0; width * height]),
+            pixels: Vec::with_capacity(detection.pixels.len()),
+        };
+        let across = segment_normals(detection);
+        let pieces = pieces(detection);
+        for (number, pixel) in detection.pixels.iter().enumerate() {
+            let gradient = Vector2::from(pixel.gradient);
+            let own = gradient / gradient.norm().max(f64::MIN_POSITIVE);
+            let (normal, length, segment) = across[number].unwrap_or((own, 0.0, u32::MAX));
+            let at = Point2::from(pixel.at);
+            edges.pixels.push(Pixel {
+                at,
+                normal,
+                length,
+                segment,
+                piece: pieces[number],
+            });
+            if across[number].is_some() {
+                edges.numbers[pixel.y as usize * width + pixel.x as usize] = number as u32 + 1;
+                let at = [pixel.x as i32, pixel.y as i32];
+                for reach in Reach::ALL {
+                    edges.stamp(at, bin(&normal), reach);
+                }
+            }
+        }
+        edges
+    }
+
+    fn stamp(&mut self, [x, y]: [i32; 2], bin: usize, reach: Reach) {
+        let far = reach.pixels();
+        let own = 1u16 << bin;
+        let bits = own | own.rotate_left(1) | own.rotate_right(1);
+        for dy in -far..=far {
+            for dx in -far..=far {
+                if dx * dx + dy * dy > far * far + 1 {
+                    continue;
+                }
+                let (x, y) = (x + dx, y + dy);
+                if x >= 0 && y >= 0 && x < self.width as i32 && y < self.height as i32 {
+                    self.near[reach as usize][y as usize * self.width + x as usize] |= bits;
+                }
+            }
+        }
+    }
+
+    /// Whether a place lies in the picture, off its border, so that edges are found there.
+    pub fn reaches(&self, at: &Point2<f64>) -> bool {
+        let inside = |v: f64, size: usize| v >= BORDER && v < size as f64 - 1.0 - BORDER;
+        inside(at.x, self.width) && inside(at.y, self.height)
+    }
+
+    /// Whether a place lies in the picture, off its border, and if so, whether an edge of a class of
+    /// orientation is within reach.
+    pub fn holds(&self, at: &Point2<f64>, bin: usize, reach: Reach) -> Option<bool> {
+        let (x, y) = ((at.x + 0.5) as usize, (at.y + 0.5) as usize);
+        self.reaches(at)
+            .then(|| self.near[reach as usize][y * self.width + x] >> bin & 1 == 1)
+    }
+
+    /// The edge pixel along a normal to either side of a place, within so many pixels, whose gradient
+    /// is along the normal to within an angle of so large a cosine: of several the one that is near,
+    /// and of a long segment.
+    pub fn along(
+        &self,
+        at: &Point2<f64>,
+        normal: &Vector2<f64>,
+        reach: f64,
+        cosine: f64,
+    ) -> Option<EdgeHit> {
+        let steps = reach.ceil() as i32;
+        let mut best: Option<(f64, EdgeHit)> = None;
+        for k in -steps..=steps {
+            let p = at + normal * f64::from(k);
+            let Some(hit) = self.hit(&p, at, normal, reach, cosine) else {
+                continue;
+            };
+            let length = self.pixels[hit.pixel as usize].length.min(LONG);
+            let worth = length * (1.0 - NEARER * hit.offset.abs() / reach);
+            if best.is_none_or(|b| worth > b.0) {
+                best = Some((worth, hit));
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// The edge pixels within reach of a place along a normal, from one side to the other, the first
+    /// of each segment.
+    pub fn all_along(
+        &self,
+        at: &Point2<f64>,
+        normal: &Vector2<f64>,
+        reach: f64,
+        cosine: f64,
+    ) -> Vec<EdgeHit> {
+        let steps = reach.ceil() as i32;
+        let mut all: Vec<EdgeHit> = Vec::new();
+        for k in -steps..=steps {
+            let p = at + normal * f64::from(k);
+            let hit = self.hit(&p, at, normal, reach, cosine);
+            all.extend(hit.filter(|h| all.iter().all(|a| a.segment != h.segment)));
+        }
+        all
+    }
+
+    fn hit(
+        &self,
+        p: &Point2<f64>,
+        at: &Point2<f64>,
+        normal: &Vector2<f64>,
+        reach: f64,
+        cosine: f64,
+    ) -> Option<EdgeHit> {
+        let (x, y) = (p.x + 0.5, p.y + 0.5);
+        if !(x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64) {
+            return None;
+        }
+        let number = self.numbers[y as usize * self.width + x as usize].checked_sub(1)?;
+        let pixel = &self.pixels[number as usize];
+        let offset = normal.dot(&(pixel.at - at));
+        let fits = pixel.normal.dot(normal).abs() >= cosine && offset.abs() <= reach;
+        fits.then_some(EdgeHit {
+            offset,
+            pixel: number,
+            segment: pixel.segment,
+            piece: pixel.piece,
+        })
+    }
+}

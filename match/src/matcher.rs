@@ -1,0 +1,263 @@
+//! The part looked for in a picture: from chains of lines to poses, from poses to correspondences, and
+//! back, until they stay.
+
+use crate::axis_alignment::framed;
+use crate::camera::Pinhole;
+use crate::correspondence::{BESIDE, Correspondence};
+use crate::detectability_prior::DetectabilityPrior;
+use crate::hypotheses::{
+    Hypothesis, REACHES, best_first, distinct, drawn, hypotheses, is_same, settled,
+};
+use crate::image_features::{ImageFeatures, chains};
+use crate::part::SoughtPart;
+use crate::pose::refine::{PointToLine, Refined, refine};
+use crate::predicted_contours::{PredictedContour, arcs};
+use crate::residuals::SystematicOffset;
+use crate::scoring::{fitted, odds, ratio, related, with_prior};
+use crate::search::{Solution, search};
+use crate::search_result::{FeaturePair, Found, PartMatch, SearchOptions, SearchResult};
+use crate::shape_evidence::ShapeEvidence;
+use nalgebra::Isometry3;
+use rayon::prelude::*;
+
+/// A part that is looked for in a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Matcher<'a> {
+    /// The part.
+    pub part: &'a SoughtPart<'a>,
+    /// What predictions tell of its features.
+    pub learned: &'a DetectabilityPrior,
+    /// The picture.
+    pub picture: &'a ImageFeatures,
+    /// What took it.
+    pub camera: &'a Pinhole,
+    /// How it is looked for.
+    pub options: &'a SearchOptions,
+}
+
+impl Matcher<'_> {
+    /// All that is found, wherever the part may be.
+    pub fn find(&self) -> SearchResult {
+        let Self {
+            part,
+            picture,
+            camera,
+            ..
+        } = *self;
+        let limits = &self.options.limits;
+        let all = chains(&picture.lines, limits.chains);
+        let proposed = hypotheses(part, picture, camera, &all);
+        let mut drawn: Vec<Hypothesis> = proposed
+            .hypotheses
+            .par_iter()
+            .filter_map(|h| drawn(part, picture, camera, h, &REACHES))
+            .collect();
+        best_first(&mut drawn);
+        let near = distinct(part, camera, drawn, limits.settled);
+        let mut settled: Vec<Hypothesis> = near
+            .par_iter()
+            .map(|h| settled(part, picture, camera, h))
+            .collect();
+        best_first(&mut settled);
+        let best = distinct(part, camera, settled, limits.searched);
+        let mut matches: Vec<PartMatch> =
+            best.par_iter().filter_map(|h| self.at(&h.pose)).collect();
+        matches.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
+        let rest = matches.split_off(matches.len().min(IMPROVED));
+        let mut matches: Vec<PartMatch> =
+            matches.into_par_iter().map(|m| self.improved(m)).collect();
+        matches.extend(rest);
+        let judged = matches.into_par_iter().map(|m| self.judged(m)).collect();
+        let matches = different(part, camera, judged);
+        let (matches, few): (Vec<PartMatch>, Vec<PartMatch>) =
+            matches.into_iter().partition(|m| m.is_determined(part));
+        SearchResult {
+            matches,
+            little: few.into_iter().next().map(Box::new),
+            chains: [all[0].len(), all[1].len()],
+            proposed: proposed.count,
+            cut: proposed.cut || all.iter().any(|a| a.len() == limits.chains),
+        }
+    }
+
+    /// The correspondences at about a pose, and the pose that they tell, in turns.
+    pub fn matched(&self, start: &Isometry3<f64>) -> Option<PartMatch> {
+        self.at(start).map(|found| self.judged(found))
+    }
+
+    /// The same, before it is judged.
+    fn at(&self, start: &Isometry3<f64>) -> Option<PartMatch> {
+        let Self {
+            part,
+            learned,
+            picture,
+            camera,
+            options,
+        } = *self;
+        let mut pose = *start;
+        let mut known: Option<PartMatch> = None;
+        for _ in 0..ROUNDS {
+            let arcs = arcs(part, camera, &pose, picture.size).ok()?;
+            let problem = Correspondence::new(part, learned, picture, &arcs);
+            let solution = search(&problem.problem, options.strategy, options.limits.paths);
+            let pulls = problem.pulls(&arcs, &solution.assignment);
+            let Some(refined) = refine(camera, &pose, &pulls.concat(), SCALE, 10) else {
+                break;
+            };
+            pose = refined.pose;
+            let next = self.weighed(&problem, &solution, arcs, &refined, pulls)?;
+            let stays = known.as_ref().is_some_and(|m| m.taken().eq(next.taken()));
+            if known.as_ref().is_some_and(|m| next.ratio < m.ratio) {
+                break;
+            }
+            known = Some(next);
+            if stays {
+                break;
+            }
+        }
+        known
+    }
+
+    /// The match of correspondences, at the pose that is refined to what they pull at.
+    fn weighed(
+        &self,
+        problem: &Correspondence,
+        solution: &Solution,
+        arcs: Vec<PredictedContour>,
+        refined: &Refined,
+        pulls: Vec<Vec<PointToLine>>,
+    ) -> Option<PartMatch> {
+        let pose = refined.pose;
+        let [squares, weights] = refined.squares;
+        let rms = (squares / weights.max(f64::MIN_POSITIVE)).sqrt();
+        let distance = (pose * self.part.centre).z;
+        let inverse = with_prior(&refined.information, distance).try_inverse()?;
+        // As far as attributes tell: of each found feature how far beside and how much askew it is.
+        let weight: f64 = pulls.iter().flatten().map(|p| p.weight).sum();
+        let found = solution.assignment.iter().flatten().count();
+        let told = inverse * (BESIDE.powi(2) * weight / (2.0 * found as f64));
+        let mut weighed = PartMatch {
+            pose,
+            covariance: inverse * rms.max(LEAST).powi(2),
+            rms,
+            astray: SystematicOffset::default(),
+            score: solution.score,
+            ratio: 0.0,
+            odds: 0.0,
+            shape: ShapeEvidence::default(),
+            framed: 0.0,
+            fitted: fitted(self.part, self.camera, self.picture.size, &pose, &told),
+            relations: related(problem, solution),
+            pairs: pairs(problem, &arcs, solution),
+            effort: solution.effort,
+            complete: solution.complete,
+            arcs,
+            pulls,
+        };
+        weighed.ratio = ratio(&weighed, self.picture.straightness);
+        Some(weighed)
+    }
+
+    /// The match, with what it tells of the part's shape, and the odds that it is the part.
+    fn judged(&self, found: PartMatch) -> PartMatch {
+        let mut judged = found;
+        let (all, each) = SystematicOffset::new(self.camera, &judged.pose, &judged.pulls);
+        judged.astray = all;
+        for (pair, astray) in judged.pairs.iter_mut().zip(each) {
+            if let (Some(found), Some(astray)) = (&mut pair.found, astray) {
+                found.astray = astray;
+            }
+        }
+        judged.shape = ShapeEvidence::new(self.part, self.camera, &judged);
+        judged.framed = framed(self.picture, &judged.pairs);
+        judged.odds = odds(&judged, self.picture.straightness);
+        judged
+    }
+
+    /// The match that is reached where one feature is left out, as long as that is likelier: where a wrong
+    /// edge is taken for a feature the others tell a better pose, and there the right edge may be near.
+    fn improved(&self, found: PartMatch) -> PartMatch {
+        let camera = self.camera;
+        let mut best = found;
+        for _ in 0..IMPROVEMENTS {
+            let next = best.doubted(camera).into_iter().find_map(|k| {
+                let others = best.pulls.iter().enumerate().filter(|p| p.0 != k);
+                let pulls: Vec<PointToLine> = others.flat_map(|p| p.1.clone()).collect();
+                let start = refine(camera, &best.pose, &pulls, SCALE, 10)?.pose;
+                let next = self.at(&start)?;
+                (next.ratio > best.ratio).then_some(next)
+            });
+            match next {
+                Some(next) => best = next,
+                None => break,
+            }
+        }
+        best
+    }
+}
+
+/// So many of the likeliest matches are improved.
+const IMPROVED: usize = 4;
+/// So often a match is improved at the most.
+const IMPROVEMENTS: usize = 8;
+
+/// How often what is visible is predicted again.
+const ROUNDS: usize = 4;
+/// From this distance on, in pixels, an edge draws no longer.
+const SCALE: f64 = 4.0;
+/// The least deviation of an edge, in pixels: that of the detector.
+const LEAST: f64 = 0.2;
+
+/// The matches at different poses, the likeliest of each.
+fn different(
+    part: &SoughtPart<'_>,
+    camera: &Pinhole,
+    mut matches: Vec<PartMatch>,
+) -> Vec<PartMatch> {
+    matches.sort_by(PartMatch::order);
+    let mut all: Vec<PartMatch> = Vec::new();
+    for next in matches {
+        if !all
+            .iter()
+            .any(|m| is_same(part, camera, &next.pose, &m.pose))
+        {
+            all.push(next);
+        }
+    }
+    all
+}
+
+fn pairs(
+    problem: &Correspondence,
+    arcs: &[PredictedContour],
+    solution: &Solution,
+) -> Vec<FeaturePair> {
+    let mut all = Vec::with_capacity(problem.order.len());
+    for (k, (&arc, choice)) in problem.order.iter().zip(&solution.assignment).enumerate() {
+        let feature = &problem.problem.features[k];
+        let parent = feature
+            .parent
+            .is_some_and(|p| solution.assignment[p].is_some());
+        let found = choice.map(|c| {
+            let choice = &problem.choices[k][c];
+            Found {
+                segments: choice.segments.clone(),
+                ends: choice.ends,
+                share: choice.share,
+                offset: choice.offset,
+                astray: SystematicOffset::default(),
+            }
+        });
+        all.push(FeaturePair {
+            source: arcs[arc].source,
+            length: problem.lengths[k],
+            found,
+            score: feature.score(*choice, parent),
+            against: match choice {
+                Some(c) => problem.choices[k][*c].likely,
+                None => feature.missed[usize::from(parent)].min(0.0),
+            },
+        });
+    }
+    all
+}

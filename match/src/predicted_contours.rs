@@ -1,0 +1,115 @@
+//! What is predicted of a part at a pose: the visible contours, as points of the picture.
+
+use crate::camera::Pinhole;
+use crate::edge_score::{SampleHit, seen};
+use crate::part::{EdgeSample, SoughtPart};
+use nalgebra::{Isometry3, Point3};
+use premio_predict::image_arcs::ArcSource;
+use premio_visibility::contour::Contour;
+use premio_visibility::view::{ViewError, contours};
+use std::collections::BTreeMap;
+
+/// The distance of points along a contour, in pixels, and how many there are at most.
+pub const APART: f64 = 3.0;
+const MOST: usize = 400;
+/// How many points tell the length of a piece.
+const FEW: usize = 12;
+
+/// A visible contour of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PredictedContour {
+    /// What it is the image of.
+    pub source: ArcSource,
+    /// The stroke of the part, if it is an edge.
+    pub stroke: Option<usize>,
+    /// Whether only one of its faces is turned to the eye.
+    pub outline: bool,
+    /// Points along it: in space, and in the image.
+    pub points: Vec<(Point3<f64>, SampleHit)>,
+    /// Its visible length in pixels.
+    pub length: f64,
+}
+
+/// The visible contours of a part at a pose, in a picture of so many pixels.
+pub fn arcs(
+    part: &SoughtPart<'_>,
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    size: [usize; 2],
+) -> Result<Vec<PredictedContour>, ViewError> {
+    let contours = contours(part.brep, &camera.at(pose, size), part.band)?;
+    let by_edge: BTreeMap<u32, usize> = (0..)
+        .zip(&part.strokes)
+        .map(|(i, s)| (s.edge.0, i))
+        .collect();
+    let eye = crate::edge_score::eye(pose);
+    let mut ordinals: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut all = Vec::new();
+    for contour in &contours.contours {
+        let (source, stroke) = match contour.edge {
+            Some(edge) => {
+                let stroke = by_edge.get(&edge.0).copied();
+                (ArcSource::Edge { edge: edge.0 }, stroke)
+            }
+            None => {
+                let face = contour.faces.first().map_or(0, |f| f.0);
+                let next = ordinals.entry(face).or_default();
+                *next += 1;
+                let ordinal = *next - 1;
+                (ArcSource::Limb { face, ordinal }, None)
+            }
+        };
+        if contour.smooth {
+            // The normal does not jump along it: it is not seen.
+            continue;
+        }
+        let points = points(contour, camera, pose);
+        if points.is_empty() {
+            continue;
+        }
+        let outline = stroke.is_none_or(|s| {
+            let stroke = &part.strokes[s];
+            part.marks[(stroke.marks.start + stroke.marks.end) / 2].is_outline(&eye)
+        });
+        all.push(PredictedContour {
+            source,
+            stroke,
+            outline,
+            length: points.iter().map(|p| p.1.length).sum(),
+            points,
+        });
+    }
+    Ok(all)
+}
+
+/// Points of the visible pieces of a contour.
+fn points(
+    contour: &Contour,
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+) -> Vec<(Point3<f64>, SampleHit)> {
+    let mut all = Vec::new();
+    for piece in contour.pieces.iter().filter(|p| p.visible) {
+        let [from, to] = piece.t;
+        let mark = |k: usize, n: usize| {
+            let parameter = from + (to - from) * (k as f64 + 0.5) / n as f64;
+            let curve = &contour.curve3;
+            EdgeSample {
+                point: curve.point(parameter),
+                tangent: curve.tangent(parameter),
+                normals: None,
+                parameter,
+                stroke: 0,
+                step: curve.speed(parameter) * (to - from) / n as f64,
+            }
+        };
+        let images = (0..FEW).filter_map(|k| seen(camera, pose, &mark(k, FEW)));
+        let length: f64 = images.map(|s| s.length).sum();
+        let count = ((length / APART).ceil() as usize).clamp(1, MOST);
+        all.extend((0..count).filter_map(|k| {
+            let mark = mark(k, count);
+            seen(camera, pose, &mark).map(|seen| (mark.point, seen))
+        }));
+    }
+    all
+}

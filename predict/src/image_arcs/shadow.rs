@@ -1,0 +1,349 @@
+//! Cast shadows: what a light sees end before something farther off is the boundary of a shadow on
+//! it. So they are the contours of the light's view, carried on along its lines of sight.
+
+use super::arc::{ArcSide, ArcSource, PredictedArc, Shade};
+use super::crossings::{ArcPoint, Lines};
+use super::flatten::{FINE, ImageWindow, Polyline, Shown, flatten, shown};
+use super::lit_scene::{LitScene, Sightings, ordinals};
+use super::pierce::front;
+use nalgebra::{Point2, Point3, Vector3};
+use premio_kernel::brep::topology::FaceId;
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::surface::Surface;
+use premio_visibility::contour::Contour;
+
+/// How far aside of a contour its sides are looked at, in the part's size.
+const ASIDE: f64 = 1.0 / 65_536.0;
+/// How fine the polylines of a light's view are, in the part's size: they only say which curve another
+/// one ends on, and about where.
+const LIGHT_FINE: f64 = 1.0 / 4096.0;
+/// How far something has to be behind a contour for a shadow on it to be told apart, in the part's
+/// size.
+const BEHIND: f64 = 1.0 / 1024.0;
+/// By how many pixels the ends of a shadow's boundary are drawn out, so that they reach what they end
+/// on, which is as fine as [`FINE`].
+const OVERLAP: f64 = 2.0 * FINE;
+
+/// A piece of what a light sees, before a face that it hides in part.
+struct Cast<'c> {
+    contour: &'c Contour,
+    range: [f64; 2],
+    ground: FaceId,
+    /// How far the ground is from where the light's lines of sight start, in the middle.
+    hint: f64,
+    /// A point of the ground that the light reaches, next to the middle.
+    lit: Point3<f64>,
+}
+
+/// Adds the visible boundaries of cast shadows to the arcs of a view, which they stop where they end.
+pub fn add_shadows(stage: &LitScene<'_>, window: &ImageWindow, arcs: &mut Vec<PredictedArc>) {
+    let lines = Lines::new(arcs);
+    let mut found = Vec::new();
+    let mut ends = Vec::new();
+    for (light, (_, views)) in stage.lights.iter().enumerate() {
+        if stage.is_beside_camera(light) {
+            continue;
+        }
+        for view in views {
+            let ordinals = ordinals(&view.contours);
+            let seen = seen_by_light(stage, view, &ordinals);
+            let mut add = |source: ArcSource, shade: Option<Shade>, line: &Polyline| {
+                let ground = source.ground();
+                for part in visible_parts(stage, &lines, ground, line, &mut ends) {
+                    found.push(PredictedArc {
+                        source,
+                        contour: None,
+                        smooth: matches!(source, ArcSource::Terminator { .. }),
+                        coefficients: Vec::new(),
+                        line: part,
+                        stops: Vec::new(),
+                        shade,
+                        within: None,
+                    });
+                }
+            };
+            for cast in casts(stage, view, &seen) {
+                if let Some(line) = shadow(stage, view, &cast, window) {
+                    let lit = lit_side(stage, view, &cast);
+                    let shade = lit.map(|lit| Shade { light, lit });
+                    add(source(light, &cast, &ordinals), shade, &line);
+                }
+            }
+            for limb in &seen {
+                if let Some((source, line)) = terminator(stage, light, view, limb, window) {
+                    add(source, None, &line);
+                }
+            }
+        }
+    }
+    for (arc, p) in ends {
+        let arc: &mut PredictedArc = &mut arcs[arc as usize];
+        if let Some(at) = arc.line.nearest(&p) {
+            arc.stop_at(p, at);
+        }
+    }
+    arcs.extend(found);
+}
+
+fn source(light: usize, cast: &Cast<'_>, ordinals: &[u32]) -> ArcSource {
+    let (light, face) = (light as u32, cast.ground.0);
+    match cast.contour.edge {
+        Some(edge) => ArcSource::EdgeShadow {
+            light,
+            edge: edge.0,
+            face,
+        },
+        None => ArcSource::LimbShadow {
+            light,
+            caster: cast.contour.faces[0].0,
+            ordinal: ordinals[cast.contour.id as usize],
+            face,
+        },
+    }
+}
+
+/// What a light sees.
+fn seen_by_light(
+    stage: &LitScene<'_>,
+    view: &Sightings<'_>,
+    ordinals: &[u32],
+) -> Vec<PredictedArc> {
+    let everywhere = ImageWindow {
+        min: [f64::NEG_INFINITY; 2],
+        max: [f64::INFINITY; 2],
+    };
+    view.arcs(ordinals, light_unit(stage, view) * LIGHT_FINE, &everywhere)
+}
+
+/// Where a face turns away from a light, if the light sees a limb there, as the camera shows it.
+fn terminator(
+    stage: &LitScene<'_>,
+    light: usize,
+    view: &Sightings<'_>,
+    limb: &PredictedArc,
+    window: &ImageWindow,
+) -> Option<(ArcSource, Polyline)> {
+    let ArcSource::Limb { face, ordinal } = limb.source else {
+        return None;
+    };
+    let contour = &view.contours.contours[limb.contour? as usize];
+    let camera = stage.view.scene.projection;
+    let curve = |t: f64| {
+        let p = contour.curve3.point(t);
+        (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
+    };
+    let range = [limb.line.parameters[0], *limb.line.parameters.last()?];
+    let straight = matches!(contour.curve3, Curve::Line(_));
+    let mut line = flatten(curve, range, straight, (FINE, window))?;
+    draw_out(&mut line);
+    let light = light as u32;
+    Some((
+        ArcSource::Terminator {
+            light,
+            face,
+            ordinal,
+        },
+        line,
+    ))
+}
+
+/// The pieces of a light's view that cast a shadow on the part.
+fn casts<'v>(
+    stage: &LitScene<'_>,
+    view: &'v Sightings<'_>,
+    seen: &[PredictedArc],
+) -> Vec<Cast<'v>> {
+    let size = light_unit(stage, view);
+    let mut casts = Vec::new();
+    for arc in seen.iter().filter(|arc| !arc.smooth) {
+        let Some(contour) = arc.contour.map(|id| &view.contours.contours[id as usize]) else {
+            continue;
+        };
+        let last = arc.line.points.len() - 1;
+        let mut from = 0;
+        for &to in arc.stops.iter().chain([&last]) {
+            let ends = [from, to].map(|k| stage_parameter(view, contour, &arc.line, k));
+            from = to;
+            casts.extend(cast(stage, view, contour, ends, size));
+        }
+    }
+    casts
+}
+
+/// The length in a light's image of a part's radius next to its middle.
+fn light_unit(stage: &LitScene<'_>, view: &Sightings<'_>) -> f64 {
+    let projection = view.scene.projection;
+    let centre = stage.subject.centre;
+    let across = Vector3::ith(projection.axis().abs().imin(), stage.subject.radius);
+    (projection.project(&(centre + across)) - projection.project(&centre)).norm()
+}
+
+/// The parameter at a point of a polyline; where something ends behind it, as near as doubles tell.
+fn stage_parameter(view: &Sightings<'_>, contour: &Contour, line: &Polyline, k: usize) -> f64 {
+    let mut t = line.parameters[k];
+    if k == 0 || k + 1 == line.points.len() {
+        return t;
+    }
+    let p = Point2::from(line.points[k]);
+    let step = (line.parameters[k + 1] - line.parameters[k - 1]) * ASIDE;
+    for _ in 0..4 {
+        let at = |t: f64| view.scene.projection.project(&contour.curve3.point(t));
+        let along = (at(t + step) - at(t - step)) / (2.0 * step);
+        let off = (p - at(t)).dot(&along) / along.norm_squared();
+        if !off.is_finite() {
+            break;
+        }
+        t += off;
+    }
+    let [lo, hi] = [line.parameters[k - 1], line.parameters[k + 1]];
+    t.clamp(lo.min(hi), lo.max(hi))
+}
+
+/// What a piece casts: it does where one side of it is farther off.
+fn cast<'v>(
+    stage: &LitScene<'_>,
+    view: &Sightings<'_>,
+    contour: &'v Contour,
+    range: [f64; 2],
+    size: f64,
+) -> Option<Cast<'v>> {
+    let projection = view.scene.projection;
+    let t = 0.5 * (range[0] + range[1]);
+    let p = contour.curve3.point(t);
+    let step = (range[1] - range[0]) * ASIDE;
+    let image = |t: f64| projection.project(&contour.curve3.point(t));
+    let along = image(t + step) - image(t - step);
+    let across = nalgebra::Vector2::new(-along.y, along.x) / along.norm();
+    if !across.x.is_finite() {
+        return None;
+    }
+    let outwards = open_direction(stage, view, contour, &p)?;
+    let depth = projection.depth(&p);
+    let towards = projection.project(&(p + outwards * (stage.subject.radius * ASIDE)));
+    let first = (towards - projection.project(&p)).dot(&across).signum();
+    [first, -first].into_iter().find_map(|side| {
+        let aside = projection.project(&p) + across * (side * size * ASIDE);
+        let (face, q) = view.scene.nearest(&aside)?;
+        let jump = projection.depth(&q) - depth;
+        let (origin, _) = projection.line_of_sight(&aside);
+        (jump > BEHIND * stage.subject.radius).then(|| Cast {
+            contour,
+            range,
+            ground: face,
+            hint: (q - origin).norm(),
+            lit: q,
+        })
+    })
+}
+
+/// The direction in which a light's lines of sight are likely to pass by a point of a contour: out of the
+/// faces that are turned away from it. None where both faces of an edge are turned to it, so that
+/// nothing next to it is behind it.
+fn open_direction(
+    stage: &LitScene<'_>,
+    view: &Sightings<'_>,
+    contour: &Contour,
+    p: &Point3<f64>,
+) -> Option<Vector3<f64>> {
+    let (towards, _) = view.scene.projection.towards_eye(p);
+    let outward = |face: &FaceId| stage.subject.brep.outward(*face, p);
+    let is_turned = |n: &Vector3<f64>| n.dot(&towards) > 0.0;
+    let normals = || contour.faces.iter().map(outward);
+    if contour.edge.is_some() && normals().count() == 2 && normals().all(|n| is_turned(&n)) {
+        return None;
+    }
+    let away: Vector3<f64> = normals().filter(|n| !is_turned(n)).sum();
+    // Of a limb the normal is across the line of sight, whatever its sign is told to be.
+    Some(if away == Vector3::zeros() {
+        normals().sum()
+    } else {
+        away
+    })
+}
+
+/// Where the point of a cast with a parameter falls on its ground, as the camera shows it.
+fn fall(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>, t: f64) -> Option<Shown> {
+    let light = view.scene.projection;
+    let camera = stage.view.scene.projection;
+    let image = light.project(&cast.contour.curve3.point(t));
+    let (origin, into) = light.line_of_sight(&image);
+    let far = front(stage.subject.brep, cast.ground, &origin, &into, cast.hint)?;
+    let p = origin + into * far;
+    (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
+}
+
+/// The image of the curve in which a cast falls on its ground.
+fn shadow(
+    stage: &LitScene<'_>,
+    view: &Sightings<'_>,
+    cast: &Cast<'_>,
+    window: &ImageWindow,
+) -> Option<Polyline> {
+    let straight = matches!(cast.contour.curve3, Curve::Line(_))
+        && matches!(stage.subject.brep.surface(cast.ground), Surface::Plane(_));
+    let curve = |t: f64| fall(stage, view, cast, t);
+    let mut line = flatten(curve, cast.range, straight, (FINE, window))?;
+    draw_out(&mut line);
+    Some(line)
+}
+
+/// Moves both ends of a polyline on by [`OVERLAP`].
+fn draw_out(line: &mut Polyline) {
+    let n = line.points.len();
+    for (end, before) in [(0, 1), (n - 1, n - 2)] {
+        let [p, q] = [line.points[end], line.points[before]];
+        let length = (p[0] - q[0]).hypot(p[1] - q[1]);
+        if length > OVERLAP {
+            let by = OVERLAP / length;
+            line.points[end] = [p[0] + by * (p[0] - q[0]), p[1] + by * (p[1] - q[1])];
+        }
+    }
+}
+
+/// The side of a shadow's boundary that is lit: that of a point next to its middle, which is nearer to
+/// it than a polyline is.
+fn lit_side(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<ArcSide> {
+    let [from, to] = cast.range;
+    let (t, step) = (0.5 * (from + to), (to - from) * ASIDE);
+    let at = |t: f64| fall(stage, view, cast, t).map(|(p, _)| [p.x, p.y]);
+    let [before, middle, after] = [at(t - step)?, at(t)?, at(t + step)?];
+    let lit = stage.view.scene.projection.project(&cast.lit);
+    let along = [after[0] - before[0], after[1] - before[1]];
+    let ahead = [middle[0] + along[0], middle[1] + along[1]];
+    Some(ArcSide::new([lit.x, lit.y], [middle, ahead]))
+}
+
+/// The parts of a curve on a face that the camera sees, and where these end on which arcs.
+fn visible_parts(
+    stage: &LitScene<'_>,
+    lines: &Lines,
+    ground: Option<FaceId>,
+    line: &Polyline,
+    ends: &mut Vec<(u32, [f64; 2])>,
+) -> Vec<Polyline> {
+    let mut cuts: Vec<(ArcPoint, Option<u32>)> = lines.crossings(line);
+    let last = line.points.len() - 2;
+    cuts.push(((0, 0.0), None));
+    cuts.push(((last, 1.0), None));
+    cuts.sort_by(|a, b| a.0.0.cmp(&b.0.0).then(a.0.1.total_cmp(&b.0.1)));
+    let mut parts = Vec::new();
+    for pair in cuts.windows(2) {
+        let [(from, before), (to, after)] = [pair[0], pair[1]];
+        let part = line.part(from, to);
+        let Some((i, s)) = part.middle().filter(|_| part.length() > OVERLAP) else {
+            continue;
+        };
+        let depth = 0.5 * (part.depths[i] + part.depths[i + 1]);
+        let is_seen = stage.seen(part.at(i, s)).is_some_and(|(face, p)| {
+            let off = stage.view.scene.projection.scale(&p) - depth;
+            Some(face) == ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
+        });
+        if is_seen {
+            for (place, arc) in [(from, before), (to, after)] {
+                ends.extend(arc.map(|arc| (arc, line.at(place.0, place.1))));
+            }
+            parts.push(part);
+        }
+    }
+    parts
+}

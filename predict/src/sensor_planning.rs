@@ -1,0 +1,156 @@
+//! Where camera and light are best: the setups of spheres, scored, and the best of them moved as long as
+//! that makes them better.
+
+use crate::feature::detected_arc::DetectionState;
+use crate::image::shading::Finishes;
+use crate::image_arcs::ArcSource;
+use crate::image_arcs::lit_scene::StageError;
+use crate::model::Setups;
+use crate::model::information::{deviation, information};
+use crate::prediction::{Memory, PredictedImage, with_draft};
+use crate::prepared_part::PreparedPart;
+use nalgebra::{Matrix6, Vector3};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The name of the format.
+pub const SCHEMA: &str = "premio.advice/1";
+
+/// What is sought.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Goal {
+    /// The most features that the detector may be expected to find.
+    #[default]
+    Features,
+    /// The least deviation of the pose.
+    Pose,
+}
+
+/// Directions of a camera and a light from the part's middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placing {
+    /// Of the camera.
+    pub view: Vector3<f64>,
+    /// Of the light that moves, if one does.
+    pub light: Option<Vector3<f64>>,
+}
+
+/// How good a setup is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Score {
+    /// How many features may be expected to be found, whole or in part.
+    pub expected: f64,
+    /// How many are visible.
+    pub visible: usize,
+    /// The deviation of the pose: turn in radians, move in the part's unit.
+    pub pose: Option<[f64; 2]>,
+    /// By feature: how likely it is found.
+    #[serde(skip)]
+    pub chances: BTreeMap<ArcSource, f64>,
+}
+
+impl Score {
+    /// What a goal makes of it: more is better.
+    pub fn value(&self, goal: Goal, radius: f64) -> f64 {
+        match goal {
+            Goal::Features => self.expected,
+            // By how much a point at the part's radius is off.
+            Goal::Pose => self
+                .pose
+                .map_or(f64::NEG_INFINITY, |[turn, by]| -turn.mul_add(radius, by)),
+        }
+    }
+}
+
+/// What scores setups of a part.
+#[derive(Clone, Copy, Debug)]
+pub struct SetupScorer<'s> {
+    /// The part.
+    pub subject: &'s PreparedPart<'s>,
+    /// The materials of its faces.
+    pub finishes: &'s Finishes,
+    /// The setups.
+    pub setups: &'s Setups,
+    /// What is sought.
+    pub goal: Goal,
+}
+
+impl SetupScorer<'_> {
+    /// The score of a setup; none where nothing is seen.
+    pub fn score(&self, placing: &Placing, memory: &mut Memory) -> Result<Score, StageError> {
+        // One seed for all: no setup is better than another by its noise.
+        let setup = self
+            .setups
+            .looking(placing.view, placing.light, 0, self.subject);
+        with_draft(self.subject, Some(self.finishes), &setup, memory, scored)
+    }
+
+    /// What the goal makes of a setup.
+    pub fn value(&self, score: &Score) -> f64 {
+        score.value(self.goal, self.subject.radius)
+    }
+
+    /// The setup moved as long as that makes it better, by steps from an angle (radians) down to a
+    /// sixteenth of it.
+    pub fn refined(
+        &self,
+        from: (Placing, Score),
+        angle: f64,
+        memory: &mut Memory,
+    ) -> (Placing, Score) {
+        let (mut placing, mut score) = from;
+        let mut step = angle;
+        while step > angle / 16.0 {
+            let better = neighbours(&placing, step).into_iter().find_map(|other| {
+                let moved = self.score(&other, memory).ok()?;
+                (self.value(&moved) > self.value(&score)).then_some((other, moved))
+            });
+            match better {
+                Some(found) => (placing, score) = found,
+                None => step *= 0.5,
+            }
+        }
+        (placing, score)
+    }
+}
+
+fn scored(draft: &PredictedImage<'_>) -> Score {
+    let outcome = draft.outcome();
+    let mut chances: BTreeMap<ArcSource, f64> = BTreeMap::new();
+    for (i, arc) in draft.arcs.iter().enumerate() {
+        let [start, end] = draft.ink.spans[i];
+        if arc.smooth || end - start < draft.conditions.detector.shortest {
+            continue;
+        }
+        let counts = outcome.counts[i];
+        let total: u32 = counts.iter().sum();
+        let found =
+            1.0 - f64::from(counts[DetectionState::Missed.index()]) / f64::from(total.max(1));
+        let known = chances.entry(arc.source).or_default();
+        *known = known.max(found);
+    }
+    let all: Matrix6<f64> = information(draft, &outcome.evidence).iter().sum();
+    Score {
+        expected: chances.values().sum(),
+        visible: chances.len(),
+        pose: deviation(&all),
+        chances,
+    }
+}
+
+/// Setups next to one: the camera, or the light, moved by a step in four directions.
+fn neighbours(placing: &Placing, step: f64) -> Vec<Placing> {
+    let moved = |d: &Vector3<f64>| {
+        let across = d.cross(&Vector3::ith(d.abs().imin(), 1.0)).normalize();
+        let other = d.cross(&across);
+        [across, -across, other, -other].map(|a| (d + a * step.tan()).normalize())
+    };
+    let views = moved(&placing.view).map(|view| Placing { view, ..*placing });
+    let lights = placing.light.iter().flat_map(moved);
+    let lights = lights.map(|light| Placing {
+        light: Some(light),
+        ..*placing
+    });
+    views.into_iter().chain(lights).collect()
+}

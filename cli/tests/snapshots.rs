@@ -140,7 +140,7 @@ fn messages() {
 fn the_picture_in_the_readme() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let readme = fs::read_to_string(root.join("README.md")).unwrap();
-    let command = "cargo run --release -p premio -- ";
+    let command = "cargo run --release -p premio-cli -- ";
     let line = readme.lines().find_map(|l| l.strip_prefix(command));
     let (words, picture) = line.unwrap().split_once(" -o ").unwrap();
     let drawn = String::from_utf8(common::premio(&root, words).stdout).unwrap();

@@ -303,9 +303,10 @@ fn an_output_that_differs_is_seen() {
     assert!(line_agrees("a…b…c", "a-b-b-c") && !line_agrees("a…b…c", "a-c-b"));
     let page = Page {
         name: "page".to_owned(),
-        text: "Here is `a.padl`:\n\n```padl\nA = SPH(R=1)\n```\n\n```console status=2\n$ premio info \
+        text:
+            "Here is `a.padl`:\n\n```padl\nA = SPH(R=1)\n```\n\n```console status=2\n$ premio info \
                a.padl --title \"a b\"\nout\n$ premio x\n```\n"
-            .to_owned(),
+                .to_owned(),
     };
     let files = files(std::slice::from_ref(&page));
     assert_eq!(files["a.padl"], "A = SPH(R=1)\n");
@@ -448,7 +449,10 @@ fn the_book_is_whole() {
     let chapters = chapters.map(|page| (root().join("docs/src"), page.text));
     let others = folders.map(|(folder, name)| (folder.clone(), page(&folder.join(name)).text));
     for (folder, text) in others.into_iter().chain(chapters) {
-        for (_, after) in text.match_indices("](").map(|(at, _)| text.split_at(at + 2)) {
+        for (_, after) in text
+            .match_indices("](")
+            .map(|(at, _)| text.split_at(at + 2))
+        {
             let target = after.split(')').next().unwrap();
             let file = target.split('#').next().unwrap();
             if !file.is_empty() && !file.starts_with("http") {

@@ -338,7 +338,7 @@ pub struct CompletionsOptions {
 /// The formats of models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
 pub enum ModelFormat {
-    /// The language of the README
+    /// PADL
     Padl,
     /// As OpenSCAD flattens
     Csg,

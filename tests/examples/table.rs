@@ -1,4 +1,4 @@
-//! The README's table of speed, made of what criterion measured:
+//! The book's table of speed, made of what criterion measured:
 //! `cargo bench -p premio-tests && cargo run --release -p premio-tests --example table`.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a report")]
 

@@ -6,9 +6,9 @@ use super::supports::ordered;
 use nalgebra::{Matrix3, Point2, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::predicates::ROUNDING;
-use premio_visibility::contour::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
+use premio_visibility::camera::projection::Projection;
+use premio_visibility::contours::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
 use premio_visibility::image_curve::{folds_of_conic, map_of_ellipse};
-use premio_visibility::projection::Projection;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 

@@ -15,8 +15,8 @@ pub mod svg;
 
 use image_arcs::ArcMaker;
 use nalgebra::{Point2, Vector2};
-use premio_visibility::contour::{Contour, ContourKind, Contours};
-use premio_visibility::projection::{Projection, ViewRay};
+use premio_visibility::camera::projection::{Projection, ViewRay};
+use premio_visibility::contours::{Contour, ContourKind, Contours};
 
 /// What a stroke shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -8,8 +8,8 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 use parts::{BAND, Builder, tilted};
 use premio_drawing::{Drawing, DrawingOptions, StrokeShape, dxf, svg};
 use premio_kernel::geometry::frame::Frame;
-use premio_visibility::contour::Contours;
-use premio_visibility::projection::Projection;
+use premio_visibility::camera::projection::Projection;
+use premio_visibility::contours::Contours;
 use premio_visibility::{Camera, contours};
 
 fn seen() -> Contours {

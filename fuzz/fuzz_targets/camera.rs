@@ -6,7 +6,7 @@ use libfuzzer_sys::fuzz_target;
 use nalgebra::Point3;
 use premio_fuzz::BORED_BLOCK;
 use premio_matching::camera::CameraFile;
-use premio_visibility::projection::Projection;
+use premio_visibility::camera::projection::Projection;
 use premio_visibility::{Camera, contours};
 use std::ops::Range;
 

@@ -5,8 +5,8 @@ use crate::edge_score::{SampleHit, seen};
 use crate::part::{EdgeSample, SoughtPart};
 use nalgebra::{Isometry3, Point3};
 use premio_predict::image_arcs::ArcSource;
-use premio_visibility::contour::Contour;
-use premio_visibility::view::{ViewError, contours};
+use premio_visibility::contours::Contour;
+use premio_visibility::contours::{ViewError, contours};
 use std::collections::BTreeMap;
 
 /// The distance of points along a contour, in pixels, and how many there are at most.

@@ -8,8 +8,9 @@ use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::tessellation::{Accuracy, Mesh, tessellate};
 use premio_visibility::camera::Camera;
-use premio_visibility::projection::Projection;
-use premio_visibility::ray_casting::{OriginIncidence, Scene, SightLine};
+use premio_visibility::camera::projection::Projection;
+use premio_visibility::ray_casting::{OriginIncidence, SightLine};
+use premio_visibility::scene::Scene;
 use std::f64::consts::PI;
 
 /// How many directions of the hemisphere are tried, and from how many points of a face at the most.

@@ -18,8 +18,8 @@ use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::SurfaceKind;
 use premio_kernel::tessellation::{Accuracy, Mesh, TessellationError, Triangle, tessellate};
 use premio_visibility::Contours;
-use premio_visibility::contour::{Contour, ContourPiece};
-use premio_visibility::projection::Projection;
+use premio_visibility::camera::projection::Projection;
+use premio_visibility::contours::{Contour, ContourPiece};
 use std::f64::consts::TAU;
 use std::time::Duration;
 

@@ -4,7 +4,7 @@ use crate::random::tree;
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
-use premio_visibility::contour::{Contour, ContourKind, ImageCurve};
+use premio_visibility::contours::{Contour, ContourKind, ImageCurve};
 use premio_visibility::{Camera, Contours, contours};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};

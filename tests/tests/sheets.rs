@@ -7,8 +7,8 @@ use premio_csg::reader::{Format, ReadOptions, read};
 use premio_drawing::sheet::StandardView;
 use premio_drawing::{Drawing, Layer};
 use premio_visibility::Contours;
-use premio_visibility::contour::ImageCurve;
 use premio_visibility::contours;
+use premio_visibility::contours::ImageCurve;
 use std::f64::consts::PI;
 
 fn seen(part: &str, view: StandardView) -> Contours {

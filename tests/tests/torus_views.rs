@@ -6,10 +6,10 @@
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
-use premio_visibility::contour::{ContourKind, Contours, JunctionKind};
+use premio_visibility::camera::projection::{Projection, ViewRay};
+use premio_visibility::contours::contours_with;
+use premio_visibility::contours::{ContourKind, Contours, JunctionKind};
 use premio_visibility::invisibility::Method;
-use premio_visibility::projection::{Projection, ViewRay};
-use premio_visibility::view::contours_with;
 use premio_visibility::{Camera, contours};
 use std::f64::consts::TAU;
 
@@ -193,7 +193,7 @@ impl Tally {
         };
         let again = contours_with(&part.brep, camera, part.resolution, Method::Recounted).unwrap();
         for (a, b) in seen.contours.iter().zip(&again.contours) {
-            let qi = |c: &premio_visibility::contour::Contour| {
+            let qi = |c: &premio_visibility::contours::Contour| {
                 c.pieces.iter().map(|p| p.qi).collect::<Vec<_>>()
             };
             if qi(a) != qi(b) {
@@ -351,7 +351,7 @@ fn limbs_are_cut_next_to_their_nodes() {
         let eye = Point3::new(0.0, -10.0, 0.0);
         let camera = Camera::orthographic(eye, Point3::origin(), Vector3::z()).unwrap();
         let seen = contours(&part.brep, &camera, part.resolution).unwrap();
-        let of_tube = |c: &&premio_visibility::contour::Contour| {
+        let of_tube = |c: &&premio_visibility::contours::Contour| {
             let [p, q] = [0.0, 1.0].map(|t| c.curve3.point(t));
             c.kind == ContourKind::Limb
                 && p.y.hypot(q.y) < 1e-12

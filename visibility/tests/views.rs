@@ -9,11 +9,12 @@ use parts::{BAND, Builder, block, tilted};
 use premio_kernel::brep::Brep;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Surface, Torus};
-use premio_visibility::contour::{ContourKind, Contours, JunctionKind};
+use premio_visibility::camera::projection::Projection;
+use premio_visibility::contours::{ContourKind, Contours, JunctionKind};
+use premio_visibility::contours::{ViewError, contours, contours_with};
 use premio_visibility::invisibility::Method;
-use premio_visibility::projection::Projection;
-use premio_visibility::ray_casting::{OriginIncidence, Scene};
-use premio_visibility::view::{ViewError, contours, contours_with};
+use premio_visibility::ray_casting::OriginIncidence;
+use premio_visibility::scene::Scene;
 use premio_visibility::{Camera, camera::CameraError};
 use proptest::prelude::*;
 
@@ -30,7 +31,7 @@ fn see(brep: &Brep, camera: &Camera) -> Contours {
 }
 
 fn wholly_visible(c: &Contours) -> usize {
-    let whole = |c: &&premio_visibility::contour::Contour| {
+    let whole = |c: &&premio_visibility::contours::Contour| {
         !c.pieces.is_empty() && c.pieces.iter().all(|p| p.visible)
     };
     c.contours.iter().filter(whole).count()

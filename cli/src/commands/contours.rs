@@ -10,7 +10,7 @@ use premio_drawing::sheet::{self, Angle, Paper, Sheet, StandardView};
 use premio_drawing::{Drawing, dxf, svg};
 use premio_kernel::unit::Unit;
 use premio_visibility::camera::CameraError;
-use premio_visibility::view::ViewError;
+use premio_visibility::contours::ViewError;
 use premio_visibility::{Camera, Contours, contours};
 use std::path::Path;
 

@@ -6,10 +6,12 @@ use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_predict::sphere::{Lattice, SphereSampling, points};
 use premio_visibility::camera::Camera;
-use premio_visibility::contour_arc::{Junctions, LimbArc, limb_arcs};
-use premio_visibility::projection::Projection;
-use premio_visibility::ray_casting::{OriginIncidence, Scene};
-use premio_visibility::view::part_size;
+use premio_visibility::camera::projection::Projection;
+use premio_visibility::contour_generator::junctions::Junctions;
+use premio_visibility::contour_generator::limb_arcs::{LimbArc, limb_arcs};
+use premio_visibility::contours::part_size;
+use premio_visibility::ray_casting::OriginIncidence;
+use premio_visibility::scene::Scene;
 use std::sync::OnceLock;
 
 /// How many directions there are.
@@ -144,8 +146,8 @@ mod tests {
     use crate::detectability_prior::DetectabilityPrior;
     use premio_csg::evaluate::{EvaluationOptions, evaluate};
     use premio_csg::reader::{Format, ReadOptions, read};
-    use premio_visibility::contour::{Contour, ContourKind, ContourPiece};
-    use premio_visibility::view::contours;
+    use premio_visibility::contours::contours;
+    use premio_visibility::contours::{Contour, ContourKind, ContourPiece};
 
     /// A plate with a hole, a boss and a ball: edges and limbs that hide one another.
     const PART: &str = r#"{"op": "union", "children": [

@@ -139,8 +139,8 @@ mod tests {
     use premio_csg::reader::{Format, ReadOptions, read};
     use premio_kernel::geometry::frame::Frame;
     use premio_kernel::geometry::surface::{Cone, Cylinder, Sphere, Torus};
-    use premio_visibility::contour::ContourKind;
-    use premio_visibility::view::contours;
+    use premio_visibility::contours::ContourKind;
+    use premio_visibility::contours::contours;
     use proptest::prelude::*;
 
     /// Limbs of a part that `visibility` finds at a pose, each held against the plane of every tangent.

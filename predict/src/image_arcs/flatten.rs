@@ -260,6 +260,9 @@ impl Polyline {
 }
 
 /// A point in space as a projection shows it.
-pub fn shown(projection: &premio_visibility::projection::Projection, p: &Point3<f64>) -> Shown {
+pub fn shown(
+    projection: &premio_visibility::camera::projection::Projection,
+    p: &Point3<f64>,
+) -> Shown {
     (projection.project(p), projection.scale(p))
 }

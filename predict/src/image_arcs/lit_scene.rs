@@ -8,10 +8,11 @@ use crate::setup::viewpoint::Matrices;
 use crate::setup::{Setup, SetupError};
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
+use premio_visibility::camera::projection::Projection;
 use premio_visibility::camera::{Camera, CameraError};
-use premio_visibility::contour::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
-use premio_visibility::projection::Projection;
-use premio_visibility::ray_casting::{OriginIncidence, Scene};
+use premio_visibility::contours::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
+use premio_visibility::ray_casting::OriginIncidence;
+use premio_visibility::scene::Scene;
 use premio_visibility::{ViewError, contours};
 use std::collections::HashMap;
 

@@ -10,7 +10,7 @@ use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
-use premio_visibility::contour::Contour;
+use premio_visibility::contours::Contour;
 
 /// How far aside of a contour its sides are looked at, in the part's size.
 const ASIDE: f64 = 1.0 / 65_536.0;

@@ -25,7 +25,7 @@ use premio_csg::tree::Tree;
 use premio_drawing::Drawing;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::predicates::ROUNDING;
-use premio_visibility::projection::Projection;
+use premio_visibility::camera::projection::Projection;
 use premio_visibility::{Camera, Contours, contours};
 use std::fmt;
 

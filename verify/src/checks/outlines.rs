@@ -10,7 +10,7 @@ use super::window::Window;
 use premio_csg::ray_casting::{Clearance, RayOracle, SurfaceCrossing, Surfaces};
 use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
-use premio_visibility::projection::Projection;
+use premio_visibility::camera::projection::Projection;
 use std::f64::consts::PI;
 use std::fmt;
 

@@ -5,8 +5,8 @@ use nalgebra::{Point3, Vector3};
 use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence};
 use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
-use premio_visibility::contour::{ContourKind, ImageCurve};
-use premio_visibility::projection::{Projection, ViewRay};
+use premio_visibility::camera::projection::{Projection, ViewRay};
+use premio_visibility::contours::{ContourKind, ImageCurve};
 use std::fmt;
 
 /// Where in a piece samples are taken, as parts of its range: not in the middle, where a contour of

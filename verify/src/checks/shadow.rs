@@ -9,7 +9,7 @@ use super::strokes::{Strokes, is_outline, point};
 use nalgebra::{Point2, Vector2};
 use premio_csg::ray_casting::{Ray, RayOracle};
 use premio_drawing::Drawing;
-use premio_visibility::projection::{Projection, ViewRay};
+use premio_visibility::camera::projection::{Projection, ViewRay};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 

@@ -7,7 +7,7 @@ use nalgebra::{Point2, Point3};
 use premio_csg::ray_casting::Ray;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::frame::Frame;
-use premio_visibility::projection::{Projection, ViewRay};
+use premio_visibility::camera::projection::{Projection, ViewRay};
 
 /// How far from the optical axis, in multiples of the depth, a perspective image reaches at most.
 const WIDEST: f64 = 2.0;

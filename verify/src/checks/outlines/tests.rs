@@ -4,8 +4,8 @@ use crate::checks::views::{CheckedView, around};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::tree::Tree;
-use premio_visibility::contour::{Contour, ContourKind, ContourPiece};
 use premio_visibility::contours;
+use premio_visibility::contours::{Contour, ContourKind, ContourPiece};
 
 /// Limbs before and behind, creases, a smooth edge, a blind hole, a torus with cusps.
 const PARTS: [&str; 4] = [

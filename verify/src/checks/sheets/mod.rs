@@ -17,8 +17,8 @@ use premio_drawing::{Drawing, Layer, Stroke, StrokeShape};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::unit::Unit;
 use premio_visibility::Contours;
-use premio_visibility::contour::ImageCurve;
-use premio_visibility::projection::Projection;
+use premio_visibility::camera::projection::Projection;
+use premio_visibility::contours::ImageCurve;
 use std::fmt;
 
 /// Where on a stroke it is held against contours and other strokes. Not in the middle: there others

@@ -5,8 +5,13 @@
 //! a conic. The conic is hᵀ C h = 0 with C = M⁻ᵀ B M⁻¹, B the conic of b; it is also the cone of
 //! sight, the lines from the eye through the curve. A line's cone of sight is the plane l·h = 0.
 
-use crate::edgewise::Edgewise;
-use crate::projection::Projection;
+pub mod edgewise;
+pub mod image_box;
+pub mod monotone_arc;
+pub mod polynomial;
+
+use crate::camera::projection::Projection;
+use crate::image_curve::edgewise::Edgewise;
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::curve::{Conic, Curve};
 use premio_kernel::geometry::frame::Frame;

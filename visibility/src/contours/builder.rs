@@ -1,21 +1,21 @@
 //! The contours of a part for a viewpoint.
 
 use crate::camera::Camera;
-use crate::contour::{
+use crate::camera::projection::Projection;
+use crate::contour_generator::contour_arc::{Change, ContourArc, Split};
+use crate::contour_generator::facing::is_limb;
+use crate::contour_generator::junctions::{JunctionSupport, Junctions};
+use crate::contour_generator::limb_arcs::{LimbArcs, limb_arcs};
+use crate::contours::{
     Contour, ContourKind, ContourPiece, ContourSeconds, Contours, ImageCurve, JunctionKind, SCHEMA,
 };
-use crate::contour_arc::{
-    Change, ContourArc, JunctionSupport, Junctions, LimbArcs, Split, limb_arcs,
-};
-use crate::edgewise::Edgewise;
-use crate::facing::is_limb;
-use crate::image_box::ImageBox;
+use crate::image_curve::edgewise::Edgewise;
+use crate::image_curve::image_box::ImageBox;
+use crate::image_curve::monotone_arc::{self, stretches};
 use crate::image_curve::{Image, image};
 use crate::invisibility::{Method, pieces};
 use crate::junction;
-use crate::monotone_arc::{self, stretches};
-use crate::projection::Projection;
-use crate::ray_casting::Scene;
+use crate::scene::Scene;
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};

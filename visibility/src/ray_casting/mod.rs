@@ -4,17 +4,18 @@
 //! through P, so there the root s = 0 is divided out (twice where the line is tangent, on a limb),
 //! and never has to be told from zero.
 
-use crate::face_box::{FaceBox, Pierced, face_box};
-use crate::projection::{Projection, ViewRay};
+pub(crate) mod first_hit;
+mod intersections;
+mod pierced;
+
+use crate::camera::projection::ViewRay;
+use crate::scene::Scene;
 use nalgebra::{Point3, Vector3};
-use premio_kernel::brep::Brep;
-use premio_kernel::brep::locate::{Locator, PointLocation};
-use premio_kernel::brep::topology::{FaceId, Sense};
-use premio_kernel::geometry::bounds::Aabb;
+use pierced::Pierced;
+use premio_kernel::brep::locate::PointLocation;
+use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
-use rstar::RTree;
-use rstar::primitives::{GeomWithData, Rectangle};
 use std::f64::consts::TAU;
 
 /// A line of sight from a point towards the eye.
@@ -140,60 +141,7 @@ fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-/// The boundary, ready for lines of sight.
-#[derive(Debug)]
-pub struct Scene<'a> {
-    /// The part.
-    pub brep: &'a Brep,
-    /// The camera.
-    pub projection: &'a Projection,
-    /// Where points lie in faces.
-    pub locator: Locator<'a>,
-    /// The resolution.
-    pub band: f64,
-    /// The sine of the angle between parallel sight and a direction along which the whole part is no
-    /// longer in the image than the resolution.
-    pub tilt: f64,
-    tree: RTree<FaceBox>,
-    bounds: Aabb,
-}
-
-/// The box of boxes.
-fn hull(boxes: &[Aabb]) -> Aabb {
-    boxes.iter().fold(Aabb::EMPTY, |a, b| a.hull(b))
-}
-
-impl<'a> Scene<'a> {
-    /// The scene of a part seen by a camera; `band` is the resolution.
-    pub fn new(brep: &'a Brep, projection: &'a Projection, band: f64) -> Self {
-        let locator = Locator::new(brep, band);
-        let boxes: Vec<Aabb> = brep
-            .topology
-            .face_ids()
-            .map(|f| face_box(brep, &locator, f, band))
-            .collect();
-        let leaf = |(i, b): (usize, &Aabb)| {
-            GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
-        };
-        let tree = RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect());
-        let bounds = hull(&boxes);
-        let size = bounds.diagonal();
-        Self {
-            brep,
-            projection,
-            locator,
-            band,
-            tilt: (band / size).max(ROUNDING),
-            tree,
-            bounds,
-        }
-    }
-
-    /// The box of the whole part.
-    pub fn bounds(&self) -> Aabb {
-        self.bounds
-    }
-
+impl Scene<'_> {
     /// The line of sight from a point.
     pub fn ray(&self, p: &Point3<f64>) -> SightLine {
         let (towards, away) = self.projection.towards_eye(p);
@@ -309,14 +257,6 @@ impl<'a> Scene<'a> {
             if s.is_above_zero() {
                 report(s);
             }
-        }
-    }
-
-    /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
-    pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
-        match self.projection.sight {
-            ViewRay::Eye(e) => (e - origin).dot(normal).is_within(self.band),
-            ViewRay::Direction(d) => d.dot(normal).is_within(self.tilt),
         }
     }
 
@@ -540,10 +480,5 @@ impl<'a> Scene<'a> {
             votes += if inside { 1 } else { -1 };
         }
         votes > 0
-    }
-
-    /// Whether a face's outward normal is its surface's.
-    pub fn along(&self, face: FaceId) -> bool {
-        self.brep.sense(face) == Sense::Along
     }
 }

@@ -1,15 +1,39 @@
 //! Quantitative invisibility of the pieces of contours (Appel 1967, Loutrel 1970; section 4.1.2
 //! of the paper).
 
-use crate::contour::ContourPiece;
-use crate::contour_arc::{Change, ContourArc, Junctions, Passing, Split};
-use crate::correction::{Corrections, End};
+pub(crate) mod correction;
+
+use crate::contour_generator::contour_arc::{Change, ContourArc, Passing, Split};
+use crate::contour_generator::junctions::Junctions;
 use crate::image_curve::Image;
-use crate::ray_casting::{Occluders, OriginIncidence, Scene};
+use crate::invisibility::correction::{Corrections, End};
+use crate::ray_casting::{Occluders, OriginIncidence};
+use crate::scene::Scene;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
+use serde::Serialize;
+
+/// A piece of a contour between two junctions: one visibility.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContourPiece {
+    /// The range of the curve's parameter, increasing; it may pass the end of a period.
+    pub t: [f64; 2],
+    /// Whether nothing lies before it.
+    pub visible: bool,
+    /// How many faces turned towards the eye lie before it.
+    pub qi: u32,
+    /// The one of them nearest to the eye.
+    pub occluder: Option<FaceId>,
+    /// The junction at its start; none for a whole closed contour.
+    pub start: Option<u32>,
+    /// The junction at its end.
+    pub end: Option<u32>,
+    /// Points of it, where asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Vec<[f64; 3]>>,
+}
 
 /// How the quantitative invisibility of the pieces is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

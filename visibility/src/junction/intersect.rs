@@ -5,14 +5,14 @@
 //! give a polynomial of the fourth degree in the tangent of half the angle; other curves against
 //! these are isolated on their parameter, and two other curves as graphs over a direction.
 
-use crate::contour_arc::ContourArc;
-use crate::edgewise::Edgewise;
+use crate::camera::projection::Projection;
+use crate::contour_generator::contour_arc::ContourArc;
+use crate::image_curve::edgewise::Edgewise;
+use crate::image_curve::monotone_arc::passes;
+use crate::image_curve::polynomial::{QuarticPolynomial, crossings};
 use crate::image_curve::{Basis, Image, flat_of, line_on_conic};
-use crate::intersect_general::general_pair;
-use crate::monotone_arc::passes;
-use crate::polynomial::{QuarticPolynomial, crossings};
-use crate::projection::Projection;
-use crate::ray_casting::Scene;
+use crate::junction::intersect_general::general_pair;
+use crate::scene::Scene;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use premio_kernel::number::analytic::{Analytic, dot};
 use premio_kernel::number::bisection::bisect;

@@ -1,6 +1,7 @@
 //! Where lines of sight meet whole surfaces.
 
-use crate::ray_casting::{OriginIncidence, Scene, SightLine};
+use crate::ray_casting::{OriginIncidence, SightLine};
+use crate::scene::Scene;
 use nalgebra::Vector3;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Surface, Torus};

@@ -1,8 +1,9 @@
 //! Parameters on strands, and the points where the boundary touches itself.
 
-use crate::contour::JunctionKind;
-use crate::contour_arc::{Change, ContourArc, JunctionSupport, Junctions, Split};
-use crate::ray_casting::Scene;
+use crate::contour_generator::contour_arc::{Change, ContourArc, Split};
+use crate::contour_generator::junctions::JunctionKind;
+use crate::contour_generator::junctions::{JunctionSupport, Junctions};
+use crate::scene::Scene;
 use premio_kernel::number::predicates::Compare;
 
 /// Distances between points found on two ways, in multiples of the resolution.

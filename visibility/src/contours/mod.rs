@@ -1,5 +1,11 @@
 //! The contours for a viewpoint, as they are handed on (`premio.contours/1`).
 
+mod builder;
+
+pub use crate::contour_generator::junctions::{Junction, JunctionKind};
+pub use crate::invisibility::ContourPiece;
+pub use builder::{ViewError, contours, contours_with, part_size};
+
 use crate::camera::Camera;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::curve::Curve;
@@ -19,44 +25,6 @@ pub enum ContourKind {
     /// A curve along which the line of sight touches the part (definition 4.2): inside a face, or
     /// along a smooth edge whose faces are turned differently.
     Limb,
-}
-
-/// Where pieces of contours end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum JunctionKind {
-    /// A vertex of the part, or the apex of a cone.
-    Vertex,
-    /// Two contours cross in the image, one before the other in space (definition 4.4).
-    T,
-    /// The line of sight is along the limb (definition 4.5).
-    Cusp,
-    /// A limb ends on the boundary of its face.
-    Limb,
-    /// A limb crosses itself in space.
-    #[serde(rename = "node")]
-    SelfCrossing,
-    /// The image of the curve turns back on itself.
-    #[serde(rename = "turn")]
-    ImageTurn,
-    /// The near plane cuts the contour.
-    #[serde(rename = "cut")]
-    NearPlane,
-}
-
-/// A point where pieces of contours end.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Junction {
-    /// Its place in the list.
-    pub id: u32,
-    /// What happens there.
-    pub kind: JunctionKind,
-    /// Its place in the image, in the camera's unit.
-    pub point2: [f64; 2],
-    /// Its place in space; at a T-junction, on the contour behind.
-    pub point3: [f64; 3],
-    /// The contours that meet there; at a T-junction the nearer one first.
-    pub contours: Vec<u32>,
 }
 
 /// A curve in the image.
@@ -80,26 +48,6 @@ pub enum ImageCurve {
     },
     /// The projection of the curve in space, which has the same parameter.
     Projected,
-}
-
-/// A piece of a contour between two junctions: one visibility.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ContourPiece {
-    /// The range of the curve's parameter, increasing; it may pass the end of a period.
-    pub t: [f64; 2],
-    /// Whether nothing lies before it.
-    pub visible: bool,
-    /// How many faces turned towards the eye lie before it.
-    pub qi: u32,
-    /// The one of them nearest to the eye.
-    pub occluder: Option<FaceId>,
-    /// The junction at its start; none for a whole closed contour.
-    pub start: Option<u32>,
-    /// The junction at its end.
-    pub end: Option<u32>,
-    /// Points of it, where asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub samples: Option<Vec<[f64; 3]>>,
 }
 
 /// A contour: the projection of an edge, of a part of one, or of a limb inside a face.

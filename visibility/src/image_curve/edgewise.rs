@@ -5,7 +5,7 @@
 //! Two such curves on one surface overlap; every other curve crosses them where it passes the
 //! surface. So nothing of the image has to be searched in two parameters.
 
-use crate::projection::{Projection, ViewRay};
+use crate::camera::projection::{Projection, ViewRay};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::curve_plane::{line_meets, plane_roots};

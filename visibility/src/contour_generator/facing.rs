@@ -9,8 +9,8 @@
 //! towards the eye and one away, or one of them edge-on. There the edge is the limb (definition
 //! 4.2 of the paper), and the image of the part ends on it.
 
-use crate::projection::ViewRay;
-use crate::ray_casting::Scene;
+use crate::camera::projection::ViewRay;
+use crate::scene::Scene;
 use nalgebra::Vector3;
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, Sense};
 use premio_kernel::geometry::surface::Surface;

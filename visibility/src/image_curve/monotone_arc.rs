@@ -6,9 +6,9 @@
 //! what is left is one point within the resolution: a dot. It holds a cusp, or a turn at which the
 //! image goes back the way it came.
 
-use crate::image_box::ImageBox;
+use crate::camera::projection::Projection;
+use crate::image_curve::image_box::ImageBox;
 use crate::image_curve::{flat_of, flat_point};
-use crate::projection::Projection;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::analytic::Analytic;
 use premio_kernel::number::bisection::bisect;

@@ -4,8 +4,8 @@
 //! resolution of each other. Which of the two lies on which side is plain at the ends of the whole
 //! run only: there the two cross if they have changed sides, once.
 
-use crate::intersect_general::Graphs;
-use crate::monotone_arc::dot2;
+use crate::image_curve::monotone_arc::dot2;
+use crate::junction::intersect_general::Graphs;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::bisection::bisect;

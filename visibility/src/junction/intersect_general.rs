@@ -6,12 +6,12 @@
 //! monotone and its ends decide; else its roots are isolated with their multiplicity, so a touch
 //! is told from two crossings, and curves that fall on one another are seen to do so.
 
-use crate::contour_arc::ContourArc;
+use crate::camera::projection::Projection;
+use crate::contour_generator::contour_arc::ContourArc;
 use crate::image_curve::flat_point;
-use crate::intersect::{Overlap, overlap_of, place_of};
-use crate::monotone_arc::{DirectionCone, MonotoneArc, dot2, simple_run};
-use crate::overlap::{Runs, Shared};
-use crate::projection::Projection;
+use crate::image_curve::monotone_arc::{DirectionCone, MonotoneArc, dot2, simple_run};
+use crate::junction::intersect::{Overlap, overlap_of, place_of};
+use crate::junction::overlap::{Runs, Shared};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::analytic::Analytic;

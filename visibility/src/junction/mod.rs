@@ -7,13 +7,20 @@
 //! The folded sheet of a limb lies towards -N, or towards N where the surface is hollow along the
 //! line of sight.
 
-use crate::broad_phase::candidates;
-use crate::contour::JunctionKind;
-use crate::contour_arc::{Change, ContourArc, JunctionSupport, Junctions, Passing, Split};
+pub mod broad_phase;
+pub mod intersect;
+pub mod intersect_general;
+pub(crate) mod overlap;
+pub(crate) mod snap;
+
+use crate::contour_generator::contour_arc::{Change, ContourArc, Passing, Split};
+use crate::contour_generator::junctions::JunctionKind;
+use crate::contour_generator::junctions::{JunctionSupport, Junctions};
 use crate::image_curve::{Image, flat_of};
-use crate::intersect::{Overlap, cross, parameters_at};
-use crate::ray_casting::Scene;
-use crate::snap::{Settled, nearest_turn, settle, split_at_touches};
+use crate::junction::broad_phase::candidates;
+use crate::junction::intersect::{Overlap, cross, parameters_at};
+use crate::junction::snap::{Settled, nearest_turn, settle, split_at_touches};
+use crate::scene::Scene;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::Surface;

@@ -3,6 +3,8 @@
 //! Either an eye that looks at a target, in perspective or orthographic, or OpenCV's matrices:
 //! image = K (R x + t), in pixels, y down.
 
+pub mod projection;
+
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use premio_text::{Document, TextError};

@@ -7,9 +7,10 @@
 //! is folded, and the terms of second order decide. An answer is given only where all this is
 //! plain; elsewhere the faces are counted anew.
 
-use crate::contour::JunctionKind;
-use crate::contour_arc::{ContourArc, JunctionSupport, Junctions};
-use crate::ray_casting::Scene;
+use crate::contour_generator::contour_arc::ContourArc;
+use crate::contour_generator::junctions::JunctionKind;
+use crate::contour_generator::junctions::{JunctionSupport, Junctions};
+use crate::scene::Scene;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::surface::Surface;

@@ -1,10 +1,10 @@
 //! The pairs of contours whose images may meet: boxes in an R-tree where there are many, long
 //! contours as chains of boxes.
 
-use crate::contour_arc::ContourArc;
-use crate::image_box::ImageBox;
+use crate::camera::projection::Projection;
+use crate::contour_generator::contour_arc::ContourArc;
+use crate::image_curve::image_box::ImageBox;
 use crate::image_curve::{Basis, Image, flat_of};
-use crate::projection::Projection;
 use premio_kernel::number::predicates::Compare;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};

@@ -3,7 +3,8 @@
 //! Only what decides is placed in its face: where a line crosses surfaces costs less to tell than
 //! whether it does so within the faces.
 
-use crate::ray_casting::{OriginIncidence, Scene, SightLine};
+use crate::ray_casting::{OriginIncidence, SightLine};
+use crate::scene::Scene;
 use nalgebra::{Point2, Point3};
 use premio_kernel::brep::locate::PointLocation;
 use premio_kernel::brep::topology::FaceId;

@@ -7,7 +7,7 @@
 //! R cos φ + r - (e_x cos θ + e_y sin θ) cos φ - e_z sin φ = 0. At a cusp the line of sight runs
 //! along the limb: the normal curvature of the surface vanishes along it.
 
-use crate::projection::ViewRay;
+use crate::camera::projection::ViewRay;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use premio_kernel::geometry::curve::{Circle, Curve, Line};

@@ -1,0 +1,123 @@
+//! Contours before they are cut at junctions: edges, and limbs trimmed by their faces.
+
+use crate::image_curve::Image;
+use crate::image_curve::image_box::ImageBox;
+use crate::image_curve::monotone_arc::MonotoneArc;
+use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};
+use premio_kernel::geometry::curve::Curve;
+use premio_kernel::number::predicates::Compare;
+
+/// A clean passage behind another contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passing {
+    /// By how much the quantitative invisibility grows.
+    pub by: i32,
+    /// The face turned towards the eye that begins to hide.
+    pub entered: Option<FaceId>,
+    /// The face turned towards the eye that ceases to hide.
+    pub left: Option<FaceId>,
+    /// How far the other contour lies before this one, along the line of sight.
+    pub ahead: f64,
+    /// How far aside of the other contour this one gets, for each unit of its length.
+    pub aside: f64,
+}
+
+impl Passing {
+    /// The same on the way back.
+    pub fn reversed(&self) -> Self {
+        Self {
+            by: -self.by,
+            entered: self.left,
+            left: self.entered,
+            ..*self
+        }
+    }
+}
+
+/// What a split does to the quantitative invisibility along the strand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// It changes as the other contour says.
+    Pass(Passing),
+    /// What hides there has to be told by the faces at the junction, or counted anew.
+    Correct,
+}
+
+/// A point at which a strand is cut.
+#[derive(Clone, Copy, Debug)]
+pub struct Split {
+    /// The parameter.
+    pub t: f64,
+    /// The junction there.
+    pub junction: u32,
+    /// What happens to the quantitative invisibility.
+    pub change: Change,
+}
+
+/// A connected stretch of a contour before the near plane.
+#[derive(Debug)]
+pub struct ContourArc<'a> {
+    /// The curve in space.
+    pub curve: &'a Curve,
+    /// The range of its parameter.
+    pub range: [f64; 2],
+    /// Whether the range is a whole period.
+    pub closed: bool,
+    /// The junctions at both ends.
+    pub ends: [Option<u32>; 2],
+    /// The contour it belongs to.
+    pub contour: u32,
+    /// The edge it is of; none for a limb.
+    pub edge: Option<EdgeId>,
+    /// The faces along it, each with the sense in which its loop runs.
+    pub faces: Vec<(FaceId, Sense)>,
+    /// Whether it is a limb, of its only face.
+    pub limb: bool,
+    /// Its image.
+    pub image: Image,
+    /// Where the image turns back on itself.
+    pub turns: Vec<f64>,
+    /// The image in stretches, where it is neither a line nor a conic.
+    pub stretches: Vec<MonotoneArc>,
+    /// A box that holds the image.
+    pub hull: ImageBox,
+    /// Where it is cut, in no order.
+    pub splits: Vec<Split>,
+}
+
+impl ContourArc<'_> {
+    /// The junctions known on it, with their parameters.
+    pub fn junctions(&self) -> impl Iterator<Item = (u32, f64)> {
+        let ends = self.ends.iter().zip(self.range);
+        let ends = ends.filter_map(|(id, t)| id.map(|id| (id, t)));
+        ends.chain(self.splits.iter().map(|split| (split.junction, split.t)))
+    }
+
+    /// About how long the image is between the first and the last of some parameters.
+    pub fn length_between(&self, t: &[f64]) -> f64 {
+        let (Some(&lo), Some(&hi)) = (t.first(), t.last()) else {
+            return 0.0;
+        };
+        let within = self.stretches.iter();
+        within
+            .filter(|s| s.range[1].is_beyond(lo) && s.range[0].is_short_of(hi))
+            .map(|s| {
+                let [p, q] = s.ends;
+                (q[0] - p[0]).hypot(q[1] - p[1])
+            })
+            .sum()
+    }
+
+    /// The runs of stretches whose images may meet a box, each by its breaks.
+    pub fn runs_next_to(&self, hull: &ImageBox) -> Vec<Vec<f64>> {
+        let mut runs: Vec<Vec<f64>> = Vec::new();
+        for stretch in self.stretches.iter().filter(|s| s.bounds.meets(hull)) {
+            let [lo, hi] = stretch.range;
+            match runs.last_mut() {
+                Some(run) if run.last().is_some_and(|end| end.is_exactly(lo)) => run.push(hi),
+                _ => runs.push(vec![lo, hi]),
+            }
+        }
+        runs
+    }
+}

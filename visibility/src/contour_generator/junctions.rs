@@ -1,0 +1,147 @@
+//! The points in which arcs of contours end or are cut, and what of the boundary they lie on.
+
+use crate::camera::projection::Projection;
+use crate::image_curve::flat_of;
+use nalgebra::Point3;
+use premio_kernel::brep::topology::{EdgeId, VertexId};
+use serde::Serialize;
+
+/// Where pieces of contours end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum JunctionKind {
+    /// A vertex of the part, or the apex of a cone.
+    Vertex,
+    /// Two contours cross in the image, one before the other in space (definition 4.4).
+    T,
+    /// The line of sight is along the limb (definition 4.5).
+    Cusp,
+    /// A limb ends on the boundary of its face.
+    Limb,
+    /// A limb crosses itself in space.
+    #[serde(rename = "node")]
+    SelfCrossing,
+    /// The image of the curve turns back on itself.
+    #[serde(rename = "turn")]
+    ImageTurn,
+    /// The near plane cuts the contour.
+    #[serde(rename = "cut")]
+    NearPlane,
+}
+
+/// A point where pieces of contours end.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Junction {
+    /// Its place in the list.
+    pub id: u32,
+    /// What happens there.
+    pub kind: JunctionKind,
+    /// Its place in the image, in the camera's unit.
+    pub point2: [f64; 2],
+    /// Its place in space; at a T-junction, on the contour behind.
+    pub point3: [f64; 3],
+    /// The contours that meet there; at a T-junction the nearer one first.
+    pub contours: Vec<u32>,
+}
+
+/// What of the boundary a junction lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JunctionSupport {
+    /// A vertex.
+    Vertex(VertexId),
+    /// The inside of an edge.
+    Edge(EdgeId),
+    /// The inside of a face, or nothing shared.
+    Alone,
+}
+
+/// What is known of a junction, besides what the view reports.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    site: JunctionSupport,
+    /// Its image at depth one.
+    image: [f64; 2],
+    /// Whether another contour passes before it or next to it in the image.
+    crowded: bool,
+}
+
+/// All junctions.
+#[derive(Debug)]
+pub struct Junctions<'p> {
+    projection: &'p Projection,
+    /// By their ids.
+    pub list: Vec<Junction>,
+    /// By junction: what is known of it besides.
+    known: Vec<Known>,
+    vertices: Vec<Option<u32>>,
+}
+
+impl<'p> Junctions<'p> {
+    /// None yet, for a part with so many vertices.
+    pub fn new(projection: &'p Projection, vertices: usize) -> Self {
+        Self {
+            projection,
+            list: Vec::with_capacity(2 * vertices),
+            known: Vec::with_capacity(2 * vertices),
+            vertices: vec![None; vertices],
+        }
+    }
+
+    /// A new junction.
+    pub fn add(&mut self, kind: JunctionKind, site: JunctionSupport, p: &Point3<f64>) -> u32 {
+        let id = self.list.len() as u32;
+        self.list.push(Junction {
+            id,
+            kind,
+            point2: self.projection.project(p).into(),
+            point3: (*p).into(),
+            contours: Vec::new(),
+        });
+        self.known.push(Known {
+            site,
+            image: flat_of(self.projection, p),
+            crowded: false,
+        });
+        id
+    }
+
+    /// What a junction lies on.
+    pub fn site(&self, id: u32) -> JunctionSupport {
+        self.known[id as usize].site
+    }
+
+    /// Its image at depth one.
+    pub fn image(&self, id: u32) -> [f64; 2] {
+        self.known[id as usize].image
+    }
+
+    /// Its kind.
+    pub fn kind(&self, id: u32) -> JunctionKind {
+        self.list[id as usize].kind
+    }
+
+    /// Notes that another contour passes a junction in the image.
+    pub fn crowd(&mut self, id: u32) {
+        self.known[id as usize].crowded = true;
+    }
+
+    /// Whether another contour passes it in the image.
+    pub fn is_crowded(&self, id: u32) -> bool {
+        self.known[id as usize].crowded
+    }
+
+    /// The junction at a vertex.
+    pub fn vertex(&mut self, vertex: VertexId, p: &Point3<f64>) -> u32 {
+        if let Some(id) = self.vertices[vertex.index()] {
+            return id;
+        }
+        let id = self.add(JunctionKind::Vertex, JunctionSupport::Vertex(vertex), p);
+        self.vertices[vertex.index()] = Some(id);
+        id
+    }
+
+    /// The place of a junction.
+    pub fn point(&self, id: u32) -> Point3<f64> {
+        Point3::from(self.list[id as usize].point3)
+    }
+}

@@ -1,0 +1,82 @@
+//! The part before the camera: its boundary, the projection, and where points lie in its faces.
+
+pub(crate) mod face_box;
+
+use crate::camera::projection::{Projection, ViewRay};
+use face_box::{FaceBox, face_box};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::locate::Locator;
+use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::number::predicates::{Compare, ROUNDING};
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
+
+/// The boundary, before a camera.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    /// The part.
+    pub brep: &'a Brep,
+    /// The camera.
+    pub projection: &'a Projection,
+    /// Where points lie in faces.
+    pub locator: Locator<'a>,
+    /// The resolution.
+    pub band: f64,
+    /// The sine of the angle between parallel sight and a direction along which the whole part is no
+    /// longer in the image than the resolution.
+    pub tilt: f64,
+    pub(crate) tree: RTree<FaceBox>,
+    bounds: Aabb,
+}
+
+/// The box of boxes.
+fn hull(boxes: &[Aabb]) -> Aabb {
+    boxes.iter().fold(Aabb::EMPTY, |a, b| a.hull(b))
+}
+
+impl<'a> Scene<'a> {
+    /// The scene of a part seen by a camera; `band` is the resolution.
+    pub fn new(brep: &'a Brep, projection: &'a Projection, band: f64) -> Self {
+        let locator = Locator::new(brep, band);
+        let boxes: Vec<Aabb> = brep
+            .topology
+            .face_ids()
+            .map(|f| face_box(brep, &locator, f, band))
+            .collect();
+        let leaf = |(i, b): (usize, &Aabb)| {
+            GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
+        };
+        let tree = RTree::bulk_load(boxes.iter().enumerate().map(leaf).collect());
+        let bounds = hull(&boxes);
+        let size = bounds.diagonal();
+        Self {
+            brep,
+            projection,
+            locator,
+            band,
+            tilt: (band / size).max(ROUNDING),
+            tree,
+            bounds,
+        }
+    }
+
+    /// The box of the whole part.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
+    pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
+        match self.projection.sight {
+            ViewRay::Eye(e) => (e - origin).dot(normal).is_within(self.band),
+            ViewRay::Direction(d) => d.dot(normal).is_within(self.tilt),
+        }
+    }
+
+    /// Whether a face's outward normal is its surface's.
+    pub fn along(&self, face: FaceId) -> bool {
+        self.brep.sense(face) == Sense::Along
+    }
+}

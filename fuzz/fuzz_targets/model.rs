@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use premio_fuzz::BORED_BLOCK;
-use premio_matching::detectability_prior::DetectabilityPrior;
+use premio_matching::part::detectability_prior::DetectabilityPrior;
 use premio_predict::model::file::{ModelFile, parse, sealed};
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,22 +1,22 @@
 //! The part looked for in a picture: from chains of lines to poses, from poses to correspondences, and
 //! back, until they stay.
 
-use crate::axis_alignment::framed;
 use crate::camera::Pinhole;
+use crate::correspondence::predicted_contours::{PredictedContour, arcs};
 use crate::correspondence::{BESIDE, Correspondence};
-use crate::detectability_prior::DetectabilityPrior;
-use crate::hypotheses::{
+use crate::hypothesis::{
     Hypothesis, REACHES, best_first, distinct, drawn, hypotheses, is_same, settled,
 };
-use crate::image_features::{ImageFeatures, chains};
+use crate::image::{ImageFeatures, chains};
 use crate::part::SoughtPart;
+use crate::part::detectability_prior::DetectabilityPrior;
 use crate::pose::refine::{PointToLine, Refined, refine};
-use crate::predicted_contours::{PredictedContour, arcs};
-use crate::residuals::SystematicOffset;
-use crate::scoring::{fitted, odds, ratio, related, with_prior};
 use crate::search::{Solution, search};
-use crate::search_result::{FeaturePair, Found, PartMatch, SearchOptions, SearchResult};
-use crate::shape_evidence::ShapeEvidence;
+use crate::verification::axis_alignment::framed;
+use crate::verification::part_match::{FeaturePair, Found, PartMatch, SearchOptions, SearchResult};
+use crate::verification::residuals::SystematicOffset;
+use crate::verification::scoring::{fitted, odds, ratio, related, with_prior};
+use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::Isometry3;
 use rayon::prelude::*;
 

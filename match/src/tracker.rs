@@ -1,10 +1,10 @@
 //! The part in the next picture of a sequence: from its last pose, or by looking for it anew.
 
 use crate::camera::Pinhole;
-use crate::hypotheses::{Hypothesis, REACHES, drawn, settled};
+use crate::hypothesis::{Hypothesis, REACHES, drawn, settled};
 use crate::matcher::Matcher;
 use crate::part::SoughtPart;
-use crate::search_result::{PartMatch, SearchResult};
+use crate::verification::part_match::{PartMatch, SearchResult};
 use nalgebra::Isometry3;
 
 /// How far, in pixels, edges may have moved from picture to picture.

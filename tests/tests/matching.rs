@@ -6,12 +6,14 @@ use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions as Reading, read};
 use premio_detect::Grey;
 use premio_matching::camera::Pinhole;
-use premio_matching::detectability_prior::DetectabilityPrior;
-use premio_matching::image_features::{ImageFeatures, detector};
+use premio_matching::image::{ImageFeatures, detector};
 use premio_matching::matcher::Matcher;
 use premio_matching::part::SoughtPart;
+use premio_matching::part::detectability_prior::DetectabilityPrior;
 use premio_matching::search::Strategy;
-use premio_matching::search_result::{PartMatch, SearchLimits, SearchOptions, SearchResult};
+use premio_matching::verification::part_match::{
+    PartMatch, SearchLimits, SearchOptions, SearchResult,
+};
 use premio_predict::prediction::{Memory, with_draft};
 use premio_predict::prepared_part::PreparedPart;
 use premio_predict::render;

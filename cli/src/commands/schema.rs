@@ -3,7 +3,7 @@
 use crate::arguments::{SchemaName, SchemaOptions};
 use crate::diagnostics::CliError;
 use crate::output;
-use premio_matching::report;
+use premio_matching::output::report;
 use premio_predict::prediction;
 
 /// Runs the command.

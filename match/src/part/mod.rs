@@ -1,15 +1,17 @@
 //! A part as it is looked for: points along its edges, the chains of its straight edges, its
 //! symmetries, and what it hides of itself.
 
+mod chain;
+pub mod detectability_prior;
 mod edge_samples;
 mod symmetry;
 mod visibility_cache;
 
+pub use chain::PartChain;
 pub use edge_samples::{EdgeSample, PartView, SampledEdge};
 pub use symmetry::Symmetry;
 
-use crate::detectability_prior::DetectabilityPrior;
-use crate::pose::p2p2l::PartChain;
+use crate::part::detectability_prior::DetectabilityPrior;
 use nalgebra::{Isometry3, Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::bounding_box;

@@ -143,7 +143,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
     use super::*;
-    use crate::detectability_prior::DetectabilityPrior;
+    use crate::part::detectability_prior::DetectabilityPrior;
     use premio_csg::evaluate::{EvaluationOptions, evaluate};
     use premio_csg::reader::{Format, ReadOptions, read};
     use premio_visibility::contours::contours;

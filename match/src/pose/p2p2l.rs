@@ -7,17 +7,9 @@
 //! sin ψ w), which gives two equations A cos ψ + B sin ψ + C = 0; what is left when ψ goes from them is
 //! an equation in the angle of u alone.
 
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use crate::part::PartChain;
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
-
-/// A chain of three lines of a part: from A in direction d₀, from A to B, from B in direction d₁.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PartChain {
-    /// A and B.
-    pub points: [Point3<f64>; 2],
-    /// d₀ and d₁, of length one.
-    pub away: [Vector3<f64>; 2],
-}
 
 /// The same in an image, made ready to be solved for many parts' chains.
 #[derive(Clone, Debug, PartialEq)]

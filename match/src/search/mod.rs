@@ -11,11 +11,10 @@ mod dead_end_elimination;
 mod ida_star;
 mod path;
 mod potentials;
-mod problem;
 #[cfg(test)]
 mod tests;
 
-pub use problem::{Assignment, Candidate, Problem, ProblemFeature, ProblemRelation};
+use crate::correspondence::problem::{Assignment, Problem};
 
 use path::Path;
 use potentials::Potentials;

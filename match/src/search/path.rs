@@ -1,7 +1,7 @@
 //! A path from the root: the first features are assigned.
 
 use super::potentials::{Potentials, SearchChoice};
-use super::problem::Assignment;
+use crate::correspondence::problem::Assignment;
 
 /// A path, with its score and bound.
 pub struct Path<'a> {

@@ -1,6 +1,6 @@
 //! A problem as a sum over its features and over pairs of them, with the choices that are left of it.
 
-use super::problem::{Candidate, Problem};
+use crate::correspondence::problem::{Candidate, Problem};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The number of a choice of a feature: 0 if it is missed, k + 1 for its candidate k.

@@ -1,7 +1,10 @@
 //! Searches against all assignments there are.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use super::{Assignment, Candidate, Problem, ProblemFeature, ProblemRelation, Strategy, search};
+use super::{Strategy, search};
+use crate::correspondence::problem::{
+    Assignment, Candidate, Problem, ProblemFeature, ProblemRelation,
+};
 use proptest::prelude::*;
 
 const ALL: [Strategy; 3] = [Strategy::Bounded, Strategy::Deepening, Strategy::Stepped];

@@ -1,8 +1,8 @@
 //! How many turns bring a part onto itself, by hand.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use crate::detectability_prior::DetectabilityPrior;
 use crate::part::SoughtPart;
+use crate::part::detectability_prior::DetectabilityPrior;
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use std::fmt::Write;

@@ -1,12 +1,12 @@
 //! How edges of a picture end in the vertices of a part: whether those that meet in one do so in the
 //! picture, too.
 
+use super::problem::ProblemRelation;
 use crate::correspondence::FeatureChoice;
-use crate::detectability_prior::DetectabilityPrior;
-use crate::image_features::ImageFeatures;
+use crate::correspondence::predicted_contours::PredictedContour;
+use crate::image::ImageFeatures;
 use crate::part::SoughtPart;
-use crate::predicted_contours::PredictedContour;
-use crate::search::ProblemRelation;
+use crate::part::detectability_prior::DetectabilityPrior;
 use nalgebra::{Point2, Point3, Vector2};
 use premio_detect::SegmentShape;
 use premio_kernel::brep::topology::VertexId;

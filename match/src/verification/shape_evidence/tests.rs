@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use super::*;
-use crate::detectability_prior::DetectabilityPrior;
+use crate::correspondence::predicted_contours::arcs;
+use crate::part::detectability_prior::DetectabilityPrior;
 use crate::pose::refine::refine;
-use crate::predicted_contours::arcs;
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

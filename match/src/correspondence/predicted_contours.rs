@@ -1,7 +1,7 @@
 //! What is predicted of a part at a pose: the visible contours, as points of the picture.
 
 use crate::camera::Pinhole;
-use crate::edge_score::{SampleHit, seen};
+use crate::hypothesis::edge_score::{SampleHit, seen};
 use crate::part::{EdgeSample, SoughtPart};
 use nalgebra::{Isometry3, Point3};
 use premio_predict::image_arcs::ArcSource;
@@ -42,7 +42,7 @@ pub fn arcs(
         .zip(&part.strokes)
         .map(|(i, s)| (s.edge.0, i))
         .collect();
-    let eye = crate::edge_score::eye(pose);
+    let eye = crate::hypothesis::edge_score::eye(pose);
     let mut ordinals: BTreeMap<u32, u32> = BTreeMap::new();
     let mut all = Vec::new();
     for contour in &contours.contours {

@@ -5,8 +5,8 @@
 //! angle, as often as there are such segments in the area, times the part of the area and of all angles
 //! that this takes.
 
-use crate::image_features::ImageFeatures;
-use crate::predicted_contours::PredictedContour;
+use crate::correspondence::predicted_contours::PredictedContour;
+use crate::image::ImageFeatures;
 use nalgebra::Point2;
 use std::f64::consts::PI;
 

@@ -4,15 +4,21 @@
 //! are how far beside, how much askew, and what share of the arc it covers; pieces that lie end to end
 //! are candidates together, as a broken edge.
 
-use crate::clutter::Clutter;
-use crate::detectability_prior::DetectabilityPrior;
-use crate::endpoints::Endpoints;
-use crate::image_features::{ImageFeatures, PIECE};
+pub mod clutter;
+pub mod detectability;
+pub mod endpoints;
+pub mod predicted_contours;
+pub mod problem;
+
+use crate::correspondence::clutter::Clutter;
+use crate::correspondence::endpoints::Endpoints;
+use crate::correspondence::predicted_contours::{APART, PredictedContour};
+use crate::image::{ImageFeatures, PIECE};
 use crate::part::SoughtPart;
+use crate::part::detectability_prior::DetectabilityPrior;
 use crate::pose::refine::PointToLine;
-use crate::predicted_contours::{APART, PredictedContour};
-use crate::search::{Candidate, Problem, ProblemFeature};
 use nalgebra::Point2;
+use problem::{Candidate, Problem, ProblemFeature};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 

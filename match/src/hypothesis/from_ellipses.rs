@@ -1,9 +1,9 @@
 //! Poses that ellipses of a picture propose: taken for circular edges of the part.
 
 use crate::camera::Pinhole;
-use crate::edge_score::eye;
-use crate::hypotheses::{Hypothesis, Proposed, plausible};
-use crate::image_features::ImageFeatures;
+use crate::hypothesis::edge_score::eye;
+use crate::hypothesis::{Hypothesis, Proposed, plausible};
+use crate::image::ImageFeatures;
 use crate::part::{SampledEdge, SoughtPart};
 use crate::pose::circle::{circles, edge_poses};
 use nalgebra::Point3;

@@ -1,14 +1,14 @@
 //! What is found in a picture: poses of the part, with their correspondences.
 
 use crate::camera::Pinhole;
-use crate::hypotheses::INSIDE;
+use crate::correspondence::predicted_contours::PredictedContour;
+use crate::hypothesis::INSIDE;
 use crate::part::SoughtPart;
 use crate::pose::refine::PointToLine;
-use crate::predicted_contours::PredictedContour;
-use crate::residuals::SystematicOffset;
-use crate::scoring::{DETERMINED, FEWEST, PIECE, REPEATED, SMALLEST};
 use crate::search::{SearchStats, Strategy};
-use crate::shape_evidence::ShapeEvidence;
+use crate::verification::residuals::SystematicOffset;
+use crate::verification::scoring::{DETERMINED, FEWEST, PIECE, REPEATED, SMALLEST};
+use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::{Isometry3, Matrix6};
 use premio_predict::image_arcs::ArcSource;
 use std::cmp::Ordering;

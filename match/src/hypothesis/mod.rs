@@ -1,9 +1,12 @@
 //! Poses that a picture proposes: chains of its lines taken for chains of edges.
 
+pub mod edge_score;
+pub mod from_ellipses;
+
 use crate::camera::Pinhole;
-use crate::edge_score::{COSINE, evidence, eye, is_unlikely, seen, visible};
-use crate::from_ellipses::of_ellipses;
-use crate::image_features::{self, ImageFeatures, Reach};
+use crate::hypothesis::edge_score::{COSINE, evidence, eye, is_unlikely, seen, visible};
+use crate::hypothesis::from_ellipses::of_ellipses;
+use crate::image::{self, ImageFeatures, Reach};
 use crate::part::{self, SoughtPart};
 use crate::pose::p2p2l::{ImageChain, poses};
 use crate::pose::refine::{PointToLine, refine};
@@ -46,7 +49,7 @@ pub fn hypotheses(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
-    chains: &[Vec<image_features::LinePath>; 2],
+    chains: &[Vec<image::LinePath>; 2],
 ) -> Proposed {
     let numbered = [0, 1].map(|kind| chains[kind].iter().map(move |c| (kind, c)));
     let numbered: Vec<_> = numbered.into_iter().flatten().enumerate().collect();
@@ -140,7 +143,7 @@ fn of_chain(
     picture: &ImageFeatures,
     camera: &Pinhole,
     (number, kind): (usize, usize),
-    chain: &image_features::LinePath,
+    chain: &image::LinePath,
 ) -> (Vec<Hypothesis>, usize) {
     let points = chain.corners.map(|c| c.at);
     let beyond = [0, 1].map(|i| points[i] + chain.corners[i].away * chain.corners[i].length);
@@ -189,7 +192,7 @@ fn fits(
     model: &part::EdgePath,
     camera: &Pinhole,
     pose: &Isometry3<f64>,
-    chain: &image_features::LinePath,
+    chain: &image::LinePath,
 ) -> bool {
     let eye = eye(pose);
     let behind = |i: usize| {

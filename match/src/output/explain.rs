@@ -1,7 +1,7 @@
 //! Why a match won, in words.
 
-use crate::report::{FeatureReport, FeatureState, MatchReport};
-use crate::search_result::PartMatch;
+use crate::output::report::{FeatureReport, FeatureState, MatchReport};
+use crate::verification::part_match::PartMatch;
 use premio_predict::image_arcs::ArcSource;
 use std::fmt::Write;
 

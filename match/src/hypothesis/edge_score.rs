@@ -1,7 +1,7 @@
 //! What a picture tells for and against a pose.
 
 use crate::camera::Pinhole;
-use crate::image_features::{ImageFeatures, Reach, bin};
+use crate::image::{ImageFeatures, Reach, bin};
 use crate::part::{EdgeSample, PartView, SampledEdge, SoughtPart};
 use nalgebra::{Isometry3, Point2, Point3, Vector2};
 

@@ -11,7 +11,7 @@
 use crate::camera::Pinhole;
 use crate::part::SoughtPart;
 use crate::pose::refine::{PointToLine, residual};
-use crate::search_result::PartMatch;
+use crate::verification::part_match::PartMatch;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix2, Point2, Point3, Vector3};
 use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::surface::Surface;

@@ -1,14 +1,14 @@
 //! What was found, as it is handed on (`premio.match/1`), and a line for the evaluation of others
 //! (the CSV of the BOP challenge, Hodan et al. 2018).
 
-use crate::hypotheses::INSIDE;
-use crate::image_features::ImageFeatures;
+use crate::hypothesis::INSIDE;
+use crate::image::ImageFeatures;
 use crate::part::SoughtPart;
-use crate::residuals::SystematicOffset;
-use crate::scoring::{FEWEST, SMALLEST, is_figure};
 use crate::search::SearchStats;
-use crate::search_result::{PartMatch, SearchResult};
-use crate::shape_evidence::ShapeEvidence;
+use crate::verification::part_match::{PartMatch, SearchResult};
+use crate::verification::residuals::SystematicOffset;
+use crate::verification::scoring::{FEWEST, SMALLEST, is_figure};
+use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::{Isometry3, Matrix3};
 use premio_kernel::geometry::frame::Frame;
 use premio_predict::image_arcs::ArcSource;

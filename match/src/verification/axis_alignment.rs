@@ -1,8 +1,8 @@
 //! How much of a match runs along the rows and columns of the picture, as edges of what is drawn, framed
 //! or put together of pictures do, and those of a thing before a camera only where it stands square to it.
 
-use crate::image_features::ImageFeatures;
-use crate::search_result::FeaturePair;
+use crate::image::ImageFeatures;
+use crate::verification::part_match::FeaturePair;
 
 /// Shorter segments than this, in pixels, tell no direction.
 const SHORTEST: f64 = 16.0;

@@ -5,8 +5,8 @@ use crate::camera::Pinhole;
 use crate::correspondence::Correspondence;
 use crate::part::SoughtPart;
 use crate::search::Solution;
-use crate::search_result::PartMatch;
-use crate::shape_evidence::ShapeEvidence;
+use crate::verification::part_match::PartMatch;
+use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::{Isometry3, Matrix6};
 use std::f64::consts::{PI, TAU};
 

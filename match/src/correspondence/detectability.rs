@@ -1,0 +1,69 @@
+//! How likely predicted contours are detected, alone and given others.
+
+use super::predicted_contours::PredictedContour;
+use crate::part::detectability_prior::{DetectabilityPrior, LEAST};
+
+/// How often an arc is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rates {
+    /// The arc that it depends on.
+    pub parent: Option<usize>,
+    /// How likely it is found where that is missed, and where it is found.
+    pub given: [f64; 2],
+    /// How likely it is found by itself.
+    pub alone: f64,
+}
+
+/// So much of a broken edge is not found.
+const GAPS: f64 = 0.3;
+
+impl DetectabilityPrior {
+    /// How likely a piece of an arc is found.
+    pub fn covered(&self, arc: &PredictedContour) -> f64 {
+        let [_, broken, missed] = self.states(&arc.source)[usize::from(arc.outline)];
+        (1.0 - missed - GAPS * broken).clamp(0.5, 1.0 - LEAST)
+    }
+
+    fn alone(&self, arc: &PredictedContour) -> f64 {
+        let missed = self.states(&arc.source)[usize::from(arc.outline)][2];
+        (1.0 - missed).clamp(LEAST, 1.0 - LEAST)
+    }
+
+    /// How often an arc of a view is found.
+    pub fn rates(&self, arc: &PredictedContour, arcs: &[PredictedContour]) -> Rates {
+        let alone = self.alone(arc);
+        let known = self.together.get(&arc.source);
+        let parent = known.and_then(|(source, given)| {
+            let at = arcs.iter().position(|a| a.source == *source)?;
+            Some((at, given.map(|p| p.clamp(LEAST, 1.0 - LEAST))))
+        });
+        Rates {
+            parent: parent.map(|p| p.0),
+            given: parent.map_or([alone; 2], |p| p.1),
+            alone,
+        }
+    }
+
+    /// Arcs in falling order of detectability, each after the one that it depends on.
+    pub fn order(&self, mut arcs: Vec<usize>, all: &[PredictedContour]) -> Vec<usize> {
+        arcs.sort_by(|&a, &b| {
+            let key = |i: usize| self.alone(&all[i]);
+            let order = key(b).total_cmp(&key(a));
+            order
+                .then_with(|| all[b].length.total_cmp(&all[a].length))
+                .then(a.cmp(&b))
+        });
+        let mut order: Vec<usize> = Vec::with_capacity(arcs.len());
+        let mut left = arcs;
+        while !left.is_empty() {
+            let ready = |&i: &usize| {
+                let parent = self.rates(&all[i], all).parent;
+                parent.is_none_or(|p| !left.contains(&p) || order.contains(&p))
+            };
+            // A tree has no ring; what is none is taken as it comes.
+            let next = left.iter().position(ready).unwrap_or(0);
+            order.push(left.remove(next));
+        }
+        order
+    }
+}

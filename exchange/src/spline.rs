@@ -50,6 +50,12 @@ pub enum SplineError {
         /// How many there may be.
         limit: usize,
     },
+    /// It jumps: no spline of finite pieces passes from one of its points to the next.
+    #[error("a curve jumps next to ({:?}, {:?}, {:?})", place[0], place[1], place[2])]
+    Jump {
+        /// Where.
+        place: [f64; 3],
+    },
 }
 
 /// How many pieces a spline may have.
@@ -200,7 +206,12 @@ impl Follow<'_> {
         };
         for pair in nodes.windows(2) {
             let last = knots[knots.len() - 1];
-            knots.push(last + self.length(pair[0].t, pair[1].t));
+            let next = last + self.length(pair[0].t, pair[1].t);
+            if !next.is_finite() || next <= last {
+                let place = self.curve.point(pair[0].t).into();
+                return Err(SplineError::Jump { place });
+            }
+            knots.push(next);
         }
         let on = (0..self.windows.len()).map(|k| {
             let on: Vec<&[Jet<f64>; 2]> = nodes.iter().map(|n| &n.on[k]).collect();

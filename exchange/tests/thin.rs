@@ -92,3 +92,13 @@ fn what_is_thicker_is_written() {
     let text = "PART = CYL(R=2, H=2) UN CYL(R=1, H=2.00000015)";
     assert!(written(text, Unit::Millimetre).is_ok());
 }
+
+/// A ring's inside touches a rod but for 1e-9: their curve turns within 3e-9, where doubles tell no angle
+/// about the axis. Splines through points that jumped had coordinates that are no numbers.
+#[test]
+fn a_curve_that_turns_in_a_near_contact_is_followed() {
+    let text = "PART = (TOR(RMAJ=2.5, RMIN=1.5) AT (MOVX=-0.0000000005, MOVY=0.000000001, MOVZ=-0.0000000005)
+         INT CYL(R=1.5, H=2.5)) UN CYL(R=1, H=1.5)";
+    let file = written(text, Unit::Millimetre).unwrap();
+    assert!(!file.contains("NaN") && !file.contains("inf"));
+}

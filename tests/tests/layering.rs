@@ -84,6 +84,49 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
     ),
 ];
 
+/// The stages inside crates, in order: a module depends on those before it in the same line or an earlier one.
+const STAGES: &[(&str, &[&[&str]])] = &[
+    (
+        "kernel",
+        &[
+            &["unit", "number"],
+            &["motion"],
+            &["geometry"],
+            &["proof", "brep"],
+            &["tessellation"],
+        ],
+    ),
+    (
+        "visibility",
+        &[
+            &["camera"],
+            &["image_curve"],
+            &["scene"],
+            &["contour_generator"],
+            &["junction"],
+            &["ray_casting"],
+            &["invisibility"],
+            &["contours"],
+        ],
+    ),
+    (
+        "match",
+        &[
+            &["camera"],
+            &["image"],
+            &["part"],
+            &["pose"],
+            &["hypothesis"],
+            &["correspondence"],
+            &["search"],
+            &["verification"],
+            &["matcher"],
+            &["tracker"],
+            &["output"],
+        ],
+    ),
+];
+
 /// A file with more lines is asked to split.
 const LONG: usize = 600;
 
@@ -102,6 +145,38 @@ fn dependencies_flow_one_way() {
                 allowed.contains(&name.as_str()),
                 "{package} must not depend on {name}"
             );
+        }
+    }
+}
+
+#[test]
+fn data_flows_down_the_stages() {
+    for (folder, stages) in STAGES {
+        let source = root().join(folder).join("src");
+        let rank = |name: &str| stages.iter().position(|stage| stage.contains(&name));
+        for path in sources() {
+            let Ok(inside) = path.strip_prefix(&source) else {
+                continue;
+            };
+            let first = inside.components().next().unwrap().as_os_str();
+            let module = Path::new(first).with_extension("");
+            let module = module.to_str().unwrap();
+            if module == "lib" || is_for_tests(&path) {
+                continue;
+            }
+            let own = rank(module);
+            let own = own.unwrap_or_else(|| panic!("{folder}: {module} is no stage"));
+            for (line, text) in code(&fs::read_to_string(&path).unwrap()) {
+                for after in text.split("crate::").skip(1) {
+                    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+                    let used = after.split(|c| !is_name(c)).next().unwrap();
+                    assert!(
+                        rank(used).is_none_or(|r| r <= own),
+                        "{}:{line}: {module} must not depend on {used}",
+                        path.display()
+                    );
+                }
+            }
         }
     }
 }

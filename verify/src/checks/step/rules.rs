@@ -214,9 +214,9 @@ struct Walk<'s> {
     first: Option<[f64; 2]>,
     /// Minus the integral of P du.
     flow: f64,
-    /// The pole that the last edge ended in, with u there, and the number of the edge.
-    pole: Option<(Pole, f64, u32)>,
-    first_pole: Option<(Pole, u32)>,
+    /// The pole that the last edge ended in, with u there, and the edge.
+    pole: Option<(Pole, f64, StepEdgeUse)>,
+    first_pole: Option<(Pole, StepEdgeUse)>,
     /// A pole at which two edges meet, and u there. Where they have the same direction, or turn away
     /// from it at once, a turn more or less may lie between them.
     cusp: Option<(Pole, f64)>,
@@ -350,7 +350,8 @@ const HALVED: u32 = 12;
 
 impl Walk<'_> {
     /// Goes along an edge.
-    fn add(&mut self, edge: &StepEdge, StepEdgeUse { edge: id, along }: StepEdgeUse) {
+    fn add(&mut self, edge: &StepEdge, used: StepEdgeUse) {
+        let along = used.along;
         let mut stops = edge.curve.stops(edge.range);
         if !along {
             stops.reverse();
@@ -375,16 +376,16 @@ impl Walk<'_> {
                 pair[1]
             };
             if is_first {
-                self.enter(&edge.curve, from, poles[0].map(|pole| (pole, id)));
+                self.enter(&edge.curve, from, poles[0].map(|pole| (pole, used)));
             }
             self.piece(&edge.curve, [from, to], HALVED);
         }
         let ended = poles[1].zip(self.at);
-        self.pole = ended.map(|(pole, at)| (pole, at[0], id));
+        self.pole = ended.map(|(pole, at)| (pole, at[0], used));
     }
 
     /// Comes to the start of an edge.
-    fn enter(&mut self, curve: &StepCurve, t: f64, pole: Option<(Pole, u32)>) {
+    fn enter(&mut self, curve: &StepCurve, t: f64, pole: Option<(Pole, StepEdgeUse)>) {
         let (p, _) = curve.at(t);
         let there = self.surface.parameters(&p);
         let Some(at) = self.at else {
@@ -394,8 +395,8 @@ impl Walk<'_> {
             return;
         };
         let mut next = self.beside(there, at);
-        if let (Some((pole, u, last)), Some((_, id))) = (self.pole, pole) {
-            next[0] = self.around_pole(pole, [u, there[0]], last == id);
+        if let (Some((pole, u, last)), Some((_, used))) = (self.pole, pole) {
+            next[0] = self.around_pole(pole, [u, there[0]], is_seam(last, used));
             next[1] = there[1];
         }
         self.at = Some(next);
@@ -496,8 +497,9 @@ impl Walk<'_> {
         let (Some(first), Some(mut at)) = (self.first, self.at) else {
             return [0.0; 2];
         };
-        if let (Some((pole, u, last)), Some((_, id))) = (self.pole, self.first_pole) {
-            at = [self.around_pole(pole, [u, first[0]], last == id), first[1]];
+        if let (Some((pole, u, last)), Some((_, used))) = (self.pole, self.first_pole) {
+            let angle = self.around_pole(pole, [u, first[0]], is_seam(last, used));
+            at = [angle, first[1]];
         }
         let mut open = [at[0] - first[0], at[1] - first[1]];
         if let Some((pole, from)) = self.cusp {
@@ -509,6 +511,12 @@ impl Walk<'_> {
         }
         open
     }
+}
+
+/// Whether a loop comes to a pole along an edge and leaves it along the same edge, which is a seam. An edge
+/// from the pole back to it, alone in its loop, is run in one sense only.
+fn is_seam(last: StepEdgeUse, next: StepEdgeUse) -> bool {
+    last.edge == next.edge && last.along != next.along
 }
 
 /// How far from a pole an edge is asked first, as a part of its first piece.

@@ -394,8 +394,8 @@ impl OutputOptions {
     ///
     /// # Errors
     /// There is none, and the ending says none.
-    pub fn format<T: ValueEnum>(&self, asked: Option<T>) -> Result<T, String> {
-        if let Some(format) = asked {
+    pub fn format<T: ValueEnum>(&self, requested: Option<T>) -> Result<T, String> {
+        if let Some(format) = requested {
             return Ok(format);
         }
         let ending = self.output.as_deref().and_then(Path::extension);

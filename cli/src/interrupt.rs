@@ -28,13 +28,15 @@ pub fn fail_where_files_are_full() {
 pub fn fail_where_files_are_full() {}
 
 /// How many threads work where nothing else is said.
-pub fn threads(asked: Option<u16>) -> usize {
+pub fn threads(requested: Option<u16>) -> usize {
     let all = || std::thread::available_parallelism().map_or(1, usize::from);
-    asked.map_or_else(all, usize::from)
+    requested.map_or_else(all, usize::from)
 }
 
 /// So many threads.
-pub fn pool(asked: Option<u16>) -> Result<ThreadPool, CliError> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads(asked)).build();
+pub fn pool(requested: Option<u16>) -> Result<ThreadPool, CliError> {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads(requested))
+        .build();
     pool.map_err(|e| CliError::input(format!("threads: {e}")))
 }

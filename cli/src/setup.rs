@@ -131,8 +131,8 @@ impl<T> SetupFile<T> {
     }
 
     fn bare<'p>(&self, part: &'p EvaluatedPart) -> Result<PreparedPart<'p>, CliError> {
-        let band = input::view_resolution(part)?;
-        let subject = PreparedPart::new(&part.evaluation.brep, band);
+        let resolution = input::view_resolution(part)?;
+        let subject = PreparedPart::new(&part.evaluation.brep, resolution);
         subject.map_err(|error| self.failure(part, &error.into()))
     }
 }
@@ -171,7 +171,7 @@ impl SetupFile<Setups> {
                     format!("puts all {all} {what} inside the part: expected a larger sphere");
                 return refused(format!("{key}.radius"), &reason);
             }
-            let boxed = places.iter().filter(|p| holds(&bounds, p)).count();
+            let boxed = places.iter().filter(|p| contains(&bounds, p)).count();
             let said = match (inside, boxed) {
                 (0, 0) => continue,
                 (0, _) => format!("{boxed} of {all} {what} are inside the part's box"),
@@ -186,7 +186,7 @@ impl SetupFile<Setups> {
 }
 
 /// Whether a box holds a point.
-fn holds(bounds: &Aabb, p: &Point3<f64>) -> bool {
+fn contains(bounds: &Aabb, p: &Point3<f64>) -> bool {
     (0..3).all(|i| (bounds.min[i]..=bounds.max[i]).contains(&p[i]))
 }
 

@@ -41,7 +41,7 @@ impl TransformStep {
     }
 
     /// Whether it is a shift, or turns coordinate axes into others.
-    pub(crate) fn is_plain(&self) -> bool {
+    pub(crate) fn is_simple(&self) -> bool {
         match self {
             Self::Shift(_) => true,
             Self::Turn { axis, degrees } => {
@@ -133,7 +133,7 @@ impl Transform {
     /// The same motion in fewer steps, where shifts and quarter turns follow one another.
     pub(crate) fn tidied(steps: Vec<TransformStep>) -> Vec<TransformStep> {
         let mut tidy = Vec::with_capacity(steps.len());
-        for run in steps.chunk_by(|a, b| a.is_plain() == b.is_plain()) {
+        for run in steps.chunk_by(|a, b| a.is_simple() == b.is_simple()) {
             let fewer = Self::in_one_turn(run).filter(|fewer| fewer.len() < run.len());
             tidy.extend(fewer.unwrap_or_else(|| run.to_vec()));
         }

@@ -314,7 +314,7 @@ impl ImageArc<'_> {
     }
 
     /// How far a point is from the arc's polyline, or from the arc where it is a segment or elliptic.
-    pub fn rough_distance(&self, p: &Point2<f64>) -> f64 {
+    pub fn approximate_distance(&self, p: &Point2<f64>) -> f64 {
         let Self::Projected { samples, .. } = self else {
             return self.nearest(p).distance;
         };

@@ -216,7 +216,7 @@ impl Search<'_, '_> {
             let middle = 0.5 * (a + b);
             let [from, p, to] = [a, middle, b].map(|t| self.arc.point(t));
             let length = BENT * ((p - from).norm() + (to - p).norm());
-            if other.rough_distance(&p) > reach + length {
+            if other.approximate_distance(&p) > reach + length {
                 continue;
             }
             // Four such parts are as long as curves touch.

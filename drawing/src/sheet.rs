@@ -279,25 +279,25 @@ impl Sheet {
         options: SheetOptions,
     ) -> Result<Self, SheetError> {
         let cell = |view: Option<StandardView>| view.map_or([0, 0], |v| options.angle.cell(v));
-        let mut bands: [Bands; 2] = Default::default();
+        let mut resolutions: [Bands; 2] = Default::default();
         for (view, drawing) in &views {
             let [low, high] = drawing.extent;
-            for (axis, bands) in bands.iter_mut().enumerate() {
+            for (axis, resolutions) in resolutions.iter_mut().enumerate() {
                 let nothing = [f64::NEG_INFINITY; 2];
-                let reach = bands.entry(cell(*view)[axis]).or_insert(nothing);
+                let reach = resolutions.entry(cell(*view)[axis]).or_insert(nothing);
                 reach[0] = reach[0].max(-low[axis]);
                 reach[1] = reach[1].max(high[axis]);
             }
         }
         let [low, high] = room(options.paper);
         let to_scale = views.iter().all(|(_, drawing)| drawing.to_scale);
-        let taken = bands.each_ref().map(|b| b.values().flatten().sum());
-        let gaps = bands.each_ref().map(|b| (b.len() + 1) as f64 * GAP);
+        let taken = resolutions.each_ref().map(|b| b.values().flatten().sum());
+        let gaps = resolutions.each_ref().map(|b| (b.len() + 1) as f64 * GAP);
         let (factor, scale) = fitted(taken, gaps, high - low, to_scale, &options)?;
         let places = [0, 1].map(|axis: usize| {
             let free = (high - low)[axis] - taken[axis] * factor;
-            let gap = free / (bands[axis].len() + 1) as f64;
-            origins(&bands[axis], low[axis], gap, factor)
+            let gap = free / (resolutions[axis].len() + 1) as f64;
+            origins(&resolutions[axis], low[axis], gap, factor)
         });
         let placed = views.into_iter().map(|(view, drawing)| {
             let [column, row] = cell(view);
@@ -366,10 +366,10 @@ fn fitted(
 }
 
 /// Where the origins of columns lie, or of rows: one after the other, the gap before and between them.
-fn origins(bands: &Bands, start: f64, gap: f64, factor: f64) -> BTreeMap<i32, f64> {
+fn origins(resolutions: &Bands, start: f64, gap: f64, factor: f64) -> BTreeMap<i32, f64> {
     let mut at = start;
     let mut places = BTreeMap::new();
-    for (&number, [before, after]) in bands {
+    for (&number, [before, after]) in resolutions {
         at += gap + before * factor;
         places.insert(number, at);
         at += after * factor;

@@ -57,7 +57,7 @@ fn grouped<'c>(arcs: &[RankedArc<'c>], tolerance: f64) -> Vec<Group<'c>> {
         let mut hosts: Vec<usize> = near.map(|leaf| root(&groups, leaf.data)).collect();
         hosts.sort_unstable();
         hosts.dedup();
-        hosts.retain(|&g| groups[g].support.holds(&ranked.arc, tolerance));
+        hosts.retain(|&g| groups[g].support.contains(&ranked.arc, tolerance));
         let Some((&host, others)) = hosts.split_first() else {
             if let Some(support) = Support::new(&ranked.arc) {
                 groups.push(Group {
@@ -74,7 +74,7 @@ fn grouped<'c>(arcs: &[RankedArc<'c>], tolerance: f64) -> Vec<Group<'c>> {
         groups[host].members.push(ranked.clone());
         for &other in others {
             let longest = &arcs[groups[other].longest].arc;
-            if groups[host].support.holds(longest, tolerance) {
+            if groups[host].support.contains(longest, tolerance) {
                 let members = std::mem::take(&mut groups[other].members);
                 groups[host].members.extend(members);
                 groups[other].merged = Some(host);
@@ -129,7 +129,7 @@ impl Support {
     }
 
     /// Whether an arc lies on it.
-    fn holds(&self, arc: &ImageArc<'_>, tolerance: f64) -> bool {
+    fn contains(&self, arc: &ImageArc<'_>, tolerance: f64) -> bool {
         match (self, arc) {
             (Self::Line { origin, direction }, ImageArc::Segment(ends)) => {
                 let away = |p: &Point2<f64>| direction.perp(&(p - origin)).abs();

@@ -81,12 +81,12 @@ pub enum MeshError {
 }
 
 impl Facets {
-    /// The triangles of a boundary; `band` is the part's resolution.
-    pub fn new(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Self, MeshError> {
+    /// The triangles of a boundary; `resolution` is the part's resolution.
+    pub fn new(brep: &Brep, accuracy: &Accuracy, resolution: f64) -> Result<Self, MeshError> {
         if brep.topology.solids.is_empty() {
             return Err(MeshError::Empty);
         }
-        let mesh = tessellate(brep, accuracy, band)?;
+        let mesh = tessellate(brep, accuracy, resolution)?;
         let mut facets = split_non_manifold::facets(brep, &mesh)?;
         facets.deviation = accuracy.deviation;
         facets.facets.sort_by_key(|f| f.solid);

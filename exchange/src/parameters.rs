@@ -82,7 +82,7 @@ impl ParameterWindow {
     }
 
     /// The value that differs from `x` by whole periods and is nearest to `other`.
-    pub fn beside(&self, i: usize, x: f64, other: f64) -> f64 {
+    pub fn nearest_equivalent(&self, i: usize, x: f64, other: f64) -> f64 {
         match self.surface.periods()[i] {
             Some(_) => x + TAU * ((other - x) / TAU).round(),
             None => x,

@@ -195,7 +195,7 @@ impl Follow<'_> {
                     });
                 }
                 let middle = self.node(0.5 * (start.t + end.t), Some(start));
-                let end = self.beside(end, &middle);
+                let end = self.nearest_equivalent(end, &middle);
                 waiting.extend([end, middle]);
             }
         }
@@ -238,11 +238,11 @@ impl Follow<'_> {
     }
 
     /// The same node with its parameters those next to another's.
-    fn beside(&self, mut node: Node, other: &Node) -> Node {
+    fn nearest_equivalent(&self, mut node: Node, other: &Node) -> Node {
         for (k, window) in self.windows.iter().enumerate() {
             for i in 0..2 {
                 let near = other.on[k][i].v;
-                node.on[k][i].v = window.beside(i, node.on[k][i].v, near);
+                node.on[k][i].v = window.nearest_equivalent(i, node.on[k][i].v, near);
             }
         }
         node
@@ -253,7 +253,7 @@ impl Follow<'_> {
         let on = self.windows.iter().map(|w| self.on(w, t, space)).collect();
         let node = Node { t, space, on };
         match before {
-            Some(other) => self.beside(node, other),
+            Some(other) => self.nearest_equivalent(node, other),
             None => node,
         }
     }
@@ -291,9 +291,9 @@ impl Follow<'_> {
 
     /// The parameters on a surface by the length; on its axis from next to it, by Taylor's sum.
     fn on(&self, window: &ParameterWindow, t: f64, space: [Jet<f64>; 3]) -> [Jet<f64>; 2] {
-        let beside = self.space(self.inner(t));
+        let nearest_equivalent = self.space(self.inner(t));
         let step = (0..3)
-            .map(|i| (space[i].v - beside[i].v).powi(2))
+            .map(|i| (space[i].v - nearest_equivalent[i].v).powi(2))
             .sum::<f64>()
             .sqrt();
         let is_moderate = |on: &[Jet<f64>; 2]| {
@@ -303,12 +303,12 @@ impl Follow<'_> {
         if let Some(on) = window.along(space).filter(is_moderate) {
             return on;
         }
-        let Some(on) = window.along(beside) else {
+        let Some(on) = window.along(nearest_equivalent) else {
             return [Jet::constant(0.0); 2];
         };
         let along = |f: &dyn Fn(usize) -> f64| (0..3).map(f).sum::<f64>();
-        let away = along(&|i| (space[i].v - beside[i].v) * beside[i].d)
-            / along(&|i| beside[i].d * beside[i].d);
+        let away = along(&|i| (space[i].v - nearest_equivalent[i].v) * nearest_equivalent[i].d)
+            / along(&|i| nearest_equivalent[i].d * nearest_equivalent[i].d);
         on.map(|x| Jet {
             v: x.v + away * (x.d + 0.5 * away * x.dd),
             d: x.d + away * x.dd,

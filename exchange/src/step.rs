@@ -89,7 +89,7 @@ pub fn write(brep: &Brep, options: &StepOptions) -> Result<String, StepError> {
     let least = thin::apart(options.unit);
     thin::check_shells(brep, least)?;
     let mut seamed = TwoManifold::new(brep, options.resolution)?;
-    seamed.draw_together(least);
+    seamed.merge_short_edges(least);
     seamed.close_narrow(least);
     thin::check(brep, &seamed, options.resolution, least)?;
     let mut exchange = Exchange::default();

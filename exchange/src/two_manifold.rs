@@ -95,8 +95,8 @@ pub enum SeamError {
 }
 
 impl<'a> TwoManifold<'a> {
-    /// The boundary with seams; `band` is the part's resolution.
-    pub fn new(brep: &'a Brep, band: f64) -> Result<Self, SeamError> {
+    /// The boundary with seams; `resolution` is the part's resolution.
+    pub fn new(brep: &'a Brep, resolution: f64) -> Result<Self, SeamError> {
         let pairs = pairs::Pairs::new(brep);
         if let Some(edge) = pairs.crack(brep) {
             let [lo, hi] = brep.range(edge);
@@ -106,7 +106,7 @@ impl<'a> TwoManifold<'a> {
         let cuts: Result<Vec<seams::Cut>, SeamError> = brep
             .topology
             .face_ids()
-            .map(|face| seams::Cut::new(brep, face, &pairs.rings[face.index()], band))
+            .map(|face| seams::Cut::new(brep, face, &pairs.rings[face.index()], resolution))
             .collect();
         loops::seamed(brep, &pairs, &cuts?)
     }

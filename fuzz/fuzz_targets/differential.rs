@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use premio_verify::checks::{Checker, Finding};
 use premio_csg::ray_casting::RayOracle;
 use premio_fuzz::{Part, Recipe};
-use premio_kernel::brep::point_in_solid::holds;
+use premio_kernel::brep::point_in_solid::contains;
 
 /// How many points are asked about.
 const POINTS: u32 = 32;
@@ -22,13 +22,13 @@ fuzz_target!(|bytes: &[u8]| {
     let known = &part.evaluation;
     let material = RayOracle::new(&part.tree);
     // What is so near to the boundary tells nothing.
-    let resolution = known.resolution_of_doubles();
+    let resolution = known.f64_resolution();
     let near = 1000.0 * resolution;
     let steps = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * near);
     for p in (0..POINTS).map(|k| part.place(k)) {
-        let held = material.holds(&p);
+        let held = material.contains(&p);
         let around = steps.iter().flat_map(|step| [p + step, p - step]);
-        if around.clone().all(|q| material.holds(&q) == held)
+        if around.clone().all(|q| material.contains(&q) == held)
             && let Some(told) = holds(&known.brep, &p, resolution)
         {
             assert_eq!(told, held, "at {p}\n{}", part.text);

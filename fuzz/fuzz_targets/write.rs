@@ -42,7 +42,7 @@ fn boundary(part: &Part, name: &str) {
         protocol: Protocol::Ap242,
         unit: Unit::Millimetre,
         accuracy: 1e-6 * size,
-        resolution: known.resolution_of_doubles(),
+        resolution: known.f64_resolution(),
     };
     if let Ok(text) = step::write(&known.brep, &how) {
         exchange(&text);
@@ -83,7 +83,7 @@ fn meshes(part: &Part, name: &str) {
         deviation: size / 100.0,
         angle: 0.5,
     };
-    let Ok(facets) = Facets::new(&known.brep, &accuracy, known.resolution_of_doubles()) else {
+    let Ok(facets) = Facets::new(&known.brep, &accuracy, known.f64_resolution()) else {
         return;
     };
     let count = facets.facets.len();

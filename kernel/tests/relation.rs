@@ -26,7 +26,7 @@ fn tiny(k: usize) -> Rational {
 
 #[test]
 fn the_edge_of_the_band_is_told_by_more_bits() {
-    let (band, radius) = (exact(0.5f64.powi(30)), exact(1.25));
+    let (resolution, radius) = (exact(0.5f64.powi(30)), exact(1.25));
     // A normal of length 7/3: no component of the unit normal is a double.
     let third = |n: i32| Rational::from_parts(n.into(), 3u8.into());
     let (normal, length) = ([2, 3, 6].map(third), third(7));
@@ -41,7 +41,7 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
         (-tiny(80), Side::On),
         (exact(0.0), Side::On),
     ] {
-        let height = &radius + &band * (exact(1.0) + beyond);
+        let height = &radius + &resolution * (exact(1.0) + beyond);
         let sphere = Coefficients {
             point: normal.each_ref().map(|c| c * &height / &length),
             direction: [0.0, 0.0, 1.0].map(exact),
@@ -60,7 +60,7 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
             Carrier::rounded(&s, &of_sphere),
             &EXTENT,
         );
-        let predicates = Predicates::new(to_f64(&band));
+        let predicates = Predicates::new(to_f64(&resolution));
         let touch = pair.how(PairMeasure::PlaneOnSphere);
         assert_eq!(
             predicates.classify("plane on sphere", touch, [0.0; 3]),

@@ -3,7 +3,7 @@
 
 use crate::camera::Pinhole;
 use crate::correspondence::predicted_contours::{PredictedContour, arcs};
-use crate::correspondence::{BESIDE, Correspondence};
+use crate::correspondence::{ADJACENT, Correspondence};
 use crate::hypothesis::{
     Hypothesis, REACHES, best_first, distinct, drawn, hypotheses, is_same, settled,
 };
@@ -135,12 +135,12 @@ impl Matcher<'_> {
         // As far as attributes tell: of each found feature how far beside and how much askew it is.
         let weight: f64 = pulls.iter().flatten().map(|p| p.weight).sum();
         let found = solution.assignment.iter().flatten().count();
-        let told = inverse * (BESIDE.powi(2) * weight / (2.0 * found as f64));
+        let told = inverse * (ADJACENT.powi(2) * weight / (2.0 * found as f64));
         let mut weighed = PartMatch {
             pose,
-            covariance: inverse * rms.max(LEAST).powi(2),
+            covariance: inverse * rms.max(MIN_RATE).powi(2),
             rms,
-            astray: SystematicOffset::default(),
+            systematic_offset: SystematicOffset::default(),
             score: solution.score,
             ratio: 0.0,
             odds: 0.0,
@@ -162,10 +162,10 @@ impl Matcher<'_> {
     fn judged(&self, found: PartMatch) -> PartMatch {
         let mut judged = found;
         let (all, each) = SystematicOffset::new(self.camera, &judged.pose, &judged.pulls);
-        judged.astray = all;
-        for (pair, astray) in judged.pairs.iter_mut().zip(each) {
-            if let (Some(found), Some(astray)) = (&mut pair.found, astray) {
-                found.astray = astray;
+        judged.systematic_offset = all;
+        for (pair, systematic_offset) in judged.pairs.iter_mut().zip(each) {
+            if let (Some(found), Some(systematic_offset)) = (&mut pair.found, systematic_offset) {
+                found.systematic_offset = systematic_offset;
             }
         }
         judged.shape = ShapeEvidence::new(self.part, self.camera, &judged);
@@ -206,7 +206,7 @@ const ROUNDS: usize = 4;
 /// From this distance on, in pixels, an edge draws no longer.
 const SCALE: f64 = 4.0;
 /// The least deviation of an edge, in pixels: that of the detector.
-const LEAST: f64 = 0.2;
+const MIN_RATE: f64 = 0.2;
 
 /// The matches at different poses, the likeliest of each.
 fn different(
@@ -245,7 +245,7 @@ fn pairs(
                 ends: choice.ends,
                 share: choice.share,
                 offset: choice.offset,
-                astray: SystematicOffset::default(),
+                systematic_offset: SystematicOffset::default(),
             }
         });
         all.push(FeaturePair {

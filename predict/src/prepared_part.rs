@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::bounding_box;
-use premio_kernel::brep::point_in_solid::holds;
+use premio_kernel::brep::point_in_solid::contains;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::tessellation::{Accuracy, Mesh, tessellate};
@@ -31,7 +31,7 @@ pub struct PreparedPart<'a> {
     /// Its boundary.
     pub brep: &'a Brep,
     /// Its resolution.
-    pub band: f64,
+    pub resolution: f64,
     /// The middle of its box.
     pub centre: Point3<f64>,
     /// Half the diagonal of its box.
@@ -43,14 +43,14 @@ pub struct PreparedPart<'a> {
 
 impl<'a> PreparedPart<'a> {
     /// The part with this boundary and resolution.
-    pub fn new(brep: &'a Brep, band: f64) -> Result<Self, SubjectError> {
+    pub fn new(brep: &'a Brep, resolution: f64) -> Result<Self, SubjectError> {
         if brep.topology.faces.is_empty() {
             return Err(SubjectError::Empty);
         }
         let hull = bounding_box::bounds(brep);
         let mut subject = Self {
             brep,
-            band,
+            resolution,
             centre: hull.centre(),
             radius: 0.5 * hull.diagonal(),
             unblocked_fraction: vec![1.0; brep.topology.faces.len()],
@@ -61,8 +61,8 @@ impl<'a> PreparedPart<'a> {
 
     /// Whether a point is in the part's material, or on its boundary as far as that is known.
     pub fn contains(&self, p: &Point3<f64>) -> bool {
-        let near = (p - self.centre).norm() <= self.radius + self.band;
-        near && holds(self.brep, p, self.band).unwrap_or(true)
+        let near = (p - self.centre).norm() <= self.radius + self.resolution;
+        near && contains(self.brep, p, self.resolution).unwrap_or(true)
     }
 }
 
@@ -75,13 +75,13 @@ fn unblocked_fraction(subject: &PreparedPart<'_>) -> Vec<f64> {
         deviation: subject.radius / 64.0,
         angle: PI / 8.0,
     };
-    let mesh = tessellate(subject.brep, &accuracy, subject.band);
+    let mesh = tessellate(subject.brep, &accuracy, subject.resolution);
     // A part without a mesh, or at no finite place, is taken to be open: the ambient term is small.
     let (Ok(eye), Ok(mesh)) = (eye, mesh) else {
         return vec![1.0; count];
     };
     let projection = Projection::new(&eye, 2.0 * subject.radius);
-    let scene = Scene::new(subject.brep, &projection, subject.band);
+    let scene = Scene::new(subject.brep, &projection, subject.resolution);
     let faces = subject.brep.topology.face_ids();
     faces
         .map(|face| open_part(subject, &scene, &mesh, face))

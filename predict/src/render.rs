@@ -16,19 +16,19 @@ pub const FINE: usize = 8;
 
 /// Before the point spread, noise and steps: the levels of rows of an image.
 pub fn rows(shading: &Shading<'_>, width: usize, rows: std::ops::Range<usize>) -> Vec<f32> {
-    let corner = |x: usize, y: usize| shading.asked([x as f64 - 0.5, y as f64 - 0.5]);
+    let corner = |x: usize, y: usize| shading.cast([x as f64 - 0.5, y as f64 - 0.5]);
     let mut levels = Vec::with_capacity(width * rows.len());
     let mut above: Vec<RegionSample> = (0..=width).map(|x| corner(x, rows.start)).collect();
     for y in rows {
         let below: Vec<RegionSample> = (0..=width).map(|x| corner(x, y + 1)).collect();
         for x in 0..width {
             let at = [x as f64, y as f64];
-            let middle = shading.asked(at);
+            let middle = shading.cast(at);
             let corners = [&above[x], &above[x + 1], &below[x], &below[x + 1]];
-            let plain = corners
+            let unambiguous = corners
                 .iter()
                 .all(|c| c.face == middle.face && c.lit == middle.lit);
-            let level = match plain {
+            let level = match unambiguous {
                 true => level(shading, at, &middle),
                 false => mixed(shading, at),
             };
@@ -64,7 +64,7 @@ fn mixed(shading: &Shading<'_>, [x, y]: [f64; 2]) -> f64 {
     for j in 0..FINE {
         for i in 0..FINE {
             let at = [x + offset(i), y + offset(j)];
-            sum += level(shading, at, &shading.asked(at));
+            sum += level(shading, at, &shading.cast(at));
         }
     }
     sum * step * step

@@ -84,8 +84,9 @@ def descriptions(folder: Path):
     for path in sorted(Path(corpus).glob("faults/**/*.padl")):
         yield str(path.relative_to(corpus)), path
     for case in json.loads((Path(corpus) / "cases.json").read_text()):
-        path = folder / f"{case['id']}.json"
-        path.write_text(json.dumps(case["tree"]))
+        # Relative to the folder in which all runs: some outputs tell the path.
+        path = Path(f"{case['id']}.json")
+        (folder / path).write_text(json.dumps(case["tree"]))
         yield case["id"], path
 
 
@@ -123,10 +124,10 @@ def matches(folder: Path):
         return
     for set_name, (fx, fy, cx, cy), size, corner in PICTURES:
         tree = {"prim": "block", "size": size, "transform": [{"translate": corner}]}
-        part, camera = folder / f"{set_name}.json", folder / f"{set_name}.camera.json"
-        part.write_text(json.dumps(tree))
+        part, camera = Path(f"{set_name}.json"), Path(f"{set_name}.camera.json")
+        (folder / part).write_text(json.dumps(tree))
         matrix = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]
-        camera.write_text(json.dumps({"K": matrix, "width": 640, "height": 480}))
+        (folder / camera).write_text(json.dumps({"K": matrix, "width": 640, "height": 480}))
         pictures = sorted(Path(images).glob(f"{set_name}/**/*.png"))[:4]
         for picture in pictures:
             yield Run(f"{set_name}: {picture.name}", ["match", str(part), str(picture), "--camera", str(camera)])

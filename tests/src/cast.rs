@@ -162,14 +162,14 @@ impl Cast {
         counted
     }
 
-    fn aside(&self) -> f64 {
+    fn lateral(&self) -> f64 {
         ASIDE * DEVIATION * self.size
     }
 
     /// Within this distance before a sample lies what its own faces may still be: where a ray beside
     /// a limb meets a surface as curved as the part.
     fn just_before(&self) -> f64 {
-        (4.0 * self.size * self.aside()).sqrt()
+        (4.0 * self.size * self.lateral()).sqrt()
     }
 
     /// How many faces lie before a sample, at least and at most; none where the rays around it do
@@ -184,7 +184,7 @@ impl Cast {
         let (p, frame, reach) = sample(projection, contour, piece, part);
         let rays = (0..4).map(|k| {
             let (sin, cos) = (0.3 + 0.25 * TAU * f64::from(k)).sin_cos();
-            let start = p + (frame.x * cos + frame.y * sin) * self.aside();
+            let start = p + (frame.x * cos + frame.y * sin) * self.lateral();
             let hits = self.hits(&start, &frame.z, reach);
             let found = |means: Means| {
                 let of = hits.iter().filter(|hit| self.means(contour, hit) == means);
@@ -202,7 +202,7 @@ impl Cast {
     /// What it means for a contour's sample that a ray beside it meets a triangle.
     fn means(&self, contour: &Contour, hit: &Hit) -> Means {
         let own = contour.faces.contains(&hit.face);
-        if own && (hit.flat || hit.at <= 4.0 * self.aside()) {
+        if own && (hit.flat || hit.at <= 4.0 * self.lateral()) {
             Means::Itself
         } else if hit.at <= self.just_before() {
             Means::Unsure
@@ -221,7 +221,7 @@ impl Cast {
         part: f64,
     ) -> bool {
         let (p, frame, _) = sample(projection, contour, piece, part);
-        let margin = 3.0 * self.aside();
+        let margin = 3.0 * self.lateral();
         seen.contours.iter().any(|other| {
             other.pieces.iter().any(|near| {
                 (0..=POINTS).any(|k| {

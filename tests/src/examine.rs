@@ -92,7 +92,7 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(depth.rays);
     let drawn = evaluation.view_resolution().is_some();
-    if drawn && !depth.views.is_empty() && report.holds() {
+    if drawn && !depth.views.is_empty() && report.contains() {
         let all = views::around(&evaluation.bounds);
         let cast = Cast::new(&evaluation);
         match &cast {
@@ -202,14 +202,14 @@ fn passing(
 /// On how many faces that are not its own a piece lies within the resolution, next to its middle,
 /// where it is counted: whether these lie before it is not to be told.
 fn lies_on(evaluation: &Evaluation, contour: &Contour, piece: &ContourPiece) -> usize {
-    let (brep, band) = (&evaluation.brep, evaluation.resolution);
+    let (brep, resolution) = (&evaluation.brep, evaluation.resolution);
     let [lo, hi] = piece.t;
     let p = contour.curve3.point(lo + (hi - lo) * COUNTED_AT);
     let others = brep.topology.face_ids();
     let others = others.filter(|f| !contour.faces.contains(f));
     let on = others.filter(|&f| {
-        let near = brep.surface(f).distance(&p).abs() <= ON * band;
-        near && FaceLocator::from_face(brep, f, band).place(&p) != PointLocation::Outside
+        let near = brep.surface(f).distance(&p).abs() <= ON * resolution;
+        near && FaceLocator::from_face(brep, f, resolution).place(&p) != PointLocation::Outside
     });
     on.count()
 }

@@ -141,7 +141,7 @@ fn unlike_rays(tree: &Tree, evaluation: &Evaluation) -> Vec<String> {
     let checks = seen
         .iter()
         .flat_map(|v| checker.view_with(&v.name, &v.camera, ViewChecks::ALL));
-    let failed = checks.filter(|c| !c.holds());
+    let failed = checks.filter(|c| !c.contains());
     failed.map(|c| c.to_string()).collect()
 }
 
@@ -181,7 +181,7 @@ fn measures(case: &Case, answer: &Answer, evaluation: &Evaluation) -> Vec<String
                 "box",
                 found,
                 known.value(formula).unwrap(),
-                evaluation.resolution_of_doubles(),
+                evaluation.f64_resolution(),
             );
         }
     }

@@ -23,7 +23,7 @@ fn more_places_than_the_limit_are_refused_by_name() {
     let blocks = "P = BLO(X=2,Y=2,Z=2) UN BLO(X=2,Y=2,Z=2) AT (MOVX=1,MOVY=1,MOVZ=1)";
     let within = |entities| {
         let options = EvaluationOptions {
-            entities: Some(entities),
+            entity_limit: Some(entities),
             ..EvaluationOptions::default()
         };
         evaluated(blocks, Format::Padl, &options)

@@ -195,7 +195,12 @@ fn sources() -> Vec<PathBuf> {
 
 fn named() -> Vec<(String, Names)> {
     let relative = |path: &PathBuf| path.strip_prefix(root()).unwrap().display().to_string();
-    let read = |path: PathBuf| (relative(&path), Names::new(&fs::read_to_string(&path).unwrap()));
+    let read = |path: PathBuf| {
+        (
+            relative(&path),
+            Names::new(&fs::read_to_string(&path).unwrap()),
+        )
+    };
     sources().into_iter().map(read).collect()
 }
 
@@ -239,7 +244,9 @@ fn no_public_name_has_a_retired_word() {
     for (path, names) in named() {
         for name in &names.all {
             let words = words(name);
-            let retired = RETIRED.iter().find(|(word, _)| words.iter().any(|w| w == word));
+            let retired = RETIRED
+                .iter()
+                .find(|(word, _)| words.iter().any(|w| w == word));
             if let Some((word, term)) = retired {
                 wrong.push(format!("{path}: `{name}` has the word {word}: use {term}"));
             }

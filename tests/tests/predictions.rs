@@ -88,13 +88,13 @@ fn regions_show_what_rays_meet(
         // Points without a common pattern.
         let x = (k as f64 * 0.754_877_666).fract() * (width as f64 - 1.0);
         let y = (k as f64 * 0.569_840_291).fract() * (height as f64 - 1.0);
-        if near.holds(x.round() as usize, y.round() as usize) {
+        if near.contains(x.round() as usize, y.round() as usize) {
             continue;
         }
         let Some(shown) = draft.regions.all[draft.regions.at([x, y]) as usize].seen else {
             continue;
         };
-        let met = draft.shading.asked([x, y]);
+        let met = draft.shading.cast([x, y]);
         // A light that a region is said to see may be behind the face at this point.
         let same = shown.face == met.face && met.lit & !shown.lit == 0;
         if !same {
@@ -149,10 +149,10 @@ fn regions_of_named_cases_show_what_rays_meet() {
         let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
             continue;
         };
-        let Some(band) = part.view_resolution() else {
+        let Some(resolution) = part.view_resolution() else {
             continue;
         };
-        let Ok(subject) = PreparedPart::new(&part.brep, band) else {
+        let Ok(subject) = PreparedPart::new(&part.brep, resolution) else {
             continue;
         };
         let (eye, light) = PLACES[seen % PLACES.len()];
@@ -477,9 +477,9 @@ fn what_cannot_be_is_told() {
     let away =
         told("[camera]\neye = [9, 7, 8]\ntarget = [18, 14, 16]\n[[light]]\nposition = [9, 9, 9]\n");
     assert!(away.contains("behind the camera"), "{away}");
-    let aside =
+    let lateral =
         told("[camera]\neye = [9, 7, 8]\ntarget = [9, 0, 8]\n[[light]]\nposition = [9, 9, 9]\n");
-    assert!(aside.contains("falls on"), "{aside}");
+    assert!(lateral.contains("falls on"), "{lateral}");
     let face = told(&format!(
         "{camera}[[light]]\nposition = [9, 9, 9]\n[[surface]]\nfaces = [0, 99]\nmaterial = \"steel\"\n"
     ));

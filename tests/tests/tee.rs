@@ -57,7 +57,7 @@ fn cameras() -> Vec<(&'static str, Camera)> {
     };
     let (above, up) = along(600.0);
     let (below, _) = along(-400.0);
-    let aside = Point3::new(310.0, 270.0, 420.0);
+    let lateral = Point3::new(310.0, 270.0, 420.0);
     vec![
         ("along", Camera::orthographic(above, centre, up).unwrap()),
         (
@@ -70,11 +70,11 @@ fn cameras() -> Vec<(&'static str, Camera)> {
         ),
         (
             "general",
-            Camera::orthographic(aside, centre, Vector3::z()).unwrap(),
+            Camera::orthographic(lateral, centre, Vector3::z()).unwrap(),
         ),
         (
             "general perspective",
-            Camera::perspective(aside, centre, Vector3::z(), 1.0).unwrap(),
+            Camera::perspective(lateral, centre, Vector3::z(), 1.0).unwrap(),
         ),
     ]
 }
@@ -97,7 +97,7 @@ fn examine(name: &str, json: &Value) -> Vec<f64> {
     for (view, camera) in cameras() {
         for check in checker.view(view, &camera) {
             println!("{name}: {check}");
-            if !check.holds() {
+            if !check.contains() {
                 wrong.push(check.to_string());
             }
         }

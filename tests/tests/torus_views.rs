@@ -136,13 +136,13 @@ fn real_roots(k: &[f64], [lo, hi]: [f64; 2]) -> Vec<f64> {
 /// How many stretches of the torus lie before a point of a limb; none where the answer changes
 /// next to the point.
 fn invisibility(t: &Torus, projection: &Projection, p: &Point3<f64>) -> Option<u32> {
-    let aside = 1e-7 * (t.major + t.minor);
-    let depth = 4.0 * (aside * (t.major + t.minor)).sqrt();
+    let lateral = 1e-7 * (t.major + t.minor);
+    let depth = 4.0 * (lateral * (t.major + t.minor)).sqrt();
     let (v, _) = projection.towards_eye(p);
     let n = t.normal(p);
     let across = n.cross(&v);
     let count = |offset: Vector3<f64>| {
-        let q = p + offset * aside;
+        let q = p + offset * lateral;
         let (v, length) = projection.towards_eye(&q);
         let within = t.inside(&q, &v, [depth, length]);
         within.iter().filter(|i| i[1] < length).count() as u32

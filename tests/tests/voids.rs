@@ -4,7 +4,7 @@
 use nalgebra::Point3;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
-use premio_kernel::brep::point_in_solid::holds;
+use premio_kernel::brep::point_in_solid::contains;
 use premio_kernel::geometry::surface::Surface;
 
 fn evaluated(text: &str) -> Evaluation {

@@ -146,8 +146,8 @@ pub struct TrialOutcome {
     /// How many decisions were close.
     pub close_calls: usize,
     /// The checks that do not tell.
-    #[serde(default)]
-    pub untold: Vec<String>,
+    #[serde(default, rename = "untold")]
+    pub undetermined: Vec<String>,
 }
 
 impl TrialOutcome {
@@ -157,7 +157,7 @@ impl TrialOutcome {
         Self {
             verdict: Verdict::Wrong(vec![Fault { kind, text }]),
             close_calls: 0,
-            untold: Vec::new(),
+            undetermined: Vec::new(),
         }
     }
 }
@@ -220,14 +220,14 @@ pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
         contours: terms.views,
         drawing: terms.sheets,
     };
-    if report.holds() && (asked.contours || asked.drawing) {
+    if report.contains() && (asked.contours || asked.drawing) {
         let all = views::around(&evaluation.bounds);
         for view in all.iter().filter(|v| VIEWS.contains(&v.name.as_str())) {
             let checks = checker.view_with(&view.name, &view.camera, asked);
             report.checks.extend(checks);
         }
     }
-    if terms.step && report.holds() {
+    if terms.step && report.contains() {
         report.checks.extend([checker.step(), checker.mesh()]);
     }
     let mut faults = faults(&report);
@@ -239,11 +239,11 @@ pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
         true => Verdict::Right(measures(&evaluation)),
         false => Verdict::Wrong(faults),
     };
-    let untold = report.checks_with(Finding::Untold).map(text).collect();
+    let undetermined = report.checks_with(Finding::Untold).map(text).collect();
     TrialOutcome {
         verdict,
         close_calls,
-        untold,
+        undetermined,
     }
 }
 
@@ -251,7 +251,7 @@ fn refused(text: String, close_calls: usize) -> TrialOutcome {
     TrialOutcome {
         verdict: Verdict::Refused(text),
         close_calls,
-        untold: Vec::new(),
+        undetermined: Vec::new(),
     }
 }
 

@@ -272,7 +272,7 @@ fn constant(brep: &Brep, camera: &Camera, c: &Contours) {
                 };
                 let along = contour.curve3.tangent(lo + (hi - lo) * part);
                 let count = scene.count(&p, &along, &own);
-                if count.plain {
+                if count.unambiguous {
                     assert_eq!(
                         count.qi, piece.qi,
                         "{camera:?} contour {} {piece:?} at {part}",
@@ -284,7 +284,7 @@ fn constant(brep: &Brep, camera: &Camera, c: &Contours) {
     }
 }
 
-fn crowd() -> Brep {
+fn mark_ambiguous() -> Brep {
     let mut b = Builder::default();
     let world = |x, y, z| Frame::world().at(Point3::new(x, y, z));
     b.block(
@@ -341,7 +341,7 @@ proptest! {
 
     #[test]
     fn counts_carried_along_are_those_counted(d in direction(), away in 6.0..20.0f64) {
-        let part = crowd();
+        let part = mark_ambiguous();
         let centre = Point3::new(2.0, 2.0, 1.0);
         let camera = Camera::perspective(centre + d * away, centre, Vector3::z(), 1.0).unwrap();
         if contours(&part, &camera, BAND).is_ok() {
@@ -363,7 +363,7 @@ fn a_short_piece_is_counted_where_it_is_plain() {
     );
     let centre = Point3::new(2.0, 2.0, 1.0);
     let camera = Camera::orthographic(centre + d * 6.0, centre, Vector3::z()).unwrap();
-    compare(&crowd(), &camera);
+    compare(&mark_ambiguous(), &camera);
 }
 
 #[test]
@@ -416,7 +416,7 @@ fn what_lies_behind_the_eye_is_cut_at_the_near_plane() {
 
 #[test]
 fn a_crowd_along_the_axes() {
-    let part = crowd();
+    let part = mark_ambiguous();
     for e in [
         [2.0, 2.0, 30.0],
         [2.0, 2.0, -30.0],

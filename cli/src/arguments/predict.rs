@@ -90,8 +90,8 @@ pub struct ModelRun(pub Option<ModelRunOptions>);
 
 impl FromArgMatches for ModelRun {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let asked = matches.contains_id("setups");
-        let options = asked.then(|| ModelRunOptions::from_arg_matches(matches));
+        let requested = matches.contains_id("setups");
+        let options = requested.then(|| ModelRunOptions::from_arg_matches(matches));
         options.transpose().map(Self)
     }
 

@@ -31,7 +31,7 @@ pub struct SheetArguments {
 
 impl SheetArguments {
     /// Whether a sheet is asked for.
-    pub fn is_asked(&self) -> bool {
+    pub fn is_requested(&self) -> bool {
         !self.views.is_empty()
             || self.paper.is_some()
             || self.scale.is_some()

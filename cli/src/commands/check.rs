@@ -54,7 +54,7 @@ impl<'a> Checked<'a> {
         };
         Self {
             schema: "premio.check/1",
-            holds: report.holds(),
+            holds: report.contains(),
             checks: report.checks.iter().map(one).collect(),
         }
     }

@@ -23,7 +23,7 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), CliError> 
         .format(options.format)
         .map_err(CliError::input)?;
     let chosen = options.camera.choice().map_err(CliError::input)?;
-    if options.sheet.is_asked() {
+    if options.sheet.is_requested() {
         return output::write(on_sheet(options, format, session)?, to);
     }
     let given = Given::read(chosen, session)?;
@@ -83,8 +83,8 @@ fn on_sheet(
         ContoursFormat::Svg => svg::write_sheet,
         ContoursFormat::Dxf => dxf::write_sheet,
     };
-    let asked = &options.sheet;
-    let given = match asked.views.is_empty() {
+    let requested = &options.sheet;
+    let given = match requested.views.is_empty() {
         true => {
             let chosen = options.camera.choice().map_err(CliError::input)?;
             Some(Given::read(chosen, session)?)
@@ -95,7 +95,7 @@ fn on_sheet(
     let cameras = match &given {
         Some(Given::Choice(CameraChoice::Named(name))) => cameras(&part, &[*name])?,
         Some(given) => vec![(None, given.camera(&part)?)],
-        None => cameras(&part, &asked.views)?,
+        None => cameras(&part, &requested.views)?,
     };
     let bar = session.voice.progress(cameras.len() as u64);
     let mut views = Vec::new();
@@ -107,13 +107,13 @@ fn on_sheet(
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let title = asked.title.clone();
+    let title = requested.title.clone();
     let how = sheet::SheetOptions {
         title: title.unwrap_or_else(|| options.description.stem()),
-        unit: asked.unit.map(Unit::from).unwrap_or_default(),
-        paper: asked.paper.map(Paper::from).unwrap_or_default(),
-        scale: asked.scale,
-        angle: asked.projection.map(Angle::from).unwrap_or_default(),
+        unit: requested.unit.map(Unit::from).unwrap_or_default(),
+        paper: requested.paper.map(Paper::from).unwrap_or_default(),
+        scale: requested.scale,
+        angle: requested.projection.map(Angle::from).unwrap_or_default(),
     };
     let sheet = Sheet::new(views, how).map_err(|e| CliError::input(e.to_string()))?;
     Ok(write(&sheet))

@@ -75,7 +75,7 @@ fn as_step(part: &EvaluatedPart, options: &ExportOptions) -> Result<String, CliE
         },
         unit: unit(options),
         accuracy: options.accuracy.unwrap_or(step::ACCURACY * size),
-        resolution: evaluation.resolution_of_doubles(),
+        resolution: evaluation.f64_resolution(),
     };
     step::write(&evaluation.brep, &how).map_err(|e| CliError::limit(format!("{}: {e}", part.name)))
 }
@@ -98,12 +98,12 @@ fn check_fineness(part: &EvaluatedPart, options: &ExportOptions) -> Result<(), C
         ("deviation", options.deviation, least),
         ("angle", options.angle, FINEST_ANGLE),
     ];
-    for (option, asked, least) in finer {
-        if let Some(asked) = asked.filter(|asked| *asked < least) {
+    for (option, requested, least) in finer {
+        if let Some(requested) = requested.filter(|requested| *requested < least) {
             return Err(CliError::limit(format!(
                 "{}: `--{option} {}` is beyond the limit, expected at least {least:.1e}",
                 part.name,
-                number(asked)
+                number(requested)
             )));
         }
     }
@@ -121,8 +121,8 @@ fn as_triangles(
         deviation: options.deviation.unwrap_or(mesh::DEVIATION * size),
         angle: options.angle.unwrap_or(mesh::ANGLE).to_radians(),
     };
-    let band = evaluation.resolution_of_doubles();
-    let facets = Facets::new(&evaluation.brep, &accuracy, band)?;
+    let resolution = evaluation.f64_resolution();
+    let facets = Facets::new(&evaluation.brep, &accuracy, resolution)?;
     let name = name(options);
     match format {
         ExportFormat::Obj => Ok(obj::write(&facets, &name).into_bytes()),

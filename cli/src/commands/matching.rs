@@ -31,7 +31,7 @@ use std::time::Instant;
 struct Sought {
     name: String,
     described: EvaluatedPart,
-    band: f64,
+    resolution: f64,
     records: Vec<Record>,
     detector: Detector,
     camera: PinholeFile,
@@ -90,7 +90,7 @@ impl Sought {
     }
 
     fn part(&self, learned: &DetectabilityPrior) -> SoughtPart<'_> {
-        SoughtPart::new(&self.described.evaluation.brep, self.band, learned)
+        SoughtPart::new(&self.described.evaluation.brep, self.resolution, learned)
     }
 
     /// The part looked for in a picture.
@@ -145,7 +145,7 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
         Some(path) => crate::setup::detector(path, session)?,
         None => known.unwrap_or_else(detector),
     };
-    let band = input::view_resolution(&described)?;
+    let resolution = input::view_resolution(&described)?;
     if described.evaluation.brep.topology.faces.is_empty() {
         return Err(CliError::input(format!(
             "{name}: the part is empty: there is nothing to be found"
@@ -154,7 +154,7 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
     Ok(Sought {
         name,
         described,
-        band,
+        resolution,
         records,
         detector,
         camera,

@@ -34,7 +34,7 @@ pub fn run(options: &ModelOptions, session: Session) -> Result<(), CliError> {
 
 fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
-    let format = format::asked(&options.output)?;
+    let format = format::requested(&options.output)?;
     if options.shard.is_some() && format != RecordsFormat::Jsonl {
         let said = "a shard is lines of JSON: what is a table is the model, by `model merge`";
         return Err(CliError::input(said));
@@ -262,7 +262,7 @@ fn check_run(shards: &[Shard]) -> Result<(), CliError> {
 }
 
 fn merged(options: &MergeOptions, session: Session) -> Result<(), CliError> {
-    let format = format::asked(&options.output)?;
+    let format = format::requested(&options.output)?;
     let mut shards = opened(&options.shards, session)?;
     shards.sort_by_key(|shard| shard.head.shard[0]);
     check_run(&shards)?;

@@ -74,7 +74,7 @@ struct Line<'a> {
 
 impl Message {
     /// A text by itself.
-    pub fn plain(text: impl Into<String>) -> Self {
+    pub fn without_excerpt(text: impl Into<String>) -> Self {
         Self {
             text: text.into(),
             ..Self::default()
@@ -134,9 +134,9 @@ impl Message {
             GraphicalTheme::default()
         } else {
             // A caret under a single character, too.
-            let mut plain = GraphicalTheme::none();
-            plain.characters.underbar = '^';
-            plain
+            let mut without_excerpt = GraphicalTheme::none();
+            without_excerpt.characters.underbar = '^';
+            without_excerpt
         };
         let mut text = String::new();
         let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false);

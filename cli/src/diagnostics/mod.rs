@@ -35,12 +35,12 @@ pub enum CliError {
 impl CliError {
     /// Wrong input, in a line.
     pub fn input(text: impl Into<String>) -> Self {
-        Self::Input(Box::new(Message::plain(text)))
+        Self::Input(Box::new(Message::without_excerpt(text)))
     }
 
     /// Beyond a limit, in a line.
     pub fn limit(text: impl Into<String>) -> Self {
-        Self::Limit(Box::new(Message::plain(text)))
+        Self::Limit(Box::new(Message::without_excerpt(text)))
     }
 
     /// A text that was not read.
@@ -62,7 +62,7 @@ impl CliError {
         let words = error.to_string();
         Self::Input(Box::new(match span {
             Some(span) => Message::at(name, text.as_bytes(), &span, &words),
-            None => Message::plain(format!("{name}: {words}")),
+            None => Message::without_excerpt(format!("{name}: {words}")),
         }))
     }
 
@@ -92,7 +92,7 @@ impl CliError {
     /// Decisions too close to the resolution.
     pub fn close(name: &str, resolution: f64, calls: &[CloseCall]) -> Self {
         let text = close_calls(name, resolution, calls);
-        Self::Limit(Box::new(Message::plain(text).with_calls(calls)))
+        Self::Limit(Box::new(Message::without_excerpt(text).with_calls(calls)))
     }
 }
 
@@ -165,14 +165,14 @@ impl Reporter {
 
     /// Tells what else there is to know of an output.
     pub fn note(self, name: &str, text: &str) {
-        self.tell(&Message::plain(format!("{name}: {text}")));
+        self.tell(&Message::without_excerpt(format!("{name}: {text}")));
     }
 
     /// Tells the close calls that were let pass.
     pub fn close_calls(self, name: &str, resolution: f64, calls: &[CloseCall]) {
         if !calls.is_empty() {
             let text = close_calls(name, resolution, calls);
-            self.tell(&Message::plain(text).with_calls(calls));
+            self.tell(&Message::without_excerpt(text).with_calls(calls));
         }
     }
 

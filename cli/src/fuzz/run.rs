@@ -352,7 +352,7 @@ mod tests {
             Ok(Some(TrialOutcome {
                 verdict,
                 close_calls: 1,
-                untold: Vec::new(),
+                undetermined: Vec::new(),
             }))
         }
     }

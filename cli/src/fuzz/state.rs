@@ -79,8 +79,8 @@ pub struct Tally {
     /// The wrong ones, by kind; one tree may be of several.
     pub faults: BTreeMap<FailureKind, Finds>,
     /// Those of which a check does not tell.
-    #[serde(default)]
-    pub untold: Finds,
+    #[serde(default, rename = "untold")]
+    pub undetermined: Finds,
     /// How many trees had close calls.
     pub close_trees: u64,
     /// How many close calls there were.
@@ -153,8 +153,9 @@ impl Tally {
                 }
             }
         }
-        if !outcome.untold.is_empty() {
-            self.untold.insert(seed, find(outcome.untold.join("; ")));
+        if !outcome.undetermined.is_empty() {
+            self.undetermined
+                .insert(seed, find(outcome.undetermined.join("; ")));
         }
         self.close_trees += u64::from(outcome.close_calls > 0);
         self.close_calls += outcome.close_calls as u64;
@@ -319,7 +320,7 @@ mod tests {
             1 => TrialOutcome {
                 verdict: Verdict::Refused(format!("near ({number}, 1, 2)")),
                 close_calls: 2,
-                untold: Vec::new(),
+                undetermined: Vec::new(),
             },
             _ => TrialOutcome::wrong(FailureKind::Time, "none"),
         }

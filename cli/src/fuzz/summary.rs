@@ -36,7 +36,8 @@ struct Part {
     refusals: Vec<Kind>,
     faults: Vec<Kind>,
     /// The trees of which a check does not tell; none is there where all tell.
-    untold: Vec<Kind>,
+    #[serde(rename = "untold")]
+    undetermined: Vec<Kind>,
     close_calls: CloseCalls,
 }
 
@@ -108,8 +109,10 @@ impl Part {
     fn new(tally: &Tally) -> Self {
         let refusals = tally.refusals.iter().map(|(k, f)| Kind::new(k, f));
         let faults = tally.faults.iter().map(|(k, f)| Kind::new(k.name(), f));
-        let untold = Some(&tally.untold).filter(|finds| !finds.is_empty());
-        let untold = untold.into_iter().map(|f| Kind::new("too few samples", f));
+        let undetermined = Some(&tally.undetermined).filter(|finds| !finds.is_empty());
+        let undetermined = undetermined
+            .into_iter()
+            .map(|f| Kind::new("too few samples", f));
         Self {
             trees: tally.trees(),
             right: tally.right,
@@ -117,7 +120,7 @@ impl Part {
             wrong: tally.wrong,
             refusals: refusals.collect(),
             faults: faults.collect(),
-            untold: untold.collect(),
+            undetermined: undetermined.collect(),
             close_calls: CloseCalls {
                 trees: tally.close_trees,
                 decisions: tally.close_calls,
@@ -177,7 +180,7 @@ impl fmt::Display for RunSummary {
         for (profile, part) in &self.profiles {
             list(f, *profile, "wrong", &part.faults)?;
             list(f, *profile, "refused", &part.refusals)?;
-            list(f, *profile, "untold", &part.untold)?;
+            list(f, *profile, "untold", &part.undetermined)?;
         }
         for (profile, times) in &self.seconds.profiles {
             for Timed { seed, seconds } in times.slow.iter().take(LISTED) {

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// The format that is asked for, by its name or by the file's ending; refused where the program
 /// cannot write it, before anything is predicted.
-pub fn asked(output: &ModelOutput) -> Result<RecordsFormat, CliError> {
+pub fn requested(output: &ModelOutput) -> Result<RecordsFormat, CliError> {
     let ending = output.output.as_deref().and_then(Path::extension);
     let by_ending = match ending.is_some_and(|e| e.eq_ignore_ascii_case("parquet")) {
         true => RecordsFormat::Parquet,
@@ -70,7 +70,7 @@ mod tests {
 
     fn of(format: Option<RecordsFormat>, path: &str) -> Option<RecordsFormat> {
         let output = Some(path.into());
-        asked(&ModelOutput { output, format }).ok()
+        requested(&ModelOutput { output, format }).ok()
     }
 
     #[test]
@@ -88,7 +88,7 @@ mod tests {
     fn what_is_not_built_in_says_how_to_build_it() {
         let format = Some(RecordsFormat::Parquet);
         let output = None;
-        let refused = asked(&ModelOutput { output, format }).unwrap_err();
+        let refused = requested(&ModelOutput { output, format }).unwrap_err();
         assert!(format!("{refused:?}").contains("--features parquet"));
     }
 }

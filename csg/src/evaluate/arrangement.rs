@@ -113,7 +113,7 @@ pub(super) fn arrange<'t, N: Float>(
         calls: Vec::new(),
         tree,
     };
-    let mut corners = VertexMerger::new(predicates.band());
+    let mut corners = VertexMerger::new(predicates.resolution());
     for (pair, supports) in found.pairs(solids, reach, most)? {
         found.add_pair(pair, &supports, &sources, extent, predicates, &mut corners)?;
         bounded(found.meetings.len(), most)?;
@@ -247,15 +247,15 @@ impl<N: Float> Arrangement<N> {
             kept.push(self.add_branch(a, b, branch, supports, predicates));
         }
         for node in &met.nodes {
-            if node.on.is_empty() && !supports.iter().any(|s| s.holds(&node.point)) {
+            if node.on.is_empty() && !supports.iter().any(|s| s.contains(&node.point)) {
                 continue;
             }
             let vertex = corners.at(&node.point, &[a, b], predicates);
             for &(branch, t) in &node.on {
                 for &m in &kept[branch] {
                     let [lo, hi] = self.meetings[m].range;
-                    let band = predicates.band::<N>();
-                    if t.lies_in([lo - band, hi + band]) {
+                    let resolution = predicates.resolution::<N>();
+                    if t.lies_in([lo - resolution, hi + resolution]) {
                         let t = t.clamp(lo, hi);
                         self.meetings[m].cuts.push(Cut { t, vertex });
                     }
@@ -284,7 +284,7 @@ impl<N: Float> Arrangement<N> {
             let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
             if !supports
                 .iter()
-                .any(|s| common(s, &b3.grown(predicates.band::<N>())).is_some())
+                .any(|s| common(s, &b3.grown(predicates.resolution::<N>())).is_some())
             {
                 continue;
             }

@@ -134,7 +134,7 @@ fn same_curve<N: Float>(
 
 /// Whether points of curves that may be one are: there, or far apart.
 fn is_same_place<N: Float>(p: &Point3<N>, q: &Point3<N>, predicates: &Predicates) -> bool {
-    let reach = N::from_f64(SAME) * predicates.band::<N>();
+    let reach = N::from_f64(SAME) * predicates.resolution::<N>();
     (p - q).length().is_within(reach)
 }
 
@@ -166,7 +166,7 @@ impl<N: Float> Arrangement<N> {
             !m.carriers.contains(&c)
                 && is_on(a, c)
                 && is_on(b, c)
-                && lies_on(&m.curve, range, &self.carriers[c], predicates.band())
+                && lies_on(&m.curve, range, &self.carriers[c], predicates.resolution())
         });
         carriers.extend(held);
         carriers.sort_unstable();

@@ -81,9 +81,9 @@ pub(super) fn boundary<N: Float>(
     };
     let mut edges: Vec<(EdgeCandidate<N>, Vec<FaceUse>)> = Vec::new();
     for piece in pieces {
-        let wings = classifier.wings(&piece)?;
-        if !wings.is_empty() {
-            edges.push((piece, wings));
+        let face_uses = classifier.face_uses(&piece)?;
+        if !face_uses.is_empty() {
+            edges.push((piece, face_uses));
         }
     }
     let joined = join(edges, arrangement);
@@ -92,8 +92,8 @@ pub(super) fn boundary<N: Float>(
         curve: e.piece.meeting,
         range: e.piece.range,
         ends: e.piece.ends,
-        smooth: classifier.is_smooth(&e.piece, &e.wings),
-        wings: e.wings,
+        smooth: classifier.is_smooth(&e.piece, &e.face_uses),
+        face_uses: e.face_uses,
         passes: e.passes,
     };
     let point = |c: &VertexCandidate<N>| VertexInput {
@@ -120,7 +120,7 @@ impl<N: Float> Classifier<'_, N> {
     }
 
     /// The faces around a piece, none where it is no edge: pairs enclose material, in order.
-    fn wings(&self, piece: &EdgeCandidate<N>) -> Result<Vec<FaceUse>, EvaluationError> {
+    fn face_uses(&self, piece: &EdgeCandidate<N>) -> Result<Vec<FaceUse>, EvaluationError> {
         let curve = &self.arrangement.meetings[piece.meeting].curve;
         let [lo, hi] = piece.range;
         let mut best: Option<(N, NeighbourhoodSample<N>)> = None;
@@ -201,7 +201,7 @@ impl<N: Float> Classifier<'_, N> {
                 .filter(|s| s.open.iter().all(|&(c, sense)| sides[c] == sense))
                 .map(|s| s.leaf)
                 .collect();
-            !held.is_empty() && self.membership.holds(&held)
+            !held.is_empty() && self.membership.contains(&held)
         };
         let mut before = inside(&sides);
         let mut changes: Vec<(usize, bool)> = Vec::new();
@@ -240,8 +240,8 @@ impl<N: Float> Classifier<'_, N> {
     }
 
     /// Whether the two faces of an edge continue one another smoothly.
-    fn is_smooth(&self, piece: &EdgeCandidate<N>, wings: &[FaceUse]) -> bool {
-        let [a, b] = *wings else { return false };
+    fn is_smooth(&self, piece: &EdgeCandidate<N>, face_uses: &[FaceUse]) -> bool {
+        let [a, b] = *face_uses else { return false };
         let told = piece
             .tangent
             .iter()
@@ -260,7 +260,7 @@ impl<N: Float> Classifier<'_, N> {
     /// The closed carriers without any edge that are faces as a whole.
     fn whole_surfaces(&self, edges: &[Joined<N>]) -> Result<Vec<(usize, Sense)>, EvaluationError> {
         let mut bounded = vec![false; self.arrangement.carriers.len()];
-        for wing in edges.iter().flat_map(|e| &e.wings) {
+        for wing in edges.iter().flat_map(|e| &e.face_uses) {
             bounded[wing.surface] = true;
         }
         let mut whole = Vec::new();
@@ -311,7 +311,7 @@ impl<N: Float> Classifier<'_, N> {
             let near = look.near.iter();
             let within = near.filter(|s| s.open.iter().all(|o| o.1 == side));
             let held: Vec<NodeId> = within.map(|s| s.leaf).collect();
-            !held.is_empty() && self.membership.holds(&held)
+            !held.is_empty() && self.membership.contains(&held)
         };
         Ok(match (held(Sense::Along), held(Sense::Against)) {
             (true, false) => Some(Sense::Along),
@@ -326,7 +326,7 @@ struct Joined<N: Float = f64> {
     /// All of it.
     piece: EdgeCandidate<N>,
     /// The faces around it.
-    wings: Vec<FaceUse>,
+    face_uses: Vec<FaceUse>,
     /// The corners inside it.
     passes: Vec<usize>,
 }
@@ -345,7 +345,7 @@ fn join<N: Float>(
     // The next piece along the curve, where the corner between is none.
     let mut next: Vec<Option<usize>> = vec![None; edges.len()];
     let mut has_previous = vec![false; edges.len()];
-    for (i, (piece, wings)) in edges.iter().enumerate() {
+    for (i, (piece, face_uses)) in edges.iter().enumerate() {
         let Some([_, end]) = piece.ends else { continue };
         let list = &at[&end];
         let [a, b] = list[..] else { continue };
@@ -356,7 +356,7 @@ fn join<N: Float>(
             && other.ends.is_some_and(|e| e[0] == end)
             && meets_at(curve.cycle(), piece.range[1], other.range[0])
             && !curve.turns_back(piece.range[1])
-            && same_wings(wings, same);
+            && same_wings(face_uses, same);
         if follows {
             next[i] = Some(j);
             has_previous[j] = true;
@@ -372,7 +372,7 @@ fn join<N: Float>(
             continue;
         }
         done[start] = true;
-        let (mut piece, wings) = edges[start].clone();
+        let (mut piece, face_uses) = edges[start].clone();
         let mut passes = Vec::new();
         let mut last = start;
         while let Some(j) = next[last] {
@@ -396,7 +396,7 @@ fn join<N: Float>(
         }
         joined.push(Joined {
             piece,
-            wings,
+            face_uses,
             passes,
         });
     }

@@ -48,9 +48,9 @@ impl<N: Float> CloseCallFilter<'_, N> {
     }
 
     fn witness<'a>(&self, brep: &'a Brep<N>, face: FaceId) -> Option<FaceVerifier<'a, N>> {
-        let band = self.predicates.band::<N>();
-        let locator = FaceLocator::from_face(brep, face, band);
-        let point = locator.interior(N::TWO * N::from_f64(STEP) * band)?;
+        let resolution = self.predicates.resolution::<N>();
+        let locator = FaceLocator::from_face(brep, face, resolution);
+        let point = locator.interior(N::TWO * N::from_f64(STEP) * resolution)?;
         let surface = brep.surface(face);
         let normal = surface.normal(&point) * brep.sense(face).sign::<N>();
         Some(FaceVerifier {
@@ -88,12 +88,12 @@ impl<N: Float> CloseCallFilter<'_, N> {
         }
         Some(held.map(|mut leaves| {
             leaves.sort_unstable();
-            !leaves.is_empty() && self.membership.holds(&leaves)
+            !leaves.is_empty() && self.membership.contains(&leaves)
         }))
     }
 
     fn beside(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Beside {
-        let step = N::from_f64(STEP) * self.predicates.band::<N>();
+        let step = N::from_f64(STEP) * self.predicates.resolution::<N>();
         let places = [-step, step].map(|away| surface.distance(&(at.point + at.normal * away)));
         let holds = places.map(N::is_below_zero);
         let is_near = places.iter().any(|d| d.is_within(N::HALF * step));
@@ -111,7 +111,7 @@ mod tests {
     use super::super::arrangement::arrange;
     use super::super::halfspaces::HalfSpaceModel;
     use super::super::membership::Membership;
-    use super::super::{EvaluationOptions, MOST_ENTITIES, evaluate};
+    use super::super::{EvaluationOptions, MAX_ENTITIES, evaluate};
     use super::*;
     use crate::reader::{Format, ReadOptions, read};
     use crate::tree::Tree;
@@ -147,7 +147,7 @@ mod tests {
             centre: solids.bounds.centre(),
             radius: 0.75 * solids.bounds.diagonal(),
         };
-        let arranged = arrange(tree, &solids, &extent, &predicates, MOST_ENTITIES);
+        let arranged = arrange(tree, &solids, &extent, &predicates, MAX_ENTITIES);
         let concern = CloseCallFilter {
             solids: &solids,
             arrangement: &arranged.unwrap().0,

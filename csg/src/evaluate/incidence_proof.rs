@@ -54,8 +54,8 @@ pub(super) fn prove<N: Float>(
     for corner in &arrangement.corners {
         let (point, carriers) = (corner.point, &corner.carriers);
         let incidence = Incidence::new(&forms, carriers, &point, predicates);
-        if !incidence.is_plain() {
-            let reach = predicates.band::<N>() / N::from_f64(FINEST_RESOLUTION.sqrt());
+        if !incidence.is_simple() {
+            let reach = predicates.resolution::<N>() / N::from_f64(FINEST_RESOLUTION.sqrt());
             incidence.settle("point on surfaces", None, (&point, reach), predicates)?;
         }
     }
@@ -119,7 +119,7 @@ impl<'f> Incidence<'f> {
     }
 
     /// Whether it is three surfaces across one another: nothing is to be proven.
-    fn is_plain(&self) -> bool {
+    fn is_simple(&self) -> bool {
         self.levels.len() <= 3 && self.dependences.is_empty()
     }
 

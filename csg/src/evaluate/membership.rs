@@ -68,7 +68,7 @@ impl<'a> Membership<'a> {
 
     /// Whether a point in exactly the given primitives (by leaf) is in the solid. A parent stands
     /// before its children, so the greatest index is always ready to be decided.
-    pub fn holds(&self, leaves: &[NodeId]) -> bool {
+    pub fn contains(&self, leaves: &[NodeId]) -> bool {
         // The operations above what holds the point, and whether that is their first child.
         let mut waiting: BinaryHeap<(NodeId, bool)> = BinaryHeap::new();
         for leaf in leaves {
@@ -268,7 +268,7 @@ mod tests {
                     .filter(|(i, _)| choice & (1 << i) != 0)
                     .map(|(_, leaf)| *leaf)
                     .collect();
-                let told = membership.holds(&held);
+                let told = membership.contains(&held);
                 assert_eq!(told, is_in(&tree, NodeId(0), &held), "{part} {choice:b}");
             }
         }

@@ -5,7 +5,7 @@
 //! `arrangement` the curves in which they meet; `contacts` puts the curves along which surfaces touch
 //! where other curves run next to them. `cuts` gives the common points of curves and surfaces, which
 //! `corners` makes one, and `pieces` what lies between. `membership` asks the tree whether a choice
-//! of sides is material; `sheets` puts the carriers around a piece in order, and `wings` decides
+//! of sides is material; `sheets` puts the carriers around a piece in order, and `face_uses` decides
 //! which pieces are edges, and where their faces lie; for exact evaluation `proof` proves what lies
 //! on what; `concern` tells the close calls on which the
 //! boundary depends. The kernel assembles the rest.
@@ -57,8 +57,8 @@ pub struct EvaluationOptions {
     /// In what numbers that is decided.
     pub digits: Arithmetic,
     /// The most curves and points of curves that are kept, some two thousand bytes each; by default
-    /// [`MOST_ENTITIES`].
-    pub entities: Option<usize>,
+    /// [`MAX_ENTITIES`].
+    pub entity_limit: Option<usize>,
 }
 
 /// In what numbers a tree is evaluated.
@@ -72,7 +72,7 @@ pub enum Arithmetic {
 }
 
 /// The default limit on curves and points of curves between the surfaces of a part.
-pub const MOST_ENTITIES: usize = 1 << 23;
+pub const MAX_ENTITIES: usize = 1 << 23;
 
 /// The boundary of a tree, and how it was decided.
 #[derive(Debug)]
@@ -110,7 +110,7 @@ impl Evaluation {
     }
 
     /// What doubles tell of the boundary, however finely it was evaluated.
-    pub fn resolution_of_doubles(&self) -> f64 {
+    pub fn f64_resolution(&self) -> f64 {
         let known = self.plain.unwrap_or(self.resolution);
         known.max(ROUNDING * self.bounds.diagonal())
     }
@@ -177,7 +177,7 @@ impl From<Evaluated<F237>> for Evaluation {
         // All of them took more bits than doubles have.
         decisions.refined += std::mem::take(&mut decisions.filtered);
         Self {
-            brep: known.brep.in_doubles(),
+            brep: known.brep.to_f64(),
             decisions,
             resolution: known.resolution,
             bounds: known.bounds,
@@ -424,7 +424,7 @@ fn evaluated<N: Float>(
         radius: N::from_f64(0.75 * size),
     };
     near_cylinders::check(&solids, &extent, &predicates)?;
-    let most = options.entities.unwrap_or(MOST_ENTITIES);
+    let most = options.entity_limit.unwrap_or(MAX_ENTITIES);
     let (arrangement, sources) = arrangement::arrange(tree, &solids, &extent, &predicates, most)?;
     let pieces = edge_candidates::pieces(&arrangement, &predicates);
     if predicates.is_exact() {
@@ -444,10 +444,10 @@ fn evaluated<N: Float>(
     vanished::list(tree, &predicates);
     let raw = edge_classification::boundary(&concern, pieces)?;
     let brep = assemble(raw, &predicates)?;
-    let band = N::from_f64(resolution);
+    let exact_resolution = N::from_f64(resolution);
     let measures = FaceIntegrals::new(&brep);
-    if let Some(broken) = check(&brep, &measures, band).into_iter().next() {
-        return Err(match worst_gap(&brep, band) {
+    if let Some(broken) = check(&brep, &measures, exact_resolution).into_iter().next() {
+        return Err(match worst_gap(&brep, exact_resolution) {
             Some((place, distance)) => EvaluationError::IllConditioned {
                 place: rounded(&place),
                 distance: distance.rounded(),

@@ -42,7 +42,7 @@ pub(super) fn check<N: Float>(
         if let Surface::Cone(cone) = &side.surface {
             let away = (cone.frame.origin - extent.centre).length();
             let moved = N::from_f64(ROUNDINGS) * N::EPSILON * away;
-            if moved.is_beyond(predicates.band()) {
+            if moved.is_beyond(predicates.resolution()) {
                 return Err(EvaluationError::NearCylinder {
                     place: side.bounds.centre().into(),
                     away: away.rounded(),

@@ -190,11 +190,11 @@ impl<N: Float> Spot<'_, N> {
             let q = q - first.normal(&q) * first.distance(&q);
             -out * second.distance(&q)
         };
-        let band = self.predicates.band::<N>();
+        let resolution = self.predicates.resolution::<N>();
         let rounding = N::ROUNDING * (reach + self.point.coords.length());
-        let steps = std::iter::successors(Some(band), |step| Some(N::TWO * *step));
+        let steps = std::iter::successors(Some(resolution), |step| Some(N::TWO * *step));
         let mut offsets = steps
-            .take_while(|step| step.is_exactly(band) || step.is_short_of(farthest))
+            .take_while(|step| step.is_exactly(resolution) || step.is_short_of(farthest))
             .map(offset);
         offsets
             .find(|away| away.abs().is_beyond(rounding))

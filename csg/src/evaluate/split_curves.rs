@@ -103,7 +103,7 @@ impl<N: Float> Arrangement<N> {
             let mut points = special.iter().map(|s| s.1);
             points.any(|s| (s - p).length().is_within(predicates.reach()))
         };
-        let (roots, misses) = m.meet(&self.carriers[c], faces, predicates)?;
+        let (roots, misses) = m.intersection(&self.carriers[c], faces, predicates)?;
         let mut note = |question, distance, p: &Point3<N>| {
             let (_, call) = predicates.decide(question, distance, rounded(p));
             let call = call.map(|call| (call, Between::Curve(index, c)));
@@ -212,7 +212,7 @@ impl<N: Float> Arrangement<N> {
         }
         if let Surface::Cone(cone) = surface {
             let apex = cone.frame.origin;
-            if m.bounds.grown(predicates.band::<N>()).holds(&apex) {
+            if m.bounds.grown(predicates.resolution::<N>()).contains(&apex) {
                 let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
                 let away = (m.curve.point(t) - apex).length();
                 if t.lies_in(m.range) && predicates.within(away) {
@@ -288,7 +288,10 @@ impl<N: Float> Arrangement<N> {
         let known = corner.carriers.len();
         for &i in meetings {
             let m = &mut self.meetings[i];
-            if m.bounds.grown(predicates.band::<N>()).holds(&corner.point) {
+            if m.bounds
+                .grown(predicates.resolution::<N>())
+                .contains(&corner.point)
+            {
                 m.pass(v, &corner.point, predicates);
             }
             if m.cuts.iter().any(|cut| cut.vertex == v) {
@@ -307,14 +310,14 @@ type Met<N> = (Vec<Root<N>>, Vec<(N, N)>);
 impl<N: Float> IntersectionCurve<N> {
     /// Where the curve meets a surface, as far as it runs through the boxes of faces of it; none
     /// where it lies on the surface.
-    fn meet(
+    fn intersection(
         &self,
         surface: &Surface<N>,
         faces: &[(usize, Aabb)],
         predicates: &Predicates,
     ) -> Option<Met<N>> {
-        let band = predicates.band();
-        if lies_on(&self.curve, self.range, surface, band) {
+        let resolution = predicates.resolution();
+        if lies_on(&self.curve, self.range, surface, resolution) {
             return None;
         }
         let mut all = Met::default();
@@ -327,7 +330,7 @@ impl<N: Float> IntersectionCurve<N> {
             parts = &parts[first..];
             let count = parts.iter().take_while(|p| near(&p.1)).count();
             let range = [parts[0].0[0], parts[count - 1].0[1]];
-            let (found, misses) = roots(&self.curve, range, surface, band);
+            let (found, misses) = roots(&self.curve, range, surface, resolution);
             all.0.extend(found);
             all.1.extend(misses);
             parts = &parts[count..];

@@ -55,7 +55,7 @@ impl<N: Float> Arrangement<N> {
         }
         let carriers = both.map(|c| &self.carriers[c]);
         let missing = carriers[usize::from(third[1])];
-        if !lies_on(&other.curve, other.range, missing, predicates.band()) {
+        if !lies_on(&other.curve, other.range, missing, predicates.resolution()) {
             return None;
         }
         let mut width: N = N::ZERO;
@@ -63,17 +63,17 @@ impl<N: Float> Arrangement<N> {
         for part in probes().chain([N::ZERO, N::ONE]) {
             let t = lo + (hi - lo) * part;
             let p = contact.curve.point(t);
-            let aside = other.beside(&p, predicates.reach())? - p;
-            let along = aside.dot(&contact.curve.tangent(t)).abs();
-            let middle = p + aside * N::HALF;
+            let lateral = other.beside(&p, predicates.reach())? - p;
+            let along = lateral.dot(&contact.curve.tangent(t)).abs();
+            let middle = p + lateral * N::HALF;
             let inside = carriers
                 .iter()
                 .all(|s| predicates.within(s.distance(&middle)));
-            let across = aside.length() + predicates.reach::<N>();
+            let across = lateral.length() + predicates.reach::<N>();
             if !inside || (N::TWO * along).is_beyond(across) {
                 return None;
             }
-            width = width.max(aside.length());
+            width = width.max(lateral.length());
         }
         (!predicates.within(width)).then_some(width)
     }

@@ -40,12 +40,12 @@ pub(super) struct VertexMerger<N: Float = f64> {
 }
 
 impl<N: Float> VertexMerger<N> {
-    pub fn new(band: N) -> Self {
+    pub fn new(resolution: N) -> Self {
         Self {
             all: Vec::new(),
             calls: Vec::new(),
             grid: HashMap::new(),
-            cell: N::from_f64(256.0) * band,
+            cell: N::from_f64(256.0) * resolution,
         }
     }
 

@@ -152,7 +152,7 @@ impl RayOracle {
     }
 
     /// Whether a point is material; on the boundary, as rounding has it.
-    pub fn holds(&self, point: &Point3<f64>) -> bool {
+    pub fn contains(&self, point: &Point3<f64>) -> bool {
         let mut scratch = self.scratch();
         let at: [f64; 3] = (*point).into();
         let near = self
@@ -161,7 +161,7 @@ impl RayOracle {
         let mut inside = false;
         for found in near {
             let leaf = &self.leaves[found.data];
-            if leaf.shape.holds(&leaf.local_point(point)) {
+            if leaf.shape.contains(&leaf.local_point(point)) {
                 inside ^= self.flip(&mut scratch.held, leaf.node, true);
             }
         }

@@ -86,7 +86,7 @@ impl Shape {
         }
     }
 
-    pub fn holds(&self, p: &Vector3<f64>) -> bool {
+    pub fn contains(&self, p: &Vector3<f64>) -> bool {
         let (lo, hi) = self.bounds();
         (0..3).all(|i| lo[i] <= p[i] && p[i] <= hi[i]) && self.level(p) <= 0.0
     }

@@ -25,7 +25,7 @@ pub struct Clearance {
     /// Gaps and slivers up to this length are none.
     pub sliver: f64,
     /// A count holds where it is the same on the lines of sight this far aside.
-    pub aside: f64,
+    pub lateral: f64,
     /// How far a curve along which round surfaces meet may lie from where it is told: they touch by
     /// the resolution, and cross beside that.
     pub shift: f64,
@@ -55,7 +55,7 @@ impl Clearance {
     pub fn closer(&self, by: f64) -> Self {
         Self {
             sliver: self.sliver * by,
-            aside: self.aside * by,
+            lateral: self.lateral * by,
             ..*self
         }
     }
@@ -84,13 +84,13 @@ impl RayOracle {
         clearance: &Clearance,
     ) -> Result<SightEvidence, SightEvidence> {
         // Aside of a limb, its own surface lies this much nearer.
-        let depth = 2.0 * (clearance.aside * clearance.size).sqrt();
+        let depth = 2.0 * (clearance.lateral * clearance.size).sqrt();
         let (towards, length) = sight(point);
         if length <= depth {
             return Err(SightEvidence::Close);
         }
         let own = self.along(point, towards, clearance)?;
-        let unclear = |s: &f64| *s > clearance.aside && *s < depth;
+        let unclear = |s: &f64| *s > clearance.lateral && *s < depth;
         if own.iter().flatten().any(unclear) {
             return Err(SightEvidence::Close);
         }
@@ -106,15 +106,15 @@ impl RayOracle {
                 let (towards, length) = sight(&origin);
                 Ok((self.along(&origin, towards, clearance)?, length))
             };
-            let (aside, length) = beside(clearance.aside)?;
-            if entries(&aside, depth, length) != count {
+            let (lateral, length) = beside(clearance.lateral)?;
+            if entries(&lateral, depth, length) != count {
                 return Err(SightEvidence::Mixed);
             }
             // The point's own faces draw near with the line of sight, another one does not, however
             // close it lies.
-            let close = first_exit(&aside, least);
+            let close = first_exit(&lateral, least);
             if close < depth {
-                let (closer, _) = beside(clearance.aside * CLOSER)?;
+                let (closer, _) = beside(clearance.lateral * CLOSER)?;
                 let drawn = first_exit(&closer, 0.0);
                 if drawn >= close * DRAWN {
                     return Err(SightEvidence::Close);
@@ -144,7 +144,7 @@ impl RayOracle {
         let short = |from: f64, to: f64| to - from <= clearance.sliver;
         let slivers = found.iter().any(|i| i[0] > 0.0 && short(i[0], i[1]));
         let gaps = found.windows(2);
-        let mut gaps = gaps.filter(|w| w[0][1] > clearance.aside);
+        let mut gaps = gaps.filter(|w| w[0][1] > clearance.lateral);
         let close = slivers || gaps.any(|w| short(w[0][1], w[1][0]));
         match close {
             true => Err(SightEvidence::Thin),

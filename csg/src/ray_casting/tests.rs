@@ -95,7 +95,7 @@ fn nothing_is_nothing() {
     let builder = Builder::new();
     let none = RayOracle::new(&builder.finish(crate::builder::SolidId::EMPTY).unwrap());
     assert_eq!(none.volume(1000, 1), Estimate::default());
-    assert!(!none.holds(&Point3::origin()));
+    assert!(!none.contains(&Point3::origin()));
     assert!(
         none.intervals(&ray([0.0; 3], [1.0, 0.0, 0.0]), 0.0)
             .is_empty()
@@ -150,7 +150,7 @@ fn points_agree_with_lines() {
         let origin = [at(0.7548) - 0.3, at(0.5698) - 0.3, at(0.3819) - 0.6];
         let found = part.intervals(&ray(origin, [0.3, 0.5, -0.2]), 0.0);
         let inside = found.iter().any(|i| i[0] < 0.0 && 0.0 < i[1]);
-        assert_eq!(part.holds(&origin.into()), inside, "{origin:?}");
+        assert_eq!(part.contains(&origin.into()), inside, "{origin:?}");
     }
 }
 
@@ -167,7 +167,7 @@ fn from_above(part: &RayOracle, size: f64, point: [f64; 3]) -> SightEvidence {
     let up = |_: &Point3<f64>| (Vector3::z(), f64::INFINITY);
     let clearance = Clearance {
         sliver: 1e-9,
-        aside: 1e-6,
+        lateral: 1e-6,
         shift: 0.0,
         size,
     };

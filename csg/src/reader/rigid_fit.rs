@@ -33,7 +33,7 @@ pub(super) struct Placement {
 }
 
 /// What is less than this changes a matrix of doubles by their rounding only.
-pub(super) const DOUBLES: f64 = 1e-12;
+pub(super) const F64_DIGITS: f64 = 1e-12;
 
 impl Placement {
     /// The placement that moves nothing.
@@ -50,7 +50,7 @@ impl Placement {
     /// lost those of its offsets, too.
     pub(super) fn replaces(&self) -> bool {
         match self.full {
-            true => self.residual > DOUBLES,
+            true => self.residual > F64_DIGITS,
             false => self.residual > 0.0,
         }
     }

@@ -55,10 +55,10 @@ fn motions(steps: &[TransformStep]) -> Vec<Motion> {
         let motion = step.motion().unwrap_or_default();
         let is_shift = matches!(step, TransformStep::Shift(_));
         match motions.last_mut() {
-            Some((last, is_plain)) if is_shift || (*is_plain && step.is_plain()) => {
+            Some((last, is_simple)) if is_shift || (*is_simple && step.is_simple()) => {
                 *last = last.then(&motion);
             }
-            _ => motions.push((motion, step.is_plain())),
+            _ => motions.push((motion, step.is_simple())),
         }
     }
     motions.into_iter().map(|(motion, _)| motion).collect()

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// Takes out the triangles without an area. What is left has two triangles at every side; else the
 /// corner where it has not is told.
 pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<(), u32> {
-    draw_together(points, facets);
+    merge_short_edges(points, facets);
     let mut sides = sides(facets)?;
     let mut waiting: Vec<usize> = (0..facets.len()).collect();
     waiting.retain(|&f| is_flat(points, &facets[f]));
@@ -38,7 +38,7 @@ pub(super) fn sides_of(facet: &Facet) -> [[u32; 2]; 3] {
 }
 
 /// Makes one corner of the two at the ends of every side without length.
-fn draw_together(points: &[Point3<f64>], facets: &mut Vec<Facet>) {
+fn merge_short_edges(points: &[Point3<f64>], facets: &mut Vec<Facet>) {
     let mut same: HashMap<u32, u32> = HashMap::new();
     let first = |same: &HashMap<u32, u32>, mut corner: u32| {
         while let Some(&earlier) = same.get(&corner) {

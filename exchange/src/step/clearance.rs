@@ -68,8 +68,8 @@ pub(super) fn near_edges(
         boxed.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
         boxed.iter().enumerate().find_map(|(k, a)| {
             let rest = boxed[k + 1..].iter();
-            let mut beside = rest.take_while(|b| b.min.x <= a.max.x);
-            beside.find_map(|b| {
+            let mut nearest_equivalent = rest.take_while(|b| b.min.x <= a.max.x);
+            nearest_equivalent.find_map(|b| {
                 let is_asked = a.meets(b) && !a.is_adjacent(b, &seamed.points);
                 let near = is_asked.then(|| nearest(a.edge, b.edge))?;
                 (near.distance > resolution && near.distance <= least).then_some(near)

@@ -365,7 +365,7 @@ fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
         }
     };
     let changes = |i: usize| {
-        let away = |k: u32| (window.beside(i, on(k)[i], middle[i]) - middle[i]).abs();
+        let away = |k: u32| (window.nearest_equivalent(i, on(k)[i], middle[i]) - middle[i]).abs();
         (0..=8).any(|k| away(k) > LEVEL * size(i))
     };
     changes(0) && changes(1)

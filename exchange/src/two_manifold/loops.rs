@@ -399,28 +399,28 @@ fn along(
     let middle = points.len() / 2;
     for i in 0..2 {
         for k in (middle + 1)..points.len() {
-            points[k][i] = beside(window, i, points[k][i], points[k - 1][i]);
+            points[k][i] = nearest_equivalent(window, i, points[k][i], points[k - 1][i]);
         }
         for k in (0..middle).rev() {
-            points[k][i] = beside(window, i, points[k][i], points[k + 1][i]);
+            points[k][i] = nearest_equivalent(window, i, points[k][i], points[k + 1][i]);
         }
     }
     points
 }
 
 /// The same value next to another; on an axis, where there is none, the other.
-fn beside(window: &ParameterWindow, i: usize, x: f64, other: f64) -> f64 {
+fn nearest_equivalent(window: &ParameterWindow, i: usize, x: f64, other: f64) -> f64 {
     if x.is_nan() {
         return other;
     }
-    window.beside(i, x, other)
+    window.nearest_equivalent(i, x, other)
 }
 
 /// Whether an edge lies on the edge of the window, where the face touches itself.
 fn is_at_start(points: &[Point2<f64>], window: &ParameterWindow) -> bool {
     (0..2).any(|i| {
         let is_near = |p: &Point2<f64>| {
-            let away = window.beside(i, p[i], window.starts[i]) - window.starts[i];
+            let away = window.nearest_equivalent(i, p[i], window.starts[i]) - window.starts[i];
             p[i].is_nan() || away.abs() <= SAME
         };
         window.surface.periods()[i].is_some() && points.iter().all(is_near)
@@ -432,7 +432,7 @@ fn is_at_start(points: &[Point2<f64>], window: &ParameterWindow) -> bool {
 fn on_seam(points: &mut [Point2<f64>], runs_along: bool, window: &ParameterWindow) {
     let middle = points.len() / 2;
     let (before, after) = (points[middle - 1], points[middle + 1]);
-    let step = |i: usize| window.beside(i, after[i], before[i]) - before[i];
+    let step = |i: usize| window.nearest_equivalent(i, after[i], before[i]) - before[i];
     let is_across =
         |i: usize| window.surface.periods()[i].is_some() && step(i).abs() < step(1 - i).abs();
     let end = |is_end: bool| if is_end { TAU } else { 0.0 };

@@ -80,7 +80,7 @@ enum Course {
 struct Faced<'a> {
     brep: &'a Brep,
     face: FaceId,
-    band: f64,
+    resolution: f64,
     coedges: Vec<CoedgeId>,
     /// How many coedges each loop has.
     rings: Vec<usize>,
@@ -94,14 +94,14 @@ impl Cut {
         brep: &Brep,
         face: FaceId,
         rings: &[Vec<CoedgeId>],
-        band: f64,
+        resolution: f64,
     ) -> Result<Self, SeamError> {
         let coedges: Vec<CoedgeId> = rings.iter().flatten().copied().collect();
         let edges = coedges.iter().map(|c| brep.topology.coedge(*c).edge);
         let faced = Faced {
             brep,
             face,
-            band,
+            resolution,
             arcs: coedges.iter().map(|c| DirectedArc::new(brep, *c)).collect(),
             samples: Samples::new(brep, edges),
             rings: rings.iter().map(Vec::len).collect(),
@@ -237,13 +237,15 @@ impl Faced<'_> {
     /// Whether a track runs along edges, or passes vertices, wherever it is in the face.
     fn is_parted(&self, surface: &Surface, track: &Track) -> bool {
         let side = self.brep.sense(self.face);
-        let crossings = track.walk.crossings(surface, side, &self.arcs, self.band);
+        let crossings = track
+            .walk
+            .crossings(surface, side, &self.arcs, self.resolution);
         // Next to a vertex, and where edges touch, a passage says nothing.
         let is_plain = |at: f64| {
             let mut unclear = crossings
                 .iter()
                 .filter(|c| c.passage == CrossingSense::Unclear);
-            unclear.all(|c| (c.at - at).abs() > 2.0 * self.band)
+            unclear.all(|c| (c.at - at).abs() > 2.0 * self.resolution)
         };
         if crossings.iter().any(|c| is_plain(c.at)) {
             return false;
@@ -251,7 +253,7 @@ impl Faced<'_> {
         let parameter = |p: &Point3<f64>| track.curve.parameter(p);
         let near = |p: &Point3<f64>| {
             let on = track.curve.point(parameter(p));
-            (on - p).norm() <= self.band
+            (on - p).norm() <= self.resolution
         };
         let passed = crossings.iter().map(|c| match track.course {
             Course::Round => (track.start + c.at * track.by).rem_euclid(TAU),
@@ -264,7 +266,7 @@ impl Faced<'_> {
             if ![0.13, 0.37, 0.5, 0.81].iter().all(|part| near(&at(*part))) {
                 continue;
             }
-            if (at(0.0) - at(1.0)).norm() <= self.band {
+            if (at(0.0) - at(1.0)).norm() <= self.resolution {
                 // All of a circle.
                 return true;
             }
@@ -297,7 +299,7 @@ impl Faced<'_> {
             let gap = [end, next[0]];
             end = end.max(next[1]);
             // What is met in one place has its parameters apart by rounding.
-            let is_none = gap[1] - gap[0] <= 2.0 * self.band * track.by;
+            let is_none = gap[1] - gap[0] <= 2.0 * self.resolution * track.by;
             is_none || self.place_between(track, gap) == PointLocation::Outside
         })
     }
@@ -346,9 +348,9 @@ impl Faced<'_> {
                 // Where edges end at the apex, from above it.
                 let slants = self.samples.points().map(|p| (p - f.origin).norm());
                 let nearest = slants
-                    .filter(|d| *d > self.band)
+                    .filter(|d| *d > self.resolution)
                     .fold(f64::INFINITY, f64::min);
-                let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.band;
+                let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.resolution;
                 let is_free = !self.samples.points().any(at_apex);
                 let slant = if is_free { 0.0 } else { 0.25 * nearest };
                 let from = f.point(slant * s.sin, 0.0, slant * s.cos);
@@ -381,7 +383,12 @@ impl Faced<'_> {
                         let centre = f.origin + f.z * (s.minor * at.sin());
                         let frame = f.at(centre);
                         Some(Track {
-                            walk: SurfacePath::parallel(surface, &from, Sense::Along, self.band)?,
+                            walk: SurfacePath::parallel(
+                                surface,
+                                &from,
+                                Sense::Along,
+                                self.resolution,
+                            )?,
                             curve: Curve::Circle(Circle { frame, radius }),
                             start: other,
                             by: 1.0 / radius,
@@ -397,7 +404,9 @@ impl Faced<'_> {
     /// The pieces of a track in the face: the curve's parameter at each end, and what is there.
     fn pieces(&self, surface: &Surface, track: &Track) -> Option<Vec<[(f64, End); 2]>> {
         let side = self.brep.sense(self.face);
-        let crossings = track.walk.crossings(surface, side, &self.arcs, self.band);
+        let crossings = track
+            .walk
+            .crossings(surface, side, &self.arcs, self.resolution);
         let mut stops: Vec<(CrossingSense, f64, End)> = Vec::new();
         for c in &crossings {
             let end = End::Edge {
@@ -409,7 +418,7 @@ impl Faced<'_> {
         // Where the face touches itself it is left before it is entered again.
         for k in 1..stops.len() {
             let (before, after) = (stops[k - 1], stops[k]);
-            let together = (after.1 - before.1).abs() <= self.band * track.by;
+            let together = (after.1 - before.1).abs() <= self.resolution * track.by;
             if together && (before.0, after.0) == (CrossingSense::Entering, CrossingSense::Leaving)
             {
                 stops.swap(k - 1, k);
@@ -417,7 +426,7 @@ impl Faced<'_> {
         }
         let starts_inside = match stops.first() {
             Some((passage, ..)) => *passage == CrossingSense::Leaving,
-            None => self.holds(&track.walk.point(1.0 / track.by)),
+            None => self.contains(&track.walk.point(1.0 / track.by)),
         };
         match &track.course {
             Course::Round if stops.is_empty() => {
@@ -465,14 +474,14 @@ impl Faced<'_> {
     }
 
     /// Whether the face holds a point of its surface that no edge passes.
-    fn holds(&self, p: &Point3<f64>) -> bool {
+    fn contains(&self, p: &Point3<f64>) -> bool {
         self.place(p) == PointLocation::Inside
     }
 
     fn place(&self, p: &Point3<f64>) -> PointLocation {
         let surface = self.brep.surface(self.face);
         let (side, arcs) = (self.brep.sense(self.face), self.arcs.clone());
-        FaceLocator::new(surface, side, arcs, self.band).place(p)
+        FaceLocator::new(surface, side, arcs, self.resolution).place(p)
     }
 }
 

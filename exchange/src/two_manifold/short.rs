@@ -13,7 +13,7 @@ impl TwoManifold<'_> {
     /// Makes one vertex of the two at the ends of every edge no longer than `least`, and leaves the
     /// edge out. Several that follow one another stay, where together they are longer, and so does the
     /// last edge of a loop.
-    pub fn draw_together(&mut self, least: f64) {
+    pub fn merge_short_edges(&mut self, least: f64) {
         let short: Vec<usize> = (0..self.edges.len())
             .filter(|&e| {
                 let edge = &self.edges[e];

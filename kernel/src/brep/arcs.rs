@@ -35,39 +35,41 @@ pub(super) struct Arcs<'a, N: Float = f64> {
 
 struct Along<'w, N: Float = f64> {
     walk: &'w SurfacePath<N>,
-    band: N,
+    resolution: N,
 }
 
 impl<N: Float> SelectionFunction<ArcBox> for Along<'_, N> {
     fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
-        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
+        self.walk
+            .may_intersect(&e.lower(), &e.upper(), self.resolution)
     }
     fn should_unpack_leaf(&self, leaf: &ArcBox) -> bool {
         let e = leaf.envelope();
-        self.walk.may_meet(&e.lower(), &e.upper(), self.band)
+        self.walk
+            .may_intersect(&e.lower(), &e.upper(), self.resolution)
     }
 }
 
 /// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
 /// closed form.
-fn parts<N: Float>(arc: &DirectedArc<'_, N>, band: N) -> Vec<Part<N>> {
+fn parts<N: Float>(arc: &DirectedArc<'_, N>, resolution: N) -> Vec<Part<N>> {
     let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
         return Vec::new();
     };
     let grown = |(range, b): ([N; 2], Aabb)| Part {
         range,
-        bounds: b.grown(band),
+        bounds: b.grown(resolution),
     };
     let all = pieces(arc.curve, arc.range);
     all.into_iter().map(grown).collect()
 }
 
 impl<'a, N: Float> Arcs<'a, N> {
-    /// The arcs with their boxes; `band` is the resolution.
-    pub fn new(all: Vec<DirectedArc<'a, N>>, band: N) -> Self {
-        let parts: Vec<Vec<Part<N>>> = all.iter().map(|a| parts(a, band)).collect();
+    /// The arcs with their boxes; `resolution` is the resolution.
+    pub fn new(all: Vec<DirectedArc<'a, N>>, resolution: N) -> Self {
+        let parts: Vec<Vec<Part<N>>> = all.iter().map(|a| parts(a, resolution)).collect();
         let hull = |(a, parts): (&DirectedArc<'_, N>, &Vec<Part<N>>)| match parts.as_slice() {
-            [] => bounds(a.curve, a.range).grown(band),
+            [] => bounds(a.curve, a.range).grown(resolution),
             parts => parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds)),
         };
         let boxes: Vec<Aabb> = all.iter().zip(&parts).map(hull).collect();
@@ -100,44 +102,49 @@ impl<'a, N: Float> Arcs<'a, N> {
             None => 0..self.all.len(),
         };
         let p = *p;
-        let from_few = few.filter(move |&i| self.boxes[i].holds(&p));
+        let from_few = few.filter(move |&i| self.boxes[i].contains(&p));
         from_tree.map(|leaf| leaf.data).chain(from_few)
     }
 
     /// Whether an arc ends at `p`, within the resolution.
-    pub fn ends_at(&self, arc: usize, p: &Point3<N>, band: N) -> bool {
+    pub fn ends_at(&self, arc: usize, p: &Point3<N>, resolution: N) -> bool {
         let DirectedArc { curve, range, .. } = self.all[arc];
         let mut ends = range.into_iter();
-        ends.any(|t| (curve.point(t) - p).length().is_within(band))
+        ends.any(|t| (curve.point(t) - p).length().is_within(resolution))
     }
 
     /// Whether an arc may pass through `p`.
-    pub fn may_hold(&self, arc: usize, p: &Point3<N>) -> bool {
+    pub fn may_contain(&self, arc: usize, p: &Point3<N>) -> bool {
         let parts = &self.parts[arc];
-        parts.is_empty() || parts.iter().any(|part| part.bounds.holds(p))
+        parts.is_empty() || parts.iter().any(|part| part.bounds.contains(p))
     }
 
     /// Calls `meet` for every arc that a walk may meet, with the ranges of it in which it may.
-    pub fn met_by(&self, walk: &SurfacePath<N>, band: N, meet: &mut impl FnMut(usize, &[[N; 2]])) {
-        let mut ask = |i: usize| meet(i, &self.ranges(walk, i, band));
+    pub fn hit_by(
+        &self,
+        walk: &SurfacePath<N>,
+        resolution: N,
+        meet: &mut impl FnMut(usize, &[[N; 2]]),
+    ) {
+        let mut ask = |i: usize| meet(i, &self.ranges(walk, i, resolution));
         match &self.tree {
             Some(tree) => tree
-                .locate_with_selection_function(Along { walk, band })
+                .locate_with_selection_function(Along { walk, resolution })
                 .for_each(|leaf| ask(leaf.data)),
             None => (0..self.all.len())
-                .filter(|&i| walk.may_meet_box(&self.boxes[i], band))
+                .filter(|&i| walk.may_intersect_box(&self.boxes[i], resolution))
                 .for_each(ask),
         }
     }
 
     /// The ranges of an arc that a walk may meet: all of it where a plane meets it in a closed form.
-    pub fn ranges(&self, walk: &SurfacePath<N>, i: usize, band: N) -> Vec<[N; 2]> {
+    pub fn ranges(&self, walk: &SurfacePath<N>, i: usize, resolution: N) -> Vec<[N; 2]> {
         let parts = &self.parts[i];
         if parts.is_empty() {
             return vec![self.all[i].range];
         }
         let mut ranges: Vec<[N; 2]> = Vec::new();
-        let may = |part: &&Part<N>| walk.may_meet_box(&part.bounds, band);
+        let may = |part: &&Part<N>| walk.may_intersect_box(&part.bounds, resolution);
         for part in parts.iter().filter(may) {
             match ranges.last_mut() {
                 Some(last) if last[1].is_exactly(part.range[0]) => last[1] = part.range[1],

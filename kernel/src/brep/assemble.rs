@@ -43,7 +43,7 @@ pub struct EdgeInput<N: Float = f64> {
     /// The points (by index) at both ends; none for a closed edge.
     pub ends: Option<[usize; 2]>,
     /// Counterclockwise about the curve's direction; pairs enclose material.
-    pub wings: Vec<FaceUse>,
+    pub face_uses: Vec<FaceUse>,
     /// Whether two faces meet smoothly.
     pub smooth: bool,
     /// The points (by index) that it runs through.
@@ -199,7 +199,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         let mut first = Vec::new();
         for (edge, e) in raw.edges.iter().enumerate() {
             first.push(halves.len());
-            halves.extend(e.wings.iter().map(|&wing| Half { edge, wing }));
+            halves.extend(e.face_uses.iter().map(|&wing| Half { edge, wing }));
         }
         let next = vec![usize::MAX; halves.len()];
         Self {
@@ -322,7 +322,7 @@ impl<'a, N: Float> Assembler<'a, N> {
                 let d = frame.components(&(p - v));
                 (d.y.atan2(d.x), end)
             };
-            let least = self.predicates.band::<N>() / radius * clear + N::ROUNDING;
+            let least = self.predicates.resolution::<N>() / radius * clear + N::ROUNDING;
             let bundles = bundled(ends.iter().map(angle).collect(), least);
             if bundles.len() > best.len() {
                 best = bundles;
@@ -416,7 +416,7 @@ impl<'a, N: Float> Assembler<'a, N> {
                 .map(|&r| rings[r].iter().map(|&h| self.arc(h)).collect())
                 .collect();
             let surface = &self.raw.surfaces[group.0];
-            for region in regions(surface, group.1, &arcs, self.predicates.band())? {
+            for region in regions(surface, group.1, &arcs, self.predicates.resolution())? {
                 let rings = region.loops.iter().map(|&k| list[k]).collect();
                 faces.push(Region {
                     group,

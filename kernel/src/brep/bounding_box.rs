@@ -67,7 +67,7 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
     let rounding = ROUNDING * known.diagonal();
     if rounding.is_finite() {
         let known = known.grown(rounding);
-        points.retain(|p| !known.holds(p));
+        points.retain(|p| !known.contains(p));
     }
     if points.is_empty() {
         return Aabb::EMPTY;

@@ -92,8 +92,8 @@ pub enum Violation {
 const PLAY: f64 = 8.0;
 
 /// The farthest that an edge lies from a vertex at its end or from a face, where that is more than
-/// the resolution `band` accounts for: the place on the edge, and the distance.
-pub fn worst_gap<N: Float>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
+/// the resolution `resolution` accounts for: the place on the edge, and the distance.
+pub fn worst_gap<N: Float>(brep: &Brep<N>, resolution: N) -> Option<(Point3<N>, N)> {
     let t = &brep.topology;
     let gaps = t.edge_ids().flat_map(|id| {
         let ends = gaps_at_ends(brep, id).map(|(_, place, distance)| (place, distance));
@@ -101,12 +101,12 @@ pub fn worst_gap<N: Float>(brep: &Brep<N>, band: N) -> Option<(Point3<N>, N)> {
         ends.chain(faces.map(move |face| gap_from_face(brep, id, face)))
     });
     let worst = gaps.max_by(|a, b| a.1.total_cmp(&b.1));
-    worst.filter(|gap| !is_accounted(gap.1, band))
+    worst.filter(|gap| !is_accounted(gap.1, resolution))
 }
 
 /// Whether a distance is what making one of what coincides may leave.
-fn is_accounted<N: Float>(distance: N, band: N) -> bool {
-    distance.is_within(N::from_f64(PLAY) * band)
+fn is_accounted<N: Float>(distance: N, resolution: N) -> bool {
+    distance.is_within(N::from_f64(PLAY) * resolution)
 }
 
 /// The ends of an edge: the vertex, the place on the edge, and how far they are apart.
@@ -136,12 +136,16 @@ fn gap_from_face<N: Float>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3<
 /// At how many places, less one, an edge is held against a face.
 const PLACES: u32 = 8;
 
-/// The rules that a boundary breaks; none where it is sound. `band` is the resolution.
-pub fn check<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>, band: N) -> Vec<Violation> {
+/// The rules that a boundary breaks; none where it is sound. `resolution` is the resolution.
+pub fn check<N: Float>(
+    brep: &Brep<N>,
+    measures: &FaceIntegrals<N>,
+    resolution: N,
+) -> Vec<Violation> {
     let mut found = Vec::new();
     check_loops(brep, &mut found);
-    check_edges(brep, band, &mut found);
-    check_touches(brep, band, &mut found);
+    check_edges(brep, resolution, &mut found);
+    check_touches(brep, resolution, &mut found);
     check_genera(brep, &mut found);
     check_shells(brep, measures, &mut found);
     check_areas(brep, measures, &mut found);
@@ -215,7 +219,7 @@ fn check_cycles<N: Float>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Viol
     }
 }
 
-fn check_edges<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
+fn check_edges<N: Float>(brep: &Brep<N>, resolution: N, found: &mut Vec<Violation>) {
     let t = &brep.topology;
     for id in t.edge_ids() {
         let edge = t.edge(id);
@@ -229,7 +233,7 @@ fn check_edges<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
             found.push(Violation::EdgeUse { edge: id });
         }
         for (vertex, _, distance) in gaps_at_ends(brep, id) {
-            if !is_accounted(distance, band) {
+            if !is_accounted(distance, resolution) {
                 found.push(Violation::EdgeEnd {
                     edge: id,
                     vertex,
@@ -239,7 +243,7 @@ fn check_edges<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
         }
         for face in t.faces_of(id) {
             let (_, distance) = gap_from_face(brep, id, face);
-            if !is_accounted(distance, band) {
+            if !is_accounted(distance, resolution) {
                 found.push(Violation::EdgeOffFace {
                     edge: id,
                     face,
@@ -250,7 +254,7 @@ fn check_edges<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
     }
 }
 
-fn check_touches<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) {
+fn check_touches<N: Float>(brep: &Brep<N>, resolution: N, found: &mut Vec<Violation>) {
     let touches = brep.topology.touches.iter().zip(&brep.geometry.touches);
     for (i, (touch, place)) in touches.enumerate() {
         let vertices = touch.vertex.iter().map(|&v| brep.point(v));
@@ -263,7 +267,7 @@ fn check_touches<N: Float>(brep: &Brep<N>, band: N, found: &mut Vec<Violation>) 
         let faces = faces.map(|&f| brep.surface(f).distance(place).abs());
         let distance = points.chain(faces).fold(N::ZERO, N::max);
         let meeting = touch.fans + touch.edges.len() + touch.faces.len();
-        if meeting < 2 || !is_accounted(distance, band) {
+        if meeting < 2 || !is_accounted(distance, resolution) {
             let touch = TouchId(i as u32);
             found.push(Violation::TouchOff {
                 touch,

@@ -45,7 +45,7 @@ pub struct FaceLocator<'a, N: Float = f64> {
     arcs: Arcs<'a, N>,
     /// About how far it is from one arc to the next.
     spacing: N,
-    band: N,
+    resolution: N,
 }
 
 /// How far edges are off, in terms of the part's size and of rounding.
@@ -60,14 +60,14 @@ enum Outcome {
 
 impl<'a, N: Float> FaceLocator<'a, N> {
     /// A locator for the region of `surface` that `arcs` bound; `side` is the sense of the face's outward
-    /// normal against the surface's own, `band` is the resolution.
+    /// normal against the surface's own, `resolution` is the resolution.
     pub fn new(
         surface: &'a Surface<N>,
         side: Sense,
         arcs: Vec<DirectedArc<'a, N>>,
-        band: N,
+        resolution: N,
     ) -> Self {
-        let arcs = Arcs::new(arcs, band);
+        let arcs = Arcs::new(arcs, resolution);
         let hull = arcs.boxes.iter().fold(Aabb::EMPTY, |a, b| a.hull(b));
         let spacing =
             N::from_f64(2.0 * hull.diagonal()) / (N::from_f64(arcs.all.len() as f64)).sqrt();
@@ -76,15 +76,20 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             side,
             arcs,
             spacing,
-            band,
+            resolution,
         }
     }
 
     /// The locator of a face of a boundary representation.
-    pub fn from_face(brep: &'a Brep<N>, face: FaceId, band: N) -> Self {
+    pub fn from_face(brep: &'a Brep<N>, face: FaceId, resolution: N) -> Self {
         let coedges = brep.topology.coedges_of(face);
         let arcs = coedges.map(|c| DirectedArc::new(brep, c));
-        Self::new(brep.surface(face), brep.sense(face), arcs.collect(), band)
+        Self::new(
+            brep.surface(face),
+            brep.sense(face),
+            arcs.collect(),
+            resolution,
+        )
     }
 
     /// The same where the resolution is not at hand: edges are off by the rounding of the part's
@@ -140,7 +145,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     fn on_arc(&self, p: &Point3<N>, i: usize) -> bool {
-        if !self.arcs.may_hold(i, p) {
+        if !self.arcs.may_contain(i, p) {
             return false;
         }
         let DirectedArc { curve, range, .. } = self.arcs.all[i];
@@ -149,11 +154,11 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             // Most points in the box of a circle are plainly aside of it.
             let q = c.frame.coordinates(p);
             let aside = q.x.hypot(q.y) - c.radius;
-            if aside.abs().is_beyond(N::TWO * self.band) {
+            if aside.abs().is_beyond(N::TWO * self.resolution) {
                 return false;
             }
         }
-        let near = |t: N| (curve.point(t) - p).length().is_within(self.band);
+        let near = |t: N| (curve.point(t) - p).length().is_within(self.resolution);
         let t = curve.in_cycle(curve.parameter(p), lo);
         (t.lies_in(range) && near(t)) || near(lo) || near(hi)
     }
@@ -218,7 +223,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             return direct(SurfacePath::ruling_through(self.surface, p, sense));
         }
         // At the apex the parallel is a point and any ruling starts there.
-        let Some(walk) = SurfacePath::parallel(self.surface, p, sense, self.band) else {
+        let Some(walk) = SurfacePath::parallel(self.surface, p, sense, self.resolution) else {
             return direct(SurfacePath::ruling(self.surface, p, turn, sense));
         };
         let radius = self.surface.frame().coordinates(p).xy().length();
@@ -265,8 +270,9 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     ) -> Option<Vec<SurfacePath<N>>> {
         let target = self.target(k / 2);
         let tube = |from: &Point3<N>| Some(SurfacePath::tube(torus, from, Sense::Along));
-        let round =
-            |from: &Point3<N>| SurfacePath::parallel(self.surface, from, Sense::Along, self.band);
+        let round = |from: &Point3<N>| {
+            SurfacePath::parallel(self.surface, from, Sense::Along, self.resolution)
+        };
         let tube_last = k.is_multiple_of(2);
         let mut way = Vec::with_capacity(3);
         let mut from = *p;
@@ -324,7 +330,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
 
     fn take(&self, walk: &SurfacePath<N>) -> Outcome {
         let mut first = First::default();
-        self.arcs.met_by(walk, self.band, &mut |i, ranges| {
+        self.arcs.hit_by(walk, self.resolution, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
             let mut note = |at: N, _: N, passage: CrossingSense| {
                 first.note(Met {
@@ -333,10 +339,17 @@ impl<'a, N: Float> FaceLocator<'a, N> {
                     arc: i,
                 });
             };
-            walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
+            walk.intersections(
+                self.surface,
+                self.side,
+                arc,
+                ranges,
+                self.resolution,
+                &mut note,
+            );
         });
         let one_edge = |a: usize, b: usize| self.arcs.all[a].shares_edge(&self.arcs.all[b]);
-        first.outcome(self.band, one_edge)
+        first.outcome(self.resolution, one_edge)
     }
 }
 
@@ -368,12 +381,12 @@ impl<N: Float> First<N> {
         }
     }
 
-    fn outcome(&self, band: N, one_edge: impl Fn(usize, usize) -> bool) -> Outcome {
+    fn outcome(&self, resolution: N, one_edge: impl Fn(usize, usize) -> bool) -> Outcome {
         let [Some(first), second, third] = self.met else {
             return Outcome::Nothing;
         };
         let with_first =
-            |other: Option<Met<N>>| other.filter(|m| (m.at - first.at).is_at_most(band));
+            |other: Option<Met<N>>| other.filter(|m| (m.at - first.at).is_at_most(resolution));
         match (with_first(second), with_first(third)) {
             (None, _) => match first.passage {
                 CrossingSense::Entering => Outcome::Found(PointLocation::Outside),
@@ -401,23 +414,24 @@ impl<N: Float> First<N> {
 pub struct Locator<'a, N: Float = f64> {
     brep: &'a Brep<N>,
     faces: Vec<OnceLock<FaceLocator<'a, N>>>,
-    band: N,
+    resolution: N,
 }
 
 impl<'a, N: Float> Locator<'a, N> {
-    /// A locator for all faces of `brep`; `band` is the resolution.
-    pub fn new(brep: &'a Brep<N>, band: N) -> Self {
+    /// A locator for all faces of `brep`; `resolution` is the resolution.
+    pub fn new(brep: &'a Brep<N>, resolution: N) -> Self {
         let faces = brep.topology.faces.iter().map(|_| OnceLock::new());
         Self {
             brep,
             faces: faces.collect(),
-            band,
+            resolution,
         }
     }
 
     /// The locator of one face.
     pub fn face(&self, face: FaceId) -> &FaceLocator<'a, N> {
-        self.faces[face.index()].get_or_init(|| FaceLocator::from_face(self.brep, face, self.band))
+        self.faces[face.index()]
+            .get_or_init(|| FaceLocator::from_face(self.brep, face, self.resolution))
     }
 
     /// Where `p`, a point of the face's surface, lies with respect to the face.

@@ -108,7 +108,7 @@ impl<N: Float> Brep<N> {
     }
 
     /// The same in doubles: what lies closer together than these tell has one place.
-    pub fn in_doubles(&self) -> Brep {
+    pub fn to_f64(&self) -> Brep {
         let g = &self.geometry;
         let arc = |a: &EdgeGeometry<N>| EdgeGeometry {
             curve: a.curve,
@@ -117,8 +117,8 @@ impl<N: Float> Brep<N> {
         Brep {
             topology: self.topology.clone(),
             geometry: BrepGeometry {
-                surfaces: g.surfaces.iter().map(Surface::in_doubles).collect(),
-                curves: g.curves.iter().map(Curve::in_doubles).collect(),
+                surfaces: g.surfaces.iter().map(Surface::to_f64).collect(),
+                curves: g.curves.iter().map(Curve::to_f64).collect(),
                 points: g.points.iter().map(|p| p.map(N::rounded)).collect(),
                 arcs: g.arcs.iter().map(arc).collect(),
                 patches: g.patches.clone(),

@@ -23,7 +23,7 @@ pub(super) fn touches<N: Float>(
     predicates: &Predicates,
 ) -> Vec<(Point3<N>, NonManifoldPoint)> {
     let edges = Edges::new(raw, names);
-    let faces = Faces::new(brep, predicates.band());
+    let faces = Faces::new(brep, predicates.resolution());
     let mut found = Vec::new();
     for (point, at) in raw.points.iter().enumerate() {
         let vertex = names.vertex_of.get(&point).copied();
@@ -83,7 +83,7 @@ impl Edges {
                 through.push(EdgeId(id as u32));
             }
             for &point in edge.ends.iter().flatten().chain(&edge.passes) {
-                for wing in &edge.wings {
+                for wing in &edge.face_uses {
                     let surface = names.surface_of[&wing.surface];
                     found.bounding.insert((point, surface));
                 }
@@ -100,14 +100,14 @@ struct Faces<'a, N: Float = f64> {
 }
 
 impl<'a, N: Float> Faces<'a, N> {
-    fn new(brep: &'a Brep<N>, band: N) -> Self {
+    fn new(brep: &'a Brep<N>, resolution: N) -> Self {
         let mut of_surface = vec![Vec::new(); brep.geometry.surfaces.len()];
         for (patch, face) in brep.geometry.patches.iter().zip(brep.topology.face_ids()) {
             of_surface[patch.surface].push(face);
         }
         Self {
             of_surface,
-            locator: Locator::new(brep, band),
+            locator: Locator::new(brep, resolution),
         }
     }
 

@@ -17,11 +17,11 @@ use nalgebra::{Point3, Vector3};
 const LINES: u32 = 64;
 
 /// Whether the solids hold a point that is not on the boundary; none where no ray from it crosses
-/// faces plainly, farther than `band` from their edges. That is no less than their places are rounded
+/// faces plainly, farther than `resolution` from their edges. That is no less than their places are rounded
 /// by.
-pub fn holds<N: Float>(brep: &Brep<N>, p: &Point3<N>, band: N) -> Option<bool> {
+pub fn contains<N: Float>(brep: &Brep<N>, p: &Point3<N>, resolution: N) -> Option<bool> {
     let faces: Vec<FaceId> = brep.topology.face_ids().collect();
-    Closed::new(brep, &faces, band).holds(p)
+    Closed::new(brep, &faces, resolution).contains(p)
 }
 
 /// The faces of closed shells, with their boxes.
@@ -30,25 +30,25 @@ pub(super) struct Closed<'a, N: Float> {
     faces: Vec<(FaceId, Aabb)>,
     /// The box of all.
     pub bounds: Aabb,
-    band: N,
+    resolution: N,
 }
 
 impl<'a, N: Float> Closed<'a, N> {
-    /// The faces, what lies within `band` of an edge being on it.
-    pub fn new(brep: &'a Brep<N>, faces: &[FaceId], band: N) -> Self {
-        let boxed = |&f: &FaceId| (f, face_bounds(brep, f).grown(band));
+    /// The faces, what lies within `resolution` of an edge being on it.
+    pub fn new(brep: &'a Brep<N>, faces: &[FaceId], resolution: N) -> Self {
+        let boxed = |&f: &FaceId| (f, face_bounds(brep, f).grown(resolution));
         let faces: Vec<(FaceId, Aabb)> = faces.iter().map(boxed).collect();
         let bounds = faces.iter().fold(Aabb::EMPTY, |all, f| all.hull(&f.1));
         Self {
             brep,
             faces,
             bounds,
-            band,
+            resolution,
         }
     }
 
     /// Whether they hold a point. Rays are tried until one crosses plainly.
-    fn holds(&self, p: &Point3<N>) -> Option<bool> {
+    fn contains(&self, p: &Point3<N>) -> Option<bool> {
         let crossings = (0..LINES).find_map(|k| {
             let ray = Line {
                 origin: *p,
@@ -62,15 +62,15 @@ impl<'a, N: Float> Closed<'a, N> {
 
     /// Whether they hold others that do not cross them, though they may touch them: the place
     /// where a line crosses these tells, and where it crosses those beyond.
-    pub fn hold(&self, others: &Self) -> Option<bool> {
+    pub fn enclosing(&self, others: &Self) -> Option<bool> {
         (0..LINES).find_map(|k| {
             let line = others.line_across(k);
             let range = others.reach(&line);
             let at = *others.crossings(&line, range)?.first()?;
             let [_, far] = self.reach(&line);
             // Where the two touch it is not told.
-            let beyond = self.crossings(&line, [at - self.band, far])?;
-            let apart = beyond.iter().all(|t| t.is_beyond(at + self.band));
+            let beyond = self.crossings(&line, [at - self.resolution, far])?;
+            let apart = beyond.iter().all(|t| t.is_beyond(at + self.resolution));
             apart.then_some(beyond.len() % 2 == 1)
         })
     }
@@ -107,14 +107,15 @@ impl<'a, N: Float> Closed<'a, N> {
             if around.along(line, range).is_none() {
                 continue;
             }
-            let Roots::At { roots, .. } = cut(&curve, range, self.brep.surface(*face), self.band)
+            let Roots::At { roots, .. } =
+                cut(&curve, range, self.brep.surface(*face), self.resolution)
             else {
                 return None;
             };
             if roots.is_empty() {
                 continue;
             }
-            let locator = FaceLocator::from_face(self.brep, *face, self.band);
+            let locator = FaceLocator::from_face(self.brep, *face, self.resolution);
             for root in roots {
                 match locator.place(&curve.point(root.t)) {
                     PointLocation::Outside => {}

@@ -62,7 +62,7 @@ struct Sorter<'a, N: Float = f64> {
     owner: Vec<usize>,
     /// The first arc of each loop, and one beyond the last.
     firsts: Vec<usize>,
-    band: N,
+    resolution: N,
     parent: Vec<usize>,
     /// Whether a loop on a torus winds around the axis, and around the tube.
     winding: [bool; 2],
@@ -73,7 +73,7 @@ pub(super) fn regions<'a, N: Float>(
     surface: &'a Surface<N>,
     outward: Sense,
     loops: &[Vec<DirectedArc<'a, N>>],
-    band: N,
+    resolution: N,
 ) -> Result<Vec<Region>, RegionError> {
     let mut owner = Vec::new();
     let mut arcs = Vec::new();
@@ -83,7 +83,7 @@ pub(super) fn regions<'a, N: Float>(
         arcs.extend(ring.iter().copied());
         firsts.push(arcs.len());
     }
-    let arcs = Arcs::new(arcs, band);
+    let arcs = Arcs::new(arcs, resolution);
     // More than the loops: the fixed points of a sphere or a cone, one for each attempt.
     let parent = (0..loops.len() + ATTEMPTS).collect();
     let mut sorter = Sorter {
@@ -92,7 +92,7 @@ pub(super) fn regions<'a, N: Float>(
         arcs,
         owner,
         firsts,
-        band,
+        resolution,
         parent,
         winding: [false; 2],
     };
@@ -237,12 +237,13 @@ impl<N: Float> Sorter<'_, N> {
             let around = self.arcs.around(&apex);
             let passed = around
                 .into_iter()
-                .any(|i| self.arcs.ends_at(i, &apex, self.band));
+                .any(|i| self.arcs.ends_at(i, &apex, self.resolution));
             if passed {
-                let near = (self.band / height).rough_root(2 + attempt as u32);
+                let near = (self.resolution / height).rough_root(2 + attempt as u32);
                 let height = height * (N::ONE - near);
                 let corner = down.point(height);
-                let round = SurfacePath::parallel(self.surface, &corner, Sense::Along, self.band);
+                let round =
+                    SurfacePath::parallel(self.surface, &corner, Sense::Along, self.resolution);
                 legs.push(down.upto(height));
                 legs.extend(round);
             } else {
@@ -256,7 +257,8 @@ impl<N: Float> Sorter<'_, N> {
     /// A turn along the parallel into the face, then down.
     fn turn_down(&mut self, ring: usize, start: &Start<N>, turn: N, attempt: usize) -> bool {
         let p = &start.point;
-        let Some(round) = SurfacePath::parallel(self.surface, p, Sense::Along, self.band) else {
+        let Some(round) = SurfacePath::parallel(self.surface, p, Sense::Along, self.resolution)
+        else {
             return false;
         };
         let round = round.toward(p, &start.left);
@@ -373,7 +375,7 @@ impl<N: Float> Sorter<'_, N> {
 
     /// As far as this from a walk's start the arc is that it starts on.
     fn start(&self) -> N {
-        N::from_f64(64.0) * self.band
+        N::from_f64(64.0) * self.resolution
     }
 
     /// The arc that runs over the same edge the other way.
@@ -391,7 +393,7 @@ impl<N: Float> Sorter<'_, N> {
     ) -> Option<Vec<PathCrossing<N>>> {
         let mut found: Vec<PathCrossing<N>> = Vec::new();
         let mut clear = true;
-        self.arcs.met_by(walk, self.band, &mut |i, ranges| {
+        self.arcs.hit_by(walk, self.resolution, &mut |i, ranges| {
             // The rest is of no use to anyone.
             if !clear {
                 return;
@@ -411,12 +413,12 @@ impl<N: Float> Sorter<'_, N> {
                     });
                 }
             };
-            walk.meet(
+            walk.intersections(
                 self.surface,
                 self.outward,
                 arc,
                 ranges,
-                self.band,
+                self.resolution,
                 &mut note,
             );
         });
@@ -426,7 +428,7 @@ impl<N: Float> Sorter<'_, N> {
         found.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.arc.cmp(&b.arc)));
         // Where faces of one surface share an edge, one is left before the other is entered.
         for k in 1..found.len() {
-            let together = (found[k].at - found[k - 1].at).is_at_most(self.band);
+            let together = (found[k].at - found[k - 1].at).is_at_most(self.resolution);
             if together
                 && found[k - 1].passage == CrossingSense::Entering
                 && found[k].passage == CrossingSense::Leaving

@@ -183,21 +183,21 @@ fn homes<N: Float>(
     }
     let closed = |shell: usize| {
         let faces = &brep.topology.shells[shell].faces;
-        Closed::new(brep, faces, predicates.band())
+        Closed::new(brep, faces, predicates.resolution())
     };
     let around: Vec<Closed<'_, N>> = outer.iter().map(|&s| closed(s)).collect();
     let home_of = |void: usize| {
         let place = || rounded(&point_of(brep, brep.topology.shells[void].faces[0]));
         let hollow = closed(void);
         let fits = |k: &usize| {
-            let b = around[*k].bounds.grown(predicates.band::<N>());
+            let b = around[*k].bounds.grown(predicates.resolution::<N>());
             b.encloses(&hollow.bounds)
         };
         let mut may: Vec<usize> = (0..outer.len()).filter(fits).collect();
         // What no other can hold is held by the last.
         let last = may.pop();
         for k in may {
-            match around[k].hold(&hollow) {
+            match around[k].enclosing(&hollow) {
                 Some(true) => return Ok((void, outer[k])),
                 Some(false) => {}
                 None => return Err(AssemblyError::OrphanVoid { place: place() }),

@@ -13,7 +13,7 @@ use super::Brep;
 use super::topology::{CoedgeId, Sense};
 use crate::geometry::bounds::Aabb;
 use crate::geometry::curve::{Circle, Curve};
-use crate::geometry::curve_plane::{line_meets, section_roots, surface_roots};
+use crate::geometry::curve_plane::{line_intersections, section_roots, surface_roots};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
 use crate::geometry::torus_curve::TorusParameter;
@@ -163,7 +163,7 @@ impl<N: Float> SurfacePath<N> {
         surface: &Surface<N>,
         start: &Point3<N>,
         sense: Sense,
-        band: N,
+        resolution: N,
     ) -> Option<Self> {
         let f = surface.frame();
         let q = f.coordinates(start);
@@ -185,7 +185,7 @@ impl<N: Float> SurfacePath<N> {
             _ => Branch::Whole,
         };
         let centre = f.origin + f.z * q.z;
-        let is_off_axis = rho.is_beyond(band.max(N::ROUNDING * q.length()));
+        let is_off_axis = rho.is_beyond(resolution.max(N::ROUNDING * q.length()));
         is_off_axis.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
     }
 
@@ -309,7 +309,7 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
-    fn passes(&self, p: &Point3<N>, band: N) -> bool {
+    fn passes(&self, p: &Point3<N>, resolution: N) -> bool {
         let inward = match &self.branch {
             Branch::Whole => N::INFINITY,
             Branch::Half(o, side) => (p - o).dot(side),
@@ -320,36 +320,36 @@ impl<N: Float> SurfacePath<N> {
             Branch::Level(c, side) => (p - c.frame.origin).dot(&c.frame.z) * *side,
         };
         let s = self.at(p);
-        inward.is_beyond(-band) && s.lies_between([-band, self.length + band])
+        inward.is_beyond(-resolution) && s.lies_between([-resolution, self.length + resolution])
     }
 
     /// Whether the walk may pass through a box.
-    pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: N) -> bool {
-        self.reach.may_meet(lo, hi, band.above())
+    pub fn may_intersect(&self, lo: &[f64; 3], hi: &[f64; 3], resolution: N) -> bool {
+        self.reach.may_intersect(lo, hi, resolution.above())
     }
 
-    /// [`Self::may_meet`] of a box.
-    pub fn may_meet_box(&self, b: &Aabb, band: N) -> bool {
-        self.may_meet(&b.min, &b.max, band)
+    /// [`Self::may_intersect`] of a box.
+    pub fn may_intersect_box(&self, b: &Aabb, resolution: N) -> bool {
+        self.may_intersect(&b.min, &b.max, resolution)
     }
 
     /// The crossings with `arcs` on `surface`, in order; `side` is the sense of the face's outward
-    /// normal against the surface's own, `band` is the resolution.
+    /// normal against the surface's own, `resolution` is the resolution.
     pub fn crossings(
         &self,
         surface: &Surface<N>,
         side: Sense,
         arcs: &[DirectedArc<'_, N>],
-        band: N,
+        resolution: N,
     ) -> Vec<PathCrossing<N>> {
         let mut found = Vec::new();
         for (i, arc) in arcs.iter().enumerate() {
-            self.meet(
+            self.intersections(
                 surface,
                 side,
                 arc,
                 &[arc.range],
-                band,
+                resolution,
                 &mut |at, t, passage| {
                     found.push(PathCrossing {
                         at,
@@ -366,20 +366,20 @@ impl<N: Float> SurfacePath<N> {
 
     /// Reports the crossings with one arc, of which only some ranges may be met: (length along the
     /// walk, parameter, passage).
-    pub(super) fn meet(
+    pub(super) fn intersections(
         &self,
         surface: &Surface<N>,
         side: Sense,
         arc: &DirectedArc<'_, N>,
         ranges: &[[N; 2]],
-        band: N,
+        resolution: N,
         found: &mut impl FnMut(N, N, CrossingSense),
     ) {
         let [lo, hi] = arc.range;
         if !closes(arc) {
             for t in [lo, hi] {
                 let p = arc.curve.point(t);
-                if self.off(&p).is_within(band) && self.passes(&p, band) {
+                if self.off(&p).is_within(resolution) && self.passes(&p, resolution) {
                     found(self.at(&p).max(N::ZERO), t, CrossingSense::Unclear);
                 }
             }
@@ -387,13 +387,13 @@ impl<N: Float> SurfacePath<N> {
         let sign = arc.sense.sign::<N>() * side.sign::<N>();
         let mut root = |t: N, plain: bool| {
             let p = arc.curve.point(t);
-            if !self.passes(&p, band) {
+            if !self.passes(&p, resolution) {
                 return;
             }
             let s = self.at(&p);
             let across = self.direction(&p).cross(&surface.normal(&p));
             let turn = sign * across.dot(&arc.curve.tangent(t));
-            let at_end = s.is_at_most(band) || s.reaches(self.length - band);
+            let at_end = s.is_at_most(resolution) || s.reaches(self.length - resolution);
             let is_along = turn.is_nan() || turn.abs().is_short_of(N::ROUNDING.sqrt());
             let passage = if !plain || at_end || is_along {
                 CrossingSense::Unclear
@@ -405,12 +405,18 @@ impl<N: Float> SurfacePath<N> {
             found(s.max(N::ZERO), t, passage);
         };
         if let Track::Line(d) = &self.track
-            && line_meets(arc.curve, arc.range, (&self.start, d), band, &mut root)
+            && line_intersections(
+                arc.curve,
+                arc.range,
+                (&self.start, d),
+                resolution,
+                &mut root,
+            )
         {
             return;
         }
         if !ranges.is_empty()
-            && let Some(all) = self.met_on_torus(surface, arc.curve, band)
+            && let Some(all) = self.met_on_torus(surface, arc.curve, resolution)
         {
             let all = all.into_iter().map(|t| arc.curve.in_cycle(t, lo));
             return all
@@ -420,11 +426,17 @@ impl<N: Float> SurfacePath<N> {
         for &range in ranges {
             match self.branch {
                 Branch::Level(c, _) => {
-                    surface_roots(arc.curve, range, &Surface::Cylinder(c), band, &mut root);
+                    surface_roots(
+                        arc.curve,
+                        range,
+                        &Surface::Cylinder(c),
+                        resolution,
+                        &mut root,
+                    );
                 }
                 _ => {
                     let section = (&self.start, &self.normal);
-                    section_roots(arc.curve, range, section, band, &mut root);
+                    section_roots(arc.curve, range, section, resolution, &mut root);
                 }
             }
         }
@@ -433,13 +445,18 @@ impl<N: Float> SurfacePath<N> {
     /// Where a walk along a circle plainly crosses a curve through the angles of a torus, of the whole
     /// curve: a circle of that torus, or of the curve's other surface. None where that is not plain,
     /// and of other walks and curves.
-    fn met_on_torus(&self, surface: &Surface<N>, curve: &Curve<N>, band: N) -> Option<Vec<N>> {
+    fn met_on_torus(
+        &self,
+        surface: &Surface<N>,
+        curve: &Curve<N>,
+        resolution: N,
+    ) -> Option<Vec<N>> {
         let (Track::Circle(frame, radius), Curve::Toric(curve)) = (&self.track, curve) else {
             return None;
         };
         if *surface != Surface::Torus(curve.torus) {
             let (frame, radius) = (*frame, *radius);
-            return curve.across_circle(&Circle { frame, radius }, surface, band);
+            return curve.across_circle(&Circle { frame, radius }, surface, resolution);
         }
         let [theta, phi] = surface.parameters(&self.start);
         let (fixed, angle) = match self.branch {
@@ -447,7 +464,7 @@ impl<N: Float> SurfacePath<N> {
             Branch::Parallel(..) | Branch::Level(..) => (TorusParameter::Tube, phi),
             Branch::Whole => return None,
         };
-        curve.across(fixed, angle, band)
+        curve.across(fixed, angle, resolution)
     }
 
     /// The distance of a point from what cuts the walk out of its surface.

@@ -34,7 +34,7 @@ pub struct Partials<S> {
 fn basis<N: Float, S: Analytic<Float = N>>(angle: S) -> [[S; 5]; 3] {
     let (s, c) = angle.sin_cos();
     let (s2, c2) = angle.twice((s, c));
-    let (one, zero) = (S::plain(1.0), S::plain(0.0));
+    let (one, zero) = (S::constant_f64(1.0), S::constant_f64(0.0));
     [
         [one, c, s, c2, s2],
         [zero, -s, c, -s2.times(2.0), c2.times(2.0)],
@@ -73,7 +73,7 @@ fn partials<N: Float, S: Analytic<Float = N>>(
     bx: &[[S; 5]; 3],
     by: &[[S; 5]; 3],
 ) -> Partials<S> {
-    let zero = S::plain(0.0);
+    let zero = S::constant_f64(0.0);
     let [mut f, mut x, mut y, mut xx, mut xy, mut yy] = [zero; 6];
     for (m, row) in k.iter().enumerate() {
         if row.iter().all(|&c| c == N::ZERO) {
@@ -159,12 +159,12 @@ impl<N: Float> BivariateTrigPoly<N> {
     }
 
     fn sum<S: Analytic<Float = N>>(&self, bx: &[S; 5], by: &[S; 5]) -> S {
-        let mut total = S::plain(0.0);
+        let mut total = S::constant_f64(0.0);
         for (row, a) in self.0.iter().zip(bx) {
             if row.iter().all(|&c| c == N::ZERO) {
                 continue;
             }
-            let mut inner = S::plain(0.0);
+            let mut inner = S::constant_f64(0.0);
             for (&c, &b) in row.iter().zip(by) {
                 if c != N::ZERO {
                     inner = inner + b.scale(c);

@@ -223,7 +223,7 @@ impl<N: Float> Chart<N> {
     }
 
     /// The same in doubles.
-    pub(super) fn in_doubles(&self) -> Chart {
+    pub(super) fn to_f64(&self) -> Chart {
         let round = |all: &Vec<N>| all.iter().map(|&x| x.rounded()).collect();
         Chart {
             axis: self.axis,
@@ -247,15 +247,15 @@ impl<N: Float> Chart<N> {
 
     /// G with its partial derivatives by σ and κ; what Taylor leaves is not in it.
     pub fn partials<S: Analytic<Float = N>>(&self, sigma: S, kappa: S) -> Partials<S> {
-        let zero = S::plain(0.0);
+        let zero = S::constant_f64(0.0);
         let most = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let mut powers = vec![S::plain(1.0)];
+        let mut powers = vec![S::constant_f64(1.0)];
         for n in 1..most {
             powers.push(powers[n - 1] * sigma);
         }
         let [mut f, mut x, mut y, mut xx, mut xy, mut yy] = [zero; 6];
         // κʲ and its derivatives.
-        let mut k = [S::plain(1.0), zero, zero];
+        let mut k = [S::constant_f64(1.0), zero, zero];
         for (j, row) in self.rows.iter().enumerate() {
             let mut p = [zero; 3];
             for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != N::ZERO) {

@@ -61,7 +61,7 @@ impl Aabb {
     }
 
     /// Whether a point lies in it.
-    pub fn holds<N: Float>(&self, p: &Point3<N>) -> bool {
+    pub fn contains<N: Float>(&self, p: &Point3<N>) -> bool {
         (0..3).all(|i| N::from_f64(self.min[i]) <= p[i] && p[i] <= N::from_f64(self.max[i]))
     }
 
@@ -135,7 +135,7 @@ pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb
 /// The same of a curve of more digits: of the curve rounded to doubles, and grown by more than that
 /// moves it, next to a node by the root of rounding.
 fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
-    let mut rounded = pieces(&curve.in_doubles(), [lo, hi].map(N::rounded));
+    let mut rounded = pieces(&curve.to_f64(), [lo, hi].map(N::rounded));
     let whole = rounded.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
     let far = whole.min.iter().chain(&whole.max);
     let far = far.fold(0.0_f64, |far, x| far.max(x.abs()));
@@ -270,7 +270,9 @@ fn piece_box<N: Float>(curve: &Curve<N>, a: N, b: N) -> Aabb {
         if w.d.has_zero() {
             // To the second order, too: next to an extremum the slope alone tells little.
             let second = v + d * run + (w.dd * run.square()).times(0.5);
-            w.v.meet(v + w.d * run).meet(second).in_doubles()
+            w.v.intersection(v + w.d * run)
+                .intersection(second)
+                .to_f64()
         } else {
             Interval::new(ends.min[i], ends.max[i])
         }
@@ -294,8 +296,8 @@ mod tests {
         let frame = Frame::about(Point3::origin(), Vector3::z());
         let parabola = Curve::Conic(Conic::about_vertex(frame, 0.5, 0.0));
         let b = tight_bounds(&parabola, [-1.5, 1.5]);
-        assert!(b.holds(&parabola.point(0.0)), "{b:?}");
-        assert!(!b.grown(-1e-9).holds(&parabola.point(0.0)), "{b:?}");
+        assert!(b.contains(&parabola.point(0.0)), "{b:?}");
+        assert!(!b.grown(-1e-9).contains(&parabola.point(0.0)), "{b:?}");
     }
 
     #[test]
@@ -317,7 +319,7 @@ mod tests {
                 let b = bounds(c, [lo, hi]).grown(1e-12);
                 for k in 0..=100 {
                     let t = lo + (hi - lo) * f64::from(k) / 100.0;
-                    assert!(b.holds(&c.point(t)));
+                    assert!(b.contains(&c.point(t)));
                 }
             }
         }

@@ -95,7 +95,7 @@ impl<N: Float> Conic<N> {
 
     /// r + √(r² - κ α y²) with r = 1 - β y.
     fn depth<S: Analytic<Float = N>>(&self, y: S) -> S {
-        let rest = S::plain(1.0) - y.scale(self.shear);
+        let rest = S::constant_f64(1.0) - y.scale(self.shear);
         let bend = y.square().scale(self.curvature * self.flatness);
         rest + (rest.square() - bend).root()
     }
@@ -198,19 +198,19 @@ impl<N: Float> Curve<N> {
             Self::Circle(c) => {
                 let (s, k) = t.sin_cos();
                 c.frame
-                    .world_of([k.scale(c.radius), s.scale(c.radius), S::plain(0.0)])
+                    .world_of([k.scale(c.radius), s.scale(c.radius), S::constant_f64(0.0)])
             }
             Self::Ellipse(c) => {
                 let (s, k) = t.sin_cos();
                 c.frame
-                    .world_of([k.scale(c.a), s.scale(c.b), S::plain(0.0)])
+                    .world_of([k.scale(c.a), s.scale(c.b), S::constant_f64(0.0)])
             }
             Self::Hyperbola(c) => {
                 let (s, k) = t.sinh_cosh();
                 c.frame
-                    .world_of([k.scale(c.a), s.scale(c.b), S::plain(0.0)])
+                    .world_of([k.scale(c.a), s.scale(c.b), S::constant_f64(0.0)])
             }
-            Self::Conic(c) => c.frame.world_of([c.height(t), t, S::plain(0.0)]),
+            Self::Conic(c) => c.frame.world_of([c.height(t), t, S::constant_f64(0.0)]),
             Self::Quartic(q) => q.at(t),
             Self::Toric(_) => return None,
         })

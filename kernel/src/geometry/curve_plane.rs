@@ -16,11 +16,11 @@ pub fn plane_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     plane: &Plane<N>,
-    band: N,
+    resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
     let section = (&plane.frame.origin, &plane.frame.z);
-    section_roots(curve, range, section, band, found);
+    section_roots(curve, range, section, resolution, found);
 }
 
 /// The same for the plane through a point with a unit normal.
@@ -28,7 +28,7 @@ pub(crate) fn section_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     (o, n): (&Point3<N>, &Vector3<N>),
-    band: N,
+    resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
     let plane = || Plane {
@@ -37,20 +37,20 @@ pub(crate) fn section_roots<N: Float>(
     match curve {
         Curve::Line(c) => {
             let height = (c.origin - o).dot(n);
-            line_roots(height, c.direction.dot(n), range, band, found);
+            line_roots(height, c.direction.dot(n), range, resolution, found);
         }
         Curve::Circle(c) => {
             let k = [c.radius * c.frame.x.dot(n), c.radius * c.frame.y.dot(n)];
-            turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
+            turn_roots((c.frame.origin - o).dot(n), k, range, resolution, found);
         }
         Curve::Ellipse(c) => {
             let k = [c.a * c.frame.x.dot(n), c.b * c.frame.y.dot(n)];
-            turn_roots((c.frame.origin - o).dot(n), k, range, band, found);
+            turn_roots((c.frame.origin - o).dot(n), k, range, resolution, found);
         }
-        Curve::Quartic(c) if through_axis(c, (o, n), band) => {
-            ruling_roots(c, range, n, band, found);
+        Curve::Quartic(c) if through_axis(c, (o, n), resolution) => {
+            ruling_roots(c, range, n, resolution, found);
         }
-        _ => surface_roots(curve, range, &Surface::Plane(plane()), band, found),
+        _ => surface_roots(curve, range, &Surface::Plane(plane()), resolution, found),
     }
 }
 
@@ -59,10 +59,10 @@ pub(crate) fn surface_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     surface: &Surface<N>,
-    band: N,
+    resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
-    match cut(curve, range, surface, band) {
+    match cut(curve, range, surface, resolution) {
         Roots::Everywhere => found(N::HALF * (range[0] + range[1]), false),
         Roots::At { roots, .. } => {
             for r in roots {
@@ -83,11 +83,11 @@ fn base_frame<N: Float>(curve: &QuadricCurve<N>) -> &Frame<N> {
 fn through_axis<N: Float>(
     curve: &QuadricCurve<N>,
     (o, n): (&Point3<N>, &Vector3<N>),
-    band: N,
+    resolution: N,
 ) -> bool {
     let axis = base_frame(curve);
     let away = (axis.origin - o).dot(n).abs();
-    n.dot(&axis.z).abs() <= N::ROUNDING && away <= band
+    n.dot(&axis.z).abs() <= N::ROUNDING && away <= resolution
 }
 
 /// Where a curve over the rulings of a surface meets a plane through their axis, with the normal
@@ -96,16 +96,16 @@ fn ruling_roots<N: Float>(
     curve: &QuadricCurve<N>,
     [lo, hi]: [N; 2],
     n: &Vector3<N>,
-    band: N,
+    resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
     let axis = base_frame(curve);
     let u = (-n.dot(&axis.x)).atan2(n.dot(&axis.y));
     let period = curve.period();
-    let mut within = |t: N, plain: bool| {
+    let mut within = |t: N, simple: bool| {
         let t = period.map_or(t, |period| lo + (t - lo).rem_euclid(period));
         if t >= lo && t <= hi {
-            found(t, plain);
+            found(t, simple);
         }
     };
     for u in [u, u + N::HALF * N::TAU] {
@@ -123,7 +123,7 @@ fn ruling_roots<N: Float>(
                     N::HALF * N::TAU
                 };
                 let q = axis.coordinates(&curve.at(end).into());
-                if (away.abs() - half).abs() * q.x.hypot(q.y) <= band {
+                if (away.abs() - half).abs() * q.x.hypot(q.y) <= resolution {
                     within(end, false);
                 } else if away.abs() < half {
                     let t = (-away / half).acos();
@@ -140,11 +140,11 @@ fn line_roots<N: Float>(
     height: N,
     slope: N,
     [lo, hi]: [N; 2],
-    band: N,
+    resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
     let (a, b) = (height + slope * lo, height + slope * hi);
-    if a.abs() <= band && b.abs() <= band {
+    if a.abs() <= resolution && b.abs() <= resolution {
         found(N::HALF * (lo + hi), false);
     } else if a * b <= N::ZERO {
         found((-height / slope).clamp(lo, hi), true);
@@ -156,24 +156,24 @@ fn turn_roots<N: Float>(
     c: N,
     k: [N; 2],
     [lo, hi]: [N; 2],
-    band: N,
+    resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
     let size = k[0].hypot(k[1]);
     let at = k[1].atan2(k[0]);
-    if size + c.abs() <= band {
+    if size + c.abs() <= resolution {
         return found(N::HALF * (lo + hi), false);
     }
-    if c.abs() > size + band {
+    if c.abs() > size + resolution {
         return;
     }
-    let mut within = |t: N, plain: bool| {
+    let mut within = |t: N, simple: bool| {
         let t = lo + (t - lo).rem_euclid(N::TAU);
         if t <= hi {
-            found(t, plain);
+            found(t, simple);
         }
     };
-    if c.abs() >= size - band {
+    if c.abs() >= size - resolution {
         return within(
             if c > N::ZERO {
                 at + N::TAU / N::TWO
@@ -192,11 +192,11 @@ fn turn_roots<N: Float>(
 /// Where a line on one of two quadrics, by a point and its unit direction, meets the curve they
 /// share over a range: where it meets the other one, a cylinder. Reports each parameter, and that
 /// the curve is crossed plainly; false where no more can be said in closed form.
-pub fn line_meets<N: Float>(
+pub fn line_intersections<N: Float>(
     curve: &Curve<N>,
     [lo, hi]: [N; 2],
     (start, direction): (&Point3<N>, &Vector3<N>),
-    band: N,
+    resolution: N,
     found: &mut impl FnMut(N, bool),
 ) -> bool {
     let Curve::Quartic(quartic) = curve else {
@@ -215,7 +215,7 @@ pub fn line_meets<N: Float>(
     let c = (rho - s.radius) * (rho + s.radius);
     let radicand = b * b - a * c;
     // Next to a touch the roots are not told from each other.
-    if radicand.abs() <= N::from_f64(16.0) * s.radius * band * a {
+    if radicand.abs() <= N::from_f64(16.0) * s.radius * resolution * a {
         return false;
     }
     if radicand < N::ZERO {
@@ -226,7 +226,7 @@ pub fn line_meets<N: Float>(
         let p = start + direction * at;
         let t = curve.in_cycle(curve.parameter(&p), lo);
         // Else on another branch.
-        if t >= lo && t <= hi && (curve.point(t) - p).length() <= N::from_f64(64.0) * band {
+        if t >= lo && t <= hi && (curve.point(t) - p).length() <= N::from_f64(64.0) * resolution {
             found(t, true);
         }
     }

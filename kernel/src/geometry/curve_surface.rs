@@ -20,17 +20,17 @@ struct Height<'a, N: Float = f64> {
     /// The same of a line or circle, where coordinates may cancel by more than halving makes up for.
     restriction: Option<ImplicitOnCurve<N>>,
     /// The same in doubles, of one of more digits.
-    doubles: Option<Box<Height<'static>>>,
+    rounded_f64: Option<Box<Height<'static>>>,
 }
 
 impl<'a, N: Float> Height<'a, N> {
     fn new(curve: &'a Curve<N>, surface: &'a Surface<N>) -> Self {
-        let doubles = || Height::over(curve.in_doubles(), surface.in_doubles());
+        let rounded_f64 = || Height::over(curve.to_f64(), surface.to_f64());
         Self {
             curve: Cow::Borrowed(curve),
             surface: Cow::Borrowed(surface),
             restriction: ImplicitOnCurve::new(curve, surface),
-            doubles: (!N::IS_DOUBLE).then(|| Box::new(doubles())),
+            rounded_f64: (!N::IS_DOUBLE).then(|| Box::new(rounded_f64())),
         }
     }
 }
@@ -41,7 +41,7 @@ impl Height<'static> {
             restriction: ImplicitOnCurve::new(&curve, &surface),
             curve: Cow::Owned(curve),
             surface: Cow::Owned(surface),
-            doubles: None,
+            rounded_f64: None,
         }
     }
 }
@@ -56,7 +56,7 @@ impl<N: Float> Function<N> for Height<'_, N> {
             Some(p) => {
                 let level = self.surface.level(p);
                 match &self.restriction {
-                    Some(own) => level.meet(own.level(t, &self.surface, p)),
+                    Some(own) => level.intersection(own.level(t, &self.surface, p)),
                     None => level,
                 }
             }
@@ -65,10 +65,15 @@ impl<N: Float> Function<N> for Height<'_, N> {
     }
 
     fn roughly(&self, piece: [N; 2]) -> Option<F64Filter<'_>> {
-        let doubles = self.doubles.as_deref()?;
+        let rounded_f64 = self.rounded_f64.as_deref()?;
         let away = |p: &Point3<N>| p.coords.length().rounded();
         let size = away(&self.surface.frame().origin) + away(&self.curve.point(piece[0]));
-        Some(F64Filter::new(self, doubles, piece, f64::ROUNDING * size))
+        Some(F64Filter::new(
+            self,
+            rounded_f64,
+            piece,
+            f64::ROUNDING * size,
+        ))
     }
 
     fn at(&self, t: N) -> Jet<N> {
@@ -81,29 +86,39 @@ impl<N: Float> Function<N> for Height<'_, N> {
 }
 
 /// Where the curve, over `range` of its parameter, meets the surface: isolated parameters with
-/// their contact, or everywhere where it lies on the surface. `band` is the resolution.
-pub fn cut<N: Float>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, band: N) -> Roots<N> {
-    if lies_on(curve, range, surface, band) {
+/// their contact, or everywhere where it lies on the surface. `resolution` is the resolution.
+pub fn cut<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surface: &Surface<N>,
+    resolution: N,
+) -> Roots<N> {
+    if lies_on(curve, range, surface, resolution) {
         return Roots::Everywhere;
     }
     let breaks = curve.breaks(range[0], range[1]);
-    match isolate(&Height::new(curve, surface), &breaks, band) {
+    match isolate(&Height::new(curve, surface), &breaks, resolution) {
         Roots::Everywhere => touching(range),
         zeros => zeros,
     }
 }
 
 /// Roots, and what is apart from zero by little: (parameter, value).
-pub type Met<N = f64> = (Vec<Root<N>>, Vec<(N, N)>);
+pub type CurveSurfaceRoots<N = f64> = (Vec<Root<N>>, Vec<(N, N)>);
 
 /// The same over a part of a curve that does not lie on the surface, however short: the roots, and
 /// all misses that are close calls.
-pub fn roots<N: Float>(curve: &Curve<N>, range: [N; 2], surface: &Surface<N>, band: N) -> Met<N> {
-    if let Some(known) = rounded_roots(curve, range, surface, band) {
+pub fn roots<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surface: &Surface<N>,
+    resolution: N,
+) -> CurveSurfaceRoots<N> {
+    if let Some(known) = rounded_roots(curve, range, surface, resolution) {
         return known;
     }
     let breaks = curve.breaks(range[0], range[1]);
-    let zeros = match isolate_closely(&Height::new(curve, surface), &breaks, band) {
+    let zeros = match isolate_closely(&Height::new(curve, surface), &breaks, resolution) {
         Roots::Everywhere => touching(range),
         zeros => zeros,
     };
@@ -119,25 +134,25 @@ fn rounded_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     surface: &Surface<N>,
-    band: N,
-) -> Option<Met<N>> {
+    resolution: N,
+) -> Option<CurveSurfaceRoots<N>> {
     if N::IS_DOUBLE {
         return None;
     }
-    let rounded = curve.in_doubles();
+    let rounded = curve.to_f64();
     let follows = |part: N| {
         let t = range[0] + (range[1] - range[0]) * part;
         let p = curve.point(t);
         let away = (rounded.point(t.rounded()).map(N::from_f64) - p).length();
         let rounding = N::from_f64(f64::ROUNDING) * p.coords.length();
-        (away + rounding) * N::from_f64(FOLLOWING) <= band
+        (away + rounding) * N::from_f64(FOLLOWING) <= resolution
     };
     if !probes().step_by(4).all(follows) {
         return None;
     }
     let height = Height::new(curve, surface);
     let ends = range.map(N::rounded);
-    let (found, misses) = roots(&rounded, ends, &surface.in_doubles(), band.rounded());
+    let (found, misses) = roots(&rounded, ends, &surface.to_f64(), resolution.rounded());
     let settled = |t: f64| {
         let mut t = N::from_f64(t);
         for _ in 0..STEPS {
@@ -200,7 +215,7 @@ pub fn lies_on<N: Float>(
     curve: &Curve<N>,
     [lo, hi]: [N; 2],
     surface: &Surface<N>,
-    band: N,
+    resolution: N,
 ) -> bool {
-    probes().all(|part| surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= band)
+    probes().all(|part| surface.distance(&curve.point(lo + (hi - lo) * part)).abs() <= resolution)
 }

@@ -10,7 +10,7 @@ use crate::number::float::Float;
 
 impl<N: Float> Frame<N> {
     /// The same in doubles.
-    pub fn in_doubles(&self) -> Frame {
+    pub fn to_f64(&self) -> Frame {
         Frame {
             origin: self.origin.map(N::rounded),
             x: self.x.map(N::rounded),
@@ -21,18 +21,18 @@ impl<N: Float> Frame<N> {
 }
 
 impl<N: Float> Cylinder<N> {
-    fn in_doubles(&self) -> Cylinder {
+    fn to_f64(&self) -> Cylinder {
         Cylinder {
-            frame: self.frame.in_doubles(),
+            frame: self.frame.to_f64(),
             radius: self.radius.rounded(),
         }
     }
 }
 
 impl<N: Float> Cone<N> {
-    fn in_doubles(&self) -> Cone {
+    fn to_f64(&self) -> Cone {
         Cone {
-            frame: self.frame.in_doubles(),
+            frame: self.frame.to_f64(),
             sin: self.sin.rounded(),
             cos: self.cos.rounded(),
         }
@@ -40,9 +40,9 @@ impl<N: Float> Cone<N> {
 }
 
 impl<N: Float> Torus<N> {
-    fn in_doubles(&self) -> Torus {
+    fn to_f64(&self) -> Torus {
         Torus {
-            frame: self.frame.in_doubles(),
+            frame: self.frame.to_f64(),
             major: self.major.rounded(),
             minor: self.minor.rounded(),
         }
@@ -51,64 +51,64 @@ impl<N: Float> Torus<N> {
 
 impl<N: Float> Surface<N> {
     /// The same in doubles.
-    pub fn in_doubles(&self) -> Surface {
+    pub fn to_f64(&self) -> Surface {
         match self {
             Self::Plane(s) => Surface::Plane(Plane {
-                frame: s.frame.in_doubles(),
+                frame: s.frame.to_f64(),
             }),
-            Self::Cylinder(s) => Surface::Cylinder(s.in_doubles()),
-            Self::Cone(s) => Surface::Cone(s.in_doubles()),
+            Self::Cylinder(s) => Surface::Cylinder(s.to_f64()),
+            Self::Cone(s) => Surface::Cone(s.to_f64()),
             Self::Sphere(s) => Surface::Sphere(Sphere {
-                frame: s.frame.in_doubles(),
+                frame: s.frame.to_f64(),
                 radius: s.radius.rounded(),
             }),
-            Self::Torus(s) => Surface::Torus(s.in_doubles()),
+            Self::Torus(s) => Surface::Torus(s.to_f64()),
         }
     }
 }
 
 impl<N: Float> BivariateTrigPoly<N> {
-    pub(super) fn in_doubles(&self) -> BivariateTrigPoly {
+    pub(super) fn to_f64(&self) -> BivariateTrigPoly {
         BivariateTrigPoly(self.0.map(|row| row.map(N::rounded)))
     }
 }
 
 impl<N: Float> Curve<N> {
     /// The same in doubles.
-    pub fn in_doubles(&self) -> Curve {
+    pub fn to_f64(&self) -> Curve {
         match self {
             Self::Line(c) => Curve::Line(Line {
                 origin: c.origin.map(N::rounded),
                 direction: c.direction.map(N::rounded),
             }),
             Self::Circle(c) => Curve::Circle(Circle {
-                frame: c.frame.in_doubles(),
+                frame: c.frame.to_f64(),
                 radius: c.radius.rounded(),
             }),
             Self::Ellipse(c) => Curve::Ellipse(Ellipse {
-                frame: c.frame.in_doubles(),
+                frame: c.frame.to_f64(),
                 a: c.a.rounded(),
                 b: c.b.rounded(),
             }),
             Self::Hyperbola(c) => Curve::Hyperbola(Hyperbola {
-                frame: c.frame.in_doubles(),
+                frame: c.frame.to_f64(),
                 a: c.a.rounded(),
                 b: c.b.rounded(),
             }),
             Self::Conic(c) => Curve::Conic(Conic {
-                frame: c.frame.in_doubles(),
+                frame: c.frame.to_f64(),
                 curvature: c.curvature.rounded(),
                 shear: c.shear.rounded(),
                 flatness: c.flatness.rounded(),
             }),
-            Self::Quartic(c) => Curve::Quartic(Box::new(c.in_doubles())),
-            Self::Toric(c) => Curve::Toric(Box::new(c.in_doubles())),
+            Self::Quartic(c) => Curve::Quartic(Box::new(c.to_f64())),
+            Self::Toric(c) => Curve::Toric(Box::new(c.to_f64())),
         }
     }
 }
 
 impl<N: Float> Along<N> {
-    fn in_doubles(&self) -> Along {
+    fn to_f64(&self) -> Along {
         Along {
             lead: self.lead.rounded(),
             linear: self.linear.map(N::rounded),
@@ -118,10 +118,10 @@ impl<N: Float> Along<N> {
 }
 
 impl<N: Float> QuadricCurve<N> {
-    fn in_doubles(&self) -> QuadricCurve {
+    fn to_f64(&self) -> QuadricCurve {
         let base = match &self.base {
-            Ruled::Cylinder(s) => Ruled::Cylinder(s.in_doubles()),
-            Ruled::Cone(s) => Ruled::Cone(s.in_doubles()),
+            Ruled::Cylinder(s) => Ruled::Cylinder(s.to_f64()),
+            Ruled::Cone(s) => Ruled::Cone(s.to_f64()),
         };
         let sweep = match self.sweep {
             Sweep::Round { turns } => Sweep::Round { turns },
@@ -133,20 +133,20 @@ impl<N: Float> QuadricCurve<N> {
         QuadricCurve {
             base,
             sweep,
-            height: self.height.in_doubles(),
+            height: self.height.to_f64(),
         }
     }
 }
 
 impl<N: Float> Height<N> {
-    fn in_doubles(&self) -> Height {
+    fn to_f64(&self) -> Height {
         match self {
             Self::Whole {
                 along,
                 radicand,
                 sign,
             } => Height::Whole {
-                along: along.in_doubles(),
+                along: along.to_f64(),
                 radicand: radicand.map(N::rounded),
                 sign: sign.rounded(),
             },
@@ -156,7 +156,7 @@ impl<N: Float> Height<N> {
                 node,
                 sign,
             } => Height::Deflated {
-                along: along.in_doubles(),
+                along: along.to_f64(),
                 rest: rest.map(N::rounded),
                 node: node.map(N::rounded),
                 sign: sign.rounded(),
@@ -174,15 +174,15 @@ impl<N: Float> Height<N> {
 }
 
 impl<N: Float> TorusCurve<N> {
-    fn in_doubles(&self) -> TorusCurve {
+    fn to_f64(&self) -> TorusCurve {
         TorusCurve {
-            torus: self.torus.in_doubles(),
-            form: self.form.in_doubles(),
-            charts: self.charts.iter().map(|c| c.in_doubles()).collect(),
+            torus: self.torus.to_f64(),
+            form: self.form.to_f64(),
+            charts: self.charts.iter().map(|c| c.to_f64()).collect(),
             segments: self
                 .segments
                 .iter()
-                .map(TorusCurveSegment::in_doubles)
+                .map(TorusCurveSegment::to_f64)
                 .collect(),
             closed: self.closed,
         }
@@ -190,7 +190,7 @@ impl<N: Float> TorusCurve<N> {
 }
 
 impl<N: Float> TorusCurveSegment<N> {
-    fn in_doubles(&self) -> TorusCurveSegment {
+    fn to_f64(&self) -> TorusCurveSegment {
         TorusCurveSegment {
             axis: self.axis,
             from: self.from.rounded(),

@@ -12,6 +12,7 @@ mod implicit_on_curve;
 pub mod intersect;
 pub mod json;
 pub mod quadric_curve;
+pub mod sense;
 mod singular;
 pub mod surface;
 pub mod surface_pair;

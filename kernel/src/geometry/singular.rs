@@ -7,7 +7,7 @@ mod leading_form;
 
 use super::bivariate_trig_poly::Partials;
 use super::blow_up::Chart;
-use super::trace::grid::{Cell, plain_grid};
+use super::trace::grid::{Cell, regular_grid};
 use super::trace::{Tracer, Unresolved, deepest, near};
 use crate::number::float::Float;
 use crate::number::predicates::CLOSE;
@@ -48,18 +48,18 @@ const DEEP: u32 = 10;
 
 /// The critical points of F at which F is within the band, or so near to it that it is to be told.
 pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critical<N>, Unresolved> {
-    let reach = N::from_f64(CLOSE) * tracer.band;
+    let reach = N::from_f64(CLOSE) * tracer.resolution;
     let mut misses: Vec<[N; 2]> = Vec::new();
     let mut found: Vec<SingularPoint<N>> = Vec::new();
     // Degenerate points, with how far from them F is within the band.
     let mut degenerate: Vec<(SingularPoint<N>, N)> = Vec::new();
-    let mut stack: Vec<(Cell<N>, u32)> = plain_grid().into_iter().map(|c| (c, 0)).collect();
-    let doubles = tracer.in_doubles();
+    let mut stack: Vec<(Cell<N>, u32)> = regular_grid().into_iter().map(|c| (c, 0)).collect();
+    let rounded_f64 = tracer.to_f64();
     while let Some((cell, depth)) = stack.pop() {
         tracer.look_at(&cell)?;
-        let rough = doubles
+        let rough = rounded_f64
             .as_ref()
-            .map(|f| Look::at(f, &cell.in_doubles(), reach.above()));
+            .map(|f| Look::at(f, &cell.to_f64(), reach.above()));
         let look = match rough {
             Some(look) if cell.is_coarse() || !matches!(look, Look::Unclear { .. }) => {
                 look.of_more()
@@ -84,13 +84,13 @@ pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critic
                 near(&q.angles, &point, N::from_f64(1e3) * tracer.slop.sqrt())
             };
             let value = tracer.form.value(point[0], point[1]).abs();
-            if value > tracer.band {
+            if value > tracer.resolution {
                 if value < reach {
                     misses.push(point);
                 }
             } else if !found.iter().any(same) {
-                let plain = leading_form::plain(tracer, point);
-                found.push(plain.ok_or(Unresolved::at(point))?);
+                let simple = leading_form::simple(tracer, point);
+                found.push(simple.ok_or(Unresolved::at(point))?);
             }
             continue;
         };

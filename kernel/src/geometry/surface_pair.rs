@@ -102,7 +102,7 @@ impl<'a, N: Float> Carrier<'a, N> {
     }
 
     /// The exact coefficients, to be reckoned with to so many bits.
-    pub fn reckoned(&self, bits: usize) -> Coefficients<RationalInterval> {
+    pub fn computed(&self, bits: usize) -> Coefficients<RationalInterval> {
         self.exact()
             .map(|c| RationalInterval::exact(c.clone(), bits))
     }
@@ -536,11 +536,11 @@ impl<N: Float> How<'_, N> {
 impl<N: Float> CertifiedDistance for How<'_, N> {
     fn range(&self) -> Interval {
         let [a, b] = [&self.pair.a, &self.pair.b].map(Carrier::ranges);
-        self.over(a, b, Interval::point).in_doubles()
+        self.over(a, b, Interval::point).to_f64()
     }
 
     fn refined(&self, bits: usize) -> Option<RationalInterval> {
-        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.reckoned(bits));
+        let [a, b] = [&self.pair.a, &self.pair.b].map(|c| c.computed(bits));
         let exact = |x: N| RationalInterval::exact(x.exact().unwrap_or_default(), bits);
         Some(self.over(a, b, exact))
     }

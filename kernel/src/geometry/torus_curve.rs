@@ -280,8 +280,8 @@ impl<N: Float> TorusCurveSegment<N> {
         if p.y.has_zero() {
             return [y, prior, Interval::ENTIRE];
         }
-        let d = (-p.x.over(p.y)).meet(prior);
-        y = y.meet(slop + d * run);
+        let d = (-p.x.over(p.y)).intersection(prior);
+        y = y.intersection(slop + d * run);
         let dd = -(p.xx + (p.xy * d).times(2.0) + p.yy * d.square()).over(p.y);
         [y, d, dd]
     }

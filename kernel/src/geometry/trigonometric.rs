@@ -61,7 +61,7 @@ pub(super) struct Trigonometric<N: Float = f64> {
     /// No value of the fourth derivative is greater.
     most: N,
     /// The same in doubles, of one of more digits.
-    doubles: Option<Box<Trigonometric>>,
+    rounded_f64: Option<Box<Trigonometric>>,
 }
 
 impl<N: Float> Trigonometric<N> {
@@ -70,11 +70,11 @@ impl<N: Float> Trigonometric<N> {
         let bend = harmonic_slope(&slope);
         let derivatives = [*k, slope, bend, harmonic_slope(&bend)];
         let fourth = harmonic_slope(&derivatives[3]);
-        let doubles = || Trigonometric::new(&k.map(N::rounded));
+        let rounded_f64 = || Trigonometric::new(&k.map(N::rounded));
         Self {
             derivatives,
             most: fourth.iter().map(|c| c.abs()).sum(),
-            doubles: (!N::IS_DOUBLE).then(|| Box::new(doubles())),
+            rounded_f64: (!N::IS_DOUBLE).then(|| Box::new(rounded_f64())),
         }
     }
 
@@ -102,7 +102,7 @@ impl<N: Float> Function<N> for Trigonometric<N> {
         let square = run.square();
         // A little more than its due.
         let rest = square.scale(self.most);
-        let six = Interval::plain(6.0);
+        let six = Interval::constant_f64(6.0);
         Jet {
             v: v + d * run
                 + (dd * square).times(0.5)
@@ -114,9 +114,14 @@ impl<N: Float> Function<N> for Trigonometric<N> {
     }
 
     fn roughly(&self, piece: [N; 2]) -> Option<F64Filter<'_>> {
-        let doubles = self.doubles.as_deref()?;
-        let size: f64 = doubles.derivatives[0].iter().map(|c| c.abs()).sum();
-        Some(F64Filter::new(self, doubles, piece, f64::ROUNDING * size))
+        let rounded_f64 = self.rounded_f64.as_deref()?;
+        let size: f64 = rounded_f64.derivatives[0].iter().map(|c| c.abs()).sum();
+        Some(F64Filter::new(
+            self,
+            rounded_f64,
+            piece,
+            f64::ROUNDING * size,
+        ))
     }
 
     fn at(&self, u: N) -> Jet<N> {
@@ -142,25 +147,25 @@ pub(super) fn zeros_of<N: Float>(k: &Trig2<N>) -> Vec<(N, bool)> {
     zeros.into_iter().map(|(u, c)| (u, changes(c))).collect()
 }
 
-/// The same where all are simple, of a polynomial that is off by `band`, each with how far it is off
+/// The same where all are simple, of a polynomial that is off by `resolution`, each with how far it is off
 /// itself; else none.
-pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, band: N) -> Option<Vec<(N, N)>> {
+pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, N)>> {
     let slope = harmonic_slope(k);
-    let off = |u: N| band / harmonic(&slope, u.sin_cos()).abs();
-    let zeros = zeros_once(k, band)?.into_iter();
+    let off = |u: N| resolution / harmonic(&slope, u.sin_cos()).abs();
+    let zeros = zeros_once(k, resolution)?.into_iter();
     zeros
         .map(|(u, contact)| (contact == RootKind::Simple).then(|| (u, off(u))))
         .collect()
 }
 
 /// The zeros over one turn; none of what vanishes everywhere.
-fn zeros_once<N: Float>(k: &Trig2<N>, band: N) -> Option<Vec<(N, RootKind)>> {
+fn zeros_once<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, RootKind)>> {
     // Started off the axes, where symmetric polynomials have their zeros.
     let start = N::from_f64(0.1);
     let breaks: Vec<N> = (0..=8)
         .map(|i| start + N::TAU * N::whole(i) / N::from_f64(8.0))
         .collect();
-    let Roots::At { roots, .. } = isolate(&Trigonometric::new(k), &breaks, band) else {
+    let Roots::At { roots, .. } = isolate(&Trigonometric::new(k), &breaks, resolution) else {
         return None;
     };
     let mut zeros: Vec<(N, RootKind)> = roots

@@ -22,7 +22,7 @@ pub trait Analytic:
         self.scale(Self::Float::from_f64(k))
     }
     /// A double.
-    fn plain(x: f64) -> Self {
+    fn constant_f64(x: f64) -> Self {
         Self::constant(Self::Float::from_f64(x))
     }
     /// The square, tighter than a product on intervals.
@@ -52,7 +52,7 @@ pub trait Analytic:
 
 /// A trigonometric polynomial of degree two: k0 + k1 cos + k2 sin + k3 cos 2u + k4 sin 2u.
 pub fn harmonic<S: Analytic>(k: &[S::Float; 5], (sin, cos): (S, S)) -> S {
-    let cos2 = cos.square().times(2.0) - S::plain(1.0);
+    let cos2 = cos.square().times(2.0) - S::constant_f64(1.0);
     let sin2 = (sin * cos).times(2.0);
     S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])
 }

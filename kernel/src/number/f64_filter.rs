@@ -8,7 +8,7 @@ use super::roots::{Function, probes};
 
 /// A function in doubles that follows one of more digits over a piece of its parameter.
 pub struct F64Filter<'a> {
-    doubles: &'a dyn Function,
+    rounded_f64: &'a dyn Function,
     /// How far its value may be off.
     off: f64,
 }
@@ -24,18 +24,18 @@ impl<'a> F64Filter<'a> {
     /// takes it off.
     pub fn new<N: Float>(
         whole: &dyn Function<N>,
-        doubles: &'a dyn Function,
+        rounded_f64: &'a dyn Function,
         [a, b]: [N; 2],
         least: f64,
     ) -> Self {
         let off = |part: N| {
             let t = a + (b - a) * part;
-            (whole.value(t).rounded() - doubles.value(t.rounded())).abs()
+            (whole.value(t).rounded() - rounded_f64.value(t.rounded())).abs()
         };
         // A value that is not a number is taken for the greatest, so that nothing is clear.
         let most = probes().take(PLACES).map(off).max_by(f64::total_cmp);
         Self {
-            doubles,
+            rounded_f64,
             off: FARTHER * (most.unwrap_or(f64::INFINITY) + least),
         }
     }
@@ -45,10 +45,10 @@ impl<'a> F64Filter<'a> {
         let far = self.off + reach.rounded();
         let clear = |v: Interval| v.lo > far || v.hi < -far;
         let t = t.enclosed();
-        if clear(self.doubles.reach(t)) {
+        if clear(self.rounded_f64.reach(t)) {
             return true;
         }
-        let Jet { v, d, dd } = self.doubles.over(t);
+        let Jet { v, d, dd } = self.rounded_f64.over(t);
         if clear(v) {
             return true;
         }
@@ -57,8 +57,11 @@ impl<'a> F64Filter<'a> {
         }
         let middle = t.mid();
         let run = t - Interval::point(middle);
-        let at = self.doubles.over(Interval::point(middle));
+        let at = self.rounded_f64.over(Interval::point(middle));
         let bent = (dd * run.square()).times(0.5);
-        clear(v.meet(at.v + d * run).meet(at.v + at.d * run + bent))
+        clear(
+            v.intersection(at.v + d * run)
+                .intersection(at.v + at.d * run + bent),
+        )
     }
 }

@@ -94,7 +94,7 @@ impl<N: Float> Interval<N> {
     }
 
     /// What both intervals hold; they are known to share the exact value.
-    pub fn meet(self, other: Self) -> Self {
+    pub fn intersection(self, other: Self) -> Self {
         let lo = self.lo.max(other.lo);
         let hi = self.hi.min(other.hi);
         if lo <= hi { Self { lo, hi } } else { self }
@@ -109,7 +109,7 @@ impl<N: Float> Interval<N> {
     }
 
     /// Whether the two share a point.
-    pub fn meets(self, other: Self) -> bool {
+    pub fn intersects(self, other: Self) -> bool {
         self.lo <= other.hi && other.lo <= self.hi
     }
 
@@ -131,7 +131,7 @@ impl<N: Float> Interval<N> {
     }
 
     /// The same between doubles.
-    pub fn in_doubles(self) -> Interval {
+    pub fn to_f64(self) -> Interval {
         Interval {
             lo: self.lo.below(),
             hi: self.hi.above(),
@@ -373,7 +373,7 @@ impl<N: Float> Analytic for Interval<N> {
         // Its mean value form.
         let middle = Self::point(self.mid());
         let slope = harmonic(&harmonic_slope(k), at);
-        plain.meet(harmonic(k, middle.sin_cos()) + slope * (self - middle))
+        plain.intersection(harmonic(k, middle.sin_cos()) + slope * (self - middle))
     }
     fn is_like(self, o: Self) -> bool {
         (self * o).lo > N::ZERO

@@ -21,8 +21,8 @@ impl<S: Analytic> Jet<S> {
     pub fn variable(t: S) -> Self {
         Self {
             v: t,
-            d: S::plain(1.0),
-            dd: S::plain(0.0),
+            d: S::constant_f64(1.0),
+            dd: S::constant_f64(0.0),
         }
     }
 
@@ -103,8 +103,8 @@ impl<S: JetScalar> Analytic for Jet<S> {
     fn constant(x: S::Float) -> Self {
         Self {
             v: S::constant(x),
-            d: S::plain(0.0),
-            dd: S::plain(0.0),
+            d: S::constant_f64(0.0),
+            dd: S::constant_f64(0.0),
         }
     }
     fn scale(self, k: S::Float) -> Self {
@@ -129,7 +129,7 @@ impl<S: JetScalar> Analytic for Jet<S> {
     }
     fn root(self) -> Self {
         let root = self.v.root();
-        let dh = S::plain(0.5).over(root);
+        let dh = S::constant_f64(0.5).over(root);
         let ddh = -dh.over(self.v).times(0.5);
         self.chain(root, dh, ddh)
     }

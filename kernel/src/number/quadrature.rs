@@ -162,7 +162,7 @@ const PLACES: usize = 5;
 impl<N: Float, const D: usize> Part<N, D> {
     /// A part, whose integral by one rule may be known.
     fn new(range: [N; 2], whole: Option<[N; D]>, floor: &[N; D], f: &impl Integrand<N, D>) -> Self {
-        let told = Self::in_doubles(range, floor, f).or_else(|| Self::in_short(range, floor, f));
+        let told = Self::to_f64(range, floor, f).or_else(|| Self::in_short(range, floor, f));
         if let Some(part) = told {
             return part;
         }
@@ -194,7 +194,7 @@ impl<N: Float, const D: usize> Part<N, D> {
     }
 
     /// The same by doubles, where these are the function's values as far as matters.
-    fn in_doubles(range: [N; 2], floor: &[N; D], f: &impl Integrand<N, D>) -> Option<Self> {
+    fn to_f64(range: [N; 2], floor: &[N; D], f: &impl Integrand<N, D>) -> Option<Self> {
         let ends = range.map(N::rounded);
         f.roughly(ends[0])?;
         let over = |[a, b]: [f64; 2]| {

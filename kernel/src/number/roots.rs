@@ -149,7 +149,7 @@ const FINE: f64 = 1.0 / 256.0;
 
 struct Search<'a, F, N: Float> {
     f: &'a F,
-    band: N,
+    resolution: N,
     /// What is no further from zero than this is told.
     reach: N,
     floor: N,
@@ -157,19 +157,19 @@ struct Search<'a, F, N: Float> {
     profile: MonotoneSamples<N>,
 }
 
-/// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `band` is the
+/// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `resolution` is the
 /// resolution. A closed curve passes its whole period and is wrapped by the caller. No misses are
 /// sought.
-pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Roots<N> {
-    search(f, breaks, band, band)
+pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> Roots<N> {
+    search(f, breaks, resolution, resolution)
 }
 
 /// The same, and all misses that are close calls.
-pub fn isolate_closely<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N) -> Roots<N> {
-    search(f, breaks, band, N::from_f64(CLOSE) * band)
+pub fn isolate_closely<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> Roots<N> {
+    search(f, breaks, resolution, N::from_f64(CLOSE) * resolution)
 }
 
-fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> Roots<N> {
+fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N, reach: N) -> Roots<N> {
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
         return Roots::At {
             roots: Vec::new(),
@@ -180,7 +180,7 @@ fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], band: N, reach: N) -> R
         (last - first).abs().max(first.abs()).max(last.abs()) * N::EPSILON * N::from_f64(64.0);
     let mut search = Search {
         f,
-        band,
+        resolution,
         reach,
         floor,
         clusters: Vec::new(),
@@ -219,15 +219,15 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         }
         let middle = x.mid();
         let run = x - Interval::point(middle);
-        let v = v.meet(self.value_over(middle) + d * run);
+        let v = v.intersection(self.value_over(middle) + d * run);
         Some(v).filter(unclear)?;
         if !(small && dd.has_zero() && dd.width().is_finite()) {
             return Some(Jet { v, d, dd });
         }
         let at = self.f.over(Interval::point(middle));
         let bent = (dd * run.square()).times(0.5);
-        let v = v.meet(at.v + at.d * run + bent);
-        let d = d.meet(at.d + dd * run);
+        let v = v.intersection(at.v + at.d * run + bent);
+        let d = d.intersection(at.d + dd * run);
         Some(Jet { v, d, dd }).filter(|jet| unclear(&jet.v))
     }
 
@@ -283,7 +283,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     /// The same of a function that is a polynomial there within a small part of the band; false where
     /// it is none.
     fn interpolated(&mut self, a: N, b: N) -> bool {
-        let Some(polynomial) = ChebyshevModel::new(self.f, [a, b], N::from_f64(FINE) * self.band)
+        let Some(polynomial) =
+            ChebyshevModel::new(self.f, [a, b], N::from_f64(FINE) * self.resolution)
         else {
             return false;
         };
@@ -308,11 +309,11 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
             return true;
         };
         let v = jet.v;
-        let misses = v.lo > self.band || v.hi < -self.band;
+        let misses = v.lo > self.resolution || v.hi < -self.resolution;
         // Beyond the reach, too: what is level at its edge would be halved without end.
         if misses && (v.magnitude() <= N::TWO * self.reach || b - a <= self.floor) {
             self.beside(a, b);
-        } else if v.magnitude() <= N::from_f64(FRINGE) * self.band {
+        } else if v.magnitude() <= N::from_f64(FRINGE) * self.resolution {
             let level = !jet.d.has_zero();
             let kind = if level { Kind::Level } else { Kind::Loose };
             self.cluster(a, b, m, kind, Some(N::ZERO));
@@ -336,7 +337,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     /// Whether the function is within the band throughout, by its values at enough places. Halving
     /// finds it, too, but one that is zero is halved down to the root of the band.
     fn vanishes(&self, a: N, b: N) -> bool {
-        probes().all(|part| self.value(a + (b - a) * part).abs() <= self.band)
+        probes().all(|part| self.value(a + (b - a) * part).abs() <= self.resolution)
     }
 
     /// Whether no value of a range is a root, or so near to one that it is to be told.
@@ -346,7 +347,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
 
     /// -1, 0 (within the band) or 1.
     fn sign(&self, value: N) -> i8 {
-        if value.abs() <= self.band {
+        if value.abs() <= self.resolution {
             0
         } else if value < N::ZERO {
             -1
@@ -416,7 +417,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     /// How far from an extremum or an end within the band towards `end` the function stays within it.
     fn limit(&self, extremum: N, end: N) -> N {
         let sign = self.value(end).signum();
-        let beyond = |t: N| sign * self.value(t) - self.band;
+        let beyond = |t: N| sign * self.value(t) - self.resolution;
         if beyond(end) <= N::ZERO {
             return end;
         }
@@ -436,7 +437,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     /// band between them.
     fn is_one(&self, before: &Cluster<N>, after: &Cluster<N>) -> bool {
         before.hi >= after.lo
-            || self.value(N::HALF * (before.hi + after.lo)).abs() <= N::from_f64(FRINGE) * self.band
+            || self.value(N::HALF * (before.hi + after.lo)).abs()
+                <= N::from_f64(FRINGE) * self.resolution
     }
 
     fn finish(self, first: N, last: N) -> Roots<N> {
@@ -479,7 +481,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         });
         let roots = roots.collect();
         let mut misses = self.profile.turns(|t| self.value(t));
-        misses.retain(|m| m.1.abs() > self.band && m.1.abs() < self.reach);
+        misses.retain(|m| m.1.abs() > self.resolution && m.1.abs() < self.reach);
         Roots::At { roots, misses }
     }
 

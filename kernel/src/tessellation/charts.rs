@@ -47,7 +47,7 @@ impl Chart {
         face: FaceId,
         lines: &Polylines,
         accuracy: &Accuracy,
-        band: f64,
+        resolution: f64,
     ) -> Self {
         match *brep.surface(face) {
             Surface::Plane(s) => Self::Plane(s.frame),
@@ -60,7 +60,7 @@ impl Chart {
             }
             Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
             Surface::Sphere(s) => {
-                let (z, cap) = Around::new(brep, face, &s, lines).centre(accuracy, band);
+                let (z, cap) = Around::new(brep, face, &s, lines).centre(accuracy, resolution);
                 Self::Sphere(Frame::about(s.frame.origin, z), s.radius, cap)
             }
             Surface::Torus(s) => {
@@ -176,8 +176,8 @@ impl<'a> Around<'a> {
 
     /// The centre of the projection: a direction out of the face if there is one; else one in it,
     /// and how wide a cap about it is clear of the edges and flat within the accuracy.
-    fn centre(&self, accuracy: &Accuracy, band: f64) -> (Vector3<f64>, Option<f64>) {
-        let outside = self.outside(band);
+    fn centre(&self, accuracy: &Accuracy, resolution: f64) -> (Vector3<f64>, Option<f64>) {
+        let outside = self.outside(resolution);
         if let Some(z) = outside {
             return (z, None);
         }
@@ -190,12 +190,12 @@ impl<'a> Around<'a> {
 
     /// The direction of a point of the sphere that is outside the face, well away from it if there
     /// is such a one.
-    fn outside(&self, band: f64) -> Option<Vector3<f64>> {
+    fn outside(&self, resolution: f64) -> Option<Vector3<f64>> {
         if self.chords.is_empty() {
             return None;
         }
         let Sphere { frame, radius } = self.sphere;
-        let locator = FaceLocator::from_face(self.brep, self.face, band);
+        let locator = FaceLocator::from_face(self.brep, self.face, resolution);
         let outside = |d: &Vector3<f64>| {
             locator.place(&(frame.origin + d * *radius)) == PointLocation::Outside
         };

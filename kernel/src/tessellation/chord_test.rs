@@ -22,7 +22,7 @@ impl ChordTest<'_> {
     /// Whether a side or a triangle with these corners is within the accuracy of the surface at the
     /// point of it that its middle in the chart stands for: the corners lie in the plane that is
     /// tangent there, and the normal turns little from there to them.
-    pub fn holds(&self, middle: &Point2<f64>, corners: &[Point3<f64>]) -> bool {
+    pub fn contains(&self, middle: &Point2<f64>, corners: &[Point3<f64>]) -> bool {
         let on = self.chart.lift(middle);
         let normal = self.surface.normal(&on);
         corners.iter().all(|p| {
@@ -36,7 +36,7 @@ impl ChordTest<'_> {
     /// surface: at its middle, or where it comes nearest to the middle of the chart.
     pub fn leaves(&self, ends: [Point2<f64>; 2], points: &[Point3<f64>; 2]) -> Option<Point2<f64>> {
         let middle = nalgebra::center(&ends[0], &ends[1]);
-        if !self.holds(&middle, points) {
+        if !self.contains(&middle, points) {
             return Some(middle);
         }
         let nearest = self.chart.nearest_to_middle(ends)?;

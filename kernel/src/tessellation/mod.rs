@@ -96,13 +96,17 @@ const LIMIT: usize = 1 << 20;
 /// How often the edges are divided further.
 const ROUNDS: usize = 40;
 
-/// The mesh of a boundary; `band` is the part's resolution.
-pub fn tessellate(brep: &Brep, accuracy: &Accuracy, band: f64) -> Result<Mesh, TessellationError> {
+/// The mesh of a boundary; `resolution` is the part's resolution.
+pub fn tessellate(
+    brep: &Brep,
+    accuracy: &Accuracy,
+    resolution: f64,
+) -> Result<Mesh, TessellationError> {
     let mut lines = Polylines::new(brep, accuracy);
     let charts: Vec<Chart> = brep
         .topology
         .face_ids()
-        .map(|face| Chart::new(brep, face, &lines, accuracy, band))
+        .map(|face| Chart::new(brep, face, &lines, accuracy, resolution))
         .collect();
     let mut domains: Vec<Option<FaceTriangulation>> = charts.iter().map(|_| None).collect();
     for round in 0.. {

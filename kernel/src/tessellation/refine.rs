@@ -277,7 +277,7 @@ fn missing(
             .iter()
             .fold(Point2::origin(), |c, k| c + k.at.coords);
         let centre = sum / 3.0;
-        if !of_triangles.holds(&centre, &corners.map(|c| point(&c))) {
+        if !of_triangles.contains(&centre, &corners.map(|c| point(&c))) {
             found.push(centre);
         }
     }

@@ -1,7 +1,7 @@
 //! How likely predicted contours are detected, alone and given others.
 
 use super::predicted_contours::PredictedContour;
-use crate::part::detectability_prior::{DetectabilityPrior, LEAST};
+use crate::part::detectability_prior::{DetectabilityPrior, MIN_RATE};
 
 /// How often an arc is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,21 +21,21 @@ impl DetectabilityPrior {
     /// How likely a piece of an arc is found.
     pub fn covered(&self, arc: &PredictedContour) -> f64 {
         let [_, broken, missed] = self.states(&arc.source)[usize::from(arc.outline)];
-        (1.0 - missed - GAPS * broken).clamp(0.5, 1.0 - LEAST)
+        (1.0 - missed - GAPS * broken).clamp(0.5, 1.0 - MIN_RATE)
     }
 
     fn alone(&self, arc: &PredictedContour) -> f64 {
         let missed = self.states(&arc.source)[usize::from(arc.outline)][2];
-        (1.0 - missed).clamp(LEAST, 1.0 - LEAST)
+        (1.0 - missed).clamp(MIN_RATE, 1.0 - MIN_RATE)
     }
 
     /// How often an arc of a view is found.
     pub fn rates(&self, arc: &PredictedContour, arcs: &[PredictedContour]) -> Rates {
         let alone = self.alone(arc);
-        let known = self.together.get(&arc.source);
+        let known = self.codetection.get(&arc.source);
         let parent = known.and_then(|(source, given)| {
             let at = arcs.iter().position(|a| a.source == *source)?;
-            Some((at, given.map(|p| p.clamp(LEAST, 1.0 - LEAST))))
+            Some((at, given.map(|p| p.clamp(MIN_RATE, 1.0 - MIN_RATE))))
         });
         Rates {
             parent: parent.map(|p| p.0),

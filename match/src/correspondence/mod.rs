@@ -27,7 +27,7 @@ const REACH: f64 = 6.0;
 /// The least cosine of the angle between an edge's normal and an arc's.
 const COSINE: f64 = 0.96;
 /// The standard deviation of how far beside an arc its segment runs, in pixels.
-pub const BESIDE: f64 = 1.5;
+pub const ADJACENT: f64 = 1.5;
 /// The standard deviation of an angle, in radians: at best, and of an end in pixels.
 const ASKEW: f64 = 1.0 / 48.0;
 const END: f64 = 1.5;
@@ -188,7 +188,7 @@ fn told(
     let piece = choice.longest.min(covered);
     let chance = clutter.chance(0.5 * (piece + covered), length, REACH, ANGLES);
     let told = -chance.ln()
-        + against(choice.offset, BESIDE, 2.0 * REACH)
+        + against(choice.offset, ADJACENT, 2.0 * REACH)
         + against(tilt(choice, arc), askew, 2.0 * ANGLES);
     told.max(-ATTRIBUTE) - PAST * f64::from(choice.ends[1])
 }

@@ -37,7 +37,7 @@ pub fn arcs(
     pose: &Isometry3<f64>,
     size: [usize; 2],
 ) -> Result<Vec<PredictedContour>, ViewError> {
-    let contours = contours(part.brep, &camera.at(pose, size), part.band)?;
+    let contours = contours(part.brep, &camera.at(pose, size), part.resolution)?;
     let by_edge: BTreeMap<u32, usize> = (0..)
         .zip(&part.strokes)
         .map(|(i, s)| (s.edge.0, i))

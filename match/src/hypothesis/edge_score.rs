@@ -140,7 +140,7 @@ fn ends(
         let bin = bin(&Vector2::new(-way.y, way.x));
         let mut on = 0;
         for step in BEYOND {
-            match picture.edges.holds(&(at + way * step), bin, Reach::Fine) {
+            match picture.edges.contains(&(at + way * step), bin, Reach::Fine) {
                 Some(holds) => on += usize::from(holds),
                 None => return 0.0,
             }
@@ -283,7 +283,7 @@ impl EdgeScore {
 
 /// How well an edge is near a mark, from nothing to one; none where the mark is not in the picture.
 fn near(picture: &ImageFeatures, seen: &SampleHit, reach: Reach) -> Option<f64> {
-    let holds = picture.edges.holds(&seen.at, bin(&seen.normal), reach)?;
+    let holds = picture.edges.contains(&seen.at, bin(&seen.normal), reach)?;
     Some(match (holds, reach) {
         (true, Reach::Fine) => nearness(picture, seen),
         (true, Reach::Coarse) => 1.0,

@@ -31,7 +31,7 @@ const KEPT: usize = 1000;
 /// So many are kept though the picture tells against them, as long as it does so by no more than this: of a
 /// part half of whose edges are as dark as what is behind them, all poses are unlikely at a first look.
 const UNLIKELY: usize = 100;
-const LEAST: f64 = -40.0;
+const MIN_RATE: f64 = -40.0;
 
 /// Poses that are proposed.
 #[derive(Clone, Debug)]
@@ -178,7 +178,7 @@ pub fn plausible(
     }
     let view = part.glimpse(&eye(&pose));
     let told = evidence(part, picture, camera, &pose, view, Reach::Coarse);
-    (told.inside() > INSIDE && told.ratio > LEAST).then_some(Hypothesis {
+    (told.inside() > INSIDE && told.ratio > MIN_RATE).then_some(Hypothesis {
         pose,
         ratio: told.ratio,
         chain,

@@ -178,7 +178,7 @@ impl Edges {
 
     /// Whether a place lies in the picture, off its border, and if so, whether an edge of a class of
     /// orientation is within reach.
-    pub fn holds(&self, at: &Point2<f64>, bin: usize, reach: Reach) -> Option<bool> {
+    pub fn contains(&self, at: &Point2<f64>, bin: usize, reach: Reach) -> Option<bool> {
         let (x, y) = ((at.x + 0.5) as usize, (at.y + 0.5) as usize);
         self.reaches(at)
             .then(|| self.near[reach as usize][y * self.width + x] >> bin & 1 == 1)

@@ -46,16 +46,16 @@ fn weighed(best: &PartMatch, report: &MatchReport) -> String {
          past a vertex",
         best.odds,
         best.rms,
-        best.astray.wholes,
-        best.astray.edges,
+        best.systematic_offset.wholes,
+        best.systematic_offset.edges,
         report.straightness,
         100.0 * best.inside(),
-        best.shape.told,
+        best.shape.determined,
         best.shape.denied,
         100.0 * best.shape.relief,
         100.0 * best.framed,
         100.0 * best.shape.carriers,
-        best.shape.untold,
+        best.shape.undetermined,
         best.past()
     );
     if !report.rivals.is_empty() {
@@ -95,7 +95,7 @@ fn told(feature: &FeatureReport) -> String {
         FeatureState::Broken => "broken",
         FeatureState::Missed => "missed",
     };
-    let beside = feature.offset.zip(feature.astray);
+    let beside = feature.offset.zip(feature.systematic_offset);
     let beside = beside.map_or(String::new(), |(offset, off)| {
         let rms = off.wholes.hypot(off.edges);
         format!(", {offset:+.2} px beside it at first, {rms:.2} at last")

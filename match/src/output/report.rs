@@ -90,7 +90,8 @@ pub struct FeatureReport {
     /// How far beside it, in pixels, its edge runs.
     pub offset: Option<f64>,
     /// How far the edge is off its contour at the pose, as root mean squares in pixels.
-    pub astray: Option<SystematicOffset>,
+    #[serde(rename = "astray")]
+    pub systematic_offset: Option<SystematicOffset>,
     /// The ends of the segments that it is.
     pub segments: Vec<[[f64; 2]; 2]>,
     /// What it adds to the score, and what of that tells against the part.
@@ -179,7 +180,8 @@ pub struct MatchReport {
     pub shape: Option<ShapeEvidence>,
     /// How far features are off as wholes, and their edges beside that: of another thing that is like the
     /// part the former is more.
-    pub astray: Option<SystematicOffset>,
+    #[serde(rename = "astray")]
+    pub systematic_offset: Option<SystematicOffset>,
     /// How much of what is found runs along the picture's rows and columns, from nothing to one: all of
     /// it, some along either, as of what is drawn or framed.
     pub framed: Option<f64>,
@@ -249,7 +251,7 @@ impl MatchReport {
             ratio: best.map(|m| m.ratio),
             odds: best.map(|m| m.odds),
             shape: best.map(|m| m.shape),
-            astray: best.map(|m| m.astray),
+            systematic_offset: best.map(|m| m.systematic_offset),
             framed: best.map(|m| m.framed),
             score: best.map(|m| m.score),
             fitted: best.map(|m| m.fitted),
@@ -343,7 +345,7 @@ fn features(found: &PartMatch, picture: &ImageFeatures, scale: u32) -> Vec<Featu
             },
             share,
             offset: is.map(|f| f.offset),
-            astray: is.map(|f| f.astray),
+            systematic_offset: is.map(|f| f.systematic_offset),
             ends: is.map(|f| f.ends),
             segments: is.map_or(Vec::new(), |f| {
                 let ends = f.segments.iter();

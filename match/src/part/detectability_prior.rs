@@ -21,7 +21,7 @@ pub struct DetectabilityPrior {
     /// By feature: how it is found seen with two faces, and as an outline.
     states: BTreeMap<ArcSource, [States; 2]>,
     /// By feature: the one it depends on, and how likely it is found where that is missed and found.
-    pub(crate) together: BTreeMap<ArcSource, (ArcSource, [f64; 2])>,
+    pub(crate) codetection: BTreeMap<ArcSource, (ArcSource, [f64; 2])>,
     /// By pair of features: how often both are found where they meet, and how often their junction is
     /// kept then.
     junctions: BTreeMap<[ArcSource; 2], [f64; 2]>,
@@ -106,7 +106,7 @@ impl DetectabilityPrior {
                             let row = node.table.get(state);
                             row.map_or(0.5, |r| r[2] / (r[1] + r[2]).max(f64::MIN_POSITIVE))
                         });
-                        learned.together.insert(*own, (*parent, given));
+                        learned.codetection.insert(*own, (*parent, given));
                     }
                 }
                 _ => {}
@@ -137,7 +137,7 @@ impl DetectabilityPrior {
         }
         let [seen, kept] = self.junctions.get(&pair(a, b)).copied().unwrap_or_default();
         let kept = (kept + PRIOR * JUNCTION[0]) / (seen + PRIOR);
-        let kept = kept.clamp(0.5, 1.0 - LEAST);
+        let kept = kept.clamp(0.5, 1.0 - MIN_RATE);
         [kept, self.chance.clamp(JUNCTION[1], 0.5)]
     }
 }
@@ -163,7 +163,7 @@ fn is_outline(brep: &Brep, source: &ArcSource, view: &[f64]) -> bool {
 }
 
 /// No rate is nearer to certainty.
-pub(crate) const LEAST: f64 = 1.0 / 64.0;
+pub(crate) const MIN_RATE: f64 = 1.0 / 64.0;
 
 fn pair(a: &ArcSource, b: &ArcSource) -> [ArcSource; 2] {
     if a <= b { [*a, *b] } else { [*b, *a] }

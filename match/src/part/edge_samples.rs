@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// How many points there are along the size of the part, and of an edge at least and at most.
 const ALONG: f64 = 24.0;
-const LEAST: usize = 6;
+const MIN_RATE: usize = 6;
 const MOST: usize = 64;
 
 /// An edge of a part.
@@ -86,7 +86,7 @@ pub fn marks(
         let speeds = (0..fine).map(|k| curve.speed(at(k, fine)));
         let length = speeds.sum::<f64>() * (to - from) / f64::from(fine as u32);
         let count = (length / (2.0 * radius) * ALONG).ceil() as usize;
-        let count = count.clamp(LEAST, MOST);
+        let count = count.clamp(MIN_RATE, MOST);
         let mut faces = brep.topology.faces_of(edge);
         let Some(first) = faces.next() else { continue };
         let second = faces.next().unwrap_or(first);

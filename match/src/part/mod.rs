@@ -27,7 +27,7 @@ pub struct SoughtPart<'a> {
     /// Its boundary.
     pub brep: &'a Brep,
     /// Its resolution.
-    pub band: f64,
+    pub resolution: f64,
     /// The middle of its box.
     pub centre: Point3<f64>,
     /// Half the diagonal of its box.
@@ -60,7 +60,7 @@ pub struct EdgePath {
 
 impl<'a> SoughtPart<'a> {
     /// A part with a boundary and a resolution, of whose features something is learned.
-    pub fn new(brep: &'a Brep, band: f64, learned: &DetectabilityPrior) -> Self {
+    pub fn new(brep: &'a Brep, resolution: f64, learned: &DetectabilityPrior) -> Self {
         let states = |edge: EdgeId| learned.states(&ArcSource::Edge { edge: edge.0 });
         let hull = bounding_box::bounds(brep);
         let (centre, radius) = (hull.centre(), 0.5 * hull.diagonal());
@@ -70,7 +70,7 @@ impl<'a> SoughtPart<'a> {
         let symmetries = symmetry::symmetries(brep, (&strokes, &marks), radius, axis.as_ref());
         Self {
             brep,
-            band,
+            resolution,
             centre,
             radius,
             axis,

@@ -81,7 +81,7 @@ fn view(part: &SoughtPart<'_>, direction: &Vector3<f64>, stride: usize) -> PartV
         return view;
     };
     let projection = Projection::new(&camera, part_size(part.brep));
-    let scene = Scene::new(part.brep, &projection, part.band);
+    let scene = Scene::new(part.brep, &projection, part.resolution);
     if scene.eye_inside() {
         return view;
     }
@@ -192,7 +192,9 @@ mod tests {
             let view = view(&part, direction, 1);
             let eye = part.centre + direction * (DISTANCE * part.radius);
             let camera = Camera::perspective(eye, part.centre, Vector3::z(), 1.0).unwrap();
-            let all = contours(part.brep, &camera, part.band).unwrap().contours;
+            let all = contours(part.brep, &camera, part.resolution)
+                .unwrap()
+                .contours;
             for (mark, &known) in part.marks.iter().zip(&view.hidden) {
                 let edge = Some(part.strokes[mark.stroke].edge);
                 let contour = all.iter().find(|c| c.edge == edge).unwrap();
@@ -213,7 +215,7 @@ mod tests {
                     let curve = &contour.curve3;
                     let t = curve.in_cycle(curve.parameter(&m.point), contour.pieces[0].t[0]);
                     let within = contour.pieces.iter().any(|p| t >= p.t[0] && t <= p.t[1]);
-                    within && (curve.point(t) - m.point).norm() < part.band.sqrt()
+                    within && (curve.point(t) - m.point).norm() < part.resolution.sqrt()
                 };
                 let marks = view.limbs.iter().filter(own).count() as f64 / MARKS as f64;
                 let allowed = 2.0 * contour.pieces.len() as f64 / MARKS as f64;

@@ -150,8 +150,8 @@ mod tests {
             .unwrap()
             .tree;
         let evaluation = evaluate(&tree, &EvaluationOptions::default()).unwrap();
-        let (brep, band) = (&evaluation.brep, evaluation.resolution_of_doubles());
-        let seen = contours(brep, &CAMERA.at(planted, [1280, 960]), band).unwrap();
+        let (brep, resolution) = (&evaluation.brep, evaluation.f64_resolution());
+        let seen = contours(brep, &CAMERA.at(planted, [1280, 960]), resolution).unwrap();
         let of_limbs = seen.contours.iter().filter(|c| c.kind == ContourKind::Limb);
         let mut count = 0;
         for contour in of_limbs {

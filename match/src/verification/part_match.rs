@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use std::collections::HashSet;
 
 /// An edge that is off a feature as a whole by more pixels than these runs beside it.
-const BESIDE: f64 = 2.0;
+const ADJACENT: f64 = 2.0;
 
 /// How much work is done at the most.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ impl FeaturePair {
     /// Whether the feature is not found, or only an edge that runs beside it.
     pub(crate) fn is_missed(&self) -> bool {
         let found = self.found.as_ref();
-        found.is_none_or(|f| f.astray.wholes > BESIDE)
+        found.is_none_or(|f| f.systematic_offset.wholes > ADJACENT)
     }
 }
 
@@ -85,7 +85,7 @@ pub struct Found {
     /// How far beside it they run, in pixels.
     pub offset: f64,
     /// How far they are off it at the pose of the match.
-    pub astray: SystematicOffset,
+    pub systematic_offset: SystematicOffset,
 }
 
 /// A pose with its correspondences.
@@ -99,7 +99,7 @@ pub struct PartMatch {
     /// The root mean square distance of edges from contours, in pixels.
     pub rms: f64,
     /// How far features are off as wholes, and their edges beside that.
-    pub astray: SystematicOffset,
+    pub systematic_offset: SystematicOffset,
     /// The logarithm of how much more likely the picture is with it than if all were clutter.
     pub score: f64,
     /// The same against clutter and other things that are like the part as far as it is found.
@@ -163,7 +163,7 @@ impl PartMatch {
     /// lacks the rest: the logarithm of the odds. What is found does not tell these apart, but the more
     /// it tells of the shape, the rarer are things that are like it.
     fn whole(&self) -> f64 {
-        PIECE[0] + self.shape.told / PIECE[1] + self.shape.untold
+        PIECE[0] + self.shape.determined / PIECE[1] + self.shape.undetermined
     }
 
     /// Whether it may as well be a piece of the part.

@@ -104,10 +104,11 @@ fn rough(found: &PartMatch, straightness: f64) -> f64 {
 
 /// The logarithm of how many times as far as their edges beside that features are off as wholes, on the
 /// average of those that are found.
-fn astray(found: &PartMatch) -> f64 {
+fn systematic_offset(found: &PartMatch) -> f64 {
     let features = found.pairs.iter().filter_map(|p| p.found.as_ref());
     let times = features.map(|f| {
-        let [wholes, edges] = [f.astray.wholes, f.astray.edges].map(|off| off + SLIGHT);
+        let [wholes, edges] =
+            [f.systematic_offset.wholes, f.systematic_offset.edges].map(|off| off + SLIGHT);
         (wholes / edges).ln().clamp(-ASTRAY[1], ASTRAY[1])
     });
     times.sum::<f64>() / found.found().max(1) as f64
@@ -120,7 +121,8 @@ pub fn odds(found: &PartMatch, straightness: f64) -> f64 {
     let inside = found.inside().max(f64::MIN_POSITIVE);
     let length = found.share() * found.length() / ENOUGH;
     let shape = found.shape.ratio();
-    ODDS - ROUGH[1] * rough(found, straightness) - ASTRAY[0] * astray(found) + CUT * inside.ln()
+    ODDS - ROUGH[1] * rough(found, straightness) - ASTRAY[0] * systematic_offset(found)
+        + CUT * inside.ln()
         - MISSED * found.missed()
         + LITTLE * length.clamp(f64::MIN_POSITIVE, 1.0).ln()
         - PAST * f64::from(found.past())

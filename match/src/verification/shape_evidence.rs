@@ -26,7 +26,7 @@ use std::f64::consts::PI;
 const VARIES: [f64; 2] = [0.01, 0.5];
 /// The deviation of an edge: in the distance of edges from contours, which is at least so many pixels.
 const DEVIATION: f64 = 2.0;
-const LEAST: f64 = 0.1;
+const MIN_RATE: f64 = 0.1;
 /// So many numbers tell a pose.
 const POSE: usize = 6;
 /// As near, in pixels, an edge lies about a face's contour.
@@ -37,7 +37,8 @@ const ABOUT: f64 = 8.0;
 pub struct ShapeEvidence {
     /// The logarithm of how many times as many shapes a thing of the kind could have as agree with what
     /// is found.
-    pub told: f64,
+    #[serde(rename = "told")]
+    pub determined: f64,
     /// The logarithm of how much better the likeliest of them fits.
     pub denied: f64,
     /// The share of what is found that does not lie about one plane face's contour: nothing, if all of
@@ -48,7 +49,8 @@ pub struct ShapeEvidence {
     pub carriers: f64,
     /// Of the others, how unlikely it is that their features are missed, or out of the picture, where they
     /// are there: a logarithm.
-    pub untold: f64,
+    #[serde(rename = "untold")]
+    pub undetermined: f64,
 }
 
 impl ShapeEvidence {
@@ -63,7 +65,7 @@ impl ShapeEvidence {
         let there = carriers(part, there.map(|pair| pair.source));
         Self {
             carriers: there.len() as f64 / visible.len().max(1) as f64,
-            untold: untold(part, found, &visible, &there),
+            undetermined: undetermined(part, found, &visible, &there),
             ..Self::told_by(part, camera, &found.pose, features)
         }
     }
@@ -82,21 +84,21 @@ impl ShapeEvidence {
         let squares: f64 = drawn.iter().map(|d| d.weight * d.off * d.off).sum();
         let weights: f64 = drawn.iter().map(|d| d.weight).sum();
         let rms = (squares / weights.max(f64::MIN_POSITIVE)).sqrt();
-        let deviation = DEVIATION * rms.max(LEAST);
+        let deviation = DEVIATION * rms.max(MIN_RATE);
         let told = against_its_kind(part, pose, &drawn, deviation);
         let [told, denied] = told.unwrap_or_default();
         Self {
-            told,
+            determined: told,
             denied,
             relief: relief(part, &drawn),
             carriers: 1.0,
-            untold: 0.0,
+            undetermined: 0.0,
         }
     }
 
     /// What is told for the part and against things of its kind.
     pub fn ratio(&self) -> f64 {
-        self.told - self.denied
+        self.determined - self.denied
     }
 }
 
@@ -149,7 +151,7 @@ fn carriers(part: &SoughtPart<'_>, features: impl Iterator<Item = ArcSource>) ->
 }
 
 /// See [`ShapeEvidence::untold`].
-fn untold(
+fn undetermined(
     part: &SoughtPart<'_>,
     found: &PartMatch,
     visible: &BTreeSet<usize>,

@@ -36,7 +36,7 @@ pub fn sides(regions: &Regions, (arc, shown): (usize, &PredictedArc)) -> Vec<[u3
     }
     let sections = regions.sections.of_arc(arc);
     sections
-        .map(|s| [ArcSide::Left, ArcSide::Right].map(|on| regions.beside(s, on)))
+        .map(|s| [ArcSide::Left, ArcSide::Right].map(|on| regions.adjacent(s, on)))
         .collect()
 }
 
@@ -70,7 +70,7 @@ pub fn contrast(
             let level = |side: usize, sign: f64| {
                 let at = [at[0] + sign * aside[0], at[1] + sign * aside[1]];
                 let region = &regions.all[sides[section][side] as usize];
-                let seen = region.seen.unwrap_or_else(|| shading.asked(at));
+                let seen = region.seen.unwrap_or_else(|| shading.cast(at));
                 shading.level(at, &seen, &mut shading.distance(&seen.point))
             };
             found.push(Contrast {

@@ -42,7 +42,7 @@ pub fn boundaries(
         for (slot, section) in regions.sections.of_arc(i).enumerate() {
             let ends = [nodes.of_arcs[i][slot], nodes.of_arcs[i][slot + 1]];
             for (on, along) in [(ArcSide::Left, true), (ArcSide::Right, false)] {
-                let region = regions.beside(section, on) as usize;
+                let region = regions.adjacent(section, on) as usize;
                 steps[region].push(step(arc, (i, section), ends, along, regions));
             }
         }

@@ -35,7 +35,7 @@ impl Bitmap {
     }
 
     /// Whether it holds a pixel.
-    pub fn holds(&self, x: usize, y: usize) -> bool {
+    pub fn contains(&self, x: usize, y: usize) -> bool {
         self.bits[y * self.words + x / 64] >> (x % 64) & 1 == 1
     }
 
@@ -129,7 +129,11 @@ mod tests {
                 for v in 0..20 {
                     for u in 0..100 {
                         let near = |a: usize, b: i64| (a as i64 - b).unsigned_abs() as usize <= by;
-                        assert_eq!(grown.holds(u, v), near(u, x) && near(v, y), "{u} {v} {by}");
+                        assert_eq!(
+                            grown.contains(u, v),
+                            near(u, x) && near(v, y),
+                            "{u} {v} {by}"
+                        );
                     }
                 }
             }

@@ -42,7 +42,7 @@ pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, imag
             let mut x = span.start;
             while x < span.end {
                 // Up to here all lines are in one region each.
-                match row.plain(x) {
+                match row.unambiguous(x) {
                     (until, Some(region)) if until > x => {
                         let run = x..until.min(span.end);
                         x = run.end;
@@ -98,7 +98,7 @@ impl<'s, 'p> Light<'s, 'p> {
         match &self.regions.all[region].seen {
             Some(seen) => self.shading.level(at, seen, &mut self.hints[region]),
             None => {
-                let seen = self.shading.asked(at);
+                let seen = self.shading.cast(at);
                 self.shading
                     .level(at, &seen, &mut self.shading.distance(&seen.point))
             }
@@ -186,7 +186,7 @@ impl Row {
     }
 
     /// Up to which pixel, from one on, every line stays in its gap; and the one region of all gaps.
-    fn plain(&mut self, x: u32) -> (u32, Option<u32>) {
+    fn unambiguous(&mut self, x: u32) -> (u32, Option<u32>) {
         self.seek(x);
         let (first, region) = self.gaps[0][self.at[0]];
         let mut end = first;

@@ -227,7 +227,7 @@ impl<'s> Shading<'s> {
     }
 
     /// What a line of sight through a point of the image meets, and which lights reach it.
-    pub fn asked(&self, at: [f64; 2]) -> RegionSample {
+    pub fn cast(&self, at: [f64; 2]) -> RegionSample {
         let Some((face, point)) = self.stage.seen(at) else {
             return RegionSample {
                 face: None,

@@ -41,7 +41,7 @@ impl ImageWindow {
     }
 
     /// Whether the box of two points, grown by `by`, meets it.
-    fn meets(&self, a: &[f64; 2], b: &[f64; 2], by: f64) -> bool {
+    fn intersects(&self, a: &[f64; 2], b: &[f64; 2], by: f64) -> bool {
         (0..2).all(|i| a[i].min(b[i]) - by <= self.max[i] && a[i].max(b[i]) + by >= self.min[i])
     }
 }
@@ -99,7 +99,7 @@ fn halve(
         // Where it bends one way and then the other its middle lies on its chord.
         bend = bend.max(off(&curve(at(ASIDE))?.0));
     }
-    let is_near = window.meets(&[p.x, p.y], &[q.x, q.y], 4.0 * bend);
+    let is_near = window.intersects(&[p.x, p.y], &[q.x, q.y], 4.0 * bend);
     if bend <= fine || !is_near {
         // The point is known: it makes the polyline finer by a factor of four.
         line.push(t, middle);

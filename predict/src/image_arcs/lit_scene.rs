@@ -183,8 +183,8 @@ impl<'a> LitScene<'a> {
     pub fn new(subject: &'a PreparedPart<'a>, eyes: &'a Eyes) -> Result<Self, StageError> {
         let see = |eye: &'a Eye| -> Result<Sightings<'a>, ViewError> {
             Ok(Sightings {
-                contours: contours(subject.brep, &eye.camera, subject.band)?,
-                scene: Scene::new(subject.brep, &eye.projection, subject.band),
+                contours: contours(subject.brep, &eye.camera, subject.resolution)?,
+                scene: Scene::new(subject.brep, &eye.projection, subject.resolution),
             })
         };
         let view = see(&eyes.camera).map_err(StageError::View)?;
@@ -210,7 +210,7 @@ impl<'a> LitScene<'a> {
 
     /// Whether a light is so near to the camera that shadows stay behind what casts them: all that is
     /// seen is lit, within what polylines are drawn to.
-    pub fn is_beside_camera(&self, light: usize) -> bool {
+    pub fn is_next_to_camera(&self, light: usize) -> bool {
         let LightPlace::Near(source) = self.lights[light].0.place() else {
             return false;
         };

@@ -141,7 +141,7 @@ impl Regions {
     }
 
     /// The region on a side of a section.
-    pub fn beside(&self, section: u32, on: ArcSide) -> u32 {
+    pub fn adjacent(&self, section: u32, on: ArcSide) -> u32 {
         self.sides[side(section, on)]
     }
 
@@ -203,8 +203,8 @@ impl Regions {
                 let (from, to) = inside(gap);
                 let [least, most] = self.all[region as usize].bounds;
                 let part = (y - least[1]) / (most[1] - least[1]).max(f64::MIN_POSITIVE);
-                let band = ((part * BANDS as f64) as usize).min(BANDS - 1);
-                let known = &mut best[region as usize][band];
+                let resolution = ((part * BANDS as f64) as usize).min(BANDS - 1);
+                let known = &mut best[region as usize][resolution];
                 if to - from > known.1 - known.0 {
                     *known = (from, to, y);
                 }
@@ -247,7 +247,7 @@ impl Regions {
                 let side = ArcSide::new(at, [a, b]);
                 let region = self.at(at);
                 // Another arc may run in between.
-                if region != self.beside(section as u32, side) || !self.holds(at) {
+                if region != self.adjacent(section as u32, side) || !self.contains(at) {
                     continue;
                 }
                 let seen = &mut self.all[region as usize].seen;
@@ -257,7 +257,7 @@ impl Regions {
     }
 
     /// Whether a point lies in the image.
-    fn holds(&self, [x, y]: [f64; 2]) -> bool {
+    fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let inside = |v: f64, size: usize| v >= -0.5 && v < size as f64 - 0.5;
         inside(x, self.width) && inside(y, self.scanlines.lines() / LINES)
     }
@@ -271,7 +271,7 @@ impl Regions {
             };
             for section in self.sections.of_arc(i) {
                 for (on, which) in [(shade.lit, 0), (shade.lit.other(), 1)] {
-                    let region = self.beside(section, on) as usize;
+                    let region = self.adjacent(section, on) as usize;
                     votes[region * lights + shade.light][which] += 1;
                 }
             }
@@ -375,18 +375,18 @@ fn is_lit(
         let (towards, _) = source.from(p);
         stage.subject.brep.outward(face, p).dot(&towards) > GRAZING
     };
-    let mut asked = points
+    let mut cast = points
         .iter()
         .filter(turned)
         .map(|p| stage.is_lit(light, p, face));
     match votes {
         [0, 0] => {
             // Where nothing is turned to the light it does not matter.
-            let first = asked.next().unwrap_or(true);
-            asked.all(|lit| lit == first).then_some(first)
+            let first = cast.next().unwrap_or(true);
+            cast.all(|lit| lit == first).then_some(first)
         }
-        [_, 0] => asked.all(|lit| lit).then_some(true),
-        [0, _] => asked.all(|lit| !lit).then_some(false),
+        [_, 0] => cast.all(|lit| lit).then_some(true),
+        [0, _] => cast.all(|lit| !lit).then_some(false),
         _ => None,
     }
 }

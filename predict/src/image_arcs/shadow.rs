@@ -41,7 +41,7 @@ pub fn add_shadows(stage: &LitScene<'_>, window: &ImageWindow, arcs: &mut Vec<Pr
     let mut found = Vec::new();
     let mut ends = Vec::new();
     for (light, (_, views)) in stage.lights.iter().enumerate() {
-        if stage.is_beside_camera(light) {
+        if stage.is_next_to_camera(light) {
             continue;
         }
         for view in views {

@@ -6,7 +6,7 @@ use super::record::{
     Record, RelationRecord, SCHEMA,
 };
 use super::setups::Setups;
-use super::summary::MOST_PAIRED;
+use super::summary::MAX_PAIRED;
 use crate::image_arcs::ArcSource;
 use premio_kernel::brep::Brep;
 use premio_text::number;
@@ -292,7 +292,7 @@ impl Consistency {
     }
 
     fn codetection(&self, codetection: &Codetection) -> Checked {
-        let (found, expected) = (codetection.tree.len(), self.head.features.min(MOST_PAIRED));
+        let (found, expected) = (codetection.tree.len(), self.head.features.min(MAX_PAIRED));
         let reason = format!("has {found} features, expected {expected}");
         check(found == expected, "tree", reason)?;
         for (i, node) in codetection.tree.iter().enumerate() {

@@ -3,7 +3,7 @@
 use crate::prepared_part::PreparedPart;
 use crate::setup::light::Light;
 use crate::setup::viewpoint::Viewpoint;
-use crate::setup::{Conditions, MOST_LIGHTS, Setup, SetupError, SetupToml, above_zero};
+use crate::setup::{Conditions, MAX_LIGHTS, Setup, SetupError, SetupToml, above_zero};
 use crate::sphere::{Lattice, SphereError, SphereSampling, ViewCone, points};
 use crate::statistics::hash;
 use nalgebra::{Point3, Vector3};
@@ -126,9 +126,9 @@ impl Setups {
                 "makes more than 2^32 setups",
             ));
         }
-        if setups.lights.len() >= MOST_LIGHTS {
+        if setups.lights.len() >= MAX_LIGHTS {
             let reason = format!(
-                "is there {} times, and must be less than {MOST_LIGHTS} times",
+                "is there {} times, and must be less than {MAX_LIGHTS} times",
                 setups.lights.len()
             );
             return Err(SetupError::value("light", reason));

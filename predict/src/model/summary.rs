@@ -16,7 +16,7 @@ const MOST_ASPECTS: usize = 1024;
 /// How many relations are kept apart.
 const MOST_TUPLES: usize = 1 << 16;
 /// For how many features it is counted which are found together.
-pub(super) const MOST_PAIRED: usize = 256;
+pub(super) const MAX_PAIRED: usize = 256;
 /// How often a feature has to be found in an aspect for others to be matched to it.
 const LEARNT: u64 = 3;
 /// The least variances of the attributes: a hundredth of the part's radius, of its logarithm, and of
@@ -213,7 +213,7 @@ impl Summary {
     /// Ends the first round.
     pub fn begin_second(&mut self) {
         let mut paired = self.ranked();
-        paired.truncate(MOST_PAIRED);
+        paired.truncate(MAX_PAIRED);
         self.pairs = Some(Pairs::new(paired.len()));
         self.paired = paired;
     }

@@ -278,7 +278,7 @@ fn region_levels(draft: &PredictedImage<'_>) -> Vec<RegionLevel> {
     let levels = draft.regions.all.iter().enumerate().map(|(i, region)| {
         let (mut sum, mut weight) = (0.0, 0.0);
         for &(at, gap) in &region.points {
-            let seen = region.seen.unwrap_or_else(|| draft.shading.asked(at));
+            let seen = region.seen.unwrap_or_else(|| draft.shading.cast(at));
             let mut hint = draft.shading.distance(&seen.point);
             sum += gap * draft.shading.level(at, &seen, &mut hint);
             weight += gap;

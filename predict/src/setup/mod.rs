@@ -269,7 +269,7 @@ impl Setup {
     pub fn validate(&self) -> Result<(), SetupError> {
         self.conditions.validate()?;
         self.camera.validate(&self.conditions.sensor)?;
-        if self.lights.len() > MOST_LIGHTS {
+        if self.lights.len() > MAX_LIGHTS {
             return Err(SetupError::value("light", "is there more than 64 times"));
         }
         self.conditions.validate_lights(&self.lights)?;
@@ -282,7 +282,7 @@ impl Setup {
 }
 
 /// How many lights there may be: which of them a region sees is kept as bits.
-pub const MOST_LIGHTS: usize = 64;
+pub const MAX_LIGHTS: usize = 64;
 
 /// A number that is finite and not negative.
 pub(crate) fn at_least_zero(key: &str, x: f64) -> Result<(), SetupError> {

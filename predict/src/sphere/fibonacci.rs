@@ -6,7 +6,7 @@
 //! their number is reached, and what is then too many is left out, spread over all.
 
 use super::cone::Cap;
-use super::{MOST_POINTS, SphereError, SphereSampling};
+use super::{MAX_POINTS, SphereError, SphereSampling};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ fn at_density(caps: &[Cap], density: f64) -> Result<Vec<Vector3<f64>>, SphereErr
     let mut found = Vec::new();
     for (i, cap) in caps.iter().enumerate() {
         let n = (density * cap.area()).round();
-        if n > MOST_POINTS as f64 {
+        if n > MAX_POINTS as f64 {
             return Err(SphereError::TooMany);
         }
         let larger = &caps[..i];

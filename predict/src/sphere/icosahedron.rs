@@ -1,12 +1,12 @@
 //! The icosahedral lattice: a geodesic grid (Kenner, 1976), class I.
 
 use super::cone::Cap;
-use super::{MOST_POINTS, SphereError, SphereSampling};
+use super::{MAX_POINTS, SphereError, SphereSampling};
 use nalgebra::Vector3;
 
 /// The largest frequency: 10f² + 2 points are just within the most that are made.
 const MOST: usize = 647;
-const _: () = assert!(10 * MOST * MOST + 2 <= MOST_POINTS);
+const _: () = assert!(10 * MOST * MOST + 2 <= MAX_POINTS);
 
 /// The twelve vertices of the icosahedron, on the unit sphere.
 fn vertices() -> [Vector3<f64>; 12] {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// The most points that are made: far more views than any model is made of.
-pub const MOST_POINTS: usize = 1 << 22;
+pub const MAX_POINTS: usize = 1 << 22;
 
 /// How points are laid on the sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -61,7 +61,7 @@ pub enum SphereError {
         angle: f64,
     },
     /// The points are more than the program makes.
-    #[error("more than {MOST_POINTS} points on the sphere would be needed")]
+    #[error("more than {MAX_POINTS} points on the sphere would be needed")]
     TooMany,
     /// The lattice has no point within the cones.
     #[error("no point of the lattice is within the cones")]
@@ -77,7 +77,7 @@ pub fn points(
 ) -> Result<Vec<Vector3<f64>>, SphereError> {
     match sampling {
         SphereSampling::Count(0) => return Err(SphereError::NoCount),
-        SphereSampling::Count(n) if n > MOST_POINTS => return Err(SphereError::TooMany),
+        SphereSampling::Count(n) if n > MAX_POINTS => return Err(SphereError::TooMany),
         SphereSampling::Angle(angle) if !is_angle(angle) => return Err(SphereError::Angle(angle)),
         _ => (),
     }

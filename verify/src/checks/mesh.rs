@@ -43,7 +43,7 @@ impl Checker<'_> {
             deviation: mesh::DEVIATION * self.told.diagonal(),
             angle: mesh::ANGLE.to_radians(),
         };
-        let resolution = evaluation.resolution_of_doubles();
+        let resolution = evaluation.f64_resolution();
         let facets = match Facets::new(&evaluation.brep, &accuracy, resolution) {
             Ok(facets) => facets,
             Err(error) => return told(Finding::Holds, format!("refused: {error}")),

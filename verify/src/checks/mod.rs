@@ -123,8 +123,8 @@ pub struct Checker<'a> {
 
 impl CheckReport {
     /// Whether all checks hold.
-    pub fn holds(&self) -> bool {
-        self.checks.iter().all(Check::holds)
+    pub fn contains(&self) -> bool {
+        self.checks.iter().all(Check::contains)
     }
 
     /// The checks that find one thing.
@@ -134,13 +134,13 @@ impl CheckReport {
 
     /// The checks that do not hold: they fail, or do not tell.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|c| !c.holds())
+        self.checks.iter().filter(|c| !c.contains())
     }
 }
 
 impl Check {
     /// Whether it holds.
-    pub fn holds(&self) -> bool {
+    pub fn contains(&self) -> bool {
         self.finding == Finding::Holds
     }
 }
@@ -329,11 +329,11 @@ impl<'a> Checker<'a> {
         let size = self.evaluation.bounds.diagonal();
         let known = self.evaluation;
         // Rays are doubles, however finely the boundary was evaluated.
-        let resolution = known.resolution_of_doubles();
+        let resolution = known.f64_resolution();
         Clearance {
             sliver: 100.0 * resolution,
             // Between the resolution and the size, nearer the former.
-            aside: (size * ROUNDING.sqrt()).max(1000.0 * resolution),
+            lateral: (size * ROUNDING.sqrt()).max(1000.0 * resolution),
             // What rises by the coincidence over a radius of half the size.
             shift: (size * known.greatest_coincidence()).sqrt(),
             size,

@@ -117,8 +117,8 @@ impl Recount {
                     let place = contour.curve3.point(lo + part * (hi - lo));
                     // Where a piece ends in the image, another contour is near.
                     let (towards, _) = sight(&place);
-                    let aside = ends.map(|e| (e - place).cross(&towards).norm());
-                    let short = aside.map(|aside| aside < NEAR * clearance.aside);
+                    let lateral = ends.map(|e| (e - place).cross(&towards).norm());
+                    let short = lateral.map(|lateral| lateral < NEAR * clearance.lateral);
                     let unclear = end_on || (open && short.contains(&true));
                     let counted = material.invisibility(&place, sight, clearance);
                     let (counted, folds) = match counted {
@@ -168,7 +168,7 @@ impl Recount {
 fn closer(clearance: &Clearance) -> Vec<Clearance> {
     let finest = (clearance.sliver * CLOSER * CLOSER * clearance.size * ROUNDING).sqrt();
     let all = (1..).map(|k| clearance.closer(CLOSER.powi(k)));
-    all.take_while(|c| c.aside >= finest).collect()
+    all.take_while(|c| c.lateral >= finest).collect()
 }
 
 /// The direction from a point to the eye, and how far it is to the eye or the near plane.

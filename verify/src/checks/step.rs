@@ -36,7 +36,7 @@ impl Checker<'_> {
             protocol: Protocol::default(),
             unit: Unit::default(),
             accuracy: step::ACCURACY * self.told.diagonal(),
-            resolution: evaluation.resolution_of_doubles(),
+            resolution: evaluation.f64_resolution(),
         };
         let text = match step::write(&evaluation.brep, &options) {
             Ok(text) => text,

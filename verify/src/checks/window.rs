@@ -81,15 +81,15 @@ impl Window {
 
     /// The line of sight of an image point, with the depth as its parameter.
     pub fn ray(&self, [x, y]: [f64; 2]) -> Ray {
-        let aside = self.frame.x * x + self.frame.y * y;
+        let lateral = self.frame.x * x + self.frame.y * y;
         if self.central {
             Ray {
                 origin: self.frame.origin,
-                direction: self.frame.z + aside,
+                direction: self.frame.z + lateral,
             }
         } else {
             Ray {
-                origin: self.frame.origin + aside,
+                origin: self.frame.origin + lateral,
                 direction: self.frame.z,
             }
         }

@@ -227,8 +227,8 @@ impl Projection {
                 (eye, Vector3::new(a / length, b / length, c / length))
             }
             ViewRay::Direction(d) => {
-                let aside = Vector3::new(across(0), across(1), across(2));
-                (self.origin + aside * self.unit, d)
+                let lateral = Vector3::new(across(0), across(1), across(2));
+                (self.origin + lateral * self.unit, d)
             }
         }
     }

@@ -19,7 +19,7 @@ pub struct Passing {
     /// How far the other contour lies before this one, along the line of sight.
     pub ahead: f64,
     /// How far aside of the other contour this one gets, for each unit of its length.
-    pub aside: f64,
+    pub lateral: f64,
 }
 
 impl Passing {
@@ -111,7 +111,7 @@ impl ContourArc<'_> {
     /// The runs of stretches whose images may meet a box, each by its breaks.
     pub fn runs_next_to(&self, hull: &ImageBox) -> Vec<Vec<f64>> {
         let mut runs: Vec<Vec<f64>> = Vec::new();
-        for stretch in self.stretches.iter().filter(|s| s.bounds.meets(hull)) {
+        for stretch in self.stretches.iter().filter(|s| s.bounds.intersects(hull)) {
             let [lo, hi] = stretch.range;
             match runs.last_mut() {
                 Some(run) if run.last().is_some_and(|end| end.is_exactly(lo)) => run.push(hi),

@@ -69,7 +69,7 @@ pub fn facing(scene: &Scene<'_>, coedge: CoedgeId, t: f64) -> Facing {
         Sense::Against => -1.0,
     };
     let slope = sign * surface.second_form(&p, &normal.cross(&tangent), &across);
-    let grazes = level.is_within(ALONG * (scene.band * slope.abs() + ROUNDING));
+    let grazes = level.is_within(ALONG * (scene.resolution * slope.abs() + ROUNDING));
     let decides = if grazes && !slope.is_exactly(0.0) {
         slope
     } else {

@@ -121,12 +121,12 @@ impl<'p> Junctions<'p> {
     }
 
     /// Notes that another contour passes a junction in the image.
-    pub fn crowd(&mut self, id: u32) {
+    pub fn mark_ambiguous(&mut self, id: u32) {
         self.known[id as usize].crowded = true;
     }
 
     /// Whether another contour passes it in the image.
-    pub fn is_crowded(&self, id: u32) -> bool {
+    pub fn is_ambiguous(&self, id: u32) -> bool {
         self.known[id as usize].crowded
     }
 

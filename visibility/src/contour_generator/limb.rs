@@ -56,20 +56,20 @@ fn local(frame: &Frame, sight: &ViewRay) -> LocalSight {
     }
 }
 
-/// The limbs of a surface; `band` is the resolution, and `tilt` the sine of the angle to parallel sight
+/// The limbs of a surface; `resolution` is the resolution, and `tilt` the sine of the angle to parallel sight
 /// that nothing of the part comes to as much as that by.
 pub fn limbs(
     surface: &Surface,
     sight: &ViewRay,
-    band: f64,
+    resolution: f64,
     tilt: f64,
 ) -> Result<Vec<Limb>, Unresolved> {
     Ok(match surface {
         Surface::Plane(_) => Vec::new(),
-        Surface::Cylinder(s) => cylinder_limbs(s, sight, band, tilt),
-        Surface::Cone(s) => cone_limbs(s, sight, band, tilt),
-        Surface::Sphere(s) => sphere_limb(s, sight, band).into_iter().collect(),
-        Surface::Torus(s) => torus_limbs(s, sight, band)?,
+        Surface::Cylinder(s) => cylinder_limbs(s, sight, resolution, tilt),
+        Surface::Cone(s) => cone_limbs(s, sight, resolution, tilt),
+        Surface::Sphere(s) => sphere_limb(s, sight, resolution).into_iter().collect(),
+        Surface::Torus(s) => torus_limbs(s, sight, resolution)?,
     })
 }
 
@@ -79,9 +79,9 @@ fn half_angle(a: f64, c: f64) -> Option<f64> {
     exists.then(|| ((a - c) * (a + c)).sqrt().atan2(c))
 }
 
-fn cylinder_limbs(s: &Cylinder, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Limb> {
+fn cylinder_limbs(s: &Cylinder, sight: &ViewRay, resolution: f64, tilt: f64) -> Vec<Limb> {
     let (across, level, least) = match local(&s.frame, sight) {
-        LocalSight::Eye(e) => (e, s.radius, band),
+        LocalSight::Eye(e) => (e, s.radius, resolution),
         // Seen along its axis a cylinder is edge-on.
         LocalSight::Direction(d) => (d, 0.0, tilt),
     };
@@ -104,10 +104,10 @@ fn cylinder_limbs(s: &Cylinder, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Li
         .to_vec()
 }
 
-fn cone_limbs(s: &Cone, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Limb> {
+fn cone_limbs(s: &Cone, sight: &ViewRay, resolution: f64, tilt: f64) -> Vec<Limb> {
     // N·r = -N·E on every ruling: cos (e_x cos u + e_y sin u) = sin e_z.
     let (e, least) = match local(&s.frame, sight) {
-        LocalSight::Eye(e) => (e, band),
+        LocalSight::Eye(e) => (e, resolution),
         LocalSight::Direction(d) => (d, tilt),
     };
     let reach = s.cos * e.x.hypot(e.y);
@@ -133,7 +133,7 @@ fn cone_limbs(s: &Cone, sight: &ViewRay, band: f64, tilt: f64) -> Vec<Limb> {
         .to_vec()
 }
 
-fn sphere_limb(s: &Sphere, sight: &ViewRay, band: f64) -> Option<Limb> {
+fn sphere_limb(s: &Sphere, sight: &ViewRay, resolution: f64) -> Option<Limb> {
     let circle = |centre: Point3<f64>, z: Vector3<f64>, radius: f64| {
         Limb::new(Curve::Circle(Circle {
             frame: Frame::about(centre, z),
@@ -145,7 +145,7 @@ fn sphere_limb(s: &Sphere, sight: &ViewRay, band: f64) -> Option<Limb> {
         ViewRay::Eye(e) => {
             let arm = e - s.frame.origin;
             let away = arm.norm();
-            if (away - s.radius).is_at_most(band) {
+            if (away - s.radius).is_at_most(resolution) {
                 return None;
             }
             let sin = s.radius / away;
@@ -156,13 +156,13 @@ fn sphere_limb(s: &Sphere, sight: &ViewRay, band: f64) -> Option<Limb> {
     }
 }
 
-fn torus_limbs(s: &Torus, sight: &ViewRay, band: f64) -> Result<Vec<Limb>, Unresolved> {
+fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>, Unresolved> {
     let local = local(&s.frame, sight);
-    if let Some(circles) = axial_limbs(s, &local, band).or_else(|| side_limbs(s, &local)) {
+    if let Some(circles) = axial_limbs(s, &local, resolution).or_else(|| side_limbs(s, &local)) {
         return Ok(circles);
     }
     let form = torus_form(s, &local);
-    let traced = trace(s, &form, band)?;
+    let traced = trace(s, &form, resolution)?;
     let mut limbs: Vec<Limb> = traced
         .branches
         .into_iter()
@@ -177,14 +177,14 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, band: f64) -> Result<Vec<Limb>, Unres
 }
 
 /// Seen from its axis, a torus has two parallel circles as limbs.
-fn axial_limbs(s: &Torus, sight: &LocalSight, band: f64) -> Option<Vec<Limb>> {
+fn axial_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Limb>> {
     let angles = match sight {
         LocalSight::Direction(d) => {
             let is_axial = d.x.hypot(d.y).is_within(ROUNDING);
             is_axial.then_some([0.0, TAU / 2.0])?
         }
         LocalSight::Eye(e) => {
-            e.x.hypot(e.y).is_within(band).then_some(())?;
+            e.x.hypot(e.y).is_within(resolution).then_some(())?;
             // R cos φ - e_z sin φ = -r
             let half = half_angle(s.major.hypot(e.z), -s.minor)?;
             let middle = (-e.z).atan2(s.major);
@@ -343,7 +343,7 @@ pub fn torus_limb_on(
     sight: &ViewRay,
     curve: &Curve,
     range: [f64; 2],
-    band: f64,
+    resolution: f64,
 ) -> Roots {
     let local = local(&s.frame, sight);
     let scale = 1.0 / slope(s, &local);
@@ -360,11 +360,17 @@ pub fn torus_limb_on(
         let r: [Jet<Interval>; 3] = r;
         (n[0] * r[0] + n[1] * r[1] + n[2] * r[2]).scale(scale)
     };
-    isolate(&f, &curve.breaks(range[0], range[1]), band)
+    isolate(&f, &curve.breaks(range[0], range[1]), resolution)
 }
 
 /// The cusps of a limb on a torus: where the line of sight is along it, |r|² = R (r·e_θ)²/ρ.
-pub fn cusps(s: &Torus, sight: &ViewRay, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
+pub fn cusps(
+    s: &Torus,
+    sight: &ViewRay,
+    curve: &Curve,
+    range: [f64; 2],
+    resolution: f64,
+) -> Vec<f64> {
     let local = local(&s.frame, sight);
     let scale = s.minor / slope(s, &local).powi(2);
     let f = |t: Interval| {
@@ -381,7 +387,7 @@ pub fn cusps(s: &Torus, sight: &ViewRay, curve: &Curve, range: [f64; 2], band: f
         let along = q[1].scale(e.x) - q[0].scale(e.y);
         (r2 - along.square().scale(s.major).over(rho3)).scale(scale)
     };
-    match isolate(&f, &curve.breaks(range[0], range[1]), band) {
+    match isolate(&f, &curve.breaks(range[0], range[1]), resolution) {
         Roots::Everywhere => Vec::new(),
         Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
     }

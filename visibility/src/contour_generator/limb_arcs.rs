@@ -66,7 +66,7 @@ pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<Lim
             known[index] = Some(limbs(
                 surface,
                 &scene.projection.sight,
-                scene.band,
+                scene.resolution,
                 scene.tilt,
             )?);
         }
@@ -92,9 +92,9 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         let cutters = cutters(surface, &self.scene.projection.sight);
         let mut ends: Vec<Vec<(f64, u32)>> = vec![Vec::new(); limbs.len()];
         for edge in face_edges(self.scene, face) {
-            for t in self.meets(surface, (limbs, &cutters), edge) {
+            for t in self.intersects(surface, (limbs, &cutters), edge) {
                 let p = self.scene.brep.curve(edge).point(t);
-                let met = limbs_through(limbs, &p, LOOSE * self.scene.band);
+                let met = limbs_through(limbs, &p, LOOSE * self.scene.resolution);
                 if met.is_empty() {
                     continue;
                 }
@@ -108,7 +108,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         for (limb, mut ends) in limbs.iter().zip(ends) {
             if let Some(from) = limb.from {
                 let p = limb.curve.point(from);
-                let near = LOOSE * self.scene.band;
+                let near = LOOSE * self.scene.resolution;
                 if ends.iter().all(|e| (e.0 - from).abs().is_beyond(near)) {
                     let add = || {
                         self.junctions
@@ -123,7 +123,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     }
 
     /// The parameters at which the limbs of a surface, and what cuts these out, meet an edge on it.
-    fn meets(
+    fn intersects(
         &self,
         surface: &Surface,
         (limbs, cutters): (&[Limb], &[Surface]),
@@ -143,21 +143,23 @@ impl LimbTrimmer<'_, '_, '_, '_> {
 
     /// The parameters at which a surface that cuts limbs out cuts an edge.
     fn cuts(&self, cutter: &Surface, edge: EdgeId, found: &mut Vec<f64>) {
-        let (brep, band) = (self.scene.brep, self.scene.band);
+        let (brep, resolution) = (self.scene.brep, self.scene.resolution);
         let (curve, range) = (brep.curve(edge), brep.range(edge));
-        if runs_in(curve, range, cutter, band) {
+        if runs_in(curve, range, cutter, resolution) {
             return found.extend(range);
         }
         match cutter {
-            Surface::Plane(s) => plane_roots(curve, range, s, band, &mut |t, _| found.push(t)),
+            Surface::Plane(s) => {
+                plane_roots(curve, range, s, resolution, &mut |t, _| found.push(t))
+            }
             _ => {
-                if let Roots::At { roots, .. } = cut(curve, range, cutter, band) {
+                if let Roots::At { roots, .. } = cut(curve, range, cutter, resolution) {
                     found.extend(roots.iter().map(|r| r.t));
                 }
             }
         }
         // A root at a vertex may be just beyond the ends of all its edges.
-        let met = |t: &f64| cutter.distance(&curve.point(*t)).is_within(band);
+        let met = |t: &f64| cutter.distance(&curve.point(*t)).is_within(resolution);
         let open = brep.topology.edge(edge).ends.is_some();
         found.extend(range.into_iter().filter(|t| open && met(t)));
     }
@@ -165,13 +167,13 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     /// The same on a torus: at the limbs' nodes, where an edge passes through one, which are known
     /// better than where it meets the limbs.
     fn torus_meets(&self, s: &Torus, edge: EdgeId, limbs: &[Limb], found: &mut Vec<f64>) {
-        let (brep, band) = (self.scene.brep, self.scene.band);
+        let (brep, resolution) = (self.scene.brep, self.scene.resolution);
         let (curve, range) = (brep.curve(edge), brep.range(edge));
         let nodes = limbs
             .iter()
             .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
-        let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * band));
-        match torus_limb_on(s, &self.scene.projection.sight, curve, range, band) {
+        let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * resolution));
+        match torus_limb_on(s, &self.scene.projection.sight, curve, range, resolution) {
             // Where the edge runs along one limb, others cross both there.
             Roots::Everywhere => {
                 found.extend(range);
@@ -191,7 +193,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     /// The junction where a limb ends on an edge, shared by the faces on both sides.
     fn end_on(&mut self, edge: EdgeId, t: f64, p: &Point3<f64>) -> u32 {
         let brep = self.scene.brep;
-        let near = LOOSE * self.scene.band;
+        let near = LOOSE * self.scene.resolution;
         if let Some(ends) = brep.topology.edge(edge).ends {
             for v in ends {
                 let q = brep.point(v);
@@ -218,7 +220,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     fn limb(&mut self, face: FaceId, limb: &Limb, mut ends: Vec<(f64, u32)>) {
         let curve = &limb.curve;
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let near = LOOSE * self.scene.band;
+        let near = LOOSE * self.scene.resolution;
         let apart = |t: f64, s: f64| (curve.point(t) - curve.point(s)).norm();
         ends.dedup_by(|b, a| a.1 == b.1 || apart(a.0, b.0).is_within(near));
         let Some(period) = curve.period() else {
@@ -268,7 +270,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         };
         if let Surface::Torus(s) = self.scene.brep.surface(face) {
             let sight = &self.scene.projection.sight;
-            for t in cusps(s, sight, &arc.curve, range, self.scene.band) {
+            for t in cusps(s, sight, &arc.curve, range, self.scene.resolution) {
                 let p = arc.curve.point(t);
                 let id = self
                     .junctions
@@ -295,10 +297,10 @@ impl LimbTrimmer<'_, '_, '_, '_> {
 
 /// Whether an edge lies in a surface throughout: no line or conic lies in a plane at three points
 /// only.
-fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, band: f64) -> bool {
+fn runs_in(curve: &Curve, [lo, hi]: [f64; 2], surface: &Surface, resolution: f64) -> bool {
     [0.0, 0.23, 0.51, 0.77, 1.0].iter().all(|part| {
         let p = curve.point(lo + (hi - lo) * part);
-        surface.distance(&p).is_within(band)
+        surface.distance(&p).is_within(resolution)
     })
 }
 

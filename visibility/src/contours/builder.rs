@@ -52,25 +52,25 @@ pub enum ViewError {
     Limb(#[from] Unresolved),
 }
 
-/// The contours of a part seen by a camera; `band` is the part's resolution.
-pub fn contours(brep: &Brep, camera: &Camera, band: f64) -> Result<Contours, ViewError> {
-    contours_with(brep, camera, band, Method::Propagated)
+/// The contours of a part seen by a camera; `resolution` is the part's resolution.
+pub fn contours(brep: &Brep, camera: &Camera, resolution: f64) -> Result<Contours, ViewError> {
+    contours_with(brep, camera, resolution, Method::Propagated)
 }
 
 /// The same with the choice of how quantitative invisibility is found.
 pub fn contours_with(
     brep: &Brep,
     camera: &Camera,
-    band: f64,
+    resolution: f64,
     method: Method,
 ) -> Result<Contours, ViewError> {
     let started = Instant::now();
     let projection = Projection::new(camera, part_size(brep));
-    let scene = Scene::new(brep, &projection, band);
+    let scene = Scene::new(brep, &projection, resolution);
     let hull = scene.bounds();
     let (distance, most) = (
         (projection.origin() - hull.centre()).norm(),
-        band / ROUNDING,
+        resolution / ROUNDING,
     );
     if hull.diagonal().is_finite() && distance.is_beyond(most) {
         return Err(ViewError::EyeFar { distance, most });
@@ -119,7 +119,7 @@ pub fn contours_with(
     Ok(Contours {
         schema: SCHEMA,
         camera: camera.clone(),
-        resolution: band,
+        resolution,
         contours,
         junctions,
         seconds,
@@ -279,9 +279,11 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
 
     fn image(&self, source: &Source<'_>) -> Image {
         let Scene {
-            projection, band, ..
+            projection,
+            resolution,
+            ..
         } = *self.scene;
-        image(source.curve, source.range, projection, band)
+        image(source.curve, source.range, projection, resolution)
     }
 
     fn contour(&self, source: &Source<'_>, seen: &Image, kind: ContourKind) -> Contour {
@@ -330,9 +332,9 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             source.curve,
             source.range,
             &plane,
-            self.scene.band,
-            &mut |t, plain| {
-                if plain {
+            self.scene.resolution,
+            &mut |t, unambiguous| {
+                if unambiguous {
                     cuts.push(t);
                 }
             },
@@ -359,7 +361,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
     fn push(&mut self, source: Source<'a>, mut seen: Image) {
         let (range, closed) = (source.range, source.closed);
         let [lo, hi] = range;
-        let (projection, band) = (self.scene.projection, self.scene.band);
+        let (projection, resolution) = (self.scene.projection, self.scene.resolution);
         if let Image::General = seen {
             let brep = self.scene.brep;
             let surfaces = source.faces.iter().map(|f| brep.surface(f.0));
@@ -368,12 +370,14 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                 range,
                 surfaces,
                 projection,
-                [band, self.scene.tilt],
+                [resolution, self.scene.tilt],
             )
             .map_or(seen, Image::Edgewise);
         }
         let straight = match seen {
-            Image::General | Image::Edgewise(_) => stretches(source.curve, range, projection, band),
+            Image::General | Image::Edgewise(_) => {
+                stretches(source.curve, range, projection, resolution)
+            }
             _ => Vec::new(),
         };
         // Of a limb they are its cusps, which are known.
@@ -388,7 +392,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         };
         // A turn at the very end of an arc is no point of its own.
         let ends_at = [source.curve.point(lo), source.curve.point(hi)];
-        let near = LOOSE * self.scene.band;
+        let near = LOOSE * self.scene.resolution;
         let at_end = |t: f64| {
             let p = source.curve.point(t);
             ends_at.iter().any(|end| (p - end).norm().is_within(near))

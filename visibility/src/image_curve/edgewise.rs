@@ -8,7 +8,7 @@
 use crate::camera::projection::{Projection, ViewRay};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::geometry::curve_plane::{line_meets, plane_roots};
+use premio_kernel::geometry::curve_plane::{line_intersections, plane_roots};
 use premio_kernel::geometry::curve_surface::cut;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
@@ -33,13 +33,13 @@ const PLACES: usize = 17;
 
 impl Edgewise {
     /// The curve over `range` on one of the surfaces, if that is seen edge-on: nearer to parallel sight
-    /// than `tilt`. `band` is the resolution.
+    /// than `tilt`. `resolution` is the resolution.
     pub fn new<'a>(
         curve: &Curve,
         range: [f64; 2],
         surfaces: impl Iterator<Item = &'a Surface>,
         projection: &Projection,
-        [band, tilt]: [f64; 2],
+        [resolution, tilt]: [f64; 2],
     ) -> Option<Self> {
         let ViewRay::Direction(sight) = projection.sight else {
             return None;
@@ -57,7 +57,7 @@ impl Edgewise {
                 dd: Interval::ENTIRE,
             }
         };
-        let turns = match isolate(&f, &curve.breaks(range[0], range[1]), band) {
+        let turns = match isolate(&f, &curve.breaks(range[0], range[1]), resolution) {
             Roots::Everywhere => Vec::new(),
             Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
         };
@@ -65,15 +65,15 @@ impl Edgewise {
     }
 
     /// Whether another curve lies on the carrier.
-    pub fn holds(&self, curve: &Curve, [lo, hi]: [f64; 2], near: f64) -> bool {
+    pub fn contains(&self, curve: &Curve, [lo, hi]: [f64; 2], near: f64) -> bool {
         let carrier = Surface::Cylinder(self.carrier);
         let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
         (0..PLACES).all(|k| carrier.distance(&curve.point(at(k))).is_within(near))
     }
 
     /// Where another curve passes the carrier.
-    pub fn passed_by(&self, curve: &Curve, range: [f64; 2], band: f64) -> Vec<f64> {
-        match cut(curve, range, &Surface::Cylinder(self.carrier), band) {
+    pub fn passed_by(&self, curve: &Curve, range: [f64; 2], resolution: f64) -> Vec<f64> {
+        match cut(curve, range, &Surface::Cylinder(self.carrier), resolution) {
             Roots::Everywhere => Vec::new(),
             Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
         }
@@ -85,7 +85,7 @@ impl Edgewise {
         curve: &Curve,
         range: [f64; 2],
         p: Point3<f64>,
-        band: f64,
+        resolution: f64,
         found: &mut impl FnMut(f64),
     ) {
         let q = self.carrier.frame.coordinates(&p);
@@ -100,13 +100,13 @@ impl Edgewise {
         let radius = self.carrier.radius;
         let ruling = frame.point(cos * radius, sin * radius, 0.0);
         let line = (&ruling, &frame.z);
-        if line_meets(curve, range, line, band, &mut |t, _| found(t)) {
+        if line_intersections(curve, range, line, resolution, &mut |t, _| found(t)) {
             return;
         }
         let plane = Plane {
             frame: Frame::about(frame.origin, frame.y * cos - frame.x * sin),
         };
-        plane_roots(curve, range, &plane, band, &mut |t, _| {
+        plane_roots(curve, range, &plane, resolution, &mut |t, _| {
             // On the ray from the axis through the point, not the one opposite.
             let at = frame.coordinates(&curve.point(t));
             if (at.x * cos + at.y * sin).is_above_zero() {

@@ -45,12 +45,12 @@ impl ImageBox {
     }
 
     /// Whether the two share a point.
-    pub fn meets(&self, other: &Self) -> bool {
+    pub fn intersects(&self, other: &Self) -> bool {
         (0..2).all(|i| self.min[i].is_at_most(other.max[i]) && other.min[i].is_at_most(self.max[i]))
     }
 
     /// Whether a point lies in it.
-    pub fn holds(&self, p: [f64; 2]) -> bool {
+    pub fn contains(&self, p: [f64; 2]) -> bool {
         (0..2).all(|i| p[i].lies_in([self.min[i], self.max[i]]))
     }
 }

@@ -133,10 +133,10 @@ fn unit_line(l: Vector3<f64>) -> Vector3<f64> {
 /// two lines, loses digits by its square's exponential.
 const SHARP: f64 = 8.0;
 
-/// The image of a curve over `range`; `band` is the resolution.
-pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, band: f64) -> Image {
+/// The image of a curve over `range`; `resolution` is the resolution.
+pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, resolution: f64) -> Image {
     let conic = |frame: &Frame, a: f64, b: f64, basis: Basis| {
-        conic_image(frame, a, b, basis, projection, band)
+        conic_image(frame, a, b, basis, projection, resolution)
     };
     match curve {
         Curve::Line(c) => {
@@ -146,7 +146,7 @@ pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, band: f64)
             let middle = c.origin + c.direction * (0.5 * (range[0] + range[1]));
             let (towards, _) = projection.towards_eye(&middle);
             let width = towards.cross(&c.direction).norm() * (range[1] - range[0]);
-            if width.is_at_most(band) {
+            if width.is_at_most(resolution) {
                 return Image::Point;
             }
             let line = unit_line(projection.homogeneous(&middle).cross(&direction));
@@ -173,7 +173,7 @@ fn conic_image(
     b: f64,
     basis: Basis,
     projection: &Projection,
-    band: f64,
+    resolution: f64,
 ) -> Image {
     let map = map_of(frame, a, b, projection);
     let (towards, away) = projection.towards_eye(&frame.origin);
@@ -182,9 +182,9 @@ fn conic_image(
     let reach = match basis {
         Basis::Circular => a.max(b),
         _ if away.is_finite() => away,
-        _ => band / ROUNDING,
+        _ => resolution / ROUNDING,
     };
-    let edge_on = (tilt * reach).is_at_most(band);
+    let edge_on = (tilt * reach).is_at_most(resolution);
     match map.try_inverse() {
         Some(inverse) if !edge_on => {
             let conic = inverse.transpose() * basis.conic() * inverse;

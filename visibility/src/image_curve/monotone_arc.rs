@@ -70,7 +70,7 @@ fn image_over(curve: &Curve, projection: &Projection, t: Interval) -> [Jet<Inter
     let centre = flat_point(projection, curve.jet_over(middle));
     let run = t - middle;
     let meet = |wide: Interval, tight: Interval| match tight.width().is_finite() {
-        true => wide.meet(tight),
+        true => wide.intersection(tight),
         false => wide,
     };
     std::array::from_fn(|i| {
@@ -188,7 +188,7 @@ pub fn passes(
             continue;
         };
         // Grown, for a point at the very end.
-        if !stretch.bounds.grown(reach(stretch) * NARROW).holds(p) {
+        if !stretch.bounds.grown(reach(stretch) * NARROW).contains(p) {
             continue;
         }
         let along = |q: [f64; 2]| dot2(course.direction, q) - dot2(course.direction, p);

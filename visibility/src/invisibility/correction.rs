@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub struct End<'s, 'a> {
     /// The strand.
-    pub strand: &'s ContourArc<'a>,
+    pub arc: &'s ContourArc<'a>,
     /// The parameter at the junction.
     pub t: f64,
     /// A parameter in the middle of the piece.
@@ -32,15 +32,15 @@ pub struct End<'s, 'a> {
 impl End<'_, '_> {
     /// The unit direction in which the piece leaves the junction.
     fn direction(&self) -> Option<Vector3<f64>> {
-        let slope = self.strand.curve.derivative(self.t);
+        let slope = self.arc.curve.derivative(self.t);
         let away = self.middle - self.t;
         let moved = slope.norm() * away.abs();
-        let plain = moved.is_beyond(ROUNDING.sqrt() * self.chord());
-        plain.then(|| slope.normalize() * away.signum())
+        let unambiguous = moved.is_beyond(ROUNDING.sqrt() * self.chord());
+        unambiguous.then(|| slope.normalize() * away.signum())
     }
 
     fn chord(&self) -> f64 {
-        let curve = self.strand.curve;
+        let curve = self.arc.curve;
         (curve.point(self.middle) - curve.point(self.t)).norm()
     }
 }
@@ -224,14 +224,14 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let curve = brep.curve(use_.edge);
         let slope = curve.derivative(t);
         let chord = (curve.point(lo + 0.5 * length) - curve.point(t)).norm();
-        let plain = (slope.norm() * length).is_beyond(ROUNDING.sqrt() * chord);
-        plain.then(|| slope.normalize() * use_.sense.sign::<f64>())
+        let unambiguous = (slope.norm() * length).is_beyond(ROUNDING.sqrt() * chord);
+        unambiguous.then(|| slope.normalize() * use_.sense.sign::<f64>())
     }
 
     /// Where a limb ends on an edge of two faces.
     fn on_edge(&self, edge: EdgeId, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
         let brep = self.scene.brep;
-        let p = end.strand.curve.point(end.t);
+        let p = end.arc.curve.point(end.t);
         let along = brep.curve(edge).tangent(brep.curve(edge).parameter(&p));
         let coedges = &brep.topology.edge(edge).coedges;
         if coedges.len() != 2 {
@@ -243,7 +243,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
             let out = along * brep.topology.coedge(coedge).sense.sign::<f64>();
             let effect = match self.corner(face, [edge; 2], &p, &v, || Some([out, -out])) {
                 None => Effect::Clear,
-                Some(c) if c.facing.is_none() && end.strand.edge == Some(edge) => {
+                Some(c) if c.facing.is_none() && end.arc.edge == Some(edge) => {
                     self.fold(face, &out, &p, end)
                 }
                 // A limb that ends in a cusp may lie behind the face's own fold.
@@ -264,7 +264,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let inward = scene.brep.outward(face, p).cross(out);
         let into = v.dot(&inward);
         let bend = self.bend(face, p, &v);
-        let middle = end.strand.curve.point(end.middle);
+        let middle = end.arc.curve.point(end.middle);
         let (w, _) = scene.projection.towards_eye(&middle);
         let facing = scene.brep.outward(face, &middle).dot(&w);
         if into.is_short_of(-PLAIN) {
@@ -299,18 +299,18 @@ impl<'s, 'a> Corrections<'s, 'a> {
     /// meeting is before the limb on one side and behind it on the other; before it, it hides the
     /// limb where the line of sight leaves the material there.
     fn at_cusp(&self, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
-        let &(face, _) = end.strand.faces.first()?;
+        let &(face, _) = end.arc.faces.first()?;
         let Surface::Torus(torus) = self.scene.brep.surface(face) else {
             return None;
         };
-        let p = end.strand.curve.point(end.t);
+        let p = end.arc.curve.point(end.t);
         let (v, _) = self.scene.projection.towards_eye(&p);
         // A fourth of the third coefficient of the torus's quartic along the line of sight.
         let rise = (p - torus.frame.origin).dot(&v);
         if !is_plain(rise / torus.major) {
             return None;
         }
-        let middle = end.strand.curve.point(end.middle);
+        let middle = end.arc.curve.point(end.middle);
         let (v, _) = self.scene.projection.towards_eye(&middle);
         let bend = self.bend(face, &middle, &v);
         let leaves = self.scene.along(face) == rise.is_above_zero();
@@ -326,7 +326,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         match self.scene.brep.surface(face) {
             Surface::Cone(s) => {
                 let away = (p - s.frame.origin).norm();
-                away.is_within(LOOSE * self.scene.band)
+                away.is_within(LOOSE * self.scene.resolution)
             }
             _ => false,
         }
@@ -336,14 +336,14 @@ impl<'s, 'a> Corrections<'s, 'a> {
 impl Corner {
     /// What the face does to a piece that leaves its corner.
     fn effect(&self, towards: &Vector3<f64>, end: &End<'_, '_>) -> Effect {
-        let strand = end.strand;
-        if strand.limb && strand.faces.iter().any(|f| f.0 == self.face) {
+        let arc = end.arc;
+        if arc.limb && arc.faces.iter().any(|f| f.0 == self.face) {
             return Effect::Clear;
         }
         let Some(facing) = self.facing else {
             return Effect::Unclear;
         };
-        if strand.edge.is_some_and(|e| self.sides.contains(&e)) {
+        if arc.edge.is_some_and(|e| self.sides.contains(&e)) {
             return Effect::Clear;
         }
         let Some(d) = end.direction() else {
@@ -354,7 +354,7 @@ impl Corner {
             return Effect::Clear;
         }
         let over = d + towards * (below / facing);
-        match (self.holds(&over), below.is_beyond(PLAIN)) {
+        match (self.contains(&over), below.is_beyond(PLAIN)) {
             (Some(false), _) => Effect::Clear,
             (Some(true), true) => Effect::Hides(below / facing),
             _ => Effect::Unclear,
@@ -362,7 +362,7 @@ impl Corner {
     }
 
     /// Whether a direction in the tangent plane lies in the sector; none next to its sides.
-    fn holds(&self, w: &Vector3<f64>) -> Option<bool> {
+    fn contains(&self, w: &Vector3<f64>) -> Option<bool> {
         if !is_plain(w.norm()) {
             return None;
         }
@@ -373,9 +373,9 @@ impl Corner {
             away.min(TAU - away).is_at_most(PLAIN)
         };
         // A sector of no angle or of all angles is not told from the other.
-        let plain = !next_to(0.0) && !next_to(self.angle);
+        let unambiguous = !next_to(0.0) && !next_to(self.angle);
         let sharp = self.angle.min(TAU - self.angle).is_at_most(PLAIN);
-        (plain && !sharp).then_some(turn.is_short_of(self.angle))
+        (unambiguous && !sharp).then_some(turn.is_short_of(self.angle))
     }
 }
 

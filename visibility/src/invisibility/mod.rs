@@ -53,12 +53,12 @@ const LOOSE: f64 = 16.0;
 const PLACES: [f64; 5] = [0.47, 0.31, 0.73, 0.07, 0.93];
 
 /// The count for a piece of a strand over [lo, hi].
-pub fn count(scene: &Scene<'_>, strand: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occluders {
-    let at = |part: f64| count_at(scene, strand, lo + (hi - lo) * part);
+pub fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occluders {
+    let at = |part: f64| count_at(scene, arc, lo + (hi - lo) * part);
     let mut unplain = Vec::with_capacity(PLACES.len());
     for place in PLACES {
         let count = at(place);
-        if count.plain {
+        if count.unambiguous {
             return count;
         }
         unplain.push(count);
@@ -68,40 +68,40 @@ pub fn count(scene: &Scene<'_>, strand: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> 
     unplain.swap_remove(PLACES.len() / 2)
 }
 
-fn count_at(scene: &Scene<'_>, strand: &ContourArc<'_>, t: f64) -> Occluders {
-    let p = &strand.curve.point(t);
+fn count_at(scene: &Scene<'_>, arc: &ContourArc<'_>, t: f64) -> Occluders {
+    let p = &arc.curve.point(t);
     let (v, _) = scene.projection.towards_eye(p);
     let own = |face: FaceId| {
-        if !strand.faces.iter().any(|f| f.0 == face) {
+        if !arc.faces.iter().any(|f| f.0 == face) {
             return OriginIncidence::No;
         }
         let surface = scene.brep.surface(face);
         // A limb that runs along the edge is no farther away than points found on two ways are:
         // over this length the normal turns with the surface's bend.
         let bend = surface.normal_curvature(p, &v).abs();
-        let turned = LOOSE * (scene.band * bend + ROUNDING);
+        let turned = LOOSE * (scene.resolution * bend + ROUNDING);
         let grazing = surface.normal(p).dot(&v).is_within(turned);
-        if strand.limb || grazing {
+        if arc.limb || grazing {
             OriginIncidence::Tangent
         } else {
             OriginIncidence::Through
         }
     };
-    if matches!(strand.image, Image::Point) {
-        return scene.count_end_on(p, &inward(scene, strand, p, &v), &own);
+    if matches!(arc.image, Image::Point) {
+        return scene.count_end_on(p, &inward(scene, arc, p, &v), &own);
     }
-    scene.count(p, &strand.curve.tangent(t), &own)
+    scene.count(p, &arc.curve.tangent(t), &own)
 }
 
 /// The directions across the line of sight that halve the material around an edge, which lies between
 /// each two of its faces.
 fn inward(
     scene: &Scene<'_>,
-    strand: &ContourArc<'_>,
+    arc: &ContourArc<'_>,
     p: &Point3<f64>,
     v: &Vector3<f64>,
 ) -> Vec<Vector3<f64>> {
-    let halved = strand.faces.chunks(2).map(|pair| {
+    let halved = arc.faces.chunks(2).map(|pair| {
         let normals = pair.iter().map(|&(face, _)| scene.brep.outward(face, p));
         let inward = -normals.sum::<Vector3<f64>>();
         inward - v * inward.dot(v)
@@ -125,22 +125,22 @@ struct Chain {
 
 impl Chain {
     /// Cuts a strand at its splits; those at one point are taken together, and crowd each other.
-    fn new(strand: &mut ContourArc<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
-        strand.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let strand = &*strand;
-        let [lo, hi] = strand.range;
-        let apart = |s: f64, t: f64| (t - s).abs() * strand.curve.speed(t);
+    fn new(arc: &mut ContourArc<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
+        arc.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
+        let arc = &*arc;
+        let [lo, hi] = arc.range;
+        let apart = |s: f64, t: f64| (t - s).abs() * arc.curve.speed(t);
         let one = |s: f64, t: f64| s.is_exactly(t) || apart(s, t).is_at_most(near);
-        let mut splits: Vec<Split> = Vec::with_capacity(strand.splits.len());
-        for &split in &strand.splits {
-            let end = [0, 1].map(|k| one(strand.range[k], split.t) && !strand.closed);
+        let mut splits: Vec<Split> = Vec::with_capacity(arc.splits.len());
+        for &split in &arc.splits {
+            let end = [0, 1].map(|k| one(arc.range[k], split.t) && !arc.closed);
             let around = match splits.first() {
-                Some(first) => strand.closed && one(first.t + (hi - lo), split.t),
+                Some(first) => arc.closed && one(first.t + (hi - lo), split.t),
                 None => false,
             };
             let met = match end {
-                [true, _] => strand.ends[0],
-                [_, true] => strand.ends[1],
+                [true, _] => arc.ends[0],
+                [_, true] => arc.ends[1],
                 _ => {
                     let next_to = match splits.last_mut() {
                         _ if around => splits.first_mut(),
@@ -156,18 +156,18 @@ impl Chain {
                 }
             };
             for id in met.into_iter().chain([split.junction]) {
-                junctions.crowd(id);
+                junctions.mark_ambiguous(id);
             }
         }
         let mut between: Vec<Change> = splits.iter().map(|s| s.change).collect();
         let (first, inner, last) = match splits.split_first() {
-            Some((first, inner)) if strand.closed => {
+            Some((first, inner)) if arc.closed => {
                 between.remove(0);
                 let junction = Some(first.junction);
                 let last = (first.t + (hi - lo), junction);
                 ((first.t, junction), inner, last)
             }
-            _ => ((lo, strand.ends[0]), &splits[..], (hi, strand.ends[1])),
+            _ => ((lo, arc.ends[0]), &splits[..], (hi, arc.ends[1])),
         };
         let inner = inner.iter().map(|s| (s.t, Some(s.junction)));
         let mut spans: Vec<Span> = Vec::with_capacity(splits.len() + 1);
@@ -183,8 +183,8 @@ impl Chain {
         for (around, change) in spans.windows(2).zip(&mut between) {
             let [before, at] = around[0].range;
             let after = around[1].range[1];
-            let way = (at - before).min(after - at) * strand.curve.speed(at);
-            if matches!(change, Change::Pass(passing) if (way * passing.aside).is_at_most(near)) {
+            let way = (at - before).min(after - at) * arc.curve.speed(at);
+            if matches!(change, Change::Pass(passing) if (way * passing.lateral).is_at_most(near)) {
                 *change = Change::Correct;
             }
         }
@@ -200,7 +200,7 @@ pub fn pieces(
     junctions: &mut Junctions<'_>,
     method: Method,
 ) -> Vec<Vec<ContourPiece>> {
-    let near = LOOSE * scene.band;
+    let near = LOOSE * scene.resolution;
     let cut = strands.iter_mut();
     let chains: Vec<Chain> = cut.map(|s| Chain::new(s, junctions, near)).collect();
     let strands = &*strands;
@@ -210,9 +210,9 @@ pub fn pieces(
     };
     let counted = || {
         let all = strands.iter().zip(&chains);
-        let of = |(strand, chain): (_, &Chain)| {
+        let of = |(arc, chain): (_, &Chain)| {
             let spans = chain.spans.iter();
-            spans.map(|s| count(scene, strand, s.range)).collect()
+            spans.map(|s| count(scene, arc, s.range)).collect()
         };
         all.map(of).collect()
     };
@@ -290,7 +290,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
             self.next.push(i);
             while let Some(i) = self.next.pop() {
                 if self.counts[i as usize].iter().any(Option::is_none) {
-                    self.strand(i as usize);
+                    self.arc(i as usize);
                 }
                 if !self.sound {
                     return None;
@@ -302,7 +302,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
     }
 
     /// Counts along a strand, from the end at which something is known.
-    fn strand(&mut self, i: usize) {
+    fn arc(&mut self, i: usize) {
         let n = self.chains[i].spans.len();
         let first = self.enter(i, 0, 0);
         let last = match first {
@@ -326,7 +326,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
             let then = if backward { k.wrapping_sub(1) } else { k + 1 };
             known = match change {
                 // What is counted where contours fall on one another is not carried on.
-                Some(Change::Pass(passing)) if now.plain => {
+                Some(Change::Pass(passing)) if now.unambiguous => {
                     let p = self.strands[i].curve.point(span.range[exit]);
                     let passing = if backward {
                         passing.reversed()
@@ -347,11 +347,11 @@ impl<'s, 'a> Carrying<'s, 'a> {
     fn local(&self, i: usize, k: usize, which: usize) -> Option<(u32, Vec<FaceId>)> {
         let Span { range, ends } = self.chains[i].spans[k];
         let junction = ends[which]?;
-        if self.junctions.is_crowded(junction) {
+        if self.junctions.is_ambiguous(junction) {
             return None;
         }
         let end = End {
-            strand: &self.strands[i],
+            arc: &self.strands[i],
             t: range[which],
             middle: 0.5 * (range[0] + range[1]),
         };
@@ -369,7 +369,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
 
     /// Notes what hides a span for the others at the junction at one of its ends.
     fn leave(&mut self, i: usize, k: usize, which: usize, count: &Occluders) {
-        if !count.plain {
+        if !count.unambiguous {
             return;
         }
         let Some((junction, hiding)) = self.local(i, k, which) else {
@@ -409,7 +409,7 @@ fn carry(
     sound.then_some(Occluders {
         qi,
         order,
-        plain: true,
+        unambiguous: true,
     })
 }
 
@@ -465,7 +465,7 @@ enum Slot {
 
 /// Where in the order of the faces before `p` the distance `ahead` belongs.
 fn slot(scene: &Scene<'_>, p: &Point3<f64>, order: &[FaceId], ahead: f64) -> Slot {
-    let margin = LOOSE * scene.band;
+    let margin = LOOSE * scene.resolution;
     for (k, &face) in order.iter().enumerate() {
         let (mut before, mut behind) = (false, false);
         scene.depths(p, face, &mut |s| {

@@ -136,7 +136,7 @@ fn few_meeting(links: &mut [Link]) -> Vec<(u32, u32)> {
     for (k, (a, i)) in links.iter().enumerate() {
         let beside = links[k + 1..].iter();
         for (b, j) in beside.take_while(|(b, _)| b.min[0].is_at_most(a.max[0])) {
-            if i != j && a.meets(b) {
+            if i != j && a.intersects(b) {
                 pairs.push((*i.min(j), *i.max(j)));
             }
         }

@@ -48,17 +48,17 @@ pub fn cross(
     a: &ContourArc<'_>,
     b: &ContourArc<'_>,
     projection: &Projection,
-    band: f64,
+    resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    let near = LOOSE * band;
+    let near = LOOSE * resolution;
     match (&a.image, &b.image) {
         (Image::Point, _) | (_, Image::Point) => Overlap::No,
-        (Image::Edgewise(on), _) => edgewise(on, a, b, band, found),
-        (_, Image::Edgewise(on)) => edgewise(on, b, a, band, &mut |s, t| found(t, s)),
-        (Image::General, Image::General) => general_pair(a, b, projection, band, found),
-        (Image::General, _) => general(a, b, projection, band, found),
-        (_, Image::General) => general(b, a, projection, band, &mut |s, t| found(t, s)),
+        (Image::Edgewise(on), _) => edgewise(on, a, b, resolution, found),
+        (_, Image::Edgewise(on)) => edgewise(on, b, a, resolution, &mut |s, t| found(t, s)),
+        (Image::General, Image::General) => general_pair(a, b, projection, resolution, found),
+        (Image::General, _) => general(a, b, projection, resolution, found),
+        (_, Image::General) => general(b, a, projection, resolution, &mut |s, t| found(t, s)),
         (Image::Conic { .. }, Image::Conic { .. }) => conics(a, b, near, found),
         (Image::Conic { .. }, _) => line_and_conic(b, a, near, &mut |s, t| found(t, s)),
         (_, Image::Conic { .. }) => line_and_conic(a, b, near, found),
@@ -289,10 +289,10 @@ fn general(
     a: &ContourArc<'_>,
     b: &ContourArc<'_>,
     projection: &Projection,
-    band: f64,
+    resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    if falls_on(a, b, projection, LOOSE * band) {
+    if falls_on(a, b, projection, LOOSE * resolution) {
         return Overlap::Yes;
     }
     let middle = a.curve.point(0.5 * (a.range[0] + a.range[1]));
@@ -308,12 +308,12 @@ fn general(
                 let row = |i: usize| dot(&form.row(i).transpose(), p);
                 (p[0] * row(0) + p[1] * row(1) + p[2] * row(2)).scale(scale)
             };
-            isolate(&f, breaks, band)
+            isolate(&f, breaks, resolution)
         }
         other => {
             let line = other.line().copied().unwrap_or_else(Vector3::z);
             let line = line / line.x.hypot(line.y);
-            isolate(&|t: Interval| dot(&line, image(t)), breaks, band)
+            isolate(&|t: Interval| dot(&line, image(t)), breaks, resolution)
         }
     };
     let mut together = 0.0;
@@ -451,15 +451,15 @@ fn edgewise(
     on: &Edgewise,
     a: &ContourArc<'_>,
     b: &ContourArc<'_>,
-    band: f64,
+    resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    if on.holds(b.curve, b.range, LOOSE * band) {
+    if on.contains(b.curve, b.range, LOOSE * resolution) {
         return Overlap::Yes;
     }
-    for s in on.passed_by(b.curve, b.range, band) {
+    for s in on.passed_by(b.curve, b.range, resolution) {
         let p = b.curve.point(s);
-        on.parameters(a.curve, a.range, p, band, &mut |t| found(t, s));
+        on.parameters(a.curve, a.range, p, resolution, &mut |t| found(t, s));
     }
     Overlap::No
 }
@@ -473,7 +473,9 @@ pub fn parameters_at(
 ) {
     let projection = scene.projection;
     match &strand.image {
-        Image::Edgewise(on) => on.parameters(strand.curve, strand.range, *p, scene.band, found),
+        Image::Edgewise(on) => {
+            on.parameters(strand.curve, strand.range, *p, scene.resolution, found)
+        }
         Image::General => {
             let p = flat_of(projection, p);
             passes(strand.curve, &strand.stretches, projection, p, found);

@@ -43,36 +43,40 @@ pub fn general_pair<'x>(
     a: &'x ContourArc<'x>,
     b: &'x ContourArc<'x>,
     projection: &'x Projection,
-    band: f64,
+    resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
     let same = std::ptr::eq(a, b);
     let mut common = Common::default();
     let mut both = |x: &'x MonotoneArc, y: &'x MonotoneArc| {
-        if x.bounds.meets(&y.bounds)
+        if x.bounds.intersects(&y.bounds)
             && let Some(graphs) = Graphs::new((a, x), (b, y), projection)
         {
-            graphs.cross(band, &mut common);
+            graphs.cross(resolution, &mut common);
         }
     };
     if same {
         own_pairs(a, &mut both);
     } else {
-        for x in a.stretches.iter().filter(|x| x.bounds.meets(&b.hull)) {
+        for x in a.stretches.iter().filter(|x| x.bounds.intersects(&b.hull)) {
             for y in &b.stretches {
                 both(x, y);
             }
         }
     }
     let Common { mut roots, shared } = common;
-    let runs = Runs::new(shared, SAME * band, SHORT * band);
-    roots.extend(runs.contacts(band));
+    let runs = Runs::new(shared, SAME * resolution, SHORT * resolution);
+    roots.extend(runs.contacts(resolution));
     let overlap = [a, b].map(|c| overlap_of(runs.length(), c));
     let overlaps = overlap.contains(&Overlap::Yes);
     if overlaps {
         runs.leave_out([a.curve, b.curve], &mut roots);
     }
-    let apart = |c: &Curve, u: f64, v: f64| (c.point(u) - c.point(v)).norm().is_beyond(SAME * band);
+    let apart = |c: &Curve, u: f64, v: f64| {
+        (c.point(u) - c.point(v))
+            .norm()
+            .is_beyond(SAME * resolution)
+    };
     let mut known: Vec<(f64, f64)> = Vec::with_capacity(roots.len());
     for (t, s) in roots {
         let mut all = known.iter();
@@ -288,17 +292,17 @@ impl<'x> Graphs<'x> {
     }
 
     /// Notes the crossings, or that the two are together in the image.
-    fn cross(self, band: f64, common: &mut Common<'x>) {
-        if self.apart(band / self.scale) {
+    fn cross(self, resolution: f64, common: &mut Common<'x>) {
+        if self.apart(resolution / self.scale) {
             return;
         }
         let Some([lo, hi]) = self.common() else {
             return;
         };
         if self.transversal() {
-            return common.roots.extend(self.once([lo, hi], band));
+            return common.roots.extend(self.once([lo, hi], resolution));
         }
-        match isolate(&self, &[lo, hi], band) {
+        match isolate(&self, &[lo, hi], resolution) {
             Roots::Everywhere => common.shared.push(Shared::new(self, [lo, hi])),
             Roots::At { roots, .. } => {
                 let [a, b] = self.strands;
@@ -311,7 +315,7 @@ impl<'x> Graphs<'x> {
     }
 
     /// The crossing of stretches that cross once or not at all.
-    fn once(&self, [lo, hi]: [f64; 2], band: f64) -> Option<(f64, f64)> {
+    fn once(&self, [lo, hi]: [f64; 2], resolution: f64) -> Option<(f64, f64)> {
         let (a, b) = (self.gap(lo), self.gap(hi));
         if (a.v * b.v).is_at_most(0.0) {
             return Some(self.crossing([lo, hi], a.v));
@@ -320,7 +324,11 @@ impl<'x> Graphs<'x> {
         let mut ends = [(lo, a), (hi, b)].into_iter();
         ends.find(|(s, gap)| {
             let last = self.ends(gap.t, *s);
-            let within = if last { band } else { ROUNDING * self.scale };
+            let within = if last {
+                resolution
+            } else {
+                ROUNDING * self.scale
+            };
             gap.v.is_within(within)
         })
         .map(|(s, gap)| (gap.t, s))

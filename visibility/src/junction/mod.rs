@@ -43,7 +43,7 @@ struct Hidden {
     /// The face that ceases to.
     left: Option<FaceId>,
     /// How far aside it gets, for each unit of its length.
-    aside: f64,
+    lateral: f64,
 }
 
 struct Search<'s, 'a, 'j, 'p> {
@@ -70,7 +70,7 @@ struct Behind {
 /// Finds all T-junctions and notes them as splits of the farther strands.
 pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
     split_at_touches(strands, scene, junctions);
-    let pairs = candidates(strands, scene.projection, LOOSE * scene.band);
+    let pairs = candidates(strands, scene.projection, LOOSE * scene.resolution);
     let mut search = Search {
         scene,
         junctions,
@@ -81,7 +81,7 @@ pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut J
     for (i, j) in pairs {
         let (a, b) = (&strands[i as usize], &strands[j as usize]);
         let mut found = |t: f64, s: f64| search.crossing((i, a, t), (j, b, s));
-        let overlap = cross(a, b, scene.projection, scene.band, &mut found);
+        let overlap = cross(a, b, scene.projection, scene.resolution, &mut found);
         search.crowd_passed(a, b);
         search.crowd_passed(b, a);
         search.pass_behind(a, (j, b));
@@ -119,7 +119,7 @@ impl Behind {
     /// Cuts the farther strand, where it is not cut yet; what a contour does that crosses it there is
     /// not all that changes.
     fn cut(self, strand: &mut ContourArc<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
-        let near = 2.0 * LOOSE * scene.band;
+        let near = 2.0 * LOOSE * scene.resolution;
         let curve = strand.curve;
         let p = curve.point(self.t);
         let here = |t: f64| (curve.point(t) - p).norm().is_within(near);
@@ -145,7 +145,7 @@ type At<'x, 'a> = (u32, &'x ContourArc<'a>, f64);
 impl Search<'_, '_, '_, '_> {
     /// The parameter on its strand; where the image turns back on itself counts as an end.
     fn settle(&self, strand: &ContourArc<'_>, t: f64) -> Option<Settled> {
-        let near = LOOSE * self.scene.band;
+        let near = LOOSE * self.scene.resolution;
         let settled = settle(strand, t, near)?;
         if !strand.turns.is_empty() {
             // The image stands still at a turn: there little of the image is much of the curve.
@@ -192,7 +192,8 @@ impl Search<'_, '_, '_, '_> {
         }
         let [p, m, q] = [from, 0.5 * (from + to), to].map(|t| strand.curve.point(t));
         let chord = Point3::from((p.coords + q.coords) * 0.5);
-        self.apart(&m, &chord).is_at_most(LOOSE * self.scene.band)
+        self.apart(&m, &chord)
+            .is_at_most(LOOSE * self.scene.resolution)
     }
 
     /// Whether a crossing is that at a junction of both strands: their images may touch there, as
@@ -211,7 +212,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     fn crossing(&mut self, (i, a, t): At<'_, '_>, (j, b, s): At<'_, '_>) {
-        let near = LOOSE * self.scene.band;
+        let near = LOOSE * self.scene.resolution;
         if a.junctions()
             .any(|(id, _)| passes_once(a, id) && passes_once(b, id))
         {
@@ -226,8 +227,8 @@ impl Search<'_, '_, '_, '_> {
         let (v, _) = self.scene.projection.towards_eye(&p);
         let ahead = (q - p).dot(&v);
         if ahead.is_within(2.0 * near) {
-            self.crowd(a, t);
-            self.crowd(b, s);
+            self.mark_ambiguous(a, t);
+            self.mark_ambiguous(b, s);
             if !t.at_end && !s.at_end {
                 self.meeting([(i, a, t.t), (j, b, s.t)], &p);
             }
@@ -248,7 +249,7 @@ impl Search<'_, '_, '_, '_> {
             .add(JunctionKind::T, JunctionSupport::Alone, p);
         self.junctions.list[junction as usize].contours =
             both.iter().map(|(_, strand, _)| strand.contour).collect();
-        self.junctions.crowd(junction);
+        self.junctions.mark_ambiguous(junction);
         let change = Change::Correct;
         self.splits.extend(both.map(|(i, _, t)| {
             let split = Split {
@@ -262,7 +263,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// The turns of a strand's image that touch another contour, where their images do not cross.
     fn turns(&mut self, (i, a): (u32, &ContourArc<'_>), (j, b): (u32, &ContourArc<'_>)) {
-        let near = LOOSE * self.scene.band;
+        let near = LOOSE * self.scene.resolution;
         for &t in &a.turns {
             let p = a.curve.point(t);
             let mut met = Vec::new();
@@ -276,7 +277,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Another contour passes the end of a strand that is at a parameter.
-    fn crowd(&mut self, strand: &ContourArc<'_>, at: Settled) {
+    fn mark_ambiguous(&mut self, strand: &ContourArc<'_>, at: Settled) {
         if !at.at_end {
             return;
         }
@@ -284,10 +285,10 @@ impl Search<'_, '_, '_, '_> {
         let p = strand.curve.point(at.t);
         let nearest = usize::from((at.t - lo).is_beyond(hi - at.t));
         for (k, (id, t)) in strand.ends.iter().zip(strand.range).enumerate() {
-            let near = 2.0 * LOOSE * self.scene.band;
+            let near = 2.0 * LOOSE * self.scene.resolution;
             let passed = k == nearest || self.apart(&p, &strand.curve.point(t)).is_at_most(near);
             if let (true, &Some(id)) = (passed, id) {
-                self.junctions.crowd(id);
+                self.junctions.mark_ambiguous(id);
             }
         }
     }
@@ -295,10 +296,10 @@ impl Search<'_, '_, '_, '_> {
     /// Notes the junctions of `far` that `near` passes before in the image, be it by a touch that is
     /// no crossing.
     fn crowd_passed(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
-        let margin = 2.0 * LOOSE * self.scene.band;
+        let margin = 2.0 * LOOSE * self.scene.resolution;
         for (id, t) in far.junctions() {
-            let known = passes_once(near, id) || self.junctions.is_crowded(id);
-            if known || !near.hull.holds(self.junctions.image(id)) {
+            let known = passes_once(near, id) || self.junctions.is_ambiguous(id);
+            if known || !near.hull.contains(self.junctions.image(id)) {
                 continue;
             }
             let p = far.curve.point(t);
@@ -310,7 +311,7 @@ impl Search<'_, '_, '_, '_> {
                 passed |= ahead.is_beyond(margin) && self.apart(&p, &q).is_at_most(margin);
             });
             if passed {
-                self.junctions.crowd(id);
+                self.junctions.mark_ambiguous(id);
             }
         }
     }
@@ -319,7 +320,7 @@ impl Search<'_, '_, '_, '_> {
     /// touch it there end there, or begin to be hidden, so that it may enter what lies between them.
     fn pass_behind(&mut self, near: &ContourArc<'_>, (strand, far): (u32, &ContourArc<'_>)) {
         for (id, s) in near.junctions() {
-            if !far.hull.holds(self.junctions.image(id)) || passes_once(far, id) {
+            if !far.hull.contains(self.junctions.image(id)) || passes_once(far, id) {
                 continue;
             }
             let q = near.curve.point(s);
@@ -338,7 +339,7 @@ impl Search<'_, '_, '_, '_> {
         (id, q): (u32, &Point3<f64>),
         (strand, far, t): At<'_, '_>,
     ) -> Option<Behind> {
-        let margin = 2.0 * LOOSE * self.scene.band;
+        let margin = 2.0 * LOOSE * self.scene.resolution;
         let Settled { t, at_end: false } = self.settle(far, t)? else {
             return None;
         };
@@ -376,7 +377,7 @@ impl Search<'_, '_, '_, '_> {
     /// Another contour falls on a strand.
     fn crowd_all(&mut self, strand: &ContourArc<'_>) {
         for (id, _) in strand.junctions() {
-            self.junctions.crowd(id);
+            self.junctions.mark_ambiguous(id);
         }
     }
 
@@ -388,7 +389,7 @@ impl Search<'_, '_, '_, '_> {
         v: &Vector3<f64>,
     ) {
         if t.at_end {
-            return self.crowd(far, t);
+            return self.mark_ambiguous(far, t);
         }
         let change = if s.at_end {
             Change::Correct
@@ -404,13 +405,13 @@ impl Search<'_, '_, '_, '_> {
                 Some(Hidden {
                     entered,
                     left,
-                    aside,
+                    lateral,
                 }) => Change::Pass(Passing {
                     by: i32::from(entered.is_some()) - i32::from(left.is_some()),
                     entered,
                     left,
                     ahead: (q - p).dot(v),
-                    aside,
+                    lateral,
                 }),
                 None => Change::Correct,
             }
@@ -455,11 +456,11 @@ impl Search<'_, '_, '_, '_> {
                 return None;
             }
         }
-        let aside = turn.abs() / t.cross(v).norm();
+        let lateral = turn.abs() / t.cross(v).norm();
         Some(Hidden {
             entered,
             left,
-            aside,
+            lateral,
         })
     }
 
@@ -511,7 +512,7 @@ impl Search<'_, '_, '_, '_> {
             let h = self.scene.projection.homogeneous(&q);
             let asked = &mut self.asked[i as usize];
             let at = [h.x / h.z, h.y / h.z];
-            let near = self.scene.band * h.z.recip();
+            let near = self.scene.resolution * h.z.recip();
             if asked
                 .iter()
                 .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]).is_within(near))
@@ -526,11 +527,11 @@ impl Search<'_, '_, '_, '_> {
                 let p = a.curve.point(t.t);
                 // Where a curve without a closed form is not met, its nearest point is no end.
                 let apart = self.apart(&p, &q);
-                if t.at_end || apart.is_beyond(4.0 * LOOSE * self.scene.band) {
+                if t.at_end || apart.is_beyond(4.0 * LOOSE * self.scene.resolution) {
                     continue;
                 }
                 // Next to a turn or an end, where no stretch has a direction, that is meant.
-                let nearest = apart.max(LOOSE * self.scene.band);
+                let nearest = apart.max(LOOSE * self.scene.resolution);
                 if self.stop_next_to(a, t.t, &q, nearest).is_some() {
                     continue;
                 }

@@ -46,7 +46,7 @@ impl<'x> Shared<'x> {
     }
 
     /// Whether a point of either curve, with its parameter, is in the range.
-    fn holds(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
+    fn contains(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
         let ranges = [
             [self.at[0].min(self.at[1]), self.at[0].max(self.at[1])],
             self.on,
@@ -88,7 +88,7 @@ impl<'x> Run<'x> {
     }
 
     /// Where the two curves meet in the image: their parameters there.
-    fn contact(&self, band: f64) -> Option<(f64, f64)> {
+    fn contact(&self, resolution: f64) -> Option<(f64, f64)> {
         let [(first, lo), (last, hi)] = self.ends()?;
         let (a, b) = (first.graphs.gap(lo), last.graphs.gap(hi));
         if (a.v * b.v).is_at_most(0.0) {
@@ -97,7 +97,7 @@ impl<'x> Run<'x> {
         }
         // Where one of the curves ends nothing is beside the other any more.
         for (of, s, gap) in [(first, lo, &a), (last, hi, &b)] {
-            if of.graphs.ends(gap.t, s) && gap.v.is_within(band) {
+            if of.graphs.ends(gap.t, s) && gap.v.is_within(resolution) {
                 return Some((gap.t, s));
             }
         }
@@ -123,8 +123,8 @@ impl<'x> Run<'x> {
         all.find(|x| value(x, x.on[1]).is_some_and(changed))
     }
 
-    fn holds(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
-        self.0.iter().any(|x| x.holds(at, near))
+    fn contains(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
+        self.0.iter().any(|x| x.contains(at, near))
     }
 
     fn touches(&self, other: &Self, near: f64) -> bool {
@@ -182,8 +182,10 @@ impl<'x> Runs<'x> {
     }
 
     /// Where the curves cross or end in runs: the parameters on both.
-    pub fn contacts(&self, band: f64) -> impl Iterator<Item = (f64, f64)> {
-        self.all.iter().filter_map(move |run| run.contact(band))
+    pub fn contacts(&self, resolution: f64) -> impl Iterator<Item = (f64, f64)> {
+        self.all
+            .iter()
+            .filter_map(move |run| run.contact(resolution))
     }
 
     /// Leaves out what are no crossings of curves that fall on one another: where they only meet at
@@ -203,7 +205,7 @@ impl<'x> Runs<'x> {
         }
         roots.retain(|&(t, s)| {
             let at = [(t, curves[0].point(t)), (s, curves[1].point(s))];
-            !long.iter().any(|x| x.holds(&at, near))
+            !long.iter().any(|x| x.contains(&at, near))
         });
     }
 }

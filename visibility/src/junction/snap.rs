@@ -63,7 +63,7 @@ pub fn split_at_touches(
     scene: &Scene<'_>,
     junctions: &mut Junctions<'_>,
 ) {
-    let near = LOOSE * scene.band;
+    let near = LOOSE * scene.resolution;
     let (topology, geometry) = (&scene.brep.topology, &scene.brep.geometry);
     for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
         let within = |strand: &ContourArc<'_>| match strand.edge {
@@ -90,7 +90,7 @@ pub fn split_at_touches(
             Some(vertex) => junctions.vertex(vertex, place),
             None => junctions.add(JunctionKind::T, JunctionSupport::Alone, place),
         };
-        junctions.crowd(junction);
+        junctions.mark_ambiguous(junction);
         for (at, strand) in passing {
             let contours = &mut junctions.list[junction as usize].contours;
             contours.push(strand.contour);

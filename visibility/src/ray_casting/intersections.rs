@@ -82,7 +82,7 @@ impl Scene<'_> {
 
     /// Whether a line passes the origin of its frame.
     fn through_apex(&self, q: &Vector3<f64>, w: &Vector3<f64>) -> bool {
-        (q - w * q.dot(w)).norm().is_within(4.0 * self.band)
+        (q - w * q.dot(w)).norm().is_within(4.0 * self.resolution)
     }
 
     /// The roots of a s² + 2 b s + c; `gradient` is what turns the value into a distance.
@@ -107,7 +107,7 @@ impl Scene<'_> {
             OriginIncidence::No => {
                 let at = -b / a;
                 let extremum = c - b * b / a;
-                if extremum.is_within(4.0 * self.band * gradient(at)) {
+                if extremum.is_within(4.0 * self.resolution * gradient(at)) {
                     return found.push(at, true);
                 }
                 let radicand = b * b - a * c;
@@ -133,7 +133,7 @@ impl Scene<'_> {
         found: &mut Meetings,
     ) {
         // Beyond the tube's sphere there is nothing; the origin may be far away.
-        let reach = s.major + s.minor + 4.0 * self.band;
+        let reach = s.major + s.minor + 4.0 * self.resolution;
         let nearest = -q.dot(w);
         let half2 = reach * reach - (q + w * nearest).norm_squared();
         if half2.is_at_most(0.0) {
@@ -198,7 +198,7 @@ impl Scene<'_> {
         hi: f64,
         found: &mut Meetings,
     ) -> Roots {
-        let zeros = isolate(f, &[lo, hi], self.band);
+        let zeros = isolate(f, &[lo, hi], self.resolution);
         if let Roots::At { roots, .. } = &zeros {
             for r in roots {
                 found.push(r.t, r.contact == RootKind::Touching);

@@ -51,12 +51,12 @@ pub struct SightHit {
     pub front: bool,
     /// Whether the line passes through the inside of the face, neither along its limb nor on its
     /// boundary.
-    pub plain: bool,
+    pub unambiguous: bool,
 }
 
 /// Which of the faces on a line of sight are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum FaceQuery {
     /// All of them.
     All,
     /// Those turned towards the eye, and of the others those met on their boundary only: whether
@@ -74,7 +74,7 @@ pub struct Occluders {
     /// if there are any.
     pub order: Vec<FaceId>,
     /// Whether all were met plainly.
-    pub plain: bool,
+    pub unambiguous: bool,
 }
 
 impl Occluders {
@@ -166,7 +166,7 @@ impl Scene<'_> {
     /// What is this near to the origin of a line of sight passes through it.
     pub(crate) fn least(&self, own: OriginIncidence) -> f64 {
         match own {
-            OriginIncidence::No => 4.0 * self.band,
+            OriginIncidence::No => 4.0 * self.resolution,
             OriginIncidence::Through | OriginIncidence::Tangent => 0.0,
         }
     }
@@ -176,7 +176,7 @@ impl Scene<'_> {
     pub fn hits(
         &self,
         ray: &SightLine,
-        asked: Asked,
+        asked: FaceQuery,
         own: &impl Fn(FaceId) -> OriginIncidence,
         report: &mut impl FnMut(SightHit),
     ) {
@@ -189,8 +189,8 @@ impl Scene<'_> {
     pub fn is_blocked(&self, ray: &SightLine, own: &impl Fn(FaceId) -> OriginIncidence) -> bool {
         self.passed(ray).any(|face| {
             let mut met = false;
-            self.face_hits(ray, face, Asked::All, own(face), &mut |hit| {
-                met |= hit.plain
+            self.face_hits(ray, face, FaceQuery::All, own(face), &mut |hit| {
+                met |= hit.unambiguous
             });
             met
         })
@@ -200,7 +200,7 @@ impl Scene<'_> {
         &self,
         ray: &SightLine,
         face: FaceId,
-        asked: Asked,
+        asked: FaceQuery,
         own: OriginIncidence,
         report: &mut impl FnMut(SightHit),
     ) {
@@ -209,14 +209,14 @@ impl Scene<'_> {
         let least = self.least(own);
         for &(s, touch) in &meetings.at[..meetings.count] {
             let p = ray.origin + ray.towards * s;
-            if asked == Asked::Hiding && s.abs().is_short_of(least) {
+            if asked == FaceQuery::Hiding && s.abs().is_short_of(least) {
                 // Touched by another face, it may be this one that hides what is next to it.
                 if self.locator.place(face, &p) != PointLocation::Outside {
                     report(SightHit {
                         at: s,
                         face,
                         front: false,
-                        plain: false,
+                        unambiguous: false,
                     });
                 }
                 continue;
@@ -227,8 +227,8 @@ impl Scene<'_> {
             let front = touch || self.is_turned(face, &p, &ray.towards);
             let locator = self.locator.face(face);
             let place = match asked {
-                Asked::Hiding if !front && !locator.on_boundary(&p) => continue,
-                Asked::Hiding if !front => PointLocation::On,
+                FaceQuery::Hiding if !front && !locator.on_boundary(&p) => continue,
+                FaceQuery::Hiding if !front => PointLocation::On,
                 _ => locator.place(&p),
             };
             if place == PointLocation::Outside {
@@ -238,7 +238,7 @@ impl Scene<'_> {
                 at: s,
                 face,
                 front,
-                plain: !touch && place == PointLocation::Inside,
+                unambiguous: !touch && place == PointLocation::Inside,
             });
         }
     }
@@ -297,8 +297,8 @@ impl Scene<'_> {
         own: &impl Fn(FaceId) -> OriginIncidence,
     ) -> Occluders {
         let (mut fronts, mut unclear): (Vec<SightHit>, Vec<SightHit>) = (Vec::new(), Vec::new());
-        self.hits(ray, Asked::Hiding, own, &mut |hit| {
-            if !hit.plain {
+        self.hits(ray, FaceQuery::Hiding, own, &mut |hit| {
+            if !hit.unambiguous {
                 unclear.push(hit);
             } else if hit.front {
                 fronts.push(hit);
@@ -309,7 +309,7 @@ impl Scene<'_> {
             return Occluders {
                 qi: fronts.len() as u32,
                 order: fronts.iter().map(|hit| hit.face).collect(),
-                plain: unclear.is_empty(),
+                unambiguous: unclear.is_empty(),
             };
         }
         let mut most: Vec<Layer> = Vec::new();
@@ -325,7 +325,7 @@ impl Scene<'_> {
         Occluders {
             qi: most.len() as u32,
             order: first.map(|layer| layer.face).into_iter().collect(),
-            plain: false,
+            unambiguous: false,
         }
     }
 
@@ -367,7 +367,7 @@ impl Scene<'_> {
         }
         // A wedge of material, or of nothing, next to an edge is as thick here as the way aside.
         let touched = |hit: &&SightHit| {
-            let reach = 2.0 * ASIDE * self.band;
+            let reach = 2.0 * ASIDE * self.resolution;
             layers.iter().any(|(l, _)| (l.at - hit.at).is_within(reach))
         };
         for hit in unclear.iter().filter(|hit| !hit.front).filter(touched) {
@@ -380,7 +380,7 @@ impl Scene<'_> {
         // Faces that touch are no further apart here than the resolution: there is no gap to see.
         for (back, behind) in backs {
             let touches = |(l, hit): &(Layer, &SightHit)| {
-                let near = (l.at - back).is_within(TOUCHING * self.band);
+                let near = (l.at - back).is_within(TOUCHING * self.resolution);
                 near && !self.meet_at_an_angle(ray, [hit, behind])
             };
             if let Some(i) = layers.iter().position(touches) {
@@ -413,7 +413,7 @@ impl Scene<'_> {
         report: &mut impl FnMut(f64, bool),
     ) {
         let surface = self.brep.surface(hit.face);
-        let beside = ray.origin + ray.towards * hit.at + side * (ASIDE * self.band);
+        let beside = ray.origin + ray.towards * hit.at + side * (ASIDE * self.resolution);
         let (towards, _) = self.projection.towards_eye(&beside);
         let back = 2.0 * hit.at;
         let parallel = SightLine {
@@ -451,7 +451,7 @@ impl Scene<'_> {
             return false;
         };
         let part = self.bounds();
-        if !part.holds(&eye) {
+        if !part.contains(&eye) {
             return false;
         }
         // Directions without a common pattern, until one meets every face plainly.
@@ -465,16 +465,16 @@ impl Scene<'_> {
                 towards: Vector3::new(rho * a.cos(), rho * a.sin(), z),
                 length: f64::INFINITY,
             };
-            let (mut plain, mut nearest) = (true, (f64::INFINITY, true));
-            self.hits(&ray, Asked::All, &|_| OriginIncidence::No, &mut |hit| {
-                plain &= hit.plain;
+            let (mut unambiguous, mut nearest) = (true, (f64::INFINITY, true));
+            self.hits(&ray, FaceQuery::All, &|_| OriginIncidence::No, &mut |hit| {
+                unambiguous &= hit.unambiguous;
                 if hit.at.is_short_of(nearest.0) {
                     // A face turned towards where the line runs is left from inside.
                     nearest = (hit.at, hit.front);
                 }
             });
             let inside = nearest.0.is_finite() && nearest.1;
-            if plain {
+            if unambiguous {
                 return inside;
             }
             votes += if inside { 1 } else { -1 };

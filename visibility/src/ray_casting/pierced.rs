@@ -26,7 +26,7 @@ impl Pierced {
         }
     }
 
-    fn meets(&self, lo: &[f64; 3], hi: &[f64; 3]) -> bool {
+    fn intersects(&self, lo: &[f64; 3], hi: &[f64; 3]) -> bool {
         let (mut from, mut to) = (0.0f64, self.length);
         for i in 0..3 {
             let a = (lo[i] - self.origin[i]) * self.inverse[i];
@@ -40,10 +40,10 @@ impl Pierced {
 
 impl SelectionFunction<FaceBox> for Pierced {
     fn should_unpack_parent(&self, e: &AABB<[f64; 3]>) -> bool {
-        self.meets(&e.lower(), &e.upper())
+        self.intersects(&e.lower(), &e.upper())
     }
     fn should_unpack_leaf(&self, leaf: &FaceBox) -> bool {
         let e = leaf.envelope();
-        self.meets(&e.lower(), &e.upper())
+        self.intersects(&e.lower(), &e.upper())
     }
 }

@@ -23,7 +23,7 @@ pub struct Scene<'a> {
     /// Where points lie in faces.
     pub locator: Locator<'a>,
     /// The resolution.
-    pub band: f64,
+    pub resolution: f64,
     /// The sine of the angle between parallel sight and a direction along which the whole part is no
     /// longer in the image than the resolution.
     pub tilt: f64,
@@ -37,13 +37,13 @@ fn hull(boxes: &[Aabb]) -> Aabb {
 }
 
 impl<'a> Scene<'a> {
-    /// The scene of a part seen by a camera; `band` is the resolution.
-    pub fn new(brep: &'a Brep, projection: &'a Projection, band: f64) -> Self {
-        let locator = Locator::new(brep, band);
+    /// The scene of a part seen by a camera; `resolution` is the resolution.
+    pub fn new(brep: &'a Brep, projection: &'a Projection, resolution: f64) -> Self {
+        let locator = Locator::new(brep, resolution);
         let boxes: Vec<Aabb> = brep
             .topology
             .face_ids()
-            .map(|f| face_box(brep, &locator, f, band))
+            .map(|f| face_box(brep, &locator, f, resolution))
             .collect();
         let leaf = |(i, b): (usize, &Aabb)| {
             GeomWithData::new(Rectangle::from_corners(b.min, b.max), FaceId(i as u32))
@@ -55,8 +55,8 @@ impl<'a> Scene<'a> {
             brep,
             projection,
             locator,
-            band,
-            tilt: (band / size).max(ROUNDING),
+            resolution,
+            tilt: (resolution / size).max(ROUNDING),
             tree,
             bounds,
         }
@@ -70,7 +70,7 @@ impl<'a> Scene<'a> {
     /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
     pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
         match self.projection.sight {
-            ViewRay::Eye(e) => (e - origin).dot(normal).is_within(self.band),
+            ViewRay::Eye(e) => (e - origin).dot(normal).is_within(self.resolution),
             ViewRay::Direction(d) => d.dot(normal).is_within(self.tilt),
         }
     }

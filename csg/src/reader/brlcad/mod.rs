@@ -20,7 +20,7 @@ use super::error::SpannedError;
 use super::frame::Vector;
 use super::notes::Notes;
 use super::number::literal;
-use super::rigid_fit::DOUBLES;
+use super::rigid_fit::F64_DIGITS;
 use super::{Program, ReadOptions};
 use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
@@ -357,7 +357,7 @@ impl<'a> Reader<'a> {
 
     /// Tells that vectors or a matrix were replaced, unless by the rounding of doubles only.
     fn replaced(&mut self, residual: f64, span: Range<usize>) {
-        if residual > DOUBLES {
+        if residual > F64_DIGITS {
             self.notes.snapped(residual, span);
         }
     }

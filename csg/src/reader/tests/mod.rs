@@ -30,7 +30,7 @@ fn message(text: &str, format: Format) -> String {
 }
 
 /// Whether a primitive, in its own frame, holds a point.
-fn holds(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
+fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
     let f = to_f64;
     let within = |value: f64, size: &Rational| (0.0..=f(size)).contains(&value);
     let radial = x.hypot(y);
@@ -56,7 +56,7 @@ fn inside(tree: &Tree, point: [f64; 3]) -> bool {
             TreeNode::Leaf(PlacedPrimitive { primitive, motion }) => {
                 let back = motion.inverse();
                 let exact = point.map(|x| premio_kernel::number::rational::from_f64(x).unwrap());
-                holds(primitive, back.apply_point(&exact).map(|x| to_f64(&x)))
+                contains(primitive, back.apply_point(&exact).map(|x| to_f64(&x)))
             }
             TreeNode::Operation { op, children } => {
                 let mut below = children.iter().map(|child: &NodeId| held[child.index()]);

@@ -24,7 +24,7 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 pub(super) struct Density<'a, N: Float = f64> {
     pub ground: Ground<N>,
     /// The same in doubles, where these may tell.
-    pub doubles: Option<Ground>,
+    pub rounded_f64: Option<Ground>,
     pub amid: &'a Amid<N>,
     /// The errors that do not matter.
     pub floor: Moments<N>,
@@ -51,7 +51,7 @@ impl<N: Float> Density<'_, N> {
         let between = Between {
             ground: &self.ground,
             range,
-            doubles: self.doubles.as_ref(),
+            rounded_f64: self.rounded_f64.as_ref(),
         };
         adaptive(a, b, &self.floor, &between)
     }
@@ -73,7 +73,7 @@ pub(super) fn moments<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) ->
         middle: Middle::at(middle),
     };
     let d = Density {
-        doubles: amid.tells_in_doubles().then(|| ground.in_doubles()),
+        rounded_f64: amid.tells_in_doubles().then(|| ground.to_f64()),
         ground,
         amid,
         floor: amid.floor(brep, face),
@@ -128,7 +128,7 @@ fn reaches<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId], p: &Point3<N>) -> boo
     coedges.iter().any(|&c| {
         let e = brep.topology.coedge(c).edge;
         let around = bounds::bounds(brep.curve(e), brep.range(e));
-        around.grown(around.diagonal()).holds(p)
+        around.grown(around.diagonal()).contains(p)
     })
 }
 
@@ -180,7 +180,7 @@ pub(super) fn add<N: Float>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
 fn samples<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId]) -> Vec<Point3<f64>> {
     let of_edge = |&c: &CoedgeId| {
         let edge = brep.topology.coedge(c).edge;
-        let curve = brep.curve(edge).in_doubles();
+        let curve = brep.curve(edge).to_f64();
         let [lo, hi] = brep.range(edge).map(N::rounded);
         (0..=SAMPLES).map(move |i| curve.point(lo + (hi - lo) * f64::from(i) / f64::from(SAMPLES)))
     };
@@ -229,7 +229,7 @@ fn clear_axis<N: Float>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> 
 /// they are all on the other side that is not near the top or the bottom, where the parallel's plane
 /// touches the torus.
 fn opposite_parallel<N: Float>(brep: &Brep<N>, t: &Torus<N>, coedges: &[CoedgeId]) -> N {
-    let torus = Surface::Torus(*t).in_doubles();
+    let torus = Surface::Torus(*t).to_f64();
     let points = samples(brep, coedges).into_iter();
     let angles: Vec<f64> = points.map(|p| torus.parameters(&p)[1]).collect();
     let near = |v: f64| {
@@ -328,13 +328,13 @@ fn opening_passes<N: Float>(
     let arcs = Arcs::new(directed.collect(), N::ZERO);
     // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
     // that is told from it to rounding, or to the finest resolution.
-    let band = N::ROUNDING.max(N::from_f64(FINEST_RESOLUTION)) * d.amid.size;
+    let resolution = N::ROUNDING.max(N::from_f64(FINEST_RESOLUTION)) * d.amid.size;
     let mut passes: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
     let mut plain = true;
     for (i, &c) in coedges.iter().enumerate() {
         let curve = arcs.all[i].curve;
         for range in arcs.ranges(&opening, i, N::ZERO) {
-            plane_roots(curve, range, &plane, band, &mut |s, crosses| {
+            plane_roots(curve, range, &plane, resolution, &mut |s, crosses| {
                 let q = t.frame.coordinates(&curve.point(s));
                 let outward = (q.x.hypot(q.y) - t.major) * cos;
                 if outward.is_above_zero() {

@@ -35,7 +35,7 @@ impl<N: Float> Middle<N> {
         Self { angle, sin, cos }
     }
 
-    fn in_doubles(&self) -> Middle {
+    fn to_f64(&self) -> Middle {
         Middle {
             angle: self.angle.rounded(),
             sin: self.sin.rounded(),
@@ -46,12 +46,12 @@ impl<N: Float> Middle<N> {
 
 impl<N: Float> Ground<N> {
     /// The same in doubles.
-    pub fn in_doubles(&self) -> Ground {
+    pub fn to_f64(&self) -> Ground {
         Ground {
-            surface: self.surface.in_doubles(),
+            surface: self.surface.to_f64(),
             reference: rounded(&self.reference).into(),
             base: self.base.rounded(),
-            middle: self.middle.in_doubles(),
+            middle: self.middle.to_f64(),
         }
     }
 
@@ -102,7 +102,7 @@ pub(super) struct OnEdge<'a, N: Float> {
     pub curve: &'a Curve<N>,
     /// Where G starts, and a v on the edge.
     pub from: [N; 2],
-    pub doubles: Option<(&'a Ground, &'a Curve)>,
+    pub rounded_f64: Option<(&'a Ground, &'a Curve)>,
 }
 
 impl<N: Float> Integrand<N, 6> for OnEdge<'_, N> {
@@ -111,7 +111,7 @@ impl<N: Float> Integrand<N, 6> for OnEdge<'_, N> {
     }
 
     fn roughly(&self, t: f64) -> Option<[f64; 6]> {
-        let (ground, curve) = self.doubles?;
+        let (ground, curve) = self.rounded_f64?;
         Some(ground.on_edge(curve, t, self.from.map(N::rounded)))
     }
 }
@@ -120,7 +120,7 @@ impl<N: Float> Integrand<N, 6> for OnEdge<'_, N> {
 pub(super) struct Between<'a, N: Float> {
     pub ground: &'a Ground<N>,
     pub range: [N; 2],
-    pub doubles: Option<&'a Ground>,
+    pub rounded_f64: Option<&'a Ground>,
 }
 
 impl<N: Float> Integrand<N, 5> for Between<'_, N> {
@@ -129,6 +129,6 @@ impl<N: Float> Integrand<N, 5> for Between<'_, N> {
     }
 
     fn roughly(&self, u: f64) -> Option<Moments<f64>> {
-        Some(self.doubles?.along(u, self.range.map(N::rounded)))
+        Some(self.rounded_f64?.along(u, self.range.map(N::rounded)))
     }
 }

@@ -68,9 +68,9 @@ fn loop_sum<N: Float>(
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
         let rough = density
-            .doubles
+            .rounded_f64
             .as_ref()
-            .map(|ground| (ground, curve.in_doubles()));
+            .map(|ground| (ground, curve.to_f64()));
         let [lo, hi] = brep.range(coedge.edge);
         let mut breaks = curve.breaks(lo, hi);
         breaks.extend(marks(c));
@@ -89,7 +89,7 @@ fn loop_sum<N: Float>(
                 ground: &density.ground,
                 curve,
                 from: [start, near],
-                doubles: rough.as_ref().map(|(ground, curve)| (*ground, curve)),
+                rounded_f64: rough.as_ref().map(|(ground, curve)| (*ground, curve)),
             };
             let part = adaptive(pair[0], pair[1], &floor, &on_edge);
             for (s, v) in total.iter_mut().zip(part) {

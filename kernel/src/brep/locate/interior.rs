@@ -44,7 +44,7 @@ impl<N: Float> FaceLocator<'_, N> {
                 best = Some((length, point));
             }
             // Mostly the first one is.
-            if length.is_beyond(N::from_f64(LONG) * self.band) {
+            if length.is_beyond(N::from_f64(LONG) * self.resolution) {
                 break;
             }
         }
@@ -73,7 +73,7 @@ impl<N: Float> FaceLocator<'_, N> {
 
     /// The walks of the surface's own kinds through a point of it.
     fn walks_through(&self, p: &Point3<N>, towards: Vector3<N>) -> Vec<SurfacePath<N>> {
-        let parallel = || SurfacePath::parallel(self.surface, p, Sense::Along, self.band);
+        let parallel = || SurfacePath::parallel(self.surface, p, Sense::Along, self.resolution);
         let mut walks = Vec::new();
         match self.surface {
             Surface::Plane(s) => walks.push(SurfacePath::straight(s, p, towards)),
@@ -96,9 +96,9 @@ impl<N: Float> FaceLocator<'_, N> {
 
     /// Where a walk from the boundary plainly leaves the face, before it meets anything else.
     fn left_at(&self, walk: &SurfacePath<N>) -> Option<N> {
-        let start = N::from_f64(NEXT) * self.band;
+        let start = N::from_f64(NEXT) * self.resolution;
         let mut first: Option<(N, CrossingSense)> = None;
-        self.arcs.met_by(walk, self.band, &mut |i, ranges| {
+        self.arcs.hit_by(walk, self.resolution, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
             let mut note = |at: N, _: N, passage: CrossingSense| {
                 let is_first = first.is_none_or(|known| at.is_short_of(known.0));
@@ -106,7 +106,14 @@ impl<N: Float> FaceLocator<'_, N> {
                     first = Some((at, passage));
                 }
             };
-            walk.meet(self.surface, self.side, arc, ranges, self.band, &mut note);
+            walk.intersections(
+                self.surface,
+                self.side,
+                arc,
+                ranges,
+                self.resolution,
+                &mut note,
+            );
         });
         first
             .filter(|met| met.1 == CrossingSense::Leaving)

@@ -135,8 +135,8 @@ proptest! {
         let p = surface.point(u, v);
         let (low, high) = (parallel(0.5), parallel(2.5));
         let (a, b) = (tube(&torus, 1.0), tube(&torus, 4.0));
-        let band = vec![arc(&low, [0.0, TAU], Sense::Along), arc(&high, [0.0, TAU], Sense::Against)];
-        let locator = FaceLocator::new(&surface, Sense::Along, band, BAND);
+        let resolution = vec![arc(&low, [0.0, TAU], Sense::Along), arc(&high, [0.0, TAU], Sense::Against)];
+        let locator = FaceLocator::new(&surface, Sense::Along, resolution, BAND);
         prop_assert_eq!(locator.place(&p), expect(v > 0.5 && v < 2.5));
         // The tube's circle runs with phi; theta increases to its right.
         let bend = vec![arc(&a, [0.0, TAU], Sense::Against), arc(&b, [0.0, TAU], Sense::Along)];

@@ -24,7 +24,7 @@ impl<N: Float> Sorter<'_, N> {
         for sense in [Sense::Along, Sense::Against] {
             let tube = SurfacePath::tube(&t, p, sense);
             tubes |= self.follow(ring, arc, p, left, &[tube], None);
-            if let Some(round) = SurfacePath::parallel(self.surface, p, sense, self.band) {
+            if let Some(round) = SurfacePath::parallel(self.surface, p, sense, self.resolution) {
                 rounds |= self.follow(ring, arc, p, left, &[round], None);
             }
         }
@@ -55,12 +55,13 @@ impl<N: Float> Sorter<'_, N> {
                 let corner = leg.point(turn * t.minor);
                 if let (true, Some(round)) = (
                     along,
-                    SurfacePath::parallel(self.surface, &corner, sense, self.band),
+                    SurfacePath::parallel(self.surface, &corner, sense, self.resolution),
                 ) && self.follow(ring, arc, p, left, &[leg, round], None)
                 {
                     return true;
                 }
-                let Some(round) = SurfacePath::parallel(self.surface, p, sense, self.band) else {
+                let Some(round) = SurfacePath::parallel(self.surface, p, sense, self.resolution)
+                else {
                     continue;
                 };
                 let radius = t.frame.coordinates(p).xy().length();
@@ -134,7 +135,7 @@ impl<N: Float> Sorter<'_, N> {
         let turn = wrap(x - u);
         let round = |w: N| {
             let from = self.surface.point(u, w);
-            let walk = SurfacePath::parallel(self.surface, &from, toward(turn), self.band)?;
+            let walk = SurfacePath::parallel(self.surface, &from, toward(turn), self.resolution)?;
             Some((walk, turn.abs() * (t.major + t.minor * w.cos())))
         };
         let tube = |from: &Point3<N>, rise: N| {
@@ -151,7 +152,7 @@ impl<N: Float> Sorter<'_, N> {
             ],
         };
         if let Some((_, length)) = legs.last_mut() {
-            *length -= N::from_f64(64.0) * self.band;
+            *length -= N::from_f64(64.0) * self.resolution;
         }
         let cut = |(walk, length): (SurfacePath<N>, N)| walk.upto(length.max(N::ZERO));
         Some(legs.into_iter().map(cut).collect())

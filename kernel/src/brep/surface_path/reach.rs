@@ -101,10 +101,11 @@ impl Reach {
     }
 
     /// Whether the walk may pass through a box, or by it within the resolution.
-    pub fn may_meet(&self, lo: &[f64; 3], hi: &[f64; 3], band: f64) -> bool {
+    pub fn may_intersect(&self, lo: &[f64; 3], hi: &[f64; 3], resolution: f64) -> bool {
         let Aabb { min, max } = &self.extent;
-        let is_aside =
-            |i: usize| (lo[i] - band).is_beyond(max[i]) || (hi[i] + band).is_short_of(min[i]);
+        let is_aside = |i: usize| {
+            (lo[i] - resolution).is_beyond(max[i]) || (hi[i] + resolution).is_short_of(min[i])
+        };
         if (0..3).any(is_aside) {
             return false;
         }
@@ -114,33 +115,33 @@ impl Reach {
             half: Vector3::new(side(0, -1.0), side(1, -1.0), side(2, -1.0)),
         };
         let [mid, half] = self.plane.span(&b);
-        if mid.abs().is_beyond(half + band) {
+        if mid.abs().is_beyond(half + resolution) {
             return false;
         }
         let is_below = |plane: &Above| {
             let [mid, half] = plane.span(&b);
-            mid.is_short_of(-half - band)
+            mid.is_short_of(-half - resolution)
         };
-        let is_off = |beside: &Beside| beside.is_off(&b, band);
+        let is_off = |beside: &Beside| beside.is_off(&b, resolution);
         if self.half.as_ref().is_some_and(is_below) || self.beside.as_ref().is_some_and(is_off) {
             return false;
         }
         self.line.as_ref().is_none_or(|(along, length)| {
             let [mid, half] = along.span(&b);
-            mid.reaches(-half - band) && (mid - half - band).is_at_most(*length)
+            mid.reaches(-half - resolution) && (mid - half - resolution).is_at_most(*length)
         })
     }
 }
 
 impl Beside {
     /// Whether a box is plainly on the other side.
-    fn is_off(&self, b: &Middle, band: f64) -> bool {
+    fn is_off(&self, b: &Middle, resolution: f64) -> bool {
         let arm = b.centre - self.axis.origin;
         let [up, _] = self.axis.span(b);
         let across = (arm - self.axis.normal * up).length();
         let rounding = ROUNDING * (arm.length() + b.centre.coords.length());
         let beyond = (across - self.major) * self.side;
-        beyond.is_short_of(-b.half.length() - band - rounding)
+        beyond.is_short_of(-b.half.length() - resolution - rounding)
     }
 }
 
@@ -200,12 +201,13 @@ mod tests {
             for k in 0..=100 {
                 let p = walk.point(length * N::from_f64(f64::from(k) / 100.0));
                 assert!(
-                    walk.may_meet_box(&Aabb::new(&p), N::ZERO),
+                    walk.may_intersect_box(&Aabb::new(&p), N::ZERO),
                     "{walk:?} at {p:?}"
                 );
                 // Aside by more than the box is wide.
                 let aside = p.map(|x| x + N::from_f64(0.1));
-                passed_over += u32::from(!walk.may_meet_box(&Aabb::new(&aside), N::from_f64(1e-3)));
+                passed_over +=
+                    u32::from(!walk.may_intersect_box(&Aabb::new(&aside), N::from_f64(1e-3)));
             }
             assert!(passed_over > 20, "{walk:?}");
         }

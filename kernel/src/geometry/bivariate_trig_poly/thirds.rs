@@ -74,7 +74,7 @@ impl<N: Float> BivariateTrigPoly<N> {
 
 impl<N: Float> Reaches<N> {
     /// The same in doubles.
-    pub fn in_doubles(&self) -> Reaches {
+    pub fn to_f64(&self) -> Reaches {
         Reaches(self.0.map(|row| row.map(N::rounded)))
     }
 }

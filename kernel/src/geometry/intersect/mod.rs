@@ -15,7 +15,7 @@ use super::surface::{Cone, Surface, SurfaceKind};
 use super::surface_pair::{Carrier, PairMeasure, SurfacePair};
 use super::trace::Unresolved;
 use super::vector::rounded as place;
-use crate::brep::topology::Sense;
+use crate::geometry::sense::Sense;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::interval::Interval;
@@ -188,9 +188,9 @@ fn positive_parts<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     f: &impl Function<N>,
-    band: N,
+    resolution: N,
 ) -> Vec<[N; 2]> {
-    let roots = match isolate(f, &curve.breaks(range[0], range[1]), band) {
+    let roots = match isolate(f, &curve.breaks(range[0], range[1]), resolution) {
         Roots::Everywhere => return Vec::new(),
         Roots::At { roots, .. } => roots,
     };
@@ -225,12 +225,12 @@ fn nappe_parts<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     surface: &Surface<N>,
-    band: N,
+    resolution: N,
 ) -> Vec<[N; 2]> {
     let Surface::Cone(c) = surface else {
         return vec![range];
     };
-    positive_parts(curve, range, &AboveApex { curve, cone: c }, band)
+    positive_parts(curve, range, &AboveApex { curve, cone: c }, resolution)
 }
 
 /// How far along a cone's axis from its apex a curve runs.

@@ -123,8 +123,11 @@ fn common_apex<N: Float>(
     let breaks: Vec<N> = (0..=8)
         .map(|i| N::from_f64(0.1) + N::TAU * N::whole(i) / N::from_f64(8.0))
         .collect();
-    let Roots::At { roots, .. } = isolate(&|t| along(Jet::variable(t)), &breaks, predicates.band())
-    else {
+    let Roots::At { roots, .. } = isolate(
+        &|t| along(Jet::variable(t)),
+        &breaks,
+        predicates.resolution(),
+    ) else {
         return meeting;
     };
     let mut angles: Vec<(N, bool)> = roots

@@ -91,7 +91,7 @@ fn traced<N: Float>(
     form: &BivariateTrigPoly<N>,
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    let traced = trace(t, form, predicates.band())?;
+    let traced = trace(t, form, predicates.resolution())?;
     let mut meeting = SurfaceIntersection::nothing();
     for [theta, phi] in &traced.close {
         let p = Surface::Torus(*t).point(*theta, *phi);
@@ -116,7 +116,7 @@ fn traced<N: Float>(
         let passes: Vec<N> = passes.into_iter().map(|at| *at).collect();
         let whole = [N::ZERO, curve.period().unwrap_or(N::ZERO)];
         let mut kept = Vec::new();
-        for range in nappe_parts(&curve, whole, other, predicates.band()) {
+        for range in nappe_parts(&curve, whole, other, predicates.resolution()) {
             let range = range.map(|end| at_pass(&curve, end, &passes, predicates));
             kept.push((meeting.branches.len(), range));
             let (curve, closed) = (curve.clone(), range == whole);
@@ -169,7 +169,7 @@ fn circle_of<N: Float>(
     let [a, b, c] =
         [N::ZERO, N::ONE, N::TWO].map(|third| branch.point(third * period / N::from_f64(3.0)));
     let circle = Curve::Circle(Circle::through(&a, &b, &c)?);
-    let on = |s: &Surface<N>| lies_on(&circle, [N::ZERO, N::TAU], s, predicates.band());
+    let on = |s: &Surface<N>| lies_on(&circle, [N::ZERO, N::TAU], s, predicates.resolution());
     (on(&Surface::Torus(*t)) && on(other)).then_some(circle)
 }
 

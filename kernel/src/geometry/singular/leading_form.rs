@@ -41,7 +41,7 @@ const MORE_STEPS: usize = 4;
 const OFF: f64 = 1024.0;
 
 /// A critical point with a Hessian of rank two; none where no zone is plain.
-pub(super) fn plain<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
+pub(super) fn simple<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
     let at = tracer.form.partials(angles[0], angles[1]);
     let crosses = at.xx * at.yy < at.xy * at.xy;
     let directions = if crosses {
@@ -95,13 +95,13 @@ impl Kind {
         }
     }
 
-    /// Whether p is one as far as `band` tells.
-    fn is_at(self, form: &BivariateTrigPoly, p: [f64; 2], band: f64) -> bool {
+    /// Whether p is one as far as `resolution` tells.
+    fn is_at(self, form: &BivariateTrigPoly, p: [f64; 2], resolution: f64) -> bool {
         match self {
             Self::Multiple(n) => {
-                terms_vanish(&taylor(form, p, TorusParameter::Around), n, band).is_some()
+                terms_vanish(&taylor(form, p, TorusParameter::Around), n, resolution).is_some()
             }
-            Self::RankOne(k) => Sheet::at(form, p).vanishes(k, band).is_some(),
+            Self::RankOne(k) => Sheet::at(form, p).vanishes(k, resolution).is_some(),
         }
     }
 
@@ -109,12 +109,12 @@ impl Kind {
     /// found in doubles first: what is none there, within what these are off, is none.
     fn near<N: Float>(self, tracer: &Tracer<'_, N>, start: [N; 2]) -> Option<[N; 2]> {
         let exactly = |p| self.step(tracer.form, p);
-        let Some((form, slop)) = tracer.rough() else {
+        let Some((form, slop)) = tracer.f64_form() else {
             return walk(start, STEPS, exactly);
         };
         let rough = walk(start.map(N::rounded), STEPS, |p| self.step(form, p))?;
-        let band = tracer.band.rounded().max(OFF * slop);
-        self.is_at(form, rough, band).then_some(())?;
+        let resolution = tracer.resolution.rounded().max(OFF * slop);
+        self.is_at(form, rough, resolution).then_some(())?;
         walk(rough.map(N::from_f64), MORE_STEPS, exactly)
     }
 }
@@ -144,7 +144,7 @@ fn multiple<N: Float>(
 ) -> Option<(SingularPoint<N>, N)> {
     let p = Kind::Multiple(n).near(tracer, start)?;
     let k = taylor(tracer.form, p, TorusParameter::Around);
-    let reach = terms_vanish(&k, n, tracer.band)?;
+    let reach = terms_vanish(&k, n, tracer.resolution)?;
     if !(reach < N::from_f64(ZONE) && N::from_f64(LEAD) * size(&k, n + 1) * reach <= size(&k, n)) {
         return None;
     }
@@ -159,9 +159,9 @@ fn size<N: Float>(k: &Taylor<N>, degree: usize) -> N {
 }
 
 /// Where the terms of degree n leave the band, if none of a lower degree does within that.
-fn terms_vanish<N: Float>(k: &Taylor<N>, n: usize, band: N) -> Option<N> {
-    let reach = (band / size(k, n)).rough_root(n as u32);
-    let vanish = (0..n).all(|d| size(k, d) * reach.powi(d as i32) <= band);
+fn terms_vanish<N: Float>(k: &Taylor<N>, n: usize, resolution: N) -> Option<N> {
+    let reach = (resolution / size(k, n)).rough_root(n as u32);
+    let vanish = (0..n).all(|d| size(k, d) * reach.powi(d as i32) <= resolution);
     vanish.then_some(reach)
 }
 
@@ -235,8 +235,9 @@ fn fold<N: Float>(
     };
     let chart = |axis| Chart::new(tracer.form, angles, axis, &[], N::ONE, weights);
     let charts = [TorusParameter::Around, TorusParameter::Tube].map(chart);
-    let holds =
-        |c: &Chart<N>, zone: N| is_whole(c, tracer.band, zone, N::ONE) && is_plain(c, zone, N::ONE);
+    let holds = |c: &Chart<N>, zone: N| {
+        is_whole(c, tracer.resolution, zone, N::ONE) && is_plain(c, zone, N::ONE)
+    };
     let zone = zone(|zone| charts.iter().all(|c| holds(c, zone)))?;
     let pass = |[x, y]: [N; 2]| {
         let steep = y.abs() > x.abs();
@@ -259,8 +260,8 @@ fn zone<N: Float>(holds: impl Fn(N) -> bool) -> Option<N> {
 }
 
 /// Whether Taylor's polynomial is F well within the band, for |σ| and |κ| up to the given ones.
-fn is_whole<N: Float>(chart: &Chart<N>, band: N, sigma: N, kappa: N) -> bool {
-    N::from_f64(WHOLE) * chart.left(sigma, kappa) <= band
+fn is_whole<N: Float>(chart: &Chart<N>, resolution: N, sigma: N, kappa: N) -> bool {
+    N::from_f64(WHOLE) * chart.left(sigma, kappa) <= resolution
 }
 
 /// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
@@ -336,9 +337,9 @@ impl<N: Float> Sheet<N> {
     }
 
     /// Where the term of order k leaves the band, if none of a lower order does within that.
-    fn vanishes(&self, k: usize, band: N) -> Option<N> {
-        let reach = (band / self.along[k].abs()).rough_root(k as u32);
-        let vanish = (0..k).all(|j| self.along[j].abs() * reach.powi(j as i32) <= band);
+    fn vanishes(&self, k: usize, resolution: N) -> Option<N> {
+        let reach = (resolution / self.along[k].abs()).rough_root(k as u32);
+        let vanish = (0..k).all(|j| self.along[j].abs() * reach.powi(j as i32) <= resolution);
         vanish.then_some(reach)
     }
 }
@@ -351,8 +352,8 @@ fn rank_one<N: Float>(
 ) -> Option<(SingularPoint<N>, N)> {
     let p = Kind::RankOne(k).near(tracer, start)?;
     let sheet = Sheet::at(tracer.form, p);
-    let reach = sheet.vanishes(k, tracer.band)?;
-    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::from_f64(LEAD) * tracer.band
+    let reach = sheet.vanishes(k, tracer.resolution)?;
+    let leads = sheet.bend.abs() * reach * reach >= N::TWO * N::from_f64(LEAD) * tracer.resolution
         && reach < N::from_f64(ZONE)
         && N::from_f64(LEAD) * sheet.along[k + 1].abs() * reach <= sheet.along[k].abs();
     leads.then_some(())?;
@@ -395,8 +396,9 @@ fn rank_one_branches<N: Float>(
         let [x, y] = angles.map(|c| Interval::around(c, zone));
         let sigma = if odd { zone.sqrt() } else { zone };
         let kappa = N::TWO * kappa;
-        let holds =
-            |c: &Chart<N>| is_whole(c, tracer.band, sigma, kappa) && holds_both(c, sigma, kappa);
+        let holds = |c: &Chart<N>| {
+            is_whole(c, tracer.resolution, sigma, kappa) && holds_both(c, sigma, kappa)
+        };
         !bend.value(x, y).has_zero() && holds(&own) && other.iter().all(holds)
     })?;
     let kappas = match (odd, ratio < N::ZERO) {

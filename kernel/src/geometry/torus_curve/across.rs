@@ -33,13 +33,13 @@ enum Place<N: Float> {
 impl<N: Float> TorusCurve<N> {
     /// The parameters, next to the curve's own, at which it crosses the circle of the points with
     /// one angle. None where that is not plain: where some branch touches the circle or runs along
-    /// it, and next to singular points. `band` is the resolution.
-    pub fn across(&self, fixed: TorusParameter, angle: N, band: N) -> Option<Vec<N>> {
+    /// it, and next to singular points. `resolution` is the resolution.
+    pub fn across(&self, fixed: TorusParameter, angle: N, resolution: N) -> Option<Vec<N>> {
         let section = self.form.section(fixed == TorusParameter::Around, angle);
         let zeros = simple_zeros(&section.0, self.form.bound() * N::ROUNDING)?;
         let mut crossed = Vec::new();
         for (other, off) in zeros {
-            let slack = off + band / self.torus.minor;
+            let slack = off + resolution / self.torus.minor;
             crossed.extend(self.passes(arrange(fixed, angle, other), slack)?);
         }
         Some(crossed)
@@ -52,7 +52,7 @@ impl<N: Float> TorusCurve<N> {
         &self,
         circle: &Circle<N>,
         surface: &Surface<N>,
-        band: N,
+        resolution: N,
     ) -> Option<Vec<N>> {
         let holds = |part: f64| {
             let p = self.point(self.length() * N::from_f64(part));
@@ -73,7 +73,7 @@ impl<N: Float> TorusCurve<N> {
             let (sin, cos) = u.sin_cos();
             let frame = &circle.frame;
             let p = frame.point(circle.radius * cos, circle.radius * sin, N::ZERO);
-            let slack = (off * circle.radius + band) / self.torus.minor;
+            let slack = (off * circle.radius + resolution) / self.torus.minor;
             crossed.extend(self.passes(torus.parameters(&p), slack)?);
         }
         Some(crossed)

@@ -36,7 +36,7 @@ impl<N: Float> Cell<N> {
     }
 
     /// The same in doubles.
-    pub fn in_doubles(&self) -> Cell {
+    pub fn to_f64(&self) -> Cell {
         let [lo, hi] = [self.lo, self.hi].map(|angles| angles.map(N::rounded));
         Cell { lo, hi }
     }
@@ -94,7 +94,7 @@ impl<N: Float> Layout<N> {
 }
 
 /// The cells of the first grid, without singular points.
-pub fn plain_grid<N: Float>() -> Vec<Cell<N>> {
+pub fn regular_grid<N: Float>() -> Vec<Cell<N>> {
     let layout = Layout::new(0);
     let [xs, ys] = [0, 1].map(|angle| lines(angle, &[], &layout));
     grid(&xs, &ys)

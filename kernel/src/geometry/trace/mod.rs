@@ -81,7 +81,7 @@ enum Holds {
 }
 
 impl<N: Float> Bounds<N> {
-    fn holds(&self) -> Holds {
+    fn contains(&self) -> Holds {
         let graph = |axis, along: N, across: N| {
             let steep = (along / across).above();
             Holds::Graph { axis, steep }
@@ -114,9 +114,9 @@ pub(super) struct Tracer<'a, N: Float = f64> {
     pub reaches: Reaches<N>,
     /// A bound of the rounding error of the form.
     pub slop: N,
-    pub band: N,
+    pub resolution: N,
     /// The form in doubles, of one of more digits.
-    rough: Option<Box<BivariateTrigPoly>>,
+    f64_form: Option<Box<BivariateTrigPoly>>,
     /// How many cells may still be looked at.
     cells: Counter<u32>,
 }
@@ -144,14 +144,14 @@ const SPARED: u32 = 4;
 const STEEP: f64 = 2.0;
 
 impl<'a, N: Float> Tracer<'a, N> {
-    fn new(form: &'a BivariateTrigPoly<N>, band: N) -> Self {
+    fn new(form: &'a BivariateTrigPoly<N>, resolution: N) -> Self {
         let slop = slop(form);
         Self {
             form,
             reaches: form.reaches(),
             slop,
-            band: band.max(slop),
-            rough: (!N::IS_DOUBLE).then(|| Box::new(form.in_doubles())),
+            resolution: resolution.max(slop),
+            f64_form: (!N::IS_DOUBLE).then(|| Box::new(form.to_f64())),
             cells: Counter::new(MOST_CELLS),
         }
     }
@@ -164,20 +164,20 @@ impl<'a, N: Float> Tracer<'a, N> {
     }
 
     /// The form in doubles, of one of more digits, and how far it is off.
-    pub(super) fn rough(&self) -> Option<(&BivariateTrigPoly, f64)> {
-        let form = self.rough.as_deref()?;
+    pub(super) fn f64_form(&self) -> Option<(&BivariateTrigPoly, f64)> {
+        let form = self.f64_form.as_deref()?;
         Some((form, slop(form)))
     }
 
     /// The same in doubles, of a form of more digits: what it bounds holds, but may tell less.
-    pub(super) fn in_doubles(&self) -> Option<Tracer<'_>> {
-        let (form, slop) = self.rough()?;
+    pub(super) fn to_f64(&self) -> Option<Tracer<'_>> {
+        let (form, slop) = self.f64_form()?;
         Some(Tracer {
             form,
-            reaches: self.reaches.in_doubles(),
+            reaches: self.reaches.to_f64(),
             slop,
-            band: self.band.rounded(),
-            rough: None,
+            resolution: self.resolution.rounded(),
+            f64_form: None,
             cells: Counter::default(),
         })
     }
@@ -207,15 +207,15 @@ impl<'a, N: Float> Tracer<'a, N> {
     fn leaves(&self, cells: Vec<Cell<N>>) -> Result<Vec<Leaf<N>>, Unresolved> {
         let mut leaves = Vec::new();
         let mut stack: Vec<(Cell<N>, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
-        let doubles = self.in_doubles();
+        let rounded_f64 = self.to_f64();
         while let Some((cell, depth)) = stack.pop() {
             self.look_at(&cell)?;
-            let rough = doubles.as_ref().map(|f| f.bounds(&cell.in_doubles()));
-            let (holds, wide) = match rough.map(|b| (b.holds(), b.wide)) {
+            let f64_form = rounded_f64.as_ref().map(|f| f.bounds(&cell.to_f64()));
+            let (holds, wide) = match f64_form.map(|b| (b.contains(), b.wide)) {
                 Some(told) if cell.is_coarse() || !matches!(told.0, Holds::Unknown) => told,
                 _ => {
                     let b = self.bounds(&cell);
-                    (b.holds(), b.wide)
+                    (b.contains(), b.wide)
                 }
             };
             match holds {
@@ -246,14 +246,14 @@ pub(super) fn near<N: Float>(a: &[N; 2], b: &[N; 2], reach: N) -> bool {
     wrap(a[0] - b[0]).abs() <= reach && wrap(a[1] - b[1]).abs() <= reach
 }
 
-/// All branches of `form` = 0 on the torus, where `form` is a distance to first order and `band`
+/// All branches of `form` = 0 on the torus, where `form` is a distance to first order and `resolution`
 /// the resolution.
 pub fn trace<N: Float>(
     torus: &Torus<N>,
     form: &BivariateTrigPoly<N>,
-    band: N,
+    resolution: N,
 ) -> Result<Traced<N>, Unresolved> {
-    let tracer = Tracer::new(form, band);
+    let tracer = Tracer::new(form, resolution);
     let Critical {
         singular: points,
         close,

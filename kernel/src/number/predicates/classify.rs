@@ -26,14 +26,14 @@ enum Effort {
     Assumption,
 }
 
-/// The side of a distance in [lo, hi], where the range tells: `band` and `below` are the two edges of
+/// The side of a distance in [lo, hi], where the range tells: `resolution` and `below` are the two edges of
 /// the band.
-fn side_of<N: PartialOrd>(lo: N, hi: N, band: N, below: N) -> Option<Side> {
-    if lo > band {
+fn side_of<N: PartialOrd>(lo: N, hi: N, resolution: N, below: N) -> Option<Side> {
+    if lo > resolution {
         Some(Side::Outside)
     } else if hi < below {
         Some(Side::Inside)
-    } else if lo >= below && hi <= band {
+    } else if lo >= below && hi <= resolution {
         Some(Side::On)
     } else {
         None
@@ -68,28 +68,28 @@ const GUARD: usize = 128;
 /// Decides by the part's one resolution, and keeps count.
 #[derive(Debug)]
 pub struct Predicates {
-    band: f64,
+    resolution: f64,
     zeros: CoincidencePolicy,
     decisions: RefCell<DecisionStats>,
     doubts: RefCell<Vec<CloseCall>>,
 }
 
 impl Predicates {
-    /// A judge whose resolution is `band`, a distance in the part's unit.
-    pub fn new(band: f64) -> Self {
+    /// A judge whose resolution is `resolution`, a distance in the part's unit.
+    pub fn new(resolution: f64) -> Self {
         Self {
-            band,
+            resolution,
             zeros: CoincidencePolicy::ByResolution,
             decisions: RefCell::default(),
             doubts: RefCell::default(),
         }
     }
 
-    /// A judge who has what lies within `band` proven to be zero.
-    pub fn exact(band: f64) -> Self {
+    /// A judge who has what lies within `resolution` proven to be zero.
+    pub fn exact(resolution: f64) -> Self {
         Self {
             zeros: CoincidencePolicy::Exact,
-            ..Self::new(band)
+            ..Self::new(resolution)
         }
     }
 
@@ -99,14 +99,14 @@ impl Predicates {
     }
 
     /// The resolution, a distance in the part's unit.
-    pub fn band<N: Float>(&self) -> N {
-        N::from_f64(self.band)
+    pub fn resolution<N: Float>(&self) -> N {
+        N::from_f64(self.resolution)
     }
 
     /// What is no further apart than this coincides, or is a close call: only what is further apart
     /// need not be asked about.
     pub fn reach<N: Float>(&self) -> N {
-        N::from_f64(self.band * CLOSE)
+        N::from_f64(self.resolution * CLOSE)
     }
 
     /// The side on which the signed `distance` lies; `place` is where it was measured.
@@ -146,10 +146,11 @@ impl Predicates {
         place: [f64; 3],
     ) -> (Side, Option<CloseCall>) {
         let range = distance.range();
-        let (mut side, mut effort) = match side_of(range.lo, range.hi, self.band, -self.band) {
-            Some(side) => (side, Effort::Filter),
-            None => (self.refined_side(&distance), Effort::MoreBits),
-        };
+        let (mut side, mut effort) =
+            match side_of(range.lo, range.hi, self.resolution, -self.resolution) {
+                Some(side) => (side, Effort::Filter),
+                None => (self.refined_side(&distance), Effort::MoreBits),
+            };
         if side == Side::On && self.is_exact() {
             (side, effort) = proven_side(&distance);
             if side != Side::On {
@@ -159,7 +160,7 @@ impl Predicates {
         self.count(side, effort);
         let distance = range.mid();
         let size = distance.abs();
-        let is_close = size * CLOSE > self.band && size < self.reach();
+        let is_close = size * CLOSE > self.resolution && size < self.reach();
         let call = is_close.then_some(CloseCall {
             question,
             place,
@@ -178,7 +179,7 @@ impl Predicates {
     pub fn another(&self) -> Self {
         Self {
             zeros: self.zeros,
-            ..Self::new(self.band)
+            ..Self::new(self.resolution)
         }
     }
 
@@ -232,16 +233,16 @@ impl Predicates {
     /// The side by more bits. What cannot be told from the edge of the band lies on it, and
     /// coincides.
     fn refined_side(&self, distance: &impl CertifiedDistance) -> Side {
-        let Some(band) = from_f64(self.band) else {
+        let Some(resolution) = from_f64(self.resolution) else {
             return Side::On;
         };
-        let below = -band.clone();
+        let below = -resolution.clone();
         for bits in PRECISIONS {
             let enclosure = distance.refined(bits);
             let Some([lo, hi]) = enclosure.as_ref().and_then(RationalInterval::ends) else {
                 continue;
             };
-            if let Some(side) = side_of(lo, hi, &band, &below) {
+            if let Some(side) = side_of(lo, hi, &resolution, &below) {
                 return side;
             }
         }
@@ -251,7 +252,7 @@ impl Predicates {
     /// Whether `distance` is within the band, without counting it: for searches that ask many
     /// times before one decision is made.
     pub fn within<N: Float>(&self, distance: N) -> bool {
-        distance.abs() <= self.band()
+        distance.abs() <= self.resolution()
     }
 
     /// Whether a decision made on `distance` would be a close call, or coincide: for a search that
@@ -281,7 +282,7 @@ impl Predicates {
                     && k.place
                         .iter()
                         .zip(call.place)
-                        .all(|(a, b)| (a - b).abs() <= CLOSE * self.band)
+                        .all(|(a, b)| (a - b).abs() <= CLOSE * self.resolution)
             });
             if !again {
                 kept.push(call);

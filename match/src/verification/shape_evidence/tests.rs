@@ -85,7 +85,10 @@ fn a_block_of_any_size_tells_as_much() {
         let mut pose = turned(0.6, 0.7);
         pose.translation.vector *= unit;
         let shape = told(&block, &block, &pose);
-        assert!((shape.told - 2.0 * NUMBER).abs() < 0.1, "{unit}: {shape:?}");
+        assert!(
+            (shape.determined - 2.0 * NUMBER).abs() < 0.1,
+            "{unit}: {shape:?}"
+        );
         assert!(shape.relief > 0.25, "{unit}: {shape:?}");
     }
 }
@@ -95,7 +98,7 @@ fn a_block_of_any_size_tells_as_much() {
 fn a_limb_tells_nothing_of_a_sphere() {
     let sphere = evaluated(r#"{"prim": "sphere", "r": 1.0}"#);
     let shape = told(&sphere, &sphere, &turned(0.6, 0.7));
-    assert!(shape.told.abs() < 0.1 * NUMBER, "{shape:?}");
+    assert!(shape.determined.abs() < 0.1 * NUMBER, "{shape:?}");
     assert!(shape.denied < 1e-6, "{shape:?}");
 }
 
@@ -105,7 +108,7 @@ fn a_limb_tells_nothing_of_a_sphere() {
 fn three_faces_tell_two_numbers_of_a_block() {
     let block = block([2.0, 1.5, 1.0]);
     let shape = told(&block, &block, &turned(0.6, 0.7));
-    assert!((shape.told - 2.0 * NUMBER).abs() < 0.1, "{shape:?}");
+    assert!((shape.determined - 2.0 * NUMBER).abs() < 0.1, "{shape:?}");
     assert!(shape.denied < 1e-6, "{shape:?}");
     assert!(shape.relief > 0.25, "{shape:?}");
 }
@@ -115,7 +118,7 @@ fn three_faces_tell_two_numbers_of_a_block() {
 fn a_face_tells_one_number_of_a_block() {
     let block = block([2.0, 1.5, 1.0]);
     let shape = told(&block, &block, &turned(0.0, 0.0));
-    assert!((shape.told - NUMBER).abs() < 0.1, "{shape:?}");
+    assert!((shape.determined - NUMBER).abs() < 0.1, "{shape:?}");
     assert!(shape.relief < 0.01, "{shape:?}");
 }
 
@@ -124,7 +127,7 @@ fn a_face_tells_one_number_of_a_block() {
 fn a_circle_tells_nothing_of_a_cylinder() {
     let cylinder = evaluated(r#"{"prim": "cylinder", "r": 1.0, "h": 1.0}"#);
     let shape = told(&cylinder, &cylinder, &turned(0.0, 0.0));
-    assert!(shape.told.abs() < 0.1 * NUMBER, "{shape:?}");
+    assert!(shape.determined.abs() < 0.1 * NUMBER, "{shape:?}");
     assert!(shape.relief < 0.01, "{shape:?}");
 }
 
@@ -139,7 +142,7 @@ fn a_flat_figure_tells_as_much_as_it_has() {
         ]}"#,
     );
     let shape = told(&plate, &plate, &turned(0.0, 0.0));
-    assert!((shape.told - 5.0 * NUMBER).abs() < 0.1, "{shape:?}");
+    assert!((shape.determined - 5.0 * NUMBER).abs() < 0.1, "{shape:?}");
 }
 
 /// Its edges deny a block that is longer by as much as things differ, and not by as much as parts do.

@@ -195,8 +195,8 @@ impl SheetReport {
         let touching = TOUCHING * (tolerance * size).sqrt();
         let place = |p: &Point2<f64>| window.of_drawing(&projection, p);
         let nearness = |p: &Point2<f64>| {
-            let aside = p + nalgebra::Vector2::new(tolerance, 0.0);
-            let [a, b] = [place(p), place(&aside)];
+            let lateral = p + nalgebra::Vector2::new(tolerance, 0.0);
+            let [a, b] = [place(p), place(&lateral)];
             (b[0] - a[0]).hypot(b[1] - a[1])
         };
         for (i, stroke) in read

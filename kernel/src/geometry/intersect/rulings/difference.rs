@@ -38,7 +38,7 @@ impl<N: Float> Difference<N> {
         if lean > N::from_f64(LEAN) {
             return parts.difference(surfaces);
         }
-        let [a, b] = [pair.a, pair.b].map(|c| c.reckoned(BITS));
+        let [a, b] = [pair.a, pair.b].map(|c| c.computed(BITS));
         Parts::new(surfaces, &a, &b)
             .map(RationalInterval::middle)
             .difference(surfaces)

@@ -198,7 +198,7 @@ impl<'a, N: Float> Rulings<'a, N> {
             }
         };
         let size = normal.length();
-        if size * self.reach() * self.reach() < offset.abs() * predicates.band() {
+        if size * self.reach() * self.reach() < offset.abs() * predicates.resolution() {
             return;
         }
         let n = frame.vector(&(normal / size));
@@ -233,7 +233,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         range: [N; 2],
         predicates: &Predicates,
     ) -> Vec<[N; 2]> {
-        nappe_parts(curve, range, self.other, predicates.band())
+        nappe_parts(curve, range, self.other, predicates.resolution())
     }
 
     /// Whether the heights that `conics` gives over each ruling lie on the other surface.

@@ -365,10 +365,7 @@ fn a_part_of_a_picture_is_none() {
 fn a_jpeg_is_whole_or_none() {
     let folder = prepared();
     let path = folder.path();
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let grey = image::GrayImage::from_fn(160, 120, |x, y| image::Luma([(x ^ y) as u8]));
-    grey.write_to(&mut bytes, image::ImageFormat::Jpeg).unwrap();
-    let bytes = bytes.into_inner();
+    let bytes = common::JPEG;
     let words = "match part.model bad.jpg --camera camera.json -o out.json";
     for end in [
         bytes.len() / 2,
@@ -379,7 +376,7 @@ fn a_jpeg_is_whole_or_none() {
         fs::write(path.join("bad.jpg"), &bytes[..end]).unwrap();
         assert_says(&refused(path, words), &["bad.jpg", "a part of a picture"]);
     }
-    fs::write(path.join("bad.jpg"), &bytes).unwrap();
+    fs::write(path.join("bad.jpg"), bytes).unwrap();
     assert!(premio(path, words).status.success());
 }
 

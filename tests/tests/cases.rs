@@ -10,6 +10,7 @@ use premio_csg::tree::Tree;
 use premio_tests::examine::within;
 use premio_tests::formula::Definitions;
 use premio_verify::checks::{Checker, ViewChecks, views};
+use rayon::prelude::*;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -228,8 +229,7 @@ fn every_case_is_as_a_hand_derived_it() {
     let folders = folders();
     assert!(folders.len() > 60);
     let known: BTreeSet<&str> = KNOWN_FAILURES.iter().copied().collect();
-    let mut complaints = Vec::new();
-    let mut met = BTreeSet::new();
+    let mut tasks = Vec::new();
     for folder in &folders {
         let name = folder.file_name().unwrap().to_string_lossy().into_owned();
         let text = fs::read_to_string(folder.join("answer.toml")).unwrap();
@@ -240,20 +240,21 @@ fn every_case_is_as_a_hand_derived_it() {
         for answer in &case.model {
             let values: Vec<String> = answer.set.iter().map(|(n, v)| format!("{n}={v}")).collect();
             let name = [vec![name.clone()], values].concat().join(" ");
-            let work = (case.clone(), answer.clone(), model.clone());
-            let outcome = within(LIMIT, move || examine(&work.0, &work.1, &work.2));
-            let wrong = outcome.unwrap_or_else(|| vec!["a panic, or no end".to_owned()]);
-            match (wrong.is_empty(), known.contains(name.as_str())) {
-                (true, true) => {
-                    complaints.push(format!("{name}: passes now: take it off the list"))
-                }
-                (false, false) => complaints.push(format!("{name}: {}", wrong.join("; "))),
-                _ => {}
-            }
-            met.insert(name);
+            tasks.push((name, (case.clone(), answer.clone(), model.clone())));
         }
     }
-    let gone: Vec<_> = known.iter().filter(|n| !met.contains(**n)).collect();
+    let names: BTreeSet<String> = tasks.iter().map(|(name, _)| name.clone()).collect();
+    let complaint = |(name, work): (String, (Case, Answer, String))| {
+        let outcome = within(LIMIT, move || examine(&work.0, &work.1, &work.2));
+        let wrong = outcome.unwrap_or_else(|| vec!["a panic, or no end".to_owned()]);
+        match (wrong.is_empty(), known.contains(name.as_str())) {
+            (true, true) => Some(format!("{name}: passes now: take it off the list")),
+            (false, false) => Some(format!("{name}: {}", wrong.join("; "))),
+            _ => None,
+        }
+    };
+    let complaints: Vec<String> = tasks.into_par_iter().filter_map(complaint).collect();
+    let gone: Vec<_> = known.iter().filter(|n| !names.contains(**n)).collect();
     assert!(gone.is_empty(), "no such case: {gone:?}");
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }

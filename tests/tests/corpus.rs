@@ -7,6 +7,7 @@ use premio_kernel::brep::signature::Signature;
 use premio_kernel::number::predicates::{CoincidencePolicy, DecisionStats};
 use premio_tests::examine::within;
 use premio_verify::checks::{CheckSubject, Checker};
+use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -149,19 +150,20 @@ fn json(folder: &Path) -> Vec<Task> {
 fn cases() {
     let Some(folder) = corpus() else { return };
     let known: BTreeSet<&str> = KNOWN_FAILURES.iter().copied().collect();
-    let mut complaints = Vec::new();
-    for case in json(&folder) {
+    let complaint = |case: Task| {
         let outcome = case.outcome();
         let refused = REFUSED.iter().find(|(id, _)| *id == case.name);
         let complaint = match (outcome, refused, known.contains(case.name.as_str())) {
-            (Err(e), Some((_, why)), _) if e.contains(why) => continue,
-            (Ok(()), None, false) | (Err(_), None, true) => continue,
+            (Err(e), Some((_, why)), _) if e.contains(why) => return None,
+            (Ok(()), None, false) | (Err(_), None, true) => return None,
             (Ok(()), Some(_), _) => "is not refused any more".to_owned(),
             (Ok(()), None, true) => "passes now: take it off the list".to_owned(),
             (Err(e), _, _) => e,
         };
-        complaints.push(format!("{}: {complaint}", case.name));
-    }
+        Some(format!("{}: {complaint}", case.name))
+    };
+    let cases = json(&folder).into_par_iter();
+    let complaints: Vec<String> = cases.filter_map(complaint).collect();
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
@@ -205,12 +207,12 @@ fn openscads(folder: &Path) -> Vec<Task> {
 #[test]
 fn openscad_files() {
     let Some(folder) = corpus() else { return };
-    let mut complaints = Vec::new();
-    for task in openscads(&folder) {
-        if let Err(e) = task.outcome() {
-            complaints.push(format!("{}: {e}", task.name));
-        }
-    }
+    let complaint = |task: Task| {
+        let error = task.outcome().err()?;
+        Some(format!("{}: {error}", task.name))
+    };
+    let tasks = openscads(&folder).into_par_iter();
+    let complaints: Vec<String> = tasks.filter_map(complaint).collect();
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
@@ -240,19 +242,19 @@ fn unlike(
     meant: &[&str],
     fault: fn(&DecisionStats) -> Option<&'static str>,
 ) -> Vec<String> {
-    let mut complaints = Vec::new();
     let is_read = |task: &Task| REFUSED.iter().all(|(id, _)| *id != task.name);
-    let all = json(folder).into_iter().chain(openscads(folder));
-    for task in all.filter(is_read) {
+    let complaint = |task: Task| {
         let complaint = match task.unlike(how, fault) {
-            Ok(unlike) if unlike == meant.contains(&task.name.as_str()) => continue,
+            Ok(unlike) if unlike == meant.contains(&task.name.as_str()) => return None,
             Ok(true) => "another boundary".to_owned(),
             Ok(false) => "the same boundary: take it off the list".to_owned(),
             Err(error) => error,
         };
-        complaints.push(format!("{}: {complaint}", task.name));
-    }
-    complaints
+        Some(format!("{}: {complaint}", task.name))
+    };
+    let all = [json(folder), openscads(folder)].concat();
+    let read = all.into_par_iter().filter(is_read);
+    read.filter_map(complaint).collect()
 }
 
 #[test]

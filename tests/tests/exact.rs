@@ -9,6 +9,7 @@ use premio_csg::tree::Tree;
 use premio_kernel::brep::signature::Signature;
 use premio_kernel::number::predicates::CoincidencePolicy;
 use premio_tests::random::tree;
+use rayon::prelude::*;
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -155,8 +156,7 @@ fn faults(name: &str, tree: &Tree) -> Vec<String> {
 
 fn named_cases_by(faults: fn(&str, &Tree) -> Vec<String>) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let mut faulty = Vec::new();
-    let mut proven = 0;
+    let mut cases = Vec::new();
     for folder in fs::read_dir(root).unwrap() {
         let folder = folder.unwrap();
         let name = folder.file_name().into_string().unwrap();
@@ -165,11 +165,14 @@ fn named_cases_by(faults: fn(&str, &Tree) -> Vec<String>) {
             continue;
         };
         if !LONG.contains(&name.as_str()) {
-            proven += 1;
-            faulty.extend(faults(&name, &part.tree));
+            cases.push((name, part.tree));
         }
     }
-    assert!(proven > 90, "{proven}");
+    assert!(cases.len() > 90, "{}", cases.len());
+    let proven = cases.par_iter();
+    let faulty: Vec<String> = proven
+        .flat_map_iter(|(name, tree)| faults(name, tree))
+        .collect();
     assert!(faulty.is_empty(), "{}", faulty.join("\n"));
 }
 
@@ -186,8 +189,7 @@ fn named_cases_with_no_decision_in_doubles() {
 /// A thousand of these, and of the other profiles, is what `premio fuzz --unfiltered` is for.
 #[test]
 fn random_trees_with_no_decision_in_doubles() {
-    let mut faulty = Vec::new();
-    for seed in 3_000_000..3_000_030 {
+    let fault = |seed: u64| {
         let text = tree(seed).to_string();
         let part = read(
             "part",
@@ -196,8 +198,10 @@ fn random_trees_with_no_decision_in_doubles() {
             &ReadOptions::default(),
         )
         .unwrap();
-        faulty.extend(filtered_wrongly(&seed.to_string(), &part.tree));
-    }
+        filtered_wrongly(&seed.to_string(), &part.tree)
+    };
+    let seeds = (3_000_000..3_000_030).into_par_iter();
+    let faulty: Vec<String> = seeds.filter_map(fault).collect();
     assert!(faulty.is_empty(), "{}", faulty.join("\n"));
 }
 

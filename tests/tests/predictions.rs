@@ -13,9 +13,10 @@ use premio_predict::render;
 use premio_predict::setup::Setup;
 use premio_tests::parts::{cube_with_cuts, plate, tee};
 use premio_tests::random;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 fn part(json: &Value) -> Evaluation {
     let text = json.to_string();
@@ -132,43 +133,36 @@ fn regions_of_parts_show_what_rays_meet() {
 #[test]
 fn regions_of_named_cases_show_what_rays_meet() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let mut seen = 0;
-    let mut wrong = Vec::new();
     let mut names: Vec<_> = fs::read_dir(folder)
         .unwrap()
         .map(|e| e.unwrap().path())
         .collect();
     names.sort();
-    for case in names {
-        let Ok(text) = fs::read(case.join("model.padl")) else {
-            continue;
-        };
-        let Ok(tree) = read("part", &text, Format::Padl, &ReadOptions::default()) else {
-            continue;
-        };
-        let Ok(part) = evaluate(&tree.tree, &EvaluationOptions::default()) else {
-            continue;
-        };
-        let Some(resolution) = part.view_resolution() else {
-            continue;
-        };
-        let Ok(subject) = PreparedPart::new(&part.brep, resolution) else {
-            continue;
-        };
-        let (eye, light) = PLACES[seen % PLACES.len()];
+    let part = |case: &PathBuf| {
+        let text = fs::read(case.join("model.padl")).ok()?;
+        let tree = read("part", &text, Format::Padl, &ReadOptions::default()).ok()?;
+        let part = evaluate(&tree.tree, &EvaluationOptions::default()).ok()?;
+        let resolution = part.view_resolution()?;
+        PreparedPart::new(&part.brep, resolution).ok()?;
+        Some((case.display().to_string(), part, resolution))
+    };
+    let parts: Vec<_> = names.par_iter().filter_map(part).collect();
+    let wrong = |(i, (context, part, resolution)): (usize, &(String, Evaluation, f64))| {
+        let subject = PreparedPart::new(&part.brep, *resolution).unwrap();
+        let (eye, light) = PLACES[i % PLACES.len()];
         let setup = setup(&subject, eye, light, "");
-        let context = case.display().to_string();
+        let mut wrong = Vec::new();
         let asked = with_draft(&subject, &setup, |draft| {
-            let asked = regions_show_what_rays_meet(draft, &context, &mut wrong);
+            regions_show_what_rays_meet(draft, context, &mut wrong);
             prediction(draft, &setup);
-            asked
         });
         match asked {
-            Ok(_) | Err(StageError::OutOfSight(_) | StageError::View(_)) => seen += 1,
+            Ok(()) | Err(StageError::OutOfSight(_) | StageError::View(_)) => wrong,
             Err(error) => panic!("{context}: {error}"),
         }
-    }
-    assert!(seen > 100, "{seen} cases");
+    };
+    assert!(parts.len() > 100, "{} cases", parts.len());
+    let wrong: Vec<String> = parts.par_iter().enumerate().flat_map_iter(wrong).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

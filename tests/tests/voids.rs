@@ -49,7 +49,7 @@ fn a_hollow_ball_beside_a_ball() {
 #[test]
 fn points_of_a_hollow_ball_and_a_ball() {
     let known = evaluated("P = SPH(R=1) AT (MOVX=-9) UN (SPH(R=4) DIF SPH(R=2))");
-    let held = |x: f64| holds(&known.brep, &Point3::new(x, 0.1, 0.2), known.resolution);
+    let held = |x: f64| contains(&known.brep, &Point3::new(x, 0.1, 0.2), known.resolution);
     let places = [-20.0, -9.0, -6.0, -3.0, 0.0, 1.5, 3.0, 5.0].map(held);
     let expected = [false, true, false, true, false, false, true, false];
     assert_eq!(places, expected.map(Some));

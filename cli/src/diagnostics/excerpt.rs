@@ -1,7 +1,6 @@
 //! The line of a text that a message is about.
 
-use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
-use premio_csg::reader::ReadError;
+use annotate_snippets::{Annotation, AnnotationKind, Snippet};
 use premio_text::escape;
 use std::ops::Range;
 
@@ -11,27 +10,16 @@ const SHOWN: usize = 60;
 /// The line of a text that a message is about; of a long line the part around the place.
 #[derive(Debug)]
 pub struct Excerpt {
-    name: String,
     text: String,
-    pub span: SourceSpan,
+    /// The bytes of `text` that the message is about.
+    span: Range<usize>,
+    /// The line in the file, from 1.
     line: usize,
-    column: usize,
 }
 
 impl Excerpt {
-    /// The excerpt around what an error found.
-    pub fn new(error: &ReadError, text: &[u8]) -> Self {
-        let place = [error.line, error.column];
-        Self::around(error.name.to_string(), place, &error.span, text)
-    }
-
-    /// The excerpt around some bytes of a text, at a line and a column that count from one.
-    pub fn around(
-        name: String,
-        [line, column]: [usize; 2],
-        span: &Range<usize>,
-        text: &[u8],
-    ) -> Self {
+    /// The excerpt around some bytes of a text, which are in a line that counts from 1.
+    pub fn new(line: usize, span: &Range<usize>, text: &[u8]) -> Self {
         let at = span.start.min(text.len());
         let start = text[..at]
             .iter()
@@ -54,12 +42,17 @@ impl Excerpt {
         // What follows a found text does not follow its beginning.
         let after = if is_cut { String::new() } else { first(&after) };
         Self {
-            name: escape::terminal(&name),
-            span: (before.len(), found.len()).into(),
+            span: before.len()..before.len() + found.len(),
             text: format!("{before}{found}{after}"),
-            line: line - 1,
-            column: column - 1,
+            line,
         }
+    }
+
+    /// The line with its number and the place marked.
+    pub fn snippet(&self) -> Snippet<'_, Annotation<'_>> {
+        let place = AnnotationKind::Primary.span(self.span.clone());
+        let snippet = Snippet::source(&*self.text).line_start(self.line);
+        snippet.annotation(place)
     }
 }
 
@@ -70,22 +63,4 @@ fn first(text: &str) -> String {
 fn last(text: &str) -> String {
     let skipped = text.chars().count().saturating_sub(SHOWN);
     text.chars().skip(skipped).collect()
-}
-
-impl SourceCode for Excerpt {
-    fn read_span<'a>(
-        &'a self,
-        _: &SourceSpan,
-        _: usize,
-        _: usize,
-    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        Ok(Box::new(MietteSpanContents::new_named(
-            self.name.clone(),
-            self.text.as_bytes(),
-            (0, self.text.len()).into(),
-            self.line,
-            self.column,
-            1,
-        )))
-    }
 }

@@ -1,12 +1,11 @@
 //! What there is to say, perhaps with its place in a text: for people, and for programs.
 
 use super::excerpt::Excerpt;
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+use annotate_snippets::{Group, Level as Title, Renderer};
 use premio_csg::reader::ReadError;
 use premio_kernel::number::predicates::CloseCall;
 use premio_text::{LineColumn, escape};
 use serde::Serialize;
-use std::fmt;
 use std::io::{self, IsTerminal};
 use std::ops::Range;
 
@@ -85,7 +84,7 @@ impl Message {
     pub fn of_reader(error: &ReadError, text: &[u8]) -> Self {
         Self {
             text: error.to_string(),
-            excerpt: Some(Excerpt::new(error, text)),
+            excerpt: Some(Excerpt::new(error.line, &error.span, text)),
             place: Some(Place {
                 file: error.name.to_string(),
                 line: error.line,
@@ -101,10 +100,9 @@ impl Message {
     /// What is wrong with some bytes of a text.
     pub fn at(name: &str, text: &[u8], span: &Range<usize>, words: &str) -> Self {
         let LineColumn { line, column } = LineColumn::new(text, span.start);
-        let place = [line, column];
         Self {
             text: format!("{name}:{line}:{column}: {words}"),
-            excerpt: Some(Excerpt::around(name.to_owned(), place, span, text)),
+            excerpt: Some(Excerpt::new(line, span, text)),
             place: Some(Place {
                 column: Some(column),
                 ..Place::line(name, line)
@@ -128,22 +126,19 @@ impl Message {
         Self { calls, ..self }
     }
 
-    /// With colours and boxes on a terminal, in plain characters elsewhere.
+    /// The message with its excerpt, in colours on a terminal.
     pub fn render(&self) -> String {
-        let theme = if io::stderr().is_terminal() {
-            GraphicalTheme::default()
-        } else {
-            // A caret under a single character, too.
-            let mut without_excerpt = GraphicalTheme::none();
-            without_excerpt.characters.underbar = '^';
-            without_excerpt
+        let renderer = match io::stderr().is_terminal() && !is_without_colours() {
+            true => Renderer::styled(),
+            false => Renderer::plain(),
         };
-        let mut text = String::new();
-        let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false);
-        match handler.render_report(&mut text, self) {
-            Ok(()) => text,
-            Err(fmt::Error) => escape::terminal(&self.text),
-        }
+        let text = escape::terminal(&self.text);
+        let title = Title::ERROR.primary_title(text);
+        let group = match &self.excerpt {
+            Some(excerpt) => title.element(excerpt.snippet()),
+            None => Group::with_title(title),
+        };
+        renderer.term_width(WIDTH).render(&[group])
     }
 
     /// A note in plain words, with its file and line where it has any.
@@ -169,25 +164,12 @@ impl Message {
     }
 }
 
-impl fmt::Display for Message {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Whatever names stand in it.
-        f.write_str(&escape::terminal(&self.text))
-    }
-}
+/// The most columns of an excerpt that are shown.
+const WIDTH: usize = 200;
 
-impl std::error::Error for Message {}
-
-impl Diagnostic for Message {
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.excerpt.as_ref().map(|e| e as &dyn SourceCode)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let excerpt = self.excerpt.as_ref()?;
-        let label = LabeledSpan::new_with_span(Some("here".to_owned()), excerpt.span);
-        Some(Box::new(std::iter::once(label)))
-    }
+/// Whether the environment asks for no colours (no-color.org).
+fn is_without_colours() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! PNG: every checksum is compared, and every index into a palette.
 
-use ::png::{BitDepth, ColorType, DecodingError, OutputInfo, Transformations};
-use image::{DynamicImage, ImageBuffer, Luma, LumaA, Pixel, Rgb, RgbImage, Rgba};
+use super::raster::{Channels, Raster, Samples};
+use ::png::{
+    BitDepth, ColorType, Compression, DecodingError, EncodingError, Filter, OutputInfo,
+    Transformations,
+};
 use premio_text::escape::quote;
 use std::io::Cursor;
 
@@ -41,13 +44,16 @@ pub enum PngError {
         /// How many colours the palette has.
         size: usize,
     },
+    /// The header is not where it has to be.
+    #[error("found another chunk, expected the header: the picture is damaged")]
+    Header,
     /// What the decoder says.
     #[error("{0}")]
     Decoder(#[from] DecodingError),
 }
 
 /// The bytes before the first chunk.
-const SIGNATURE: usize = 8;
+pub const SIGNATURE: &[u8; 8] = b"\x89PNG\r\n\x1a\n";
 
 /// Whether the chunks go on to the end of the picture, each with its checksum. Decoders compare
 /// neither those of ancillary chunks nor that of the last one.
@@ -55,7 +61,7 @@ const SIGNATURE: usize = 8;
 /// # Errors
 /// A chunk is missing, or has another checksum.
 pub fn check_chunks(bytes: &[u8]) -> Result<(), PngError> {
-    let mut at = SIGNATURE;
+    let mut at = SIGNATURE.len();
     loop {
         let header: [u8; 8] = word(bytes, at).ok_or(PngError::Truncated)?;
         let [a, b, c, d, kind @ ..] = header;
@@ -80,12 +86,22 @@ pub fn check_chunks(bytes: &[u8]) -> Result<(), PngError> {
     }
 }
 
-/// Width and height, if the first chunk is the header.
-pub fn size(bytes: &[u8]) -> Option<[u32; 2]> {
-    let kind: [u8; 4] = word(bytes, SIGNATURE + 4)?;
-    let [width, height] = [8, 12].map(|offset| word(bytes, SIGNATURE + offset));
-    let size = [width?, height?].map(u32::from_be_bytes);
-    (&kind == b"IHDR").then_some(size)
+/// Width and height, from the header, which is the first chunk.
+///
+/// # Errors
+/// The first chunk is another.
+pub fn size(bytes: &[u8]) -> Result<[u32; 2], PngError> {
+    let start = SIGNATURE.len();
+    match word(bytes, start + 4).as_ref() {
+        Some(b"IHDR") => {
+            let size = [8, 12].map(|offset| word(bytes, start + offset).map(u32::from_be_bytes));
+            let [Some(width), Some(height)] = size else {
+                return Err(PngError::Truncated);
+            };
+            Ok([width, height])
+        }
+        _ => Err(PngError::Header),
+    }
 }
 
 fn word<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
@@ -96,7 +112,7 @@ fn word<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
 ///
 /// # Errors
 /// The picture is damaged.
-pub fn decode(bytes: &[u8], memory: u64) -> Result<DynamicImage, PngError> {
+pub fn decode(bytes: &[u8], memory: u64) -> Result<Raster, PngError> {
     let limits = ::png::Limits {
         bytes: usize::try_from(memory).unwrap_or(usize::MAX),
     };
@@ -118,46 +134,42 @@ pub fn decode(bytes: &[u8], memory: u64) -> Result<DynamicImage, PngError> {
     match is_indexed {
         true => {
             let palette = reader.info().palette.as_deref().unwrap_or_default();
-            let image = coloured(&samples, &frame, palette)?;
-            Ok(DynamicImage::ImageRgb8(image))
+            let samples = Samples::Bytes(coloured(&samples, &frame, palette)?);
+            Ok(raster(Channels::Rgb, samples, &frame))
         }
-        false => of_samples(samples, &frame).ok_or(DecodingError::LimitsExceeded.into()),
+        false => {
+            let channels = match frame.color_type {
+                ColorType::Grayscale => Channels::Grey,
+                ColorType::GrayscaleAlpha => Channels::GreyAlpha,
+                ColorType::Rgb => Channels::Rgb,
+                _ => Channels::RgbAlpha,
+            };
+            let samples = match frame.bit_depth {
+                BitDepth::Sixteen => {
+                    let (pairs, _) = samples.as_chunks::<2>();
+                    Samples::Words(pairs.iter().map(|&pair| u16::from_be_bytes(pair)).collect())
+                }
+                _ => Samples::Bytes(samples),
+            };
+            Ok(raster(channels, samples, &frame))
+        }
     }
 }
 
-fn of_samples(samples: Vec<u8>, frame: &OutputInfo) -> Option<DynamicImage> {
-    if frame.bit_depth == BitDepth::Sixteen {
-        let (pairs, _) = samples.as_chunks::<2>();
-        let words: Vec<u16> = pairs.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
-        return match frame.color_type {
-            ColorType::Grayscale => of_pixels::<Luma<u16>>(words, frame),
-            ColorType::GrayscaleAlpha => of_pixels::<LumaA<u16>>(words, frame),
-            ColorType::Rgb => of_pixels::<Rgb<u16>>(words, frame),
-            _ => of_pixels::<Rgba<u16>>(words, frame),
-        };
+fn raster(channels: Channels, samples: Samples, frame: &OutputInfo) -> Raster {
+    Raster {
+        size: [frame.width as usize, frame.height as usize],
+        channels,
+        samples,
     }
-    match frame.color_type {
-        ColorType::Grayscale => of_pixels::<Luma<u8>>(samples, frame),
-        ColorType::GrayscaleAlpha => of_pixels::<LumaA<u8>>(samples, frame),
-        ColorType::Rgb => of_pixels::<Rgb<u8>>(samples, frame),
-        _ => of_pixels::<Rgba<u8>>(samples, frame),
-    }
-}
-
-fn of_pixels<P: Pixel>(samples: Vec<P::Subpixel>, frame: &OutputInfo) -> Option<DynamicImage>
-where
-    ImageBuffer<P, Vec<P::Subpixel>>: Into<DynamicImage>,
-{
-    let image = ImageBuffer::<P, _>::from_raw(frame.width, frame.height, samples);
-    image.map(Into::into)
 }
 
 /// The colours of the pixels of a picture with a palette, whose transparency does not matter here.
-fn coloured(samples: &[u8], frame: &OutputInfo, palette: &[u8]) -> Result<RgbImage, PngError> {
+fn coloured(samples: &[u8], frame: &OutputInfo, palette: &[u8]) -> Result<Vec<u8>, PngError> {
     let bits = frame.bit_depth as usize;
     let in_a_byte = 8 / bits.min(8);
     let (colours, _) = palette.as_chunks::<3>();
-    let mut image = RgbImage::new(frame.width, frame.height);
+    let mut image = Vec::with_capacity(3 * frame.width as usize * frame.height as usize);
     for (y, row) in samples.chunks_exact(frame.line_size).enumerate() {
         for x in 0..frame.width as usize {
             let shift = 8 - bits * (x % in_a_byte + 1);
@@ -165,8 +177,38 @@ fn coloured(samples: &[u8], frame: &OutputInfo, palette: &[u8]) -> Result<RgbIma
             let size = colours.len();
             let colour = colours.get(index);
             let colour = colour.ok_or(PngError::Colour { index, x, y, size })?;
-            image.put_pixel(x as u32, y as u32, Rgb(*colour));
+            image.extend(colour);
         }
     }
     Ok(image)
+}
+
+/// The bytes of a PNG file.
+///
+/// # Errors
+/// The picture has no pixels.
+pub fn encode(raster: &Raster) -> Result<Vec<u8>, EncodingError> {
+    let [width, height] = raster.size.map(|n| n as u32);
+    let mut bytes = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(match raster.channels {
+        Channels::Grey => ColorType::Grayscale,
+        Channels::GreyAlpha => ColorType::GrayscaleAlpha,
+        Channels::Rgb => ColorType::Rgb,
+        Channels::RgbAlpha => ColorType::Rgba,
+    });
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    match &raster.samples {
+        Samples::Bytes(all) => {
+            encoder.set_depth(BitDepth::Eight);
+            encoder.write_header()?.write_image_data(all)?;
+        }
+        Samples::Words(all) => {
+            encoder.set_depth(BitDepth::Sixteen);
+            let all: Vec<u8> = all.iter().flat_map(|v| v.to_be_bytes()).collect();
+            encoder.write_header()?.write_image_data(&all)?;
+        }
+    }
+    Ok(bytes)
 }

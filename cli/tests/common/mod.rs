@@ -39,6 +39,9 @@ resolution = [160, 120]
 /// A camera for its pictures.
 pub const CAMERA: &str = r#"{"K": [[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]]}"#;
 
+/// A JPEG of 160 by 120 grey pixels, written by libjpeg.
+pub const JPEG: &[u8] = include_bytes!("../pictures/grey.jpg");
+
 /// The program with these words behind its name, in a folder.
 pub fn command(folder: &Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));

@@ -37,7 +37,7 @@ fn window(surface: Surface) -> ParameterWindow {
 }
 
 /// Both splines are within the accuracy of the surfaces, and of each other, all along.
-fn contains(
+fn holds(
     curve: &Curve,
     range: [f64; 2],
     surfaces: &[Surface],

@@ -4,9 +4,11 @@
 //! restart interval has to be there. After the last scan every coefficient of every component has to be
 //! known to its last bit, so that a progressive file without its later scans is a part of a picture, too.
 
+mod decode;
 mod entropy;
 mod scan;
 
+pub use decode::Opened;
 use entropy::{Huffman, word};
 use scan::{Component, SamplingFactors, Scan};
 
@@ -52,6 +54,9 @@ pub enum JpegError {
         /// Where in the file.
         at: usize,
     },
+    /// What the decoder says.
+    #[error("{0}")]
+    Decoder(String),
 }
 
 /// What the segments say, as far as the scans depend on it.

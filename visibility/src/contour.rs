@@ -1,6 +1,6 @@
 //! The contours for a viewpoint, as they are handed on (`premio.contours/1`).
 
-use crate::camera::Camera;
+use crate::camera::ViewCamera;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::json;
@@ -141,7 +141,7 @@ pub struct Contours {
     /// [`SCHEMA`].
     pub schema: &'static str,
     /// The viewpoint.
-    pub camera: Camera,
+    pub camera: ViewCamera,
     /// What lies this near to each other coincides, in the part's unit.
     pub resolution: f64,
     /// The contours.

@@ -26,6 +26,6 @@ pub mod ray_casting;
 mod snap;
 pub mod view;
 
-pub use camera::Camera;
+pub use camera::ViewCamera;
 pub use contour::Contours;
 pub use view::{ViewError, contours};

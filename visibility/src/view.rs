@@ -1,6 +1,6 @@
 //! The contours of a part for a viewpoint.
 
-use crate::camera::Camera;
+use crate::camera::ViewCamera;
 use crate::contour::{
     Contour, ContourKind, ContourPiece, ContourSeconds, Contours, ImageCurve, JunctionKind, SCHEMA,
 };
@@ -53,14 +53,14 @@ pub enum ViewError {
 }
 
 /// The contours of a part seen by a camera; `band` is the part's resolution.
-pub fn contours(brep: &Brep, camera: &Camera, band: f64) -> Result<Contours, ViewError> {
+pub fn contours(brep: &Brep, camera: &ViewCamera, band: f64) -> Result<Contours, ViewError> {
     contours_with(brep, camera, band, Method::Propagated)
 }
 
 /// The same with the choice of how quantitative invisibility is found.
 pub fn contours_with(
     brep: &Brep,
-    camera: &Camera,
+    camera: &ViewCamera,
     band: f64,
     method: Method,
 ) -> Result<Contours, ViewError> {

@@ -1,24 +1,10 @@
-//! Grey images in files, and drawings on them.
-
-mod jpeg;
-mod netpbm;
-mod png;
+//! Pictures in files: the limits and the messages of the program.
 
 use crate::diagnostics::CliError;
 use crate::session::Session;
-use font8x8::legacy::BASIC_LEGACY;
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Rgb, RgbImage};
-use jpeg::JpegError;
-use netpbm::NetpbmError;
-use png::PngError;
-use premio_detect::Grey;
-use premio_matching::image_features::ImageFeatures;
-use premio_matching::search_result::PartMatch;
-use premio_predict::feature::arc_raster::bresenham;
-use premio_predict::image_arcs::ArcSource;
+use premio::{Grey, PictureError, PictureFormat, PictureMatch, decode_picture};
 use premio_predict::overlay;
 use premio_predict::prediction::Prediction;
-use std::io::Cursor;
 use std::path::Path;
 
 /// The grey image of a file: PNG, PGM or JPEG; a picture in colours by its luma.
@@ -27,144 +13,47 @@ use std::path::Path;
 /// The file is no picture, or not all of one, or it has more pixels than the limit, or none.
 pub fn read(path: &Path, session: Session) -> Result<Grey, CliError> {
     let bytes = session.limits.read(path)?;
-    let image = decode(&bytes, session.limits.pixels)
-        .map_err(|error| CliError::input(format!("{}: {error}", path.display())))?;
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    let levels = match image {
-        // Levels of eight bits, whatever there are.
-        DynamicImage::ImageLuma8(grey) => grey.into_raw().into_iter().map(f32::from).collect(),
-        other => {
-            let grey = other.to_luma16().into_raw();
-            grey.into_iter().map(|v| f32::from(v) / 257.0).collect()
+    decode_picture(&bytes, session.limits.pixels).map_err(|error| match error {
+        PictureError::Large { .. } => {
+            let help = "--max-pixels sets another limit";
+            CliError::input(format!("{}: {error}: {help}", path.display()))
         }
-    };
-    Ok(Grey {
-        width,
-        height,
-        levels,
+        error => failed(path, &error),
     })
 }
 
-/// Why a picture is not read.
-#[derive(Debug, thiserror::Error)]
-enum PictureError {
-    #[error("found {width} x {height} pixels, expected at least one")]
-    Empty { width: u32, height: u32 },
-    #[error(
-        "found {width} x {height}, {} pixels, expected at most {limit}: --max-pixels sets another limit",
-        u64::from(*width) * u64::from(*height)
-    )]
-    Large { width: u32, height: u32, limit: u64 },
-    #[error("{0}")]
-    Png(#[from] PngError),
-    #[error("{0}")]
-    Jpeg(#[from] JpegError),
-    #[error("{0}")]
-    Netpbm(#[from] NetpbmError),
-    #[error("{0}")]
-    Read(#[from] std::io::Error),
-    #[error("{0}")]
-    Decoder(#[from] ImageError),
-}
-
-/// A pixel has at most so many bytes as it is decoded, and a picture so many besides.
-const LARGEST_PIXEL: u64 = 16;
-const SLACK: u64 = 1 << 24;
-
-/// Reads the picture in a file's bytes. The format's checksums and codes must show no loss or damage.
-fn decode(bytes: &[u8], limit: u64) -> Result<DynamicImage, PictureError> {
-    let opened = || ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-    let reader = opened()?;
-    let format = reader.format();
-    let png_size = match format {
-        Some(ImageFormat::Png) => {
-            png::check_chunks(bytes)?;
-            png::size(bytes)
-        }
-        _ => None,
-    };
-    let (width, height) = match png_size {
-        Some([width, height]) => (width, height),
-        None => reader.into_dimensions()?,
-    };
-    let pixels = u64::from(width) * u64::from(height);
-    if pixels == 0 {
-        return Err(PictureError::Empty { width, height });
-    }
-    if pixels > limit {
-        return Err(PictureError::Large {
-            width,
-            height,
-            limit,
-        });
-    }
-    let memory = LARGEST_PIXEL * pixels + SLACK;
-    match format {
-        Some(ImageFormat::Png) => return Ok(png::decode(bytes, memory)?),
-        Some(ImageFormat::Jpeg) => jpeg::check(bytes)?,
-        Some(ImageFormat::Pnm) => netpbm::check_samples(bytes)?,
-        _ => (),
-    }
-    let mut reader = opened()?;
-    let mut limits = image::Limits::default();
-    limits.max_alloc = Some(memory);
-    reader.limits(limits);
-    Ok(reader.decode()?)
+fn failed(path: &Path, error: &PictureError) -> CliError {
+    CliError::input(format!("{}: {error}", path.display()))
 }
 
 /// The bytes of a grey image of so many levels: PNG, or PGM, by the file's ending.
 pub fn bytes(image: &Grey, levels: u32, path: &Path) -> Result<Vec<u8>, CliError> {
-    let (width, height) = (image.width as u32, image.height as u32);
-    let picture = if levels <= 256 {
-        let bytes = image.levels.iter().map(|v| *v as u8).collect();
-        image::GrayImage::from_raw(width, height, bytes).map(DynamicImage::ImageLuma8)
-    } else {
-        let words = image.levels.iter().map(|v| *v as u16).collect();
-        image::ImageBuffer::from_raw(width, height, words).map(DynamicImage::ImageLuma16)
-    };
-    let Some(picture) = picture else {
-        return Err(CliError::input("the image has no pixels"));
-    };
-    encode(&picture, path)
+    let bytes = premio::encode_picture(image, levels, format(path)?);
+    bytes.map_err(|error| failed(path, &error))
 }
 
 /// The format that the ending of a picture to be says.
 ///
 /// # Errors
 /// The ending is another.
-pub fn format(path: &Path) -> Result<ImageFormat, CliError> {
-    let ending = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default();
-    match ending.to_ascii_lowercase().as_str() {
-        "png" => Ok(ImageFormat::Png),
-        "pgm" | "pnm" => Ok(ImageFormat::Pnm),
-        _ => {
-            let name = path.display();
-            let expected = "expected a file that ends in .png or .pgm";
-            Err(CliError::input(format!("{name}: {expected}")))
-        }
-    }
+pub fn format(path: &Path) -> Result<PictureFormat, CliError> {
+    PictureFormat::from_path(path).ok_or_else(|| {
+        let name = path.display();
+        let expected = "expected a file that ends in .png or .pgm";
+        CliError::input(format!("{name}: {expected}"))
+    })
 }
 
 /// The format that the ending of an overlay says; none for SVG.
 ///
 /// # Errors
 /// The ending is another.
-pub fn overlay_format(path: &Path) -> Result<Option<ImageFormat>, CliError> {
+pub fn overlay_format(path: &Path) -> Result<Option<PictureFormat>, CliError> {
     let ending = path.extension();
     match ending.is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
         true => Ok(None),
         false => format(path).map(Some),
     }
-}
-
-fn encode(picture: &DynamicImage, path: &Path) -> Result<Vec<u8>, CliError> {
-    let mut bytes = Cursor::new(Vec::new());
-    let written = picture.write_to(&mut bytes, format(path)?);
-    written.map_err(|e| CliError::input(format!("{}: {e}", path.display())))?;
-    Ok(bytes.into_inner())
 }
 
 /// The bytes of the overlay of a prediction, over an image where there is one: SVG, or PNG.
@@ -173,142 +62,15 @@ pub fn overlay(
     below: Option<&Grey>,
     path: &Path,
 ) -> Result<Vec<u8>, CliError> {
-    if overlay_format(path)?.is_none() {
+    let Some(format) = overlay_format(path)? else {
         return Ok(overlay::svg(prediction).into_bytes());
-    }
-    encode(&DynamicImage::ImageRgb8(picture(prediction, below)), path)
+    };
+    let bytes = premio::draw_prediction(prediction, below, format);
+    bytes.map_err(|error| failed(path, &error))
 }
 
-/// The colours of what is found, and of the segments that it is.
-const FOUND: [u8; 3] = [44, 160, 44];
-const SEGMENTS: [u8; 3] = [31, 119, 180];
-
-/// The bytes of a picture with a part where it is matched: its contours green where they are found, red and
-/// dashed where they are missed, and the segments that they are in blue.
-pub fn matched(
-    grey: &Grey,
-    picture: &ImageFeatures,
-    found: &PartMatch,
-    path: &Path,
-) -> Result<Vec<u8>, CliError> {
-    let (width, height) = (grey.width as u32, grey.height as u32);
-    let mut image = RgbImage::from_pixel(width, height, Rgb([255; 3]));
-    for (pixel, level) in image.pixels_mut().zip(&grey.levels) {
-        *pixel = Rgb([(96.0 + 0.625 * level.clamp(0.0, 255.0)) as u8; 3]);
-    }
-    let is = |source: &ArcSource| found.pairs.iter().find(|p| p.source == *source);
-    for arc in &found.arcs {
-        let missed = is(&arc.source).is_some_and(|p| p.found.is_none());
-        let colour = if missed { overlay::MISSING } else { FOUND };
-        for (k, (_, seen)) in arc.points.iter().enumerate() {
-            if !(missed && k / 2 % 2 == 1) {
-                let [x, y] = [seen.at.x, seen.at.y].map(|v| v.clamp(-1e6, 1e6).round() as i32);
-                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    put(&mut image, [x + dx, y + dy], grey.height, colour);
-                }
-            }
-        }
-    }
-    let segments = found.pairs.iter().filter_map(|p| p.found.as_ref());
-    for &segment in segments.flat_map(|f| &f.segments) {
-        let [a, b] = picture.ends(segment).map(|p| p.map(|v| v.round() as i32));
-        bresenham(a, b, |at| put(&mut image, at, grey.height, SEGMENTS));
-    }
-    encode(&DynamicImage::ImageRgb8(image), path)
-}
-
-/// The height of a line of text, in pixels.
-const LINE: usize = 10;
-
-fn picture(prediction: &Prediction, below: Option<&Grey>) -> RgbImage {
-    let [width, height] = prediction.image.setup.conditions.sensor.resolution;
-    let reasons = overlay::missing(prediction);
-    let tall = height + LINE * reasons.len();
-    let mut picture = RgbImage::from_pixel(width as u32, tall as u32, Rgb([255; 3]));
-    if let Some(grey) = below {
-        for (i, level) in grey.levels.iter().enumerate() {
-            let (x, y) = (i % grey.width, i / grey.width);
-            if x < width && y < height {
-                // Faded, so that the lines are seen.
-                let shade = (96.0 + 0.625 * level.clamp(0.0, 255.0)) as u8;
-                picture.put_pixel(x as u32, y as u32, Rgb([shade; 3]));
-            }
-        }
-    }
-    for stroke in overlay::strokes(prediction) {
-        let colour = stroke.contrast.map_or(overlay::MISSING, overlay::colour);
-        let dashed = stroke.contrast.is_none();
-        let mut count = 0usize;
-        for pair in stroke.points.windows(2) {
-            let near = |p: [f64; 2]| p.map(|v| v.clamp(-1e6, 1e6).round() as i32);
-            bresenham(near(pair[0]), near(pair[1]), |[x, y]| {
-                count += 1;
-                if !(dashed && count / 3 % 2 == 1) {
-                    put(&mut picture, [x, y], height, colour);
-                }
-            });
-        }
-    }
-    for (k, (id, reason)) in reasons.iter().enumerate() {
-        let [x, y] = overlay::label_place(&prediction.arcs[*id as usize]);
-        let place = [x.clamp(-1e6, 1e6) as i32 + 3, y.clamp(-1e6, 1e6) as i32 - 9];
-        text(&mut picture, place, height, &id.to_string());
-        let row = (height + LINE * k + 1) as i32;
-        text(&mut picture, [2, row], tall, reason);
-    }
-    picture
-}
-
-fn put(picture: &mut RgbImage, [x, y]: [i32; 2], height: usize, colour: [u8; 3]) {
-    let inside = x >= 0 && y >= 0 && (x as u32) < picture.width() && (y as usize) < height;
-    if inside {
-        picture.put_pixel(x as u32, y as u32, Rgb(colour));
-    }
-}
-
-/// Writes letters of eight by eight pixels.
-fn text(picture: &mut RgbImage, [left, top]: [i32; 2], height: usize, words: &str) {
-    for (k, letter) in words.chars().enumerate() {
-        let glyph = BASIC_LEGACY
-            .get(letter as usize)
-            .copied()
-            .unwrap_or_default();
-        for (row, bits) in glyph.iter().enumerate() {
-            for column in (0..8).filter(|c| bits >> c & 1 == 1) {
-                let place = [left + 8 * k as i32 + column, top + row as i32];
-                put(picture, place, height, overlay::MISSING);
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every kind of samples is read as the decoder of all formats reads it.
-    #[test]
-    fn pictures_are_read_as_the_decoder_of_all_formats_reads_them() {
-        let grey =
-            image::GrayImage::from_fn(31, 17, |x, y| image::Luma([((7 * x) ^ (9 * y)) as u8]));
-        let grey = DynamicImage::ImageLuma8(grey);
-        let rgb = RgbImage::from_fn(31, 17, |x, y| Rgb([x as u8, y as u8, (x * y) as u8]));
-        let rgb = DynamicImage::ImageRgb8(rgb);
-        for image in [
-            grey.clone(),
-            grey.to_luma16().into(),
-            grey.to_luma_alpha8().into(),
-            rgb.to_luma_alpha16().into(),
-            rgb.to_rgb16().into(),
-            rgb.to_rgba8().into(),
-            rgb.to_rgba16().into(),
-            rgb,
-        ] {
-            let mut bytes = Cursor::new(Vec::new());
-            image.write_to(&mut bytes, ImageFormat::Png).unwrap();
-            let bytes = bytes.into_inner();
-            assert_eq!(decode(&bytes, 1000).unwrap(), image);
-            assert_eq!(image::load_from_memory(&bytes).unwrap(), image);
-        }
-    }
+/// The bytes of a picture with the likeliest match drawn on it; none without a match.
+pub fn matched(found: &PictureMatch, path: &Path) -> Result<Option<Vec<u8>>, CliError> {
+    let bytes = found.overlay(format(path)?);
+    bytes.map_err(|error| failed(path, &error))
 }

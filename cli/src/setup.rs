@@ -132,7 +132,7 @@ impl<T> SetupFile<T> {
 
     fn bare<'p>(&self, part: &'p EvaluatedPart) -> Result<PreparedPart<'p>, CliError> {
         let band = input::view_resolution(part)?;
-        let subject = PreparedPart::new(&part.evaluation.brep, band);
+        let subject = PreparedPart::new(part.solid.brep(), band);
         subject.map_err(|error| self.failure(part, &error.into()))
     }
 }

@@ -2,10 +2,10 @@ use super::*;
 
 /// Pictures of 40 by 32 pixels, written by libjpeg.
 const ALL: [&[u8]; 4] = [
-    include_bytes!("../../../tests/pictures/progressive.jpg"),
-    include_bytes!("../../../tests/pictures/progressive-colours.jpg"),
-    include_bytes!("../../../tests/pictures/restarts.jpg"),
-    include_bytes!("../../../tests/pictures/subsampled.jpg"),
+    include_bytes!("../../../../cli/tests/pictures/progressive.jpg"),
+    include_bytes!("../../../../cli/tests/pictures/progressive-colours.jpg"),
+    include_bytes!("../../../../cli/tests/pictures/restarts.jpg"),
+    include_bytes!("../../../../cli/tests/pictures/subsampled.jpg"),
 ];
 
 fn place(bytes: &[u8], kinds: &[u8]) -> usize {

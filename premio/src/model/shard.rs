@@ -1,19 +1,20 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
-use crate::diagnostics::CliError;
-use crate::session::{Limited, Session};
-use crate::{input, output};
+use crate::files;
+use premio_csg::reader::Format;
 use premio_predict::model::consistency::{
     Inconsistency, SourceLimits, check_description, check_observation,
 };
 use premio_predict::model::file::hexadecimal;
 use premio_predict::model::record::DescriptionRecord;
 use premio_predict::model::{Observation, Setups};
-use premio_text::escape::quote;
+use premio_text::escape::{self, quote};
 use premio_text::{Content, Document, LineColumn, TextError};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::io::{BufRead, BufReader, BufWriter, Write};
+use std::fmt;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, ErrorKind, Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -42,7 +43,7 @@ pub struct ShardHead {
 
 impl ShardHead {
     /// The head of a shard.
-    pub fn new(run: &Run, shard: [usize; 2]) -> Self {
+    pub fn new(run: &ShardRun, shard: [usize; 2]) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
             part: run.part.clone(),
@@ -73,7 +74,7 @@ impl ShardHead {
 
 /// What all shards of a run share.
 #[derive(Debug)]
-pub struct Run {
+pub struct ShardRun {
     /// The part's file.
     pub part: String,
     /// The part's description.
@@ -108,21 +109,22 @@ struct End {
 }
 
 /// A shard that is being written, beside its place.
-pub struct Writer {
+#[derive(Debug)]
+pub struct ShardWriter {
     out: BufWriter<NamedTempFile>,
     path: PathBuf,
     hash: Sha256,
     lines: u64,
 }
 
-impl Writer {
+impl ShardWriter {
     /// A shard to be.
-    pub fn new(path: &Path, head: &ShardHead) -> Result<Self, CliError> {
-        let path = output::target(path).map_err(|e| failed(path, &e))?;
-        if output::is_no_file(&path) {
+    pub fn new(path: &Path, head: &ShardHead) -> Result<Self, ShardError> {
+        let path = files::target(path).map_err(|e| failed(path, &e))?;
+        if files::is_no_file(&path) {
             return Err(failed(&path, &"a shard is a file, and this is none"));
         }
-        let file = output::temporary(&path).map_err(|e| failed(&path, &e))?;
+        let file = files::temporary(&path).map_err(|e| failed(&path, &e))?;
         let out = BufWriter::new(file);
         let mut writer = Self {
             out,
@@ -135,8 +137,8 @@ impl Writer {
     }
 
     /// Adds a line.
-    pub fn line(&mut self, value: &impl Serialize) -> Result<(), CliError> {
-        let text = output::json_text(value)? + "\n";
+    pub fn line(&mut self, value: &impl Serialize) -> Result<(), ShardError> {
+        let text = json_text(value).map_err(|e| failed(&self.path, &e))? + "\n";
         self.hash.update(&text);
         self.lines += 1;
         let written = self.out.write_all(text.as_bytes());
@@ -144,7 +146,7 @@ impl Writer {
     }
 
     /// Puts the shard in its place.
-    pub fn finish(mut self) -> Result<(), CliError> {
+    pub fn finish(mut self) -> Result<(), ShardError> {
         let end = End {
             lines: self.lines,
             sha256: hexadecimal(&self.hash.clone().finalize()),
@@ -158,8 +160,98 @@ impl Writer {
     }
 }
 
-fn failed(path: &Path, error: &dyn std::fmt::Display) -> CliError {
-    CliError::input(format!("{}: {error}", path.display()))
+fn failed(path: &Path, error: &dyn fmt::Display) -> ShardError {
+    ShardError {
+        path: path.to_owned(),
+        place: None,
+        words: error.to_string(),
+        is_too_long: false,
+    }
+}
+
+fn not_read(path: &Path, error: &io::Error) -> ShardError {
+    ShardError {
+        is_too_long: error.kind() == ErrorKind::FileTooLarge,
+        ..failed(path, error)
+    }
+}
+
+/// A value as JSON, in one line, without characters that a terminal obeys.
+fn json_text(value: &impl Serialize) -> Result<String, serde_json::Error> {
+    serde_json::to_string(value).map(escape::json)
+}
+
+/// What is wrong with a shard, and where.
+///
+/// # Examples
+///
+/// ```
+/// use premio::shards::Shard;
+///
+/// # let folder = tempfile::tempdir().unwrap();
+/// # std::env::set_current_dir(&folder).unwrap();
+/// std::fs::write("a.shard", "{}\n").unwrap();
+/// let error = Shard::open("a.shard".as_ref(), u64::MAX).unwrap_err();
+/// assert!(error.to_string().starts_with("a.shard:1:1: "));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShardError {
+    path: PathBuf,
+    /// The line and the column.
+    place: Option<[usize; 2]>,
+    words: String,
+    is_too_long: bool,
+}
+
+impl ShardError {
+    /// Whether the file has more bytes than the limit.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::shards::Shard;
+    ///
+    /// # let folder = tempfile::tempdir().unwrap();
+    /// # std::env::set_current_dir(&folder).unwrap();
+    /// std::fs::write("a.shard", "{}\n").unwrap();
+    /// assert!(Shard::open("a.shard".as_ref(), 1).unwrap_err().is_too_long());
+    /// ```
+    pub fn is_too_long(&self) -> bool {
+        self.is_too_long
+    }
+}
+
+impl fmt::Display for ShardError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (path, words) = (self.path.display(), &self.words);
+        match self.place {
+            Some([line, column]) => write!(f, "{path}:{line}:{column}: {words}"),
+            None => write!(f, "{path}: {words}"),
+        }
+    }
+}
+
+impl std::error::Error for ShardError {}
+
+/// A file of which no more is read than a limit.
+#[derive(Debug)]
+struct LimitedFile {
+    file: File,
+    left: u64,
+}
+
+impl Read for LimitedFile {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let read = self.file.read(into)?;
+        match self.left.checked_sub(read as u64) {
+            Some(left) => self.left = left,
+            None => {
+                let said = "found more than the limit of bytes";
+                return Err(io::Error::new(ErrorKind::FileTooLarge, said));
+            }
+        }
+        Ok(read)
+    }
 }
 
 /// A shard in a file, which is as it was written.
@@ -168,7 +260,7 @@ pub struct Shard {
     /// Its first line.
     pub head: ShardHead,
     path: PathBuf,
-    session: Session,
+    max_bytes: u64,
 }
 
 impl Shard {
@@ -176,12 +268,12 @@ impl Shard {
     ///
     /// # Errors
     /// It is none, it is of another schema, or it is not as it was written.
-    pub fn open(path: &Path, session: Session) -> Result<Self, CliError> {
-        if output::is_no_file(path) {
+    pub fn open(path: &Path, max_bytes: u64) -> Result<Self, ShardError> {
+        if files::is_no_file(path) {
             let said = "a shard is read twice: found a folder, a pipe or a device, expected a file";
             return Err(failed(path, &said));
         }
-        let mut lines = Lines::open(path, session)?;
+        let mut lines = Lines::open(path, max_bytes)?;
         let first = lines.next_line()?.unwrap_or_default();
         let head = lines.parsed(&first, ShardHead::from_json)?;
         let mut hash = Sha256::new();
@@ -202,7 +294,7 @@ impl Shard {
         let shard = Self {
             head,
             path: path.to_owned(),
-            session,
+            max_bytes,
         };
         if !is_whole || !last.ends_with('\n') {
             // Perhaps a line says what is wrong.
@@ -228,8 +320,8 @@ impl Shard {
         &self,
         limits: &SourceLimits,
         mut report: impl FnMut(&Observation),
-    ) -> Result<(), CliError> {
-        let mut lines = Lines::open(&self.path, self.session)?;
+    ) -> Result<(), ShardError> {
+        let mut lines = Lines::open(&self.path, self.max_bytes)?;
         lines.next_line()?;
         for setup in self.head.range() {
             let line = lines.next_line()?;
@@ -248,13 +340,37 @@ impl Shard {
     }
 }
 
+/// The language of a description in a model.
+///
+/// # Errors
+/// There is none of this name.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+/// use premio::shards::{DescriptionRecord, language};
+///
+/// let record = DescriptionRecord { language: "csg".to_owned(), ..DescriptionRecord::default() };
+/// assert_eq!(language(&record), Ok(Format::Csg));
+/// assert!(language(&DescriptionRecord::default()).is_err());
+/// ```
+pub fn language(written: &DescriptionRecord) -> Result<Format, String> {
+    let language = &written.language;
+    let format = Format::ALL.into_iter().find(|f| f.ending() == language);
+    format.ok_or_else(|| {
+        let all: Vec<&str> = Format::ALL.iter().map(|f| f.ending()).collect();
+        format!("is {}, expected one of {}", quote(language), all.join(", "))
+    })
+}
+
 /// The observation of a line.
 fn observation(
     lines: &Lines,
     line: &str,
     setup: usize,
     limits: &SourceLimits,
-) -> Result<Observation, CliError> {
+) -> Result<Observation, ShardError> {
     // What is right needs no places.
     let observation = match serde_json::from_str::<Observation>(line) {
         Ok(observation) => observation,
@@ -302,7 +418,7 @@ impl ShardHead {
             let words = format!("found shard {index}/{of}, expected one of them");
             return refused("shard", words);
         }
-        if let Err(words) = input::language(&head.description) {
+        if let Err(words) = language(&head.description) {
             let key = "description.language";
             return refused(key, format!("`{key}` {words}"));
         }
@@ -319,15 +435,17 @@ impl End {
 
 /// The lines of a file.
 struct Lines {
-    reader: BufReader<Limited>,
+    reader: BufReader<LimitedFile>,
     path: PathBuf,
     /// How many have been read.
     count: usize,
 }
 
 impl Lines {
-    fn open(path: &Path, session: Session) -> Result<Self, CliError> {
-        let reader = BufReader::new(session.limits.open(path)?);
+    fn open(path: &Path, max_bytes: u64) -> Result<Self, ShardError> {
+        let file = File::open(path).map_err(|e| not_read(path, &e))?;
+        let left = max_bytes;
+        let reader = BufReader::new(LimitedFile { file, left });
         Ok(Self {
             reader,
             path: path.to_owned(),
@@ -335,10 +453,10 @@ impl Lines {
         })
     }
 
-    fn next_line(&mut self) -> Result<Option<String>, CliError> {
+    fn next_line(&mut self) -> Result<Option<String>, ShardError> {
         let mut bytes = Vec::new();
         let read = self.reader.read_until(b'\n', &mut bytes);
-        let read = read.map_err(|e| failed(&self.path, &e))?;
+        let read = read.map_err(|e| not_read(&self.path, &e))?;
         self.count += usize::from(read > 0);
         let text = String::from_utf8(bytes).map_err(|e| {
             let at = e.utf8_error().valid_up_to();
@@ -353,15 +471,17 @@ impl Lines {
         &self,
         line: &str,
         parse: impl Fn(&str) -> Result<T, TextError>,
-    ) -> Result<T, CliError> {
+    ) -> Result<T, ShardError> {
         parse(line).map_err(|e| self.wrong(e.span.clone().unwrap_or(0..0), line, &e.to_string()))
     }
 
     /// What is wrong with the line that was read last.
-    fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> CliError {
+    fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> ShardError {
         let LineColumn { column, .. } = LineColumn::new(line.as_bytes(), span.start);
-        let (path, number) = (self.path.display(), self.count.max(1));
-        CliError::input(format!("{path}:{number}:{column}: {words}"))
+        ShardError {
+            place: Some([self.count.max(1), column]),
+            ..failed(&self.path, &words)
+        }
     }
 }
 
@@ -400,7 +520,7 @@ mod tests {
         use std::os::unix::fs::PermissionsExt;
         let folder = tempfile::tempdir().unwrap();
         let [shard, other] = ["a.shard", "other"].map(|name| folder.path().join(name));
-        Writer::new(&shard, &head()).unwrap().finish().unwrap();
+        ShardWriter::new(&shard, &head()).unwrap().finish().unwrap();
         std::fs::write(&other, "").unwrap();
         let [a, b] = [&shard, &other].map(|path| std::fs::metadata(path).unwrap().permissions());
         assert_eq!(a.mode(), b.mode());
@@ -409,7 +529,7 @@ mod tests {
     #[test]
     fn a_folder_is_no_place_for_a_shard() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(Writer::new(folder.path(), &head()).is_err());
+        assert!(ShardWriter::new(folder.path(), &head()).is_err());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 fn main() -> premio::Result<()> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| ".".to_owned()));
 
-    let ring = torus(20, 6).translate([0, 0, 6]);
+    let ring = torus(20, 6).translate([0, 0, 5]);
     let part = block(60, 60, 4).translate([-30, -30, -4]) + ring;
     let solid = part.evaluate()?;
     let camera = Camera::perspective([90.0, -120.0, 60.0], [0.0, 0.0, 3.0]).with_focal(50.0);

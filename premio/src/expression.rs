@@ -20,6 +20,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Why an expression is no solid.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let error = block(1, 1, 1).scale(-2).evaluate().unwrap_err();
+/// assert!(matches!(error, premio::Error::Expression(premio::ExpressionError::Factor)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExpressionError {

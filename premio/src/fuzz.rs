@@ -199,6 +199,19 @@ enum Judgement {
 }
 
 /// Where a kernel says something else.
+///
+/// # Examples
+///
+/// ```
+/// use premio::fuzz::{KernelTrial, Profile};
+/// use premio::{Expression, Progress};
+///
+/// let refuses = |_: &Expression| Err("not implemented".to_owned());
+/// let trial = KernelTrial { tries: 5, ..KernelTrial::new(Profile::Grid) };
+/// let report = trial.run(0..3, refuses, &Progress::new())?;
+/// assert!(report.failures.iter().all(|failure| failure.difference.found.is_err()));
+/// # Ok::<(), premio::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct KernelDifference {
     /// The measures here.
@@ -208,6 +221,21 @@ pub struct KernelDifference {
 }
 
 /// A part on which a kernel differs, as small as it still does.
+///
+/// # Examples
+///
+/// ```
+/// use premio::fuzz::{KernelTrial, Profile};
+/// use premio::{Expression, Progress};
+///
+/// let refuses = |_: &Expression| Err("not implemented".to_owned());
+/// let report = KernelTrial::new(Profile::Grid).run(0..2, refuses, &Progress::new())?;
+/// for failure in &report.failures {
+///     assert_eq!(failure.part.tree()?.leaves().count(), 1);
+///     assert!(failure.to_string().contains("not implemented"));
+/// }
+/// # Ok::<(), premio::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct KernelFailure {
     /// The seed of the part that it was made from.

@@ -8,7 +8,7 @@ mod shard;
 /// [`Model::train`](crate::Model::train) needs none of this.
 pub mod shards {
     pub use super::run::{SetupObserver, summed};
-    pub use super::shard::{Shard, ShardError, ShardHead, ShardRun, ShardWriter, digest, language};
+    pub use super::shard::{Shard, ShardError, ShardHead, ShardRun, digest, language};
     pub use premio_predict::image::shading::Finishes;
     pub use premio_predict::model::Observation;
     pub use premio_predict::model::consistency::SourceLimits;

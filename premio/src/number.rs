@@ -4,6 +4,14 @@ use crate::Rational;
 use premio_kernel::number::rational::{self, DecimalError};
 
 /// Why a value is not an exact number.
+///
+/// # Examples
+///
+/// ```
+/// use premio::{ExactNumber, NumberError};
+///
+/// assert_eq!(ExactNumber::from(f64::NAN).value(), Err(NumberError::NotFinite));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NumberError {

@@ -22,6 +22,12 @@ use std::io::Cursor;
 use std::path::Path;
 
 /// The most pixels that [`read_picture`] takes.
+///
+/// # Examples
+///
+/// ```
+/// assert!(premio::MAX_PIXELS > 8192 * 8192);
+/// ```
 pub const MAX_PIXELS: u64 = 100_000_000;
 
 /// Reads a grey picture: PNG, PGM or JPEG; a picture in colours by its luma. Levels are from 0 to 255.
@@ -79,6 +85,13 @@ pub fn decode_picture(bytes: &[u8], max_pixels: u64) -> Result<Grey, PictureErro
 }
 
 /// Why a picture is not read or written.
+///
+/// # Examples
+///
+/// ```
+/// let large = premio::decode_picture(b"P5 2 1 255 \x00\xc8", 1).unwrap_err();
+/// assert!(matches!(large, premio::PictureError::Large { width: 2, height: 1, limit: 1 }));
+/// ```
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {

@@ -5,6 +5,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The caller cancelled the work.
+///
+/// # Examples
+///
+/// ```
+/// assert_eq!(premio::Cancelled.to_string(), "the work was cancelled");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the work was cancelled")]
 pub struct Cancelled;
@@ -113,6 +119,15 @@ pub struct Progress<'c> {
 }
 
 /// How far work is.
+///
+/// # Examples
+///
+/// ```
+/// use premio::{Progress, ProgressStep};
+///
+/// let percent = |step: ProgressStep| assert!(100 * step.done / step.total <= 100);
+/// assert!(Progress::new().with_callback(percent).check().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ProgressStep {

@@ -109,14 +109,8 @@ impl SetupObserver<'_> {
     ///
     /// # let folder = tempfile::tempdir().unwrap();
     /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
-    /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
-    /// let run = ShardRun {
-    ///     part: "plate".to_owned(),
-    ///     description: premio::shards::description(&solid)?,
-    ///     digest: "1".to_owned(),
-    ///     text: std::fs::read_to_string("../examples/plate-setups.toml").unwrap(),
-    ///     setups,
-    /// };
+    /// let setups = std::fs::read_to_string("../examples/plate-setups.toml").unwrap();
+    /// let run = ShardRun::new(&solid, &setups)?;
     /// let part = PreparedPart::new(solid.brep(), solid.resolution()).unwrap();
     /// let finishes = Finishes::new(&part, &run.setups.conditions)?;
     /// let observer = SetupObserver { part: &part, finishes: &finishes, setups: &run.setups };
@@ -179,15 +173,11 @@ impl SetupObserver<'_> {
 ///
 /// ```
 /// use premio::prelude::*;
-/// use premio::shards::{DescriptionRecord, Shard, ShardRun, SourceLimits, summed};
+/// use premio::shards::{ShardRun, SourceLimits, summed};
 ///
-/// let run = ShardRun {
-///     part: "plate".to_owned(),
-///     description: DescriptionRecord::default(),
-///     digest: "1".to_owned(),
-///     text: String::new(),
-///     setups: premio::read_setups("../examples/plate-setups.toml")?,
-/// };
+/// let solid = premio::block(6, 4, 2).evaluate()?;
+/// let setups = std::fs::read_to_string("../examples/plate-setups.toml").unwrap();
+/// let run = ShardRun::new(&solid, &setups)?;
 /// // Without observations there is the head and nothing else but the dependences.
 /// let records = summed(&run, &[], &SourceLimits::NONE, &Progress::new())?;
 /// assert!(!records.is_empty());

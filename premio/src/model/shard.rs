@@ -1,6 +1,6 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
-use crate::files;
+use crate::{Solid, files};
 use premio_csg::reader::Format;
 use premio_predict::model::consistency::{
     Inconsistency, SourceLimits, check_description, check_observation,
@@ -23,6 +23,19 @@ use tempfile::NamedTempFile;
 const SCHEMA: &str = "premio.observations/2";
 
 /// The first line of a shard.
+///
+/// # Examples
+///
+/// ```
+/// use premio::shards::{ShardHead, ShardRun};
+///
+/// let solid = premio::block(6, 4, 2).evaluate()?;
+/// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+/// let run = ShardRun::new(&solid, text)?;
+/// let head = ShardHead::new(&run, [2, 5]);
+/// assert_eq!((head.count, head.range()), (10, 2..4));
+/// # Ok::<(), premio::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShardHead {
@@ -42,7 +55,19 @@ pub struct ShardHead {
 }
 
 impl ShardHead {
-    /// The head of a shard.
+    /// The head of a shard: which, from 1, and of how many.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::shards::{ShardHead, ShardRun};
+    ///
+    /// let solid = premio::block(6, 4, 2).evaluate()?;
+    /// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+    /// let run = ShardRun::new(&solid, text)?;
+    /// assert_eq!(ShardHead::new(&run, [1, 3]).setups, text);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
     pub fn new(run: &ShardRun, shard: [usize; 2]) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
@@ -56,6 +81,20 @@ impl ShardHead {
     }
 
     /// Whether it is of the same run as another shard.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::shards::{ShardHead, ShardRun};
+    ///
+    /// let solid = premio::block(6, 4, 2).evaluate()?;
+    /// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+    /// let run = ShardRun::new(&solid, text)?;
+    /// let head = |k| ShardHead::new(&run, [k, 3]);
+    /// assert!(head(1).is_of_run(&head(2)));
+    /// assert!(!head(1).is_of_run(&ShardHead::new(&run, [1, 4])));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
     pub fn is_of_run(&self, other: &Self) -> bool {
         let run = |head: &Self| Self {
             shard: [1, head.shard[1]],
@@ -65,6 +104,18 @@ impl ShardHead {
     }
 
     /// The setups of the shard.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::shards::{ShardHead, ShardRun};
+    ///
+    /// let solid = premio::block(6, 4, 2).evaluate()?;
+    /// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+    /// let run = ShardRun::new(&solid, text)?;
+    /// assert_eq!(ShardHead::new(&run, [3, 3]).range(), 6..10);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
     pub fn range(&self) -> Range<usize> {
         let [index, of] = self.shard;
         let at = |k: usize| (self.count as u128 * k as u128 / of as u128) as usize;
@@ -73,6 +124,18 @@ impl ShardHead {
 }
 
 /// What all shards of a run share.
+///
+/// # Examples
+///
+/// ```
+/// use premio::shards::ShardRun;
+///
+/// let solid = premio::block(6, 4, 2).evaluate()?;
+/// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+/// let run = ShardRun::new(&solid, text)?;
+/// assert_eq!(run.setups.len(), 10);
+/// # Ok::<(), premio::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct ShardRun {
     /// The part's file.
@@ -87,7 +150,48 @@ pub struct ShardRun {
     pub setups: Setups,
 }
 
-/// Fowler, Noll and Vo's hash of some bytes: what files are told from one another by.
+impl ShardRun {
+    /// A run of a solid in the setups of a TOML text.
+    ///
+    /// # Errors
+    /// The text is none of setups, or no description holds the solid's numbers exactly.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::shards::ShardRun;
+    ///
+    /// let solid = premio::block(6, 4, 2).evaluate()?;
+    /// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+    /// let run = ShardRun::new(&solid, text)?;
+    /// assert_eq!(run.description.language, "padl");
+    /// assert!(ShardRun::new(&solid, "").is_err());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn new(solid: &Solid, setups: &str) -> crate::Result<Self> {
+        let description = solid.record().ok_or(crate::Error::NoDescription)?;
+        let resolution = solid.resolution().to_bits().to_le_bytes();
+        Ok(Self {
+            part: solid.expression().name(),
+            digest: digest([description.text.as_bytes(), &resolution, setups.as_bytes()]),
+            description,
+            text: setups.to_owned(),
+            setups: Setups::from_toml(setups)?,
+        })
+    }
+}
+
+/// Fowler, Noll and Vo's hash of some bytes: it tells files apart.
+///
+/// # Examples
+///
+/// ```
+/// use premio::shards::digest;
+///
+/// let one = digest([b"ab".as_slice(), b"c"]);
+/// assert_ne!(one, digest([b"a".as_slice(), b"bc"]));
+/// assert_eq!(one.len(), 16);
+/// ```
 pub fn digest<'b>(all: impl IntoIterator<Item = &'b [u8]>) -> String {
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
     for bytes in all {
@@ -110,7 +214,7 @@ struct End {
 
 /// A shard that is being written, beside its place.
 #[derive(Debug)]
-pub struct ShardWriter {
+pub(crate) struct ShardWriter {
     out: BufWriter<NamedTempFile>,
     path: PathBuf,
     hash: Sha256,
@@ -119,7 +223,7 @@ pub struct ShardWriter {
 
 impl ShardWriter {
     /// A shard to be.
-    pub fn new(path: &Path, head: &ShardHead) -> Result<Self, ShardError> {
+    pub(crate) fn new(path: &Path, head: &ShardHead) -> Result<Self, ShardError> {
         let path = files::target(path).map_err(|e| failed(path, &e))?;
         if files::is_no_file(&path) {
             return Err(failed(&path, &"a shard is a file, and this is none"));
@@ -137,7 +241,7 @@ impl ShardWriter {
     }
 
     /// Adds a line.
-    pub fn line(&mut self, value: &impl Serialize) -> Result<(), ShardError> {
+    pub(crate) fn line(&mut self, value: &impl Serialize) -> Result<(), ShardError> {
         let text = json_text(value).map_err(|e| failed(&self.path, &e))? + "\n";
         self.hash.update(&text);
         self.lines += 1;
@@ -146,7 +250,7 @@ impl ShardWriter {
     }
 
     /// Puts the shard in its place.
-    pub fn finish(mut self) -> Result<(), ShardError> {
+    pub(crate) fn finish(mut self) -> Result<(), ShardError> {
         let end = End {
             lines: self.lines,
             sha256: hexadecimal(&self.hash.clone().finalize()),
@@ -255,6 +359,14 @@ impl Read for LimitedFile {
 }
 
 /// A shard in a file, which is as it was written.
+///
+/// # Examples
+///
+/// ```
+/// use premio::shards::Shard;
+///
+/// assert!(Shard::open("no such.shard".as_ref(), u64::MAX).is_err());
+/// ```
 #[derive(Debug)]
 pub struct Shard {
     /// Its first line.
@@ -267,7 +379,28 @@ impl Shard {
     /// Opens a shard.
     ///
     /// # Errors
-    /// It is none, it is of another schema, or it is not as it was written.
+    /// It is none, it is of another schema, it is not as it was written, or it has more bytes than
+    /// `max_bytes`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::Progress;
+    /// use premio::shards::{Finishes, PreparedPart, SetupObserver, Shard, ShardRun};
+    ///
+    /// # let folder = tempfile::tempdir().unwrap();
+    /// # let path = folder.path().join("1-of-5.shard");
+    /// let solid = premio::block(6, 4, 2).evaluate()?;
+    /// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+    /// let run = ShardRun::new(&solid, text)?;
+    /// let part = PreparedPart::new(solid.brep(), solid.resolution()).unwrap();
+    /// let finishes = Finishes::new(&part, &run.setups.conditions)?;
+    /// let observer = SetupObserver { part: &part, finishes: &finishes, setups: &run.setups };
+    /// observer.write_shard(&path, &run, [1, 5], &Progress::new())?;
+    /// let shard = Shard::open(&path, u64::MAX)?;
+    /// assert_eq!(shard.head.count, 10);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
     pub fn open(path: &Path, max_bytes: u64) -> Result<Self, ShardError> {
         if files::is_no_file(path) {
             let said = "a shard is read twice: found a folder, a pipe or a device, expected a file";
@@ -307,7 +440,27 @@ impl Shard {
         Ok(shard)
     }
 
-    /// Its file.
+    /// The file.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::Progress;
+    /// use premio::shards::{Finishes, PreparedPart, SetupObserver, Shard, ShardRun};
+    ///
+    /// # let folder = tempfile::tempdir().unwrap();
+    /// # let path = folder.path().join("1-of-5.shard");
+    /// let solid = premio::block(6, 4, 2).evaluate()?;
+    /// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+    /// let run = ShardRun::new(&solid, text)?;
+    /// let part = PreparedPart::new(solid.brep(), solid.resolution()).unwrap();
+    /// let finishes = Finishes::new(&part, &run.setups.conditions)?;
+    /// let observer = SetupObserver { part: &part, finishes: &finishes, setups: &run.setups };
+    /// observer.write_shard(&path, &run, [1, 5], &Progress::new())?;
+    /// let shard = Shard::open(&path, u64::MAX)?;
+    /// assert_eq!(shard.path(), path);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -316,6 +469,28 @@ impl Shard {
     ///
     /// # Errors
     /// One is missing, is not one, or is of what there is not; or there are more.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::Progress;
+    /// use premio::shards::{Finishes, PreparedPart, SetupObserver, Shard, ShardRun, SourceLimits};
+    ///
+    /// # let folder = tempfile::tempdir().unwrap();
+    /// # let path = folder.path().join("1-of-5.shard");
+    /// let solid = premio::block(6, 4, 2).evaluate()?;
+    /// let text = "[viewing]\ncount = 10\nradius = 25\n[[light]]\nposition = [4, -16, 30]\n";
+    /// let run = ShardRun::new(&solid, text)?;
+    /// let part = PreparedPart::new(solid.brep(), solid.resolution()).unwrap();
+    /// let finishes = Finishes::new(&part, &run.setups.conditions)?;
+    /// let observer = SetupObserver { part: &part, finishes: &finishes, setups: &run.setups };
+    /// observer.write_shard(&path, &run, [1, 5], &Progress::new())?;
+    /// let shard = Shard::open(&path, u64::MAX)?;
+    /// let mut setups = Vec::new();
+    /// shard.each(&SourceLimits::of_part(solid.brep()).with_setups(&run.setups), |seen| setups.push(seen.setup))?;
+    /// assert_eq!(setups, [0, 1]);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
     pub fn each(
         &self,
         limits: &SourceLimits,

@@ -3,7 +3,6 @@
 use crate::arguments::{Command, DescriptionOptions, ModelCommand, SoughtOptions};
 use crate::diagnostics::CliError;
 use crate::fuzz::archive::MANIFEST;
-use crate::output;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 
@@ -147,7 +146,7 @@ impl Files {
             return Ok(());
         };
         for output in self.outputs.iter().filter(|o| o.option != MODELS) {
-            let target = output::target(&output.path);
+            let target = premio::files::target(&output.path);
             let real = target.and_then(|target| absent(&target));
             if real.is_ok_and(|path| path.starts_with(&folder)) {
                 return Err(output.refused(&format!(
@@ -224,7 +223,7 @@ impl Named {
         if is_folder(&self.path) {
             return Err(self.refused("found the path of a folder, expected that of a file"));
         }
-        let target = output::target(&self.path).map_err(|e| self.refused(&e.to_string()))?;
+        let target = premio::files::target(&self.path).map_err(|e| self.refused(&e.to_string()))?;
         match fs::metadata(&target) {
             Ok(found) if found.is_dir() => Err(self.refused("found a folder, expected a file")),
             Ok(found) if !found.is_file() => Ok(None),

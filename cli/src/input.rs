@@ -3,28 +3,25 @@
 use crate::arguments::DescriptionOptions;
 use crate::diagnostics::{CliError, Reporter};
 use crate::session::Session;
-use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{self, Description, Format, ReadOptions};
-use premio_kernel::number::predicates::CoincidencePolicy;
+use premio::shards::language;
+use premio::{Arithmetic, CoincidencePolicy, EvaluationOptions, Solid};
+use premio_csg::reader::{self, Format, ReadOptions};
 use premio_matching::camera::{CameraFile, Pinhole};
 use premio_predict::model::record::DescriptionRecord as Written;
-use premio_text::escape::quote;
-use premio_visibility::Camera;
+use premio_visibility::ViewCamera;
 use premio_visibility::camera::CameraError;
 use std::path::Path;
 use std::time::Instant;
 
-/// A part: its description and its boundary.
+/// A part: the text that it was read from and its boundary.
 #[derive(Debug)]
 pub struct EvaluatedPart {
     /// What messages call it.
     pub name: String,
-    /// What was read.
-    pub description: Description,
     /// The text that was read, and how.
     pub written: Written,
-    /// Its boundary.
-    pub evaluation: Evaluation,
+    /// The solid, with its boundary.
+    pub solid: Solid,
     /// How long reading took, in seconds.
     pub read: f64,
     /// How long the evaluation took, in seconds.
@@ -51,15 +48,11 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
         false => Arithmetic::Filtered,
     };
     let part = evaluated(name, format, written, digits, voice)?;
-    let calls = &part.evaluation.decisions.close_calls;
+    let calls = part.solid.close_calls();
     if options.strict && !calls.is_empty() {
-        return Err(CliError::close(
-            &part.name,
-            part.evaluation.resolution,
-            calls,
-        ));
+        return Err(CliError::close(&part.name, part.solid.resolution(), calls));
     }
-    voice.close_calls(&part.name, part.evaluation.resolution, calls);
+    voice.close_calls(&part.name, part.solid.resolution(), calls);
     Ok(part)
 }
 
@@ -84,19 +77,6 @@ pub fn part_of_model(
     evaluated(name, format, written, Arithmetic::Filtered, voice)
 }
 
-/// The language of a description in a model.
-///
-/// # Errors
-/// There is none of this name.
-pub fn language(written: &Written) -> Result<Format, String> {
-    let language = &written.language;
-    let format = Format::ALL.into_iter().find(|f| f.ending() == language);
-    format.ok_or_else(|| {
-        let all: Vec<&str> = Format::ALL.iter().map(|f| f.ending()).collect();
-        format!("is {}, expected one of {}", quote(language), all.join(", "))
-    })
-}
-
 /// What the reader says of bytes that are no text.
 fn not_a_text(name: &str, format: Format, bytes: &[u8]) -> Result<String, CliError> {
     match reader::parse(name, bytes, format, &ReadOptions::default()) {
@@ -118,12 +98,16 @@ fn evaluated(
         part: written.part.clone(),
     };
     let text = written.text.as_bytes();
-    let description = description(&name, (format, text), &how, voice)?;
+    let working = voice.working("reading");
+    let refused = |error| CliError::described(&name, error, text);
+    let expression = premio::read_bytes(&name, text, format, &how).map_err(refused)?;
+    expression.tree().map_err(refused)?;
+    drop(working);
+    voice.notes(&name, text, &expression.notes());
     let read = started.elapsed().as_secs_f64();
     let started = Instant::now();
     let how = EvaluationOptions {
         resolution: written.resolution,
-        noise: description.digits,
         zeros: match written.exact {
             true => CoincidencePolicy::Exact,
             false => CoincidencePolicy::ByResolution,
@@ -132,19 +116,18 @@ fn evaluated(
         ..EvaluationOptions::default()
     };
     let working = voice.working("finding the boundary");
-    let evaluation =
-        evaluate(&description.tree, &how).map_err(|e| CliError::evaluation(&name, &e))?;
+    let solid = expression.evaluate_with(&how).map_err(refused)?;
     drop(working);
-    if evaluation.brep.topology.solids.is_empty() {
+    if solid.is_empty() {
         voice.note(&name, EMPTY);
     }
+    let evaluate = started.elapsed().as_secs_f64();
     Ok(EvaluatedPart {
         name,
-        description,
         written,
-        evaluation,
+        solid,
         read,
-        evaluate: started.elapsed().as_secs_f64(),
+        evaluate,
     })
 }
 
@@ -157,22 +140,8 @@ const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do n
 
 /// The resolution for views of a part.
 pub fn view_resolution(part: &EvaluatedPart) -> Result<f64, CliError> {
-    let resolution = part.evaluation.view_resolution();
+    let resolution = part.solid.evaluation().view_resolution();
     resolution.ok_or_else(|| CliError::limit(format!("{}: {UNSEEN}", part.name)))
-}
-
-fn description(
-    name: &str,
-    (format, text): (Format, &[u8]),
-    how: &ReadOptions,
-    voice: Reporter,
-) -> Result<Description, CliError> {
-    let working = voice.working("reading");
-    let description =
-        reader::read(name, text, format, how).map_err(|e| CliError::read(&e, text))?;
-    drop(working);
-    voice.notes(name, text, &description.notes);
-    Ok(description)
 }
 
 /// The language of a file, which its ending says.
@@ -187,9 +156,9 @@ pub fn format(path: &Path) -> Result<Format, CliError> {
 }
 
 /// The camera of a file, and the file's text.
-pub fn camera_of_file(path: &Path, session: Session) -> Result<(Camera, String), CliError> {
+pub fn camera_of_file(path: &Path, session: Session) -> Result<(ViewCamera, String), CliError> {
     let text = session.limits.read_text(path)?;
-    let camera = Camera::from_json(&text).map_err(|e| refused_camera(path, &text, &e))?;
+    let camera = ViewCamera::from_json(&text).map_err(|e| refused_camera(path, &text, &e))?;
     Ok((camera, text))
 }
 

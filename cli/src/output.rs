@@ -1,12 +1,12 @@
 //! Writing results: whole, or not at all.
 
 use crate::diagnostics::CliError;
+use premio::files::{is_no_file, staged, target};
 use premio_text::escape;
 use serde::Serialize;
 use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// Writes a text, or bytes, to a file or to standard output.
 pub fn write(text: impl AsRef<[u8]>, to: Option<&Path>) -> Result<(), CliError> {
@@ -109,63 +109,6 @@ fn stdout(text: &[u8]) -> Result<(), CliError> {
         ErrorKind::BrokenPipe => CliError::BrokenPipe,
         _ => CliError::input(format!("standard output: {e}")),
     })
-}
-
-/// Writes beside the file and renames: nobody ever sees half of it.
-pub fn file(text: impl AsRef<[u8]>, path: &Path) -> io::Result<()> {
-    let target = target(path)?;
-    if is_no_file(&target) {
-        // A device or a pipe must not be replaced.
-        return fs::write(&target, text);
-    }
-    staged(text.as_ref(), &target)?.persist(&target)?;
-    Ok(())
-}
-
-/// A temporary file beside its place, with all its bytes.
-fn staged(bytes: &[u8], target: &Path) -> io::Result<NamedTempFile> {
-    let mut whole = temporary(target)?;
-    whole.write_all(bytes)?;
-    whole.as_file().sync_all()?;
-    Ok(whole)
-}
-
-/// Whether something is there that holds no bytes: a folder, a device or a pipe.
-pub fn is_no_file(target: &Path) -> bool {
-    fs::metadata(target).is_ok_and(|m| !m.is_file())
-}
-
-/// So many symbolic links may lead to a file that is not there yet.
-const LINKS: usize = 40;
-
-/// The file behind symbolic links, which may not be there yet.
-pub fn target(path: &Path) -> io::Result<PathBuf> {
-    let mut path = path.to_owned();
-    for _ in 0..LINKS {
-        match fs::canonicalize(&path) {
-            Err(e) if e.kind() == ErrorKind::NotFound => (),
-            found => return found,
-        }
-        let Ok(next) = fs::read_link(&path) else {
-            return Ok(path);
-        };
-        path = path.parent().unwrap_or(Path::new("")).join(next);
-    }
-    Err(io::Error::other("too many symbolic links"))
-}
-
-/// A temporary file beside a file to be that, renamed, has the permissions of any other new file.
-pub fn temporary(target: &Path) -> io::Result<NamedTempFile> {
-    let folder = target.parent().filter(|p| !p.as_os_str().is_empty());
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder
-        .prefix(".premio-")
-        .tempfile_in(folder.unwrap_or(Path::new(".")))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::diagnostics::{CliError, Reporter};
 use clap::Args;
 use std::collections::TryReserveError;
 use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 /// How the program speaks, and how much it takes in.
@@ -117,17 +117,6 @@ impl InputLimits {
         }
     }
 
-    /// A file that is read piece by piece.
-    ///
-    /// # Errors
-    /// It cannot be opened.
-    pub fn open(&self, path: &Path) -> Result<Limited, CliError> {
-        let file = File::open(path);
-        let file = file.map_err(|e| CliError::input(format!("{}: {e}", path.display())))?;
-        let left = self.input;
-        Ok(Limited { file, left })
-    }
-
     /// The text of a file.
     ///
     /// # Errors
@@ -141,27 +130,6 @@ impl InputLimits {
             let name = path.display().to_string();
             CliError::in_bytes(&name, bytes, at..at + 1, &words)
         })
-    }
-}
-
-/// A file of which no more is read than the limit.
-#[derive(Debug)]
-pub struct Limited {
-    file: File,
-    left: u64,
-}
-
-impl Read for Limited {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let read = self.file.read(into)?;
-        match self.left.checked_sub(read as u64) {
-            Some(left) => self.left = left,
-            None => {
-                let said = "found more than the limit of bytes: --max-input sets another";
-                return Err(io::Error::other(said));
-            }
-        }
-        Ok(read)
     }
 }
 

@@ -132,7 +132,7 @@ impl<T> SetupFile<T> {
 
     fn bare<'p>(&self, part: &'p EvaluatedPart) -> Result<PreparedPart<'p>, CliError> {
         let resolution = input::view_resolution(part)?;
-        let subject = PreparedPart::new(&part.evaluation.brep, resolution);
+        let subject = PreparedPart::new(part.solid.brep(), resolution);
         subject.map_err(|error| self.failure(part, &error.into()))
     }
 }

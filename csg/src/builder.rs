@@ -4,6 +4,7 @@
 //! many times are copied, when the tree is finished. Nothing here recurses.
 
 use std::rc::Rc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::{Rational, bits};
@@ -35,11 +36,23 @@ pub enum TreeError {
         /// The length of the longest number.
         bits: usize,
     },
+    /// A solid was made by another builder than the one it was used with.
+    #[error("a solid of another builder was used")]
+    ForeignSolid,
 }
 
-/// A part of a [`Builder`]; possibly empty.
+/// A solid of a [`Builder`]; possibly empty.
+///
+/// It carries its builder's identity: a builder refuses the solids of another one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SolidId(Option<usize>);
+pub struct SolidId(Option<Slot>);
+
+/// Where a solid is: in which builder, and at which place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Slot {
+    builder: u64,
+    index: usize,
+}
 
 impl SolidId {
     /// The part without any points.
@@ -118,12 +131,48 @@ impl Placement {
 }
 
 /// Collects the parts of a description; [`finish`](Builder::finish) makes the tree.
-#[derive(Debug, Default)]
+///
+/// # Examples
+///
+/// A solid of one builder is an error in another:
+///
+/// ```
+/// use premio_csg::builder::{Builder, TreeError};
+/// use premio_csg::primitive::Primitive;
+/// use premio_kernel::number::rational::Rational;
+///
+/// let ball = Primitive::sphere(Rational::from(2))?;
+/// let (mut ours, other) = (Builder::new(), Builder::new());
+/// let solid = ours.primitive(ball);
+/// assert_eq!(ours.finish(solid)?.leaves().count(), 1);
+/// assert_eq!(other.finish(solid), Err(TreeError::ForeignSolid));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
 pub struct Builder {
+    /// What its solids are recognised by.
+    identity: u64,
     drafts: Vec<BuilderNode>,
     /// The number of leaves of each draft, with every use counted.
     leaves: Vec<u64>,
+    /// Whether each draft contains a solid of another builder.
+    foreign: Vec<bool>,
     entries: Vec<Entry>,
+}
+
+/// The identity of the next builder.
+static NEXT_BUILDER: AtomicU64 = AtomicU64::new(0);
+
+impl Default for Builder {
+    fn default() -> Self {
+        Self {
+            identity: NEXT_BUILDER.fetch_add(1, Ordering::Relaxed),
+            drafts: Vec::new(),
+            leaves: Vec::new(),
+            foreign: Vec::new(),
+            entries: Vec::new(),
+        }
+    }
 }
 
 impl Builder {
@@ -133,9 +182,79 @@ impl Builder {
     }
 
     fn add(&mut self, draft: BuilderNode, leaves: u64) -> SolidId {
+        let foreign = match &draft {
+            BuilderNode::Leaf(_) => false,
+            BuilderNode::Operation { children, .. } => children.iter().any(|&c| self.foreign[c]),
+            BuilderNode::Moved { child, .. } => self.foreign[*child],
+        };
         self.drafts.push(draft);
         self.leaves.push(leaves);
-        SolidId(Some(self.drafts.len() - 1))
+        self.foreign.push(foreign);
+        self.solid(self.drafts.len() - 1)
+    }
+
+    fn solid(&self, index: usize) -> SolidId {
+        let builder = self.identity;
+        SolidId(Some(Slot { builder, index }))
+    }
+
+    /// The place of a solid; a solid of another builder gets one that is never finished.
+    fn place_of(&mut self, part: SolidId) -> Option<usize> {
+        let slot = part.0?;
+        if slot.builder == self.identity {
+            return Some(slot.index);
+        }
+        self.drafts.push(BuilderNode::Operation {
+            op: Operation::Union,
+            children: Vec::new(),
+        });
+        self.leaves.push(0);
+        self.foreign.push(true);
+        Some(self.drafts.len() - 1)
+    }
+
+    /// Whether a solid is of another builder, or contains one.
+    pub(crate) fn is_foreign(&self, part: SolidId) -> bool {
+        let is = |slot: Slot| slot.builder != self.identity || self.foreign[slot.index];
+        part.0.is_some_and(is)
+    }
+
+    /// Copies a solid of another builder, with all that it is made of.
+    ///
+    /// # Errors
+    /// The solid is not one of `other`.
+    pub fn import(&mut self, other: &Self, part: SolidId) -> Result<SolidId, TreeError> {
+        let Some(slot) = part.0 else {
+            return Ok(SolidId::EMPTY);
+        };
+        if other.is_foreign(part) {
+            return Err(TreeError::ForeignSolid);
+        }
+        let (drafts, entries) = (self.drafts.len(), self.entries.len());
+        self.entries.extend(other.entries.iter().map(|entry| Entry {
+            placing: entry.placing.clone(),
+            before: entry.before.map(|index| index + entries),
+        }));
+        self.drafts
+            .extend(other.drafts.iter().map(|draft| match draft {
+                BuilderNode::Leaf(primitive) => BuilderNode::Leaf(primitive.clone()),
+                BuilderNode::Operation { op, children } => BuilderNode::Operation {
+                    op: *op,
+                    children: children.iter().map(|child| child + drafts).collect(),
+                },
+                BuilderNode::Moved {
+                    child,
+                    placement,
+                    entry,
+                } => BuilderNode::Moved {
+                    child: child + drafts,
+                    placement: placement.clone(),
+                    entry: entry + entries,
+                },
+            }));
+        self.leaves.extend(&other.leaves);
+        self.foreign.extend(&other.foreign);
+        Ok(self.solid(slot.index + drafts))
     }
 
     /// A primitive in its own frame.
@@ -154,10 +273,11 @@ impl Builder {
         if emptied {
             return SolidId::EMPTY;
         }
-        let children: Vec<usize> = parts.iter().filter_map(|part| part.0).collect();
+        let children = parts.iter().filter_map(|&part| self.place_of(part));
+        let children: Vec<usize> = children.collect();
         match children.as_slice() {
             [] => SolidId::EMPTY,
-            &[only] => SolidId(Some(only)),
+            &[only] => self.solid(only),
             _ => {
                 let leaves = children
                     .iter()
@@ -202,14 +322,14 @@ impl Builder {
     }
 
     fn place(&mut self, part: SolidId, placement: Placement, placing: Placing) -> SolidId {
-        let Some(child) = part.0 else {
+        let Some(child) = self.place_of(part) else {
             return SolidId::EMPTY;
         };
         // Placements in a row become one, so that the cost of a use is that of its leaves.
         let (child, placement, before) = match &self.drafts[child] {
             // Beyond the limit for good: finishing it is an error, wherever it is put.
             BuilderNode::Moved { placement, .. } if placement.bits() > MAX_MOTION_BITS => {
-                return part;
+                return self.solid(child);
             }
             BuilderNode::Moved {
                 child,
@@ -230,12 +350,13 @@ impl Builder {
 
     /// How many leaves a part has, with every use counted.
     pub(crate) fn leaves(&self, part: SolidId) -> u64 {
-        part.0.map_or(0, |draft| self.leaves[draft])
+        self.draft_of(part).map_or(0, |draft| self.leaves[draft])
     }
 
-    /// What a part is made of; `None` for the empty part.
+    /// What a part is made of; `None` for the empty part, and for one of another builder.
     pub(crate) fn draft_of(&self, part: SolidId) -> Option<usize> {
-        part.0
+        let slot = part.0.filter(|slot| slot.builder == self.identity);
+        slot.map(|slot| slot.index)
     }
 
     pub(crate) fn draft(&self, index: usize) -> &BuilderNode {
@@ -247,8 +368,14 @@ impl Builder {
     }
 
     /// The tree of one part.
+    ///
+    /// # Errors
+    /// The tree is beyond a limit, or the part is of another builder.
     pub fn finish(&self, part: SolidId) -> Result<Tree, TreeError> {
-        let Some(top) = part.0 else {
+        if self.is_foreign(part) {
+            return Err(TreeError::ForeignSolid);
+        }
+        let Some(top) = self.draft_of(part) else {
             return Ok(Tree::default());
         };
         let leaves = self.leaves[top];
@@ -516,6 +643,51 @@ mod tests {
         let tree = b.finish(part).unwrap();
         assert_eq!(tree.leaves().count(), 100_001);
         assert_eq!(tree.nodes().len(), 200_001);
+    }
+
+    #[test]
+    fn solids_of_another_builder_are_refused() {
+        let (mut ours, mut theirs) = (Builder::new(), Builder::new());
+        let known = ball(&mut ours);
+        // The same place in both builders.
+        let foreign = ball(&mut theirs);
+        assert_ne!(known, foreign);
+        let union = ours.operation(Operation::Union, &[known, foreign]);
+        let nested = ours.moved(union, shift(1, 0, 0));
+        let only = ours.operation(Operation::Union, &[foreign]);
+        let moved = ours.moved(foreign, shift(1, 0, 0));
+        let far = SolidId(Some(Slot {
+            builder: theirs.identity,
+            index: 1000,
+        }));
+        for part in [foreign, far, union, nested, only, moved] {
+            assert_eq!(ours.finish(part), Err(TreeError::ForeignSolid), "{part:?}");
+            let written = crate::writer::write(&ours, part, crate::reader::Format::Padl);
+            assert_eq!(written, Err(crate::writer::WriteError::ForeignSolid));
+        }
+        // What does not count is not looked at, and what was made before stays as it is.
+        let none = ours.operation(Operation::Intersection, &[SolidId::EMPTY, foreign]);
+        assert!(ours.finish(none).unwrap().is_empty());
+        assert_eq!(text(&ours.finish(known).unwrap()), "0");
+    }
+
+    #[test]
+    fn an_imported_solid_is_the_same_tree() {
+        let mut theirs = Builder::new();
+        let [a, b] = balls(&mut theirs);
+        let pair = theirs.operation(Operation::Difference, &[a, b]);
+        let pair = theirs.moved(pair, shift(5, 0, 0));
+        let pair = theirs.mirrored_y(pair);
+        let mut ours = Builder::new();
+        let [_, c] = balls(&mut ours);
+        let moved = ours.moved(c, shift(7, 0, 0));
+        let copy = ours.import(&theirs, pair).unwrap();
+        assert_eq!(ours.finish(copy), theirs.finish(pair));
+        assert_eq!(text(&ours.finish(moved).unwrap()), "8");
+        assert_eq!(ours.import(&theirs, copy), Err(TreeError::ForeignSolid));
+        let format = crate::reader::Format::Padl;
+        let written = |builder, part| crate::writer::write(builder, part, format);
+        assert_eq!(written(&ours, copy), written(&theirs, pair));
     }
 
     #[test]

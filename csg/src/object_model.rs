@@ -7,7 +7,7 @@
 
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{
-    CoedgeId, EdgeId, FaceId, LoopId, Sense, ShellId, SolidId, VertexId,
+    CoedgeId, EdgeId, FaceId, LoopId, LumpId, Sense, ShellId, VertexId,
 };
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::json;
@@ -42,7 +42,7 @@ pub struct ObjectModel {
 #[derive(Clone, Debug, Serialize)]
 pub struct Object {
     /// Its place in the list.
-    pub id: SolidId,
+    pub id: LumpId,
     /// Its outer shell, then its voids.
     pub shells: Vec<ShellId>,
 }
@@ -53,7 +53,7 @@ pub struct ModelShell {
     /// Its place in the list.
     pub id: ShellId,
     /// The object it bounds.
-    pub object: SolidId,
+    pub object: LumpId,
     /// Whether it bounds a void.
     pub void: bool,
     /// Its genus.
@@ -191,7 +191,7 @@ impl ObjectModel {
 }
 
 fn objects(brep: &Brep) -> Vec<Object> {
-    let solids = (0..).map(SolidId).zip(&brep.topology.solids);
+    let solids = (0..).map(LumpId).zip(&brep.topology.solids);
     solids
         .map(|(id, solid)| Object {
             id,

@@ -6,7 +6,7 @@ use super::Drawing;
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use premio_kernel::unit::Unit;
 use premio_text::number;
-use premio_visibility::camera::{Camera, CameraError};
+use premio_visibility::camera::{CameraError, ViewCamera};
 use std::collections::BTreeMap;
 
 /// A view along an axis of the part's frame, z up, or the isometric one.
@@ -44,7 +44,7 @@ impl StandardView {
 
     /// The camera of the view of a part about its middle, which is the origin of the image; `size` is
     /// any length of the part's order.
-    pub fn camera(self, middle: Point3<f64>, size: f64) -> Result<Camera, CameraError> {
+    pub fn camera(self, middle: Point3<f64>, size: f64) -> Result<ViewCamera, CameraError> {
         let (from, up) = match self {
             Self::Front => (-Vector3::y(), Vector3::z()),
             Self::Back => (Vector3::y(), Vector3::z()),
@@ -54,7 +54,7 @@ impl StandardView {
             Self::Bottom => (-Vector3::z(), -Vector3::y()),
             Self::Isometric => (Vector3::new(1.0, -1.0, 1.0), Vector3::z()),
         };
-        Camera::orthographic(middle + from * size, middle, up)
+        ViewCamera::orthographic(middle + from * size, middle, up)
     }
 }
 
@@ -181,6 +181,27 @@ pub struct SheetOptions {
     pub scale: Option<Scale>,
     /// How views stand around the front view.
     pub angle: Angle,
+}
+
+impl SheetOptions {
+    /// A title on the default sheet: millimetres, A3, the greatest scale, first angle projection.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio_drawing::sheet::{Paper, SheetOptions};
+    ///
+    /// assert_eq!(SheetOptions::new("plate").paper, Paper::A3);
+    /// ```
+    pub fn new(title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            unit: Unit::default(),
+            paper: Paper::default(),
+            scale: None,
+            angle: Angle::default(),
+        }
+    }
 }
 
 /// Why views are not put on a sheet.

@@ -10,7 +10,7 @@ use premio_drawing::{Drawing, DrawingOptions, StrokeShape, dxf, svg};
 use premio_kernel::geometry::frame::Frame;
 use premio_visibility::camera::projection::Projection;
 use premio_visibility::contours::Contours;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 
 fn seen() -> Contours {
     let mut b = Builder::default();
@@ -22,7 +22,7 @@ fn seen() -> Contours {
     b.cylinder(&tilted().at(Point3::new(-2.0, 3.0, -1.0)), 0.5, 4.0);
     b.torus(&tilted().at(Point3::new(2.0, 2.0, 5.0)), 1.5, 0.4);
     let e = Point3::new(12.0, 9.0, 8.0);
-    let camera = Camera::perspective(e, Point3::new(1.0, 2.0, 1.0), Vector3::z(), 1.0).unwrap();
+    let camera = ViewCamera::perspective(e, Point3::new(1.0, 2.0, 1.0), Vector3::z(), 1.0).unwrap();
     contours(&b.brep, &camera, BAND).unwrap()
 }
 
@@ -123,7 +123,8 @@ fn circles_stay_circles_along_an_axis() {
     let mut b = Builder::default();
     b.cylinder(&Frame::world(), 1.0, 2.0);
     let up = Vector3::y();
-    let camera = Camera::orthographic(Point3::new(0.0, 0.0, 9.0), Point3::origin(), up).unwrap();
+    let camera =
+        ViewCamera::orthographic(Point3::new(0.0, 0.0, 9.0), Point3::origin(), up).unwrap();
     let c = contours(&b.brep, &camera, BAND).unwrap();
     let text = dxf::write(&Drawing::new(
         &c,

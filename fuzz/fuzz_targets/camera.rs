@@ -7,18 +7,18 @@ use nalgebra::Point3;
 use premio_fuzz::BORED_BLOCK;
 use premio_matching::camera::CameraFile;
 use premio_visibility::camera::projection::Projection;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 use std::ops::Range;
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
     };
-    match Camera::from_json(text) {
+    match ViewCamera::from_json(text) {
         Err(error) => told(&error.to_string(), error.span(text), text),
         Ok(camera) => {
             let again = serde_json::to_string(&camera).expect("a camera is written");
-            assert_eq!(Camera::from_json(&again), Ok(camera.clone()), "{again}");
+            assert_eq!(ViewCamera::from_json(&again), Ok(camera.clone()), "{again}");
             let size = BORED_BLOCK.bounds.diagonal();
             let projection = Projection::new(&camera, size);
             let depth = projection.depth(&Point3::new(3.0, 2.0, 1.0));

@@ -12,7 +12,7 @@ use premio_verify::generator::write::{Format, write};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{ReadOptions, read};
 use premio_csg::tree::Tree;
-use premio_visibility::Camera;
+use premio_visibility::ViewCamera;
 
 pub use recipe::{Recipe, Sight};
 use std::sync::LazyLock;
@@ -57,7 +57,7 @@ impl Part {
     }
 
     /// A camera that looks at the part; none along no direction.
-    pub fn camera(&self, sight: &Sight) -> Option<Camera> {
+    pub fn camera(&self, sight: &Sight) -> Option<ViewCamera> {
         let direction = Vector3::from(sight.direction);
         let bounds = &self.evaluation.bounds;
         let size = bounds.diagonal();
@@ -69,8 +69,8 @@ impl Part {
         let towards = direction.try_normalize(0.0)?;
         let eye = |distance: f64| centre + towards * (distance * size);
         match sight.distance {
-            Some(distance) => Camera::perspective(eye(distance), centre, up, 1.0).ok(),
-            None => Camera::orthographic(eye(1.0), centre, up).ok(),
+            Some(distance) => ViewCamera::perspective(eye(distance), centre, up, 1.0).ok(),
+            None => ViewCamera::orthographic(eye(1.0), centre, up).ok(),
         }
     }
 

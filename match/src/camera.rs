@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point2, Point3, Vector3};
 use premio_text::{Document, TextError, number};
-use premio_visibility::camera::{Camera, CameraModel};
+use premio_visibility::camera::{CameraModel, ViewCamera};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -296,8 +296,8 @@ impl Pinhole {
     }
 
     /// The camera of `visibility`, where the part is at a pose.
-    pub fn at(&self, pose: &Isometry3<f64>, [width, height]: [usize; 2]) -> Camera {
-        Camera {
+    pub fn at(&self, pose: &Isometry3<f64>, [width, height]: [usize; 2]) -> ViewCamera {
+        ViewCamera {
             model: CameraModel::Matrices {
                 k: self.matrix(),
                 r: pose.rotation.to_rotation_matrix().into_inner(),

@@ -7,7 +7,7 @@ use premio_kernel::brep::point_in_solid::contains;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::tessellation::{Accuracy, Mesh, tessellate};
-use premio_visibility::camera::Camera;
+use premio_visibility::camera::ViewCamera;
 use premio_visibility::camera::projection::Projection;
 use premio_visibility::ray_casting::{OriginIncidence, SightLine};
 use premio_visibility::scene::Scene;
@@ -70,7 +70,7 @@ impl<'a> PreparedPart<'a> {
 fn unblocked_fraction(subject: &PreparedPart<'_>) -> Vec<f64> {
     let count = subject.brep.topology.faces.len();
     let away = Vector3::z() * (4.0 * subject.radius);
-    let eye = Camera::orthographic(subject.centre + away, subject.centre, Vector3::y());
+    let eye = ViewCamera::orthographic(subject.centre + away, subject.centre, Vector3::y());
     let accuracy = Accuracy {
         deviation: subject.radius / 64.0,
         angle: PI / 8.0,

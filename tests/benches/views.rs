@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_tests::parts::{cube_with_cuts, plate, tee};
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 use serde_json::Value;
 use std::time::Duration;
 
@@ -23,8 +23,8 @@ fn part(json: &Value) -> Evaluation {
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 
-fn camera(eye: Point3<f64>, target: Point3<f64>) -> Camera {
-    Camera::perspective(eye, target, Vector3::z(), 1.0).unwrap()
+fn camera(eye: Point3<f64>, target: Point3<f64>) -> ViewCamera {
+    ViewCamera::perspective(eye, target, Vector3::z(), 1.0).unwrap()
 }
 
 fn views(c: &mut Criterion) {
@@ -49,7 +49,7 @@ fn views(c: &mut Criterion) {
         }
     }
     let centre = Point3::new(0.0, 0.0, 100.0);
-    let orthographic = |eye, up| Camera::orthographic(eye, centre, up).unwrap();
+    let orthographic = |eye, up| ViewCamera::orthographic(eye, centre, up).unwrap();
     for k in [1, 4, 8] {
         let pipe = part(&tee(k));
         for (name, camera) in [

@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_tests::parts::plate;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 
 /// The most that this process has had in memory so far, in MiB.
 fn peak() -> f64 {
@@ -31,7 +31,7 @@ fn main() {
     let s = n as f64;
     let eye = Point3::new(1.3 * s, 1.7 * s, 1.5 * s);
     let target = Point3::new(0.5 * s, 0.5 * s, 0.0);
-    let camera = Camera::perspective(eye, target, Vector3::z(), 1.0).unwrap();
+    let camera = ViewCamera::perspective(eye, target, Vector3::z(), 1.0).unwrap();
     let seen = contours(&part.brep, &camera, part.resolution).unwrap();
     println!(
         "with a view of {} contours: {:.0} MiB",

@@ -13,7 +13,7 @@ use premio_visibility::camera::projection::Projection;
 use premio_visibility::contours::contours_with;
 use premio_visibility::contours::{Contour, ContourPiece};
 use premio_visibility::invisibility::Method;
-use premio_visibility::{Camera, Contours, contours};
+use premio_visibility::{Contours, ViewCamera, contours};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::time::Duration;
@@ -118,7 +118,7 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
 }
 
 /// Where rays on triangles of the boundary see something else before a piece than it says.
-fn before(cast: &Cast, evaluation: &Evaluation, name: &str, camera: &Camera) -> Option<String> {
+fn before(cast: &Cast, evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> Option<String> {
     let seen = contours(&evaluation.brep, camera, evaluation.resolution).ok()?;
     let counted = cast.count(&seen);
     let first = counted.wrong.first()?;
@@ -130,7 +130,7 @@ fn before(cast: &Cast, evaluation: &Evaluation, name: &str, camera: &Camera) -> 
 }
 
 /// Where the invisibility that is carried along contours is not what is counted piece by piece.
-pub fn differences(evaluation: &Evaluation, name: &str, camera: &Camera) -> Option<String> {
+pub fn differences(evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> Option<String> {
     let of = |method| contours_with(&evaluation.brep, camera, evaluation.resolution, method).ok();
     let (carried, counted) = (of(Method::Propagated)?, of(Method::Recounted)?);
     let pieces = |seen: &Contours| -> Vec<usize> {
@@ -164,7 +164,7 @@ fn passing(
     seen: &Contours,
     contour: &Contour,
     piece: &ContourPiece,
-    camera: &Camera,
+    camera: &ViewCamera,
 ) -> usize {
     let [lo, hi] = piece.t;
     let p = contour.curve3.point(lo + (hi - lo) * COUNTED_AT);

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_visibility::contours::{Contour, ContourKind, ImageCurve};
-use premio_visibility::{Camera, Contours, contours};
+use premio_visibility::{Contours, ViewCamera, contours};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -102,7 +102,7 @@ fn evaluated(tree: &Value) -> Result<Evaluation, String> {
 
 /// The cameras of a part and those of its mirror image: from an odd place near by and far off, and
 /// along x and z.
-fn cameras(part: &Evaluation) -> Vec<[Camera; 2]> {
+fn cameras(part: &Evaluation) -> Vec<[ViewCamera; 2]> {
     let [min, max] = [part.bounds.min, part.bounds.max].map(Point3::from);
     let (centre, size) = (nalgebra::center(&min, &max), part.bounds.diagonal());
     let glass = |p: Point3<f64>| Point3::new(p.x, -p.y, p.z);
@@ -119,8 +119,8 @@ fn cameras(part: &Evaluation) -> Vec<[Camera; 2]> {
             false => Vector3::z(),
         };
         let camera = |eye, target| match central {
-            true => Camera::perspective(eye, target, up, 1.0).ok(),
-            false => Camera::orthographic(eye, target, up).ok(),
+            true => ViewCamera::perspective(eye, target, up, 1.0).ok(),
+            false => ViewCamera::orthographic(eye, target, up).ok(),
         };
         Some([camera(eye, centre)?, camera(glass(eye), glass(centre))?])
     });

@@ -66,9 +66,26 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         ],
     ),
     (
+        "premio",
+        "premio",
+        &[
+            "premio-verify",
+            "premio-kernel",
+            "premio-text",
+            "premio-csg",
+            "premio-visibility",
+            "premio-drawing",
+            "premio-detect",
+            "premio-exchange",
+            "premio-predict",
+            "premio-matching",
+        ],
+    ),
+    (
         "cli",
         "premio-cli",
         &[
+            "premio",
             "premio-verify",
             "premio-kernel",
             "premio-memory",

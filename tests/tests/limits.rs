@@ -6,7 +6,7 @@ use premio_csg::evaluate::{Evaluation, EvaluationError, EvaluationOptions, evalu
 use premio_csg::object_model::ObjectModel;
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_tests::random;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 
 fn evaluated(
     text: &str,
@@ -54,7 +54,7 @@ fn written(seed: u64) -> [String; 2] {
     let known = evaluated(&text, Format::Json, &EvaluationOptions::default()).unwrap();
     let target = nalgebra::center(&known.bounds.min.into(), &known.bounds.max.into());
     let eye = target + Vector3::new(1.7, -2.1, 1.3) * known.bounds.diagonal();
-    let camera = Camera::perspective(eye, target, Vector3::z(), 1.0).unwrap();
+    let camera = ViewCamera::perspective(eye, target, Vector3::z(), 1.0).unwrap();
     let seen = contours(&known.brep, &camera, known.resolution).unwrap();
     let drawn = (&seen.contours, &seen.junctions);
     [

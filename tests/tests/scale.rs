@@ -5,7 +5,7 @@
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 
 /// Lengths in S.
 const PARTS: [&str; 2] = [
@@ -35,8 +35,8 @@ fn told(part: &str, exponent: i32) -> Told {
     let at = |x: f64, y: f64, z: f64| Point3::new(size * x, size * y, size * z);
     let (eye, target) = (at(2.5, 5.5, -0.75), at(0.125, 0.125, 0.5));
     let cameras = [
-        Camera::orthographic(eye, target, Vector3::z()).unwrap(),
-        Camera::perspective(eye, target, Vector3::z(), 1.0).unwrap(),
+        ViewCamera::orthographic(eye, target, Vector3::z()).unwrap(),
+        ViewCamera::perspective(eye, target, Vector3::z(), 1.0).unwrap(),
     ];
     let pieces = cameras.iter().flat_map(|camera| {
         let seen = contours(&known.brep, camera, known.resolution).unwrap();

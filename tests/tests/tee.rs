@@ -9,7 +9,7 @@ use premio_tests::parts::tee;
 use premio_verify::checks::Checker;
 use premio_visibility::contours::contours_with;
 use premio_visibility::invisibility::Method;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 use serde_json::{Value, json};
 use std::time::Instant;
 
@@ -49,7 +49,7 @@ fn part(json: &Value) -> (Tree, Evaluation) {
     (tree, evaluation)
 }
 
-fn cameras() -> Vec<(&'static str, Camera)> {
+fn cameras() -> Vec<(&'static str, ViewCamera)> {
     let centre = Point3::new(0.0, 0.0, 100.0);
     let along = |z: f64| {
         let eye = Point3::new(0.0, 0.0, z);
@@ -59,28 +59,31 @@ fn cameras() -> Vec<(&'static str, Camera)> {
     let (below, _) = along(-400.0);
     let lateral = Point3::new(310.0, 270.0, 420.0);
     vec![
-        ("along", Camera::orthographic(above, centre, up).unwrap()),
+        (
+            "along",
+            ViewCamera::orthographic(above, centre, up).unwrap(),
+        ),
         (
             "from below",
-            Camera::orthographic(below, centre, up).unwrap(),
+            ViewCamera::orthographic(below, centre, up).unwrap(),
         ),
         (
             "on the axis",
-            Camera::perspective(above, centre, up, 1.0).unwrap(),
+            ViewCamera::perspective(above, centre, up, 1.0).unwrap(),
         ),
         (
             "general",
-            Camera::orthographic(lateral, centre, Vector3::z()).unwrap(),
+            ViewCamera::orthographic(lateral, centre, Vector3::z()).unwrap(),
         ),
         (
             "general perspective",
-            Camera::perspective(lateral, centre, Vector3::z(), 1.0).unwrap(),
+            ViewCamera::perspective(lateral, centre, Vector3::z(), 1.0).unwrap(),
         ),
     ]
 }
 
 /// The least of several runs, in seconds.
-fn time(part: &Evaluation, camera: &Camera) -> f64 {
+fn time(part: &Evaluation, camera: &ViewCamera) -> f64 {
     let run = || {
         let started = Instant::now();
         std::hint::black_box(contours(&part.brep, camera, part.resolution).unwrap());

@@ -10,7 +10,7 @@ use premio_visibility::camera::projection::{Projection, ViewRay};
 use premio_visibility::contours::contours_with;
 use premio_visibility::contours::{ContourKind, Contours, JunctionKind};
 use premio_visibility::invisibility::Method;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 use std::f64::consts::TAU;
 
 /// A torus about the z axis.
@@ -184,7 +184,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn view(&mut self, name: &str, t: &Torus, part: &Evaluation, camera: &Camera) {
+    fn view(&mut self, name: &str, t: &Torus, part: &Evaluation, camera: &ViewCamera) {
         let size = 2.0 * (t.major + t.minor);
         let projection = Projection::new(camera, size);
         let seen = match contours(&part.brep, camera, part.resolution) {
@@ -281,14 +281,14 @@ fn examine(t: Torus, seed: u64) {
         let eye = Point3::from(towards * (reach * (1.1 + 6.0 * random.unit())));
         let target = Point3::from(random.direction() * (0.3 * reach * random.unit()));
         let up = random.direction();
-        let perspective = Camera::perspective(eye, target, up, 1.0).unwrap();
+        let perspective = ViewCamera::perspective(eye, target, up, 1.0).unwrap();
         tally.view(
             &format!("perspective {k} from {eye}"),
             &t,
             &part,
             &perspective,
         );
-        let orthographic = Camera::orthographic(eye, Point3::origin(), up).unwrap();
+        let orthographic = ViewCamera::orthographic(eye, Point3::origin(), up).unwrap();
         tally.view(
             &format!("orthographic {k} from {eye}"),
             &t,
@@ -349,7 +349,7 @@ fn limbs_are_cut_next_to_their_nodes() {
             0.6 + d
         ));
         let eye = Point3::new(0.0, -10.0, 0.0);
-        let camera = Camera::orthographic(eye, Point3::origin(), Vector3::z()).unwrap();
+        let camera = ViewCamera::orthographic(eye, Point3::origin(), Vector3::z()).unwrap();
         let seen = contours(&part.brep, &camera, part.resolution).unwrap();
         let of_tube = |c: &&premio_visibility::contours::Contour| {
             let [p, q] = [0.0, 1.0].map(|t| c.curve3.point(t));
@@ -386,7 +386,7 @@ fn a_cusp_on_an_edge_is_no_fold() {
     let part = evaluate(&tree.tree, &EvaluationOptions::default()).unwrap();
     let centre = Point3::new(0.125, 0.0, 0.0);
     let eye = centre + Vector3::new(-1.0, 1.0, -1.0);
-    let camera = Camera::orthographic(eye, centre, Vector3::z()).unwrap();
+    let camera = ViewCamera::orthographic(eye, centre, Vector3::z()).unwrap();
     for method in [Method::Propagated, Method::Recounted] {
         let seen = contours_with(&part.brep, &camera, part.resolution, method).unwrap();
         // The edge on the equator, which the face and the tube bound: of its half towards (0, 0, 1/2)

@@ -8,10 +8,10 @@ use nalgebra::{Point3, Vector3};
 use parts::{BAND, Builder, plate};
 use premio_kernel::brep::Brep;
 use premio_kernel::geometry::frame::Frame;
-use premio_visibility::{Camera, contours};
+use premio_visibility::{ViewCamera, contours};
 use std::time::Instant;
 
-fn time(name: &str, part: &Brep, camera: &Camera, runs: u32) {
+fn time(name: &str, part: &Brep, camera: &ViewCamera, runs: u32) {
     let c = contours(part, camera, BAND).unwrap();
     let pieces: usize = c.contours.iter().map(|c| c.pieces.len()).sum();
     let started = Instant::now();
@@ -35,7 +35,7 @@ fn main() {
         &[(0.8, 0.8, 0.4), (2.0, 1.0, 0.5), (1.4, 2.3, 0.3)],
     );
     let e = Point3::new(9.0, 7.0, 8.0);
-    let camera = Camera::perspective(e, Point3::new(1.5, 1.5, 1.5), Vector3::z(), 1.0).unwrap();
+    let camera = ViewCamera::perspective(e, Point3::new(1.5, 1.5, 1.5), Vector3::z(), 1.0).unwrap();
     time("cube with three holes", &b.brep, &camera, 500);
     for n in [8, 16, 32, 64] {
         for thickness in [0.5, 3.0] {
@@ -43,7 +43,7 @@ fn main() {
             let s = f64::from(n);
             let e = Point3::new(1.3 * s, 1.7 * s, 1.5 * s);
             let centre = Point3::new(0.5 * s, 0.5 * s, 0.0);
-            let camera = Camera::perspective(e, centre, Vector3::z(), 1.0).unwrap();
+            let camera = ViewCamera::perspective(e, centre, Vector3::z(), 1.0).unwrap();
             time(
                 &format!("{} holes, {thickness} thick", n * n),
                 &part,

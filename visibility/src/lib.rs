@@ -20,5 +20,5 @@ pub mod junction;
 pub mod ray_casting;
 pub mod scene;
 
-pub use camera::Camera;
+pub use camera::ViewCamera;
 pub use contours::{Contours, ViewError, contours};

@@ -15,18 +15,18 @@ use premio_visibility::contours::{ViewError, contours, contours_with};
 use premio_visibility::invisibility::Method;
 use premio_visibility::ray_casting::OriginIncidence;
 use premio_visibility::scene::Scene;
-use premio_visibility::{Camera, camera::CameraError};
+use premio_visibility::{ViewCamera, camera::CameraError};
 use proptest::prelude::*;
 
-fn eye(e: [f64; 3], t: [f64; 3]) -> Camera {
-    Camera::perspective(e.into(), t.into(), Vector3::z(), 1.0).unwrap()
+fn eye(e: [f64; 3], t: [f64; 3]) -> ViewCamera {
+    ViewCamera::perspective(e.into(), t.into(), Vector3::z(), 1.0).unwrap()
 }
 
-fn ortho(e: [f64; 3], t: [f64; 3]) -> Camera {
-    Camera::orthographic(e.into(), t.into(), Vector3::z()).unwrap()
+fn ortho(e: [f64; 3], t: [f64; 3]) -> ViewCamera {
+    ViewCamera::orthographic(e.into(), t.into(), Vector3::z()).unwrap()
 }
 
-fn see(brep: &Brep, camera: &Camera) -> Contours {
+fn see(brep: &Brep, camera: &ViewCamera) -> Contours {
     contours(brep, camera, BAND).unwrap()
 }
 
@@ -172,7 +172,7 @@ fn check_torus(
     f: Frame,
     major: f64,
     minor: f64,
-    camera: &Camera,
+    camera: &ViewCamera,
     at: Result<Point3<f64>, Vector3<f64>>,
 ) -> (usize, usize) {
     let mut b = Builder::default();
@@ -257,7 +257,7 @@ fn direction() -> impl Strategy<Value = Vector3<f64>> {
 }
 
 /// The quantitative invisibility is one along each piece: no junction was missed.
-fn constant(brep: &Brep, camera: &Camera, c: &Contours) {
+fn constant(brep: &Brep, camera: &ViewCamera, c: &Contours) {
     let projection = Projection::new(camera, 10.0);
     let scene = Scene::new(brep, &projection, BAND);
     for contour in &c.contours {
@@ -302,7 +302,7 @@ fn mark_ambiguous() -> Brep {
     b.brep
 }
 
-fn compare(brep: &Brep, camera: &Camera) {
+fn compare(brep: &Brep, camera: &ViewCamera) {
     let carried = contours_with(brep, camera, BAND, Method::Propagated).unwrap();
     let counted = contours_with(brep, camera, BAND, Method::Recounted).unwrap();
     for (a, b) in carried.contours.iter().zip(&counted.contours) {
@@ -330,11 +330,11 @@ proptest! {
         prop_assume!(f.coordinates(&e).z.abs() > 0.05);
         prop_assume!(Surface::Torus(Torus { frame: f, major: 2.0, minor }).distance(&e) > 0.2);
         let up = Vector3::z();
-        let camera = Camera::perspective(e, f.origin, up, 1.0).unwrap();
+        let camera = ViewCamera::perspective(e, f.origin, up, 1.0).unwrap();
         // From between the walls everything is close: only what lies before the eye is listed.
         prop_assume!(away > 2.5 + minor);
         check_torus(f, 2.0, minor, &camera, Ok(e));
-        let camera = Camera::orthographic(e, f.origin, up).unwrap();
+        let camera = ViewCamera::orthographic(e, f.origin, up).unwrap();
         prop_assume!(d.cross(&f.z).norm() > 0.1 && d.dot(&f.z).abs() > 0.02);
         check_torus(f, 2.0, minor, &camera, Err(-d));
     }
@@ -343,11 +343,11 @@ proptest! {
     fn counts_carried_along_are_those_counted(d in direction(), away in 6.0..20.0f64) {
         let part = mark_ambiguous();
         let centre = Point3::new(2.0, 2.0, 1.0);
-        let camera = Camera::perspective(centre + d * away, centre, Vector3::z(), 1.0).unwrap();
+        let camera = ViewCamera::perspective(centre + d * away, centre, Vector3::z(), 1.0).unwrap();
         if contours(&part, &camera, BAND).is_ok() {
             compare(&part, &camera);
         }
-        let camera = Camera::orthographic(centre + d * away, centre, Vector3::z()).unwrap();
+        let camera = ViewCamera::orthographic(centre + d * away, centre, Vector3::z()).unwrap();
         compare(&part, &camera);
     }
 }
@@ -362,7 +362,7 @@ fn a_short_piece_is_counted_where_it_is_plain() {
         0.271_797_251_021_624,
     );
     let centre = Point3::new(2.0, 2.0, 1.0);
-    let camera = Camera::orthographic(centre + d * 6.0, centre, Vector3::z()).unwrap();
+    let camera = ViewCamera::orthographic(centre + d * 6.0, centre, Vector3::z()).unwrap();
     compare(&mark_ambiguous(), &camera);
 }
 
@@ -389,7 +389,7 @@ fn up_along_the_line_of_sight_is_replaced() {
             .iter()
             .all(|j| j.point2.iter().all(|x| x.is_finite()))
     );
-    let bad = Camera::perspective(Point3::origin(), Point3::origin(), Vector3::z(), 1.0);
+    let bad = ViewCamera::perspective(Point3::origin(), Point3::origin(), Vector3::z(), 1.0);
     assert_eq!(bad, Err(CameraError::Value("target", "is the eye")));
 }
 

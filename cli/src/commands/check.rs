@@ -4,16 +4,15 @@ use crate::arguments::CheckOptions;
 use crate::diagnostics::CliError;
 use crate::session::Session;
 use crate::{input, output};
-use premio_verify::checks::{Check, CheckReport, Checker, Finding};
+use premio_verify::checks::{Check, CheckReport, Finding};
 use serde::Serialize;
 
 /// Runs the command.
 pub fn run(options: &CheckOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let part = input::part(&options.description, session)?;
-    let checker = Checker::new(&part.description.tree, &part.evaluation);
     let working = voice.working("checking");
-    let report = checker.all(options.rays as usize);
+    let report = part.solid.check(options.rays as usize);
     drop(working);
     match voice.is_json() {
         true => output::json(&Checked::new(&report), None)?,

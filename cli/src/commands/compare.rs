@@ -7,10 +7,8 @@ use crate::output::Outputs;
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input};
-use premio_detect::PixelMask;
-use premio_predict::image_arcs::ArcSource;
-use premio_predict::prediction::prediction;
-use premio_predict::prediction_score::{MatchedArc, PredictionScore, SCHEMA, matches};
+use premio::PredictionAgreement;
+use premio_predict::prediction_score::{MatchedArc, PredictionScore, SCHEMA};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -50,22 +48,22 @@ pub fn run(options: &CompareOptions, session: Session) -> Result<(), CliError> {
         )));
     }
     let part = input::part(&options.description, session)?;
-    let (comparison, predicted, image) = setup_file.with_draft(&part, |draft| {
-        let predicted = prediction(draft, setup);
+    let (agreement, image) = setup_file.with_draft(&part, |draft| {
         let seed = setup.conditions.seed ^ OTHER;
-        let image = taken.unwrap_or_else(|| rendered(draft, seed, voice));
-        let (_, found) = draft.evidence_in(&image, &PixelMask::full(width, height));
-        let features = matches(&predicted.arcs, &found, setup.conditions.detector.shortest);
-        let outline =
-            |m: &&MatchedArc| matches!(m.source, ArcSource::Edge { .. } | ArcSource::Limb { .. });
-        let comparison = Comparison {
-            schema: SCHEMA,
-            outlines: PredictionScore::new(features.iter().filter(outline)),
-            lighting: PredictionScore::new(features.iter().filter(|m| !outline(m))),
-            features,
+        let image = match taken {
+            Some(image) => image,
+            None => rendered(draft, seed, voice)?,
         };
-        (comparison, predicted, image)
-    })?;
+        let agreement = PredictionAgreement::new(draft, setup, &image);
+        Ok::<_, CliError>((agreement, image))
+    })??;
+    let predicted = agreement.prediction;
+    let comparison = Comparison {
+        schema: SCHEMA,
+        outlines: agreement.outlines,
+        lighting: agreement.lighting,
+        features: agreement.features,
+    };
     let mut outputs = Outputs::default();
     if let Some(path) = &options.overlay {
         outputs.add(

@@ -5,13 +5,12 @@ use crate::diagnostics::CliError;
 use crate::input::EvaluatedPart;
 use crate::session::Session;
 use crate::{input, output};
-use nalgebra::Point3;
-use premio_drawing::sheet::{self, Angle, Paper, Sheet, StandardView};
-use premio_drawing::{Drawing, dxf, svg};
-use premio_kernel::unit::Unit;
+use premio::{Camera, Drawing, DrawingOptions, Paper, Sheet, StandardView, Unit, View};
+use premio_drawing::sheet::{self, Angle};
+use premio_drawing::{dxf, svg};
+use premio_visibility::ViewCamera;
 use premio_visibility::camera::CameraError;
 use premio_visibility::contours::ViewError;
-use premio_visibility::{Camera, Contours, contours};
 use std::path::Path;
 
 /// Runs the command.
@@ -28,16 +27,17 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), CliError> 
     }
     let given = Given::read(chosen, session)?;
     let part = input::part(&options.description, session)?;
-    let camera = given.camera(&part)?;
+    let camera = given.camera()?;
     let working = voice.working("finding the contours");
-    let mut seen = seen(&part, &camera, Some(&given))?;
+    let seen = seen(&part, &camera, Some(&given))?;
     drop(working);
     match format {
         ContoursFormat::Json => {
+            let mut contours = seen.contours().clone();
             if let Some(n) = options.samples {
-                seen.sample(n as usize);
+                contours.sample(n as usize);
             }
-            output::json(&seen, to)
+            output::json(&contours, to)
         }
         ContoursFormat::Svg => output::write(svg::write(&drawing(&seen, options)), to),
         ContoursFormat::Dxf => output::write(dxf::write(&drawing(&seen, options)), to),
@@ -49,23 +49,27 @@ fn seen(
     part: &EvaluatedPart,
     camera: &Camera,
     given: Option<&Given<'_>>,
-) -> Result<Contours, CliError> {
-    let resolution = input::view_resolution(part)?;
-    let failed = |error: ViewError| {
-        let beyond = || CliError::limit(format!("{}: {error}", part.name));
-        let refused = given.and_then(|given| given.refused(&error));
-        refused.unwrap_or_else(beyond)
+) -> Result<View, CliError> {
+    input::view_resolution(part)?;
+    let beyond = |error: &dyn std::fmt::Display| CliError::limit(format!("{}: {error}", part.name));
+    let failed = |error: premio::Error| match &error {
+        premio::Error::View(view) => {
+            let refused = given.and_then(|given| given.refused(view));
+            refused.unwrap_or_else(|| beyond(&error))
+        }
+        premio::Error::Camera(_) if given.is_some() => CliError::input(error.to_string()),
+        error => CliError::limit(error.to_string()),
     };
-    contours(&part.evaluation.brep, camera, resolution).map_err(failed)
+    part.solid.view(camera).map_err(failed)
 }
 
-fn drawing(seen: &Contours, options: &ContoursOptions) -> Drawing {
-    let how = premio_drawing::DrawingOptions {
+fn drawing(seen: &View, options: &ContoursOptions) -> Drawing {
+    let how = DrawingOptions {
         hidden: options.hidden,
         smooth: options.smooth_edges,
-        ..premio_drawing::DrawingOptions::default()
+        ..DrawingOptions::default()
     };
-    Drawing::new(seen, &how)
+    seen.drawing(&how)
 }
 
 /// The views, or that of the camera, on a sheet.
@@ -93,9 +97,9 @@ fn on_sheet(
     };
     let part = input::part(&options.description, session)?;
     let cameras = match &given {
-        Some(Given::Choice(CameraChoice::Named(name))) => cameras(&part, &[*name])?,
-        Some(given) => vec![(None, given.camera(&part)?)],
-        None => cameras(&part, &requested.views)?,
+        Some(Given::Choice(CameraChoice::Named(name))) => cameras(&[*name]),
+        Some(given) => vec![(None, given.camera()?)],
+        None => cameras(&requested.views),
     };
     let bar = session.voice.progress(cameras.len() as u64);
     let mut views = Vec::new();
@@ -128,7 +132,7 @@ enum Given<'a> {
         /// Its text.
         text: String,
         /// Its camera.
-        camera: Camera,
+        camera: ViewCamera,
     },
     /// One that depends on the part.
     Choice(CameraChoice<'a>),
@@ -145,32 +149,24 @@ impl<'a> Given<'a> {
         }
     }
 
-    fn camera(&self, part: &EvaluatedPart) -> Result<Camera, CliError> {
-        let failed = |e: CameraError| CliError::input(e.to_string());
+    fn camera(&self) -> Result<Camera, CliError> {
         match self {
-            Self::File { camera, .. } => Ok(camera.clone()),
+            Self::File { camera, .. } => Ok(camera.clone().into()),
             Self::Choice(CameraChoice::File(path)) => {
                 Err(CliError::input(format!("{}: is not read", path.display())))
             }
-            Self::Choice(CameraChoice::Named(name)) => {
-                let Extent { middle, size } = Extent::new(part);
-                StandardView::from(*name)
-                    .camera(middle, size)
-                    .map_err(failed)
-            }
+            Self::Choice(CameraChoice::Named(name)) => Ok(Camera::standard((*name).into())),
             Self::Choice(CameraChoice::Eye {
                 eye,
                 target,
                 up,
                 focal,
             }) => {
-                let middle = Extent::new(part).middle;
-                let (eye, up) = (Point3::from(*eye), (*up).into());
-                let target = target.map_or(middle, Point3::from);
-                match focal {
-                    Some(focal) => Camera::perspective(eye, target, up, *focal).map_err(failed),
-                    None => Camera::orthographic(eye, target, up).map_err(failed),
-                }
+                let camera = Camera::from_eye(*eye, *focal).with_up(*up);
+                Ok(match target {
+                    Some(target) => camera.with_target(*target),
+                    None => camera,
+                })
             }
         }
     }
@@ -195,41 +191,14 @@ impl<'a> Given<'a> {
     }
 }
 
-/// The cameras of views of a part about its middle, each once.
-fn cameras(
-    part: &EvaluatedPart,
-    names: &[ViewName],
-) -> Result<Vec<(Option<StandardView>, Camera)>, CliError> {
-    let Extent { middle, size } = Extent::new(part);
+/// The cameras of views, each once.
+fn cameras(names: &[ViewName]) -> Vec<(Option<StandardView>, Camera)> {
     let mut cameras: Vec<(Option<StandardView>, Camera)> = Vec::new();
     for &name in names {
         let view = StandardView::from(name);
         if !cameras.iter().any(|(known, _)| *known == Some(view)) {
-            let camera = view.camera(middle, size);
-            let camera = camera.map_err(|e| CliError::limit(e.to_string()))?;
-            cameras.push((Some(view), camera));
+            cameras.push((Some(view), Camera::standard(view)));
         }
     }
-    Ok(cameras)
-}
-
-/// Where a part is, and how large; a point at the origin is taken to be of size one.
-struct Extent {
-    middle: Point3<f64>,
-    size: f64,
-}
-
-impl Extent {
-    fn new(part: &EvaluatedPart) -> Self {
-        let evaluation = &part.evaluation;
-        if evaluation.brep.topology.faces.is_empty() {
-            let middle = Point3::origin();
-            return Self { middle, size: 1.0 };
-        }
-        let bounds = evaluation.tight_bounds();
-        Self {
-            middle: bounds.centre(),
-            size: bounds.diagonal(),
-        }
-    }
+    cameras
 }

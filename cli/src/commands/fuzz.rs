@@ -2,7 +2,7 @@
 
 use crate::arguments::{FuzzOptions, ModelFormat, ProfileChoice};
 use crate::diagnostics::{CliError, Reporter};
-use crate::fuzz::Error;
+use crate::fuzz::FuzzError;
 use crate::fuzz::archive::Archive;
 use crate::fuzz::run::{RunConfig, run as run_all};
 use crate::fuzz::state::{Plan, RunState, Writing};
@@ -17,8 +17,8 @@ use premio_verify::trial::TrialConfig;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-impl From<Error> for CliError {
-    fn from(error: Error) -> Self {
+impl From<FuzzError> for CliError {
+    fn from(error: FuzzError) -> Self {
         Self::input(error.to_string())
     }
 }
@@ -88,7 +88,7 @@ fn tell(
 fn worker(terms: &str, limit: Duration) -> Result<(), CliError> {
     let terms: TrialConfig = serde_json::from_str(terms)
         .map_err(|e| CliError::input(format!("the terms of a worker: {e}")))?;
-    serve(&terms, limit).map_err(|e| Error::Worker(e).into())
+    serve(&terms, limit).map_err(|e| FuzzError::Worker(e).into())
 }
 
 fn plan(options: &FuzzOptions) -> Result<Plan, CliError> {

@@ -80,7 +80,7 @@ pub fn run(options: &InfoOptions, session: Session) -> Result<(), CliError> {
 
 impl Info {
     fn new(part: &EvaluatedPart) -> Self {
-        let brep = &part.evaluation.brep;
+        let brep = part.solid.brep();
         let topology = &brep.topology;
         let mut faces_by_surface = BTreeMap::new();
         for face in topology.face_ids() {
@@ -88,7 +88,7 @@ impl Info {
                 .entry(brep.surface(face).kind().name())
                 .or_default() += 1;
         }
-        let mass = part.evaluation.mass();
+        let mass = part.solid.evaluation().mass();
         Self {
             schema: "premio.info/1",
             volume: mass.volume,
@@ -107,9 +107,9 @@ impl Info {
                 points: topology.touches.len(),
             },
             faces_by_surface,
-            decisions: Counts::new(&part.evaluation.decisions),
-            close_calls: part.evaluation.decisions.close_calls.clone(),
-            resolution: part.evaluation.resolution,
+            decisions: Counts::new(&part.solid.evaluation().decisions),
+            close_calls: part.solid.evaluation().decisions.close_calls.clone(),
+            resolution: part.solid.evaluation().resolution,
             seconds: Seconds {
                 read: part.read,
                 evaluate: part.evaluate,
@@ -121,7 +121,7 @@ impl Info {
 impl Bounds {
     /// The box of the boundary; a point at the origin for an empty solid.
     fn new(part: &EvaluatedPart) -> Self {
-        let evaluation = &part.evaluation;
+        let evaluation = part.solid.evaluation();
         if evaluation.brep.topology.faces.is_empty() {
             let (min, max) = ([0.0; 3], [0.0; 3]);
             return Self { min, max };

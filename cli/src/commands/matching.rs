@@ -8,24 +8,16 @@ use crate::model::file::ReadModel;
 use crate::output::Outputs;
 use crate::session::Session;
 use crate::{imaging, output};
-use nalgebra::Isometry3;
-use premio_csg::reader::Format;
-use premio_detect::{Detector, Grey};
-use premio_matching::camera::Pinhole;
-use premio_matching::image::{ImageFeatures, detector, downsampled};
-use premio_matching::matcher::Matcher;
-use premio_matching::output::explain::explained;
-use premio_matching::output::report::{BOP, MatchReport, MatchSeconds};
-use premio_matching::part::SoughtPart;
-use premio_matching::part::detectability_prior::DetectabilityPrior;
-use premio_matching::search::Strategy;
-use premio_matching::verification::part_match::{PartMatch, SearchOptions, SearchResult};
+use premio::{
+    DetectabilityPrior, Detector, Format, Grey, PartFinder, PictureMatch, Pinhole, SearchOptions,
+    Strategy, default_detector,
+};
+use premio_matching::output::report::BOP;
 use premio_predict::model::file::ModelFile;
 use premio_predict::model::record::Record;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 /// What is looked for.
 struct Sought {
@@ -38,76 +30,41 @@ struct Sought {
     options: SearchOptions,
 }
 
-/// What was seen in one picture.
-struct Sight {
-    grey: Grey,
-    picture: ImageFeatures,
-    finding: SearchResult,
-    report: MatchReport,
-}
-
 /// Runs `match`.
 pub fn find(options: &MatchOptions, session: Session) -> Result<(), CliError> {
-    let sought_for = read(&options.sought, session)?;
-    let learned = sought_for.learned(&options.sought);
-    let part = sought_for.part(&learned);
-    let look = |picture: &ImageFeatures, camera: &Pinhole| {
-        let look = sought_for.look(&part, &learned, picture, camera);
-        (look.find(), None)
+    let sought = read(&options.sought, session)?;
+    let finder = sought.finder(&options.sought)?;
+    let look = |picture: Grey, camera: Pinhole, name: &str| {
+        finder.find_with(picture, camera, name, |matcher| (matcher.find(), None))
     };
-    let told = |sight: &Sight| {
-        let explain = options.explain;
-        explain.then(|| explained(sight.finding.best(), &sight.report))
-    };
-    each(&options.sought, &sought_for, &part, look, told, session)
+    let told = |found: &PictureMatch| options.explain.then(|| found.explained());
+    each(&options.sought, &sought.camera, look, told, session)
 }
 
 /// Runs `track`.
 pub fn track(options: &TrackOptions, session: Session) -> Result<(), CliError> {
     let sought = read(&options.sought, session)?;
-    let learned = sought.learned(&options.sought);
-    let part = sought.part(&learned);
-    let mut last: Option<Isometry3<f64>> = None;
-    let look = |picture: &ImageFeatures, camera: &Pinhole| {
-        let look = sought.look(&part, &learned, picture, camera);
-        let (finding, anew) = look.next(last.as_ref());
-        let accepted = finding.best().filter(|m| m.is_accepted());
-        last = accepted.map(|m: &PartMatch| m.pose);
-        (finding, Some(anew))
-    };
-    each(&options.sought, &sought, &part, look, |_| None, session)
+    let finder = sought.finder(&options.sought)?;
+    let mut tracker = finder.track();
+    let look =
+        |picture: Grey, camera: Pinhole, name: &str| tracker.next_with(picture, camera, name);
+    each(&options.sought, &sought.camera, look, |_| None, session)
 }
 
 impl Sought {
-    fn learned(&self, options: &SoughtOptions) -> DetectabilityPrior {
+    fn prior(&self, options: &SoughtOptions) -> DetectabilityPrior {
         match (options.uniform, self.records.is_empty()) {
             (true, _) => DetectabilityPrior::uniform(),
             (false, true) => DetectabilityPrior::nothing(),
-            (false, false) => {
-                DetectabilityPrior::new(&self.records, &self.described.evaluation.brep)
-            }
+            (false, false) => DetectabilityPrior::new(&self.records, self.described.solid.brep()),
         }
     }
 
-    fn part(&self, learned: &DetectabilityPrior) -> SoughtPart<'_> {
-        SoughtPart::new(&self.described.evaluation.brep, self.resolution, learned)
-    }
-
-    /// The part looked for in a picture.
-    fn look<'a>(
-        &'a self,
-        part: &'a SoughtPart<'a>,
-        learned: &'a DetectabilityPrior,
-        picture: &'a ImageFeatures,
-        camera: &'a Pinhole,
-    ) -> Matcher<'a> {
-        Matcher {
-            part,
-            learned,
-            picture,
-            camera,
-            options: &self.options,
-        }
+    fn finder(&self, options: &SoughtOptions) -> Result<PartFinder<'_>, CliError> {
+        let (brep, detector) = (self.described.solid.brep(), self.detector.clone());
+        let finder = PartFinder::from_brep(brep, self.resolution, self.prior(options), detector);
+        let finder = finder.map_err(CliError::library)?;
+        Ok(finder.with_name(&self.name).with_options(self.options))
     }
 }
 
@@ -143,10 +100,10 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
     };
     let detector = match &options.detector {
         Some(path) => crate::setup::detector(path, session)?,
-        None => known.unwrap_or_else(detector),
+        None => known.unwrap_or_else(default_detector),
     };
     let resolution = input::view_resolution(&described)?;
-    if described.evaluation.brep.topology.faces.is_empty() {
+    if described.solid.brep().topology.faces.is_empty() {
         return Err(CliError::input(format!(
             "{name}: the part is empty: there is nothing to be found"
         )));
@@ -172,10 +129,9 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
 /// Looks at every picture, and hands on what is found.
 fn each(
     options: &SoughtOptions,
-    sought: &Sought,
-    part: &SoughtPart<'_>,
-    mut look: impl FnMut(&ImageFeatures, &Pinhole) -> (SearchResult, Option<bool>),
-    told: impl Fn(&Sight) -> Option<String>,
+    camera: &PinholeFile,
+    mut look: impl FnMut(Grey, Pinhole, &str) -> PictureMatch,
+    told: impl Fn(&PictureMatch) -> Option<String>,
     session: Session,
 ) -> Result<(), CliError> {
     let voice = session.voice;
@@ -189,8 +145,8 @@ fn each(
             bar.finish_and_clear();
             return Err(CliError::Interrupted);
         }
-        let sight = match at(sought, part, path, &mut look, session) {
-            Ok(sight) => sight,
+        let found = match at(camera, path, &mut look, session) {
+            Ok(found) => found,
             // The other pictures are looked at all the same.
             Err(failure) => {
                 let said = failed.replace(failure);
@@ -200,30 +156,32 @@ fn each(
             }
         };
         seen += 1;
+        let report = found.report();
         bar.inc(1);
-        if let Some(words) = told(&sight) {
-            bar.suspend(|| voice.note(&sight.report.image, &words));
+        if let Some(words) = told(&found) {
+            bar.suspend(|| voice.note(&report.image, &words));
         }
-        let instances = sight.report.instances.len();
+        let instances = report.instances.len();
         if instances > 1 {
             let said = format!(
                 "{instances} instances of the part are found: this is the likeliest, and `instances` \
                  lists all that are known"
             );
-            bar.suspend(|| voice.note(&sight.report.image, &said));
+            bar.suspend(|| voice.note(&report.image, &said));
         }
         let [scene, object] = options.ids;
         let image = numbered(path).unwrap_or(number);
-        if let Some(line) = sight.report.bop([scene, image, object]) {
+        if let Some(line) = report.bop([scene, image, object]) {
             let _ = writeln!(poses, "{line}");
         }
         let json = match options.images.len() {
-            1 => output::json_pretty(&sight.report)?,
-            _ => output::json_text(&sight.report)?,
+            1 => output::json_pretty(report)?,
+            _ => output::json_text(report)?,
         };
         let _ = writeln!(lines, "{json}");
-        if let (Some(to), Some(best)) = (&options.overlay, sight.finding.best()) {
-            let bytes = imaging::matched(&sight.grey, &sight.picture, best, to)?;
+        if let Some(to) = &options.overlay
+            && let Some(bytes) = imaging::matched(&found, to)?
+        {
             outputs.add(bytes, Some(to))?;
         }
     }
@@ -240,34 +198,14 @@ fn each(
 
 /// Looks at one picture.
 fn at(
-    sought: &Sought,
-    part: &SoughtPart<'_>,
+    camera: &PinholeFile,
     path: &Path,
-    look: &mut impl FnMut(&ImageFeatures, &Pinhole) -> (SearchResult, Option<bool>),
+    look: &mut impl FnMut(Grey, Pinhole, &str) -> PictureMatch,
     session: Session,
-) -> Result<Sight, CliError> {
+) -> Result<PictureMatch, CliError> {
     let grey = imaging::read(path, session)?;
-    let size = [grey.width, grey.height];
-    let camera = sought.camera.for_picture(path, size)?;
-    let started = Instant::now();
-    let (grey, camera, scale) = downsampled(grey, camera);
-    let picture = ImageFeatures::new(&grey, &sought.detector);
-    let features = started.elapsed().as_secs_f64();
-    let (finding, anew) = look(&picture, &camera);
-    let seconds = MatchSeconds {
-        features,
-        matching: started.elapsed().as_secs_f64() - features,
-    };
-    let image = path.display().to_string();
-    let names = [image.as_str(), sought.name.as_str()];
-    let mut report = MatchReport::new(part, names, &picture, &finding, (scale, seconds));
-    report.anew = anew;
-    Ok(Sight {
-        grey,
-        picture,
-        finding,
-        report,
-    })
+    let camera = camera.for_picture(path, [grey.width, grey.height])?;
+    Ok(look(grey, camera, &path.display().to_string()))
 }
 
 /// The number that a picture's name ends in.

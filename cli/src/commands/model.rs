@@ -5,16 +5,18 @@ use crate::diagnostics::CliError;
 use crate::input::EvaluatedPart;
 use crate::interrupt::{pool, stop};
 use crate::model::format;
-use crate::model::run::{Workers, summed};
-use crate::model::shard::{Run, Shard, ShardHead, digest};
 use crate::session::Session;
 use crate::setup::{SetupFile, setups};
 use crate::{input, output};
 use indicatif::ProgressBar;
+use premio::files::is_no_file;
+use premio::shards::{SetupObserver, Shard, ShardHead, ShardRun, digest, summed};
+use premio::{CancelToken, Progress};
 use premio_kernel::brep::Brep;
 use premio_predict::model::Setups;
 use premio_predict::model::consistency::SourceLimits;
 use premio_predict::model::record::Record;
+use rayon::ThreadPool;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -41,7 +43,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
     }
     let file = setups(&options.setups, session)?;
     let part = input::part(&options.description, session)?;
-    let run = Run {
+    let run = ShardRun {
         digest: told_apart(&part, options, &file.text),
         part: part.name.clone(),
         description: part.written.clone(),
@@ -53,13 +55,18 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
     let pool = pool(options.threads)?;
     let stop = stop()?;
     let bar = voice.progress(run.setups.len() as u64);
+    let token = CancelToken::from(stop);
     let workers = Workers {
-        subject: &subject,
-        finishes: &finishes,
+        observer: SetupObserver {
+            part: &subject,
+            finishes: &finishes,
+            setups: &run.setups,
+        },
         run: &run,
         threads: &pool,
-        bar: &bar,
-        stop: &stop,
+        progress: Progress::new()
+            .with_callback(|_| bar.inc(1))
+            .with_token(&token),
     };
     let to = options.output.output.as_deref();
     if let Some(shard) = options.shard {
@@ -89,6 +96,28 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
     made
 }
 
+/// What predicts the shards of a run.
+struct Workers<'s> {
+    observer: SetupObserver<'s>,
+    run: &'s ShardRun,
+    threads: &'s ThreadPool,
+    progress: Progress<'s>,
+}
+
+impl Workers<'_> {
+    /// Predicts the setups of a shard into its file; nothing is left of it if it is interrupted.
+    fn shard(&self, path: &Path, shard: [usize; 2]) -> Result<(), CliError> {
+        let Self {
+            observer,
+            run,
+            progress,
+            ..
+        } = self;
+        let written = || observer.write_shard(path, run, shard, progress);
+        self.threads.install(written).map_err(CliError::library)
+    }
+}
+
 /// Predicts all shards of a run and hands the model on.
 fn whole(
     workers: &Workers<'_>,
@@ -110,14 +139,19 @@ fn whole(
     bar.finish_and_clear();
     let paths: Vec<PathBuf> = (1..=of).map(|i| folder.shard(i)).collect();
     let shards = opened(&paths, session)?;
-    write(summed_up(run, &shards, workers.subject.brep, session)?)
+    write(summed_up(
+        run,
+        &shards,
+        workers.observer.part.brep,
+        session,
+    )?)
 }
 
 /// What this part in these setups is told from others by: all that observations depend on.
 fn told_apart(part: &EvaluatedPart, options: &ModelRunOptions, setups: &str) -> String {
     let description = part.written.text.as_bytes();
     let taken = options.description.reading.part.clone().unwrap_or_default();
-    let resolution = part.evaluation.resolution.to_bits().to_le_bytes();
+    let resolution = part.solid.evaluation().resolution.to_bits().to_le_bytes();
     let version = env!("CARGO_PKG_VERSION").as_bytes();
     digest([
         description,
@@ -139,7 +173,7 @@ struct Parts {
 
 impl Parts {
     fn new(output: Option<&Path>, resume: bool) -> Result<Self, CliError> {
-        let Some(output) = output.filter(|path| !output::is_no_file(path)) else {
+        let Some(output) = output.filter(|path| !is_no_file(path)) else {
             let folder = tempfile::tempdir().map_err(|e| CliError::input(e.to_string()))?;
             let path = folder.path().to_owned();
             return Ok(Self {
@@ -172,14 +206,14 @@ impl Parts {
     fn is_whole(
         &self,
         path: &Path,
-        run: &Run,
+        run: &ShardRun,
         shard: [usize; 2],
         session: Session,
     ) -> Result<bool, CliError> {
         if !path.exists() {
             return Ok(false);
         }
-        let found = Shard::open(path, session)?.head;
+        let found = open(path, session)?.head;
         match found == ShardHead::new(run, shard) {
             true => Ok(true),
             false => Err(CliError::input(format!(
@@ -210,22 +244,27 @@ impl Parts {
     }
 }
 
+fn open(path: &Path, session: Session) -> Result<Shard, CliError> {
+    Shard::open(path, session.limits.input).map_err(|error| CliError::shard(&error))
+}
+
 fn opened(paths: &[PathBuf], session: Session) -> Result<Vec<Shard>, CliError> {
-    let open = |path: &PathBuf| Shard::open(path, session);
+    let open = |path: &PathBuf| open(path, session);
     paths.iter().map(open).collect()
 }
 
 fn summed_up(
-    run: &Run,
+    run: &ShardRun,
     shards: &[Shard],
     brep: &Brep,
     session: Session,
 ) -> Result<Vec<Record>, CliError> {
     let bar = session.voice.progress(2 * run.setups.len() as u64);
     let limits = SourceLimits::of_part(brep).with_setups(&run.setups);
-    let all = summed(run, shards, &limits, &bar);
+    let progress = Progress::new().with_callback(|_| bar.inc(1));
+    let all = summed(run, shards, &limits, &progress);
     bar.finish_and_clear();
-    all
+    all.map_err(CliError::library)
 }
 
 /// Whether shards are all those of one run, in order.
@@ -275,7 +314,7 @@ fn merged(options: &MergeOptions, session: Session) -> Result<(), CliError> {
         let said = format!("{name}:1:1: found `count` {found}, expected {expected} setups");
         return Err(CliError::input(said));
     }
-    let run = Run {
+    let run = ShardRun {
         part: first.part,
         description: first.description,
         digest: first.digest,
@@ -284,7 +323,7 @@ fn merged(options: &MergeOptions, session: Session) -> Result<(), CliError> {
     };
     let name = shards[0].path().display().to_string();
     let part = input::part_of_model(&name, run.description.clone(), session.voice)?;
-    let records = summed_up(&run, &shards, &part.evaluation.brep, session)?;
+    let records = summed_up(&run, &shards, part.solid.brep(), session)?;
     let file = SetupFile {
         name: "the setups of the shards".to_owned(),
         text: run.text.clone(),

@@ -5,10 +5,8 @@ use crate::diagnostics::{CliError, Reporter};
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input, output};
-use premio_detect::Grey;
+use premio::{Grey, Progress};
 use premio_predict::prediction::PredictedImage;
-use premio_predict::render;
-use rayon::prelude::*;
 
 /// Runs the command.
 pub fn run(options: &RenderOptions, session: Session) -> Result<(), CliError> {
@@ -18,7 +16,7 @@ pub fn run(options: &RenderOptions, session: Session) -> Result<(), CliError> {
     let part = input::part(&options.description, session)?;
     let image = setup.with_draft(&part, |draft| {
         rendered(draft, setup.value.conditions.seed, voice)
-    })?;
+    })??;
     let bytes = imaging::bytes(
         &image,
         setup.value.conditions.sensor.levels,
@@ -27,26 +25,12 @@ pub fn run(options: &RenderOptions, session: Session) -> Result<(), CliError> {
     output::write(bytes, Some(&options.output))
 }
 
-/// The image of a draft's setup, by a line of sight through every pixel.
-pub fn rendered(draft: &PredictedImage<'_>, seed: u64, voice: Reporter) -> Grey {
-    let sensor = &draft.conditions.sensor;
-    let [width, height] = sensor.resolution;
-    let shading = &draft.shading;
+/// The image of a draft's setup, by a line of sight through every pixel, with a bar for its rows.
+pub fn rendered(draft: &PredictedImage<'_>, seed: u64, voice: Reporter) -> Result<Grey, CliError> {
+    let [_, height] = draft.conditions.sensor.resolution;
     let bar = voice.progress(height as u64);
-    let strips: Vec<usize> = (0..height).step_by(STRIP).collect();
-    let levels: Vec<Vec<f32>> = strips
-        .into_par_iter()
-        .map(|y| {
-            let rows = y..(y + STRIP).min(height);
-            let count = rows.len() as u64;
-            let levels = render::rows(shading, width, rows);
-            bar.inc(count);
-            levels
-        })
-        .collect();
+    let progress = Progress::new().with_callback(|step| bar.set_position(step.done));
+    let image = premio::rendered(draft, seed, &progress);
     bar.finish_and_clear();
-    render::finished(levels.concat(), sensor, seed)
+    image.map_err(CliError::library)
 }
-
-/// How many rows are rendered at once.
-const STRIP: usize = 16;

@@ -5,6 +5,7 @@ mod message;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use message::{Level, Message};
+use premio::shards::ShardError;
 use premio_csg::evaluate::EvaluationError;
 use premio_csg::reader::{ErrorKind, Note, ReadError};
 use premio_kernel::number::predicates::CloseCall;
@@ -87,6 +88,32 @@ impl CliError {
     /// A tree that was not evaluated.
     pub fn evaluation(name: &str, error: &EvaluationError) -> Self {
         Self::limit(format!("{name}: {error}"))
+    }
+
+    /// What the library says of a description.
+    pub fn described(name: &str, error: premio::Error, text: &[u8]) -> Self {
+        match error {
+            premio::Error::Read(error) => Self::read(&error, text),
+            premio::Error::Evaluation(error) => Self::evaluation(name, &error),
+            error => Self::limit(format!("{name}: {error}")),
+        }
+    }
+
+    /// What the library says of work that was cancelled, and of shards.
+    pub fn library(error: premio::Error) -> Self {
+        match error {
+            premio::Error::Cancelled(_) => Self::Interrupted,
+            premio::Error::Shard(error) => Self::shard(&error),
+            error => Self::input(error.to_string()),
+        }
+    }
+
+    /// A shard that cannot be read or written.
+    pub fn shard(error: &ShardError) -> Self {
+        match error.is_too_long() {
+            true => Self::input(format!("{error}: --max-input sets another")),
+            false => Self::input(error.to_string()),
+        }
     }
 
     /// Decisions too close to the resolution.

@@ -1,8 +1,7 @@
 //! The models written to a folder, with a manifest of their true measures.
 
-use super::Error;
+use super::FuzzError;
 use super::state::{Item, RunState};
-use crate::output;
 use premio_verify::generator::model::PartModel;
 use premio_verify::generator::write::{Format, read, write};
 use premio_verify::trial::{TrialMeasures, TrialOutcome, Verdict};
@@ -41,8 +40,8 @@ struct Written {
 
 impl Archive {
     /// Makes the folder, if it is not there.
-    pub fn new(folder: &Path, formats: &[Format]) -> Result<Self, Error> {
-        std::fs::create_dir_all(folder).map_err(|e| Error::file(folder, e))?;
+    pub fn new(folder: &Path, formats: &[Format]) -> Result<Self, FuzzError> {
+        std::fs::create_dir_all(folder).map_err(|e| FuzzError::file(folder, e))?;
         Ok(Self {
             folder: folder.to_owned(),
             formats: formats.to_vec(),
@@ -55,7 +54,7 @@ impl Archive {
         item: Item,
         model: &PartModel,
         outcome: &TrialOutcome,
-    ) -> Result<String, Error> {
+    ) -> Result<String, FuzzError> {
         let tree = |text: &str, format| read(text, format).map(|d| d.tree).ok();
         let exact = tree(&write(model, Format::Json), Format::Json);
         let mut files = Vec::new();
@@ -63,7 +62,7 @@ impl Archive {
             let file = format!("{}-{}.{}", item.profile, item.seed, format.ending());
             let path = self.folder.join(&file);
             let text = write(model, format);
-            output::file(&text, &path).map_err(|e| Error::file(&path, e))?;
+            premio::files::write_whole(&text, &path).map_err(|e| FuzzError::file(&path, e))?;
             let same_tree = tree(&text, format) == exact;
             files.push(Written { file, same_tree });
         }
@@ -79,17 +78,17 @@ impl Archive {
             measures,
             files,
         };
-        serde_json::to_string(&line).map_err(|e| Error::file(&self.folder, e.into()))
+        serde_json::to_string(&line).map_err(|e| FuzzError::file(&self.folder, e.into()))
     }
 
     /// Writes the manifest of all that is done.
-    pub fn finish(&self, state: &RunState) -> Result<(), Error> {
+    pub fn finish(&self, state: &RunState) -> Result<(), FuzzError> {
         let path = self.folder.join(MANIFEST);
         let mut text = String::new();
         for line in state.tallies.values().flat_map(|t| t.lines.values()) {
             text += line;
             text.push('\n');
         }
-        output::file(&text, &path).map_err(|e| Error::file(&path, e))
+        premio::files::write_whole(&text, &path).map_err(|e| FuzzError::file(&path, e))
     }
 }

@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Why a run ended without its summary.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum FuzzError {
     /// A file or a folder cannot be read or written.
     #[error("{path}: {source}")]
     File {
@@ -37,7 +37,7 @@ pub enum Error {
     Worker(io::Error),
 }
 
-impl Error {
+impl FuzzError {
     pub(crate) fn file(path: &Path, source: io::Error) -> Self {
         let path = path.display().to_string();
         Self::File { path, source }

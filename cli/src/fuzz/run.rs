@@ -1,6 +1,6 @@
 //! Many trees on many threads.
 
-use super::Error;
+use super::FuzzError;
 use super::archive::Archive;
 use super::state::{Finds, Item, RunState};
 use super::worker::Examine;
@@ -65,7 +65,7 @@ pub fn run<E: Examine>(
     how: &RunConfig<'_>,
     make: impl Fn() -> E + Sync,
     mut tell: impl FnMut(&RunState),
-) -> Result<RunState, Error> {
+) -> Result<RunState, FuzzError> {
     let shrink = state.plan.shrink;
     let state = Mutex::new(state);
     let shared = Shared { how, state: &state };
@@ -80,19 +80,19 @@ fn try_all<E: Examine>(
     shared: Shared<'_>,
     make: &(impl Fn() -> E + Sync),
     tell: &mut impl FnMut(&RunState),
-) -> Result<(), Error> {
+) -> Result<(), FuzzError> {
     let next = AtomicU64::new(0);
     let left = {
         let state = shared.state();
         state.plan.trees().saturating_sub(state.done())
     };
-    let work = |examiner: &mut E| -> Result<bool, Error> {
+    let work = |examiner: &mut E| -> Result<bool, FuzzError> {
         let Some((number, item)) = take(shared, &next) else {
             return Ok(false);
         };
         let model = item.profile.model(item.seed);
         let started = Instant::now();
-        let Some(outcome) = examiner.examine(&model).map_err(Error::Worker)? else {
+        let Some(outcome) = examiner.examine(&model).map_err(FuzzError::Worker)? else {
             return Ok(false);
         };
         let seconds = started.elapsed().as_secs_f64();
@@ -125,10 +125,10 @@ fn shrink_all<E: Examine>(
     shared: Shared<'_>,
     make: &(impl Fn() -> E + Sync),
     tell: &mut impl FnMut(&RunState),
-) -> Result<(), Error> {
+) -> Result<(), FuzzError> {
     let jobs = jobs(&shared.state());
     let next = AtomicUsize::new(0);
-    let work = |examiner: &mut E| -> Result<bool, Error> {
+    let work = |examiner: &mut E| -> Result<bool, FuzzError> {
         let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) else {
             return Ok(false);
         };
@@ -154,12 +154,12 @@ fn dispatch<E: Examine>(
     shared: Shared<'_>,
     threads: usize,
     make: &(impl Fn() -> E + Sync),
-    work: &(impl Fn(&mut E) -> Result<bool, Error> + Sync),
+    work: &(impl Fn(&mut E) -> Result<bool, FuzzError> + Sync),
     tell: &mut impl FnMut(&RunState),
-) -> Result<(), Error> {
+) -> Result<(), FuzzError> {
     let before = shared.state().seconds;
     let started = Instant::now();
-    let error: Mutex<Option<Error>> = Mutex::new(None);
+    let error: Mutex<Option<FuzzError>> = Mutex::new(None);
     let failed = AtomicBool::new(false);
     let busy = AtomicUsize::new(threads);
     std::thread::scope(|scope| {
@@ -202,9 +202,9 @@ fn dispatch<E: Examine>(
 
 fn until_done<E>(
     mut examiner: E,
-    work: &impl Fn(&mut E) -> Result<bool, Error>,
+    work: &impl Fn(&mut E) -> Result<bool, FuzzError>,
     is_over: impl Fn() -> bool,
-) -> Result<(), Error> {
+) -> Result<(), FuzzError> {
     while !is_over() && work(&mut examiner)? {}
     Ok(())
 }
@@ -221,7 +221,7 @@ impl Saver {
         last.elapsed() > SAVE.max(SAVING * took)
     }
 
-    fn save(&mut self, state: &RunState, path: &Path) -> Result<(), Error> {
+    fn save(&mut self, state: &RunState, path: &Path) -> Result<(), FuzzError> {
         let started = Instant::now();
         let saved = state.save(path);
         self.last = Some((Instant::now(), started.elapsed()));
@@ -276,7 +276,7 @@ impl Way {
 
 impl Job {
     /// The smallest tree that fails in the same way.
-    fn small(&self, examiner: &mut impl Examine) -> Result<PartModel, Error> {
+    fn small(&self, examiner: &mut impl Examine) -> Result<PartModel, FuzzError> {
         let tries = match self.way {
             Way::Wrong(FailureKind::Time) => TRIES_IN_TIME,
             _ => TRIES,
@@ -291,7 +291,7 @@ impl Job {
                 false
             }
         });
-        error.map_or(Ok(small), |e| Err(Error::Worker(e)))
+        error.map_or(Ok(small), |e| Err(FuzzError::Worker(e)))
     }
 
     fn put(&self, state: &mut RunState, text: String) {

@@ -1,8 +1,7 @@
 //! What a run is, and how far it is: kept in a file, so that it goes on where it ended.
 
-use super::Error;
+use super::FuzzError;
 use crate::diagnostics::CliError;
-use crate::output;
 use crate::session::InputLimits;
 use premio_text::Document;
 use premio_text::escape::quote;
@@ -209,7 +208,7 @@ impl RunState {
             return Err(refused(span, words));
         }
         if state.plan != plan {
-            return Err(Error::OtherPlan { path: name }.into());
+            return Err(FuzzError::OtherPlan { path: name }.into());
         }
         match state.is_consistent() {
             true => Ok(state),
@@ -237,9 +236,9 @@ impl RunState {
     }
 
     /// Saves the run: the whole file, or none.
-    pub fn save(&self, path: &Path) -> Result<(), Error> {
-        let text = serde_json::to_string(self).map_err(|e| Error::file(path, e.into()))?;
-        output::file(&text, path).map_err(|source| Error::file(path, source))
+    pub fn save(&self, path: &Path) -> Result<(), FuzzError> {
+        let text = serde_json::to_string(self).map_err(|e| FuzzError::file(path, e.into()))?;
+        premio::files::write_whole(&text, path).map_err(|source| FuzzError::file(path, source))
     }
 
     /// How many trees are done.

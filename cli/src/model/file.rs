@@ -3,6 +3,7 @@
 use crate::diagnostics::CliError;
 use crate::input::{self, EvaluatedPart};
 use crate::session::Session;
+use premio::shards::language;
 use premio_predict::model::consistency::SourceLimits;
 use premio_predict::model::file::{ModelError, ModelFile, parse};
 use std::path::Path;
@@ -37,12 +38,12 @@ impl ReadModel {
     pub fn part(&self, session: Session) -> Result<EvaluatedPart, CliError> {
         let written = &self.file.head.description;
         let failed = |error: ModelError| refused(&self.name, &self.text, &error);
-        if let Err(words) = input::language(written) {
+        if let Err(words) = language(written) {
             let key = "description.language";
             return Err(failed(self.file.in_head(&self.text, key, &words)));
         }
         let part = input::part_of_model(&self.name, written.clone(), session.voice)?;
-        let limits = SourceLimits::of_part(&part.evaluation.brep);
+        let limits = SourceLimits::of_part(part.solid.brep());
         self.file
             .check_sources(&self.text, &limits)
             .map_err(failed)?;

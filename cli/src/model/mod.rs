@@ -1,8 +1,6 @@
-//! Models of many setups: shards in files, and what they come to.
+//! Models of many setups: their files.
 
 pub mod file;
 pub mod format;
 #[cfg(feature = "parquet")]
 mod parquet;
-pub mod run;
-pub mod shard;

@@ -117,14 +117,36 @@ pub struct Program {
 }
 
 impl Program {
+    /// The tree of the part. `name` and `bytes` are those that were read.
+    ///
+    /// # Errors
+    /// The tree is beyond a limit; the error has the place of the part in the text.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio_csg::reader::{Format, ReadOptions, parse};
+    ///
+    /// let text = b"A = SPH(R=1)";
+    /// let program = parse("a.padl", text, Format::Padl, &ReadOptions::default())?;
+    /// assert_eq!(program.tree("a.padl", text)?.leaves().count(), 1);
+    /// # Ok::<(), premio_csg::reader::ReadError>(())
+    /// ```
+    pub fn tree(&self, name: &str, bytes: &[u8]) -> Result<Tree, ReadError> {
+        self.finished().map_err(|fault| fault.locate(name, bytes))
+    }
+
+    fn finished(&self) -> Result<Tree, SpannedError> {
+        self.builder.finish(self.part).map_err(|error| {
+            let expected = "a description within the limits";
+            SpannedError::limit(self.span.clone(), error.to_string(), expected)
+        })
+    }
+
     /// The tree of the part; a tree beyond its limits is pointed at as a whole.
     fn description(self) -> Result<Description, SpannedError> {
-        let tree = self.builder.finish(self.part).map_err(|error| {
-            let expected = "a description within the limits";
-            SpannedError::limit(self.span, error.to_string(), expected)
-        })?;
         Ok(Description {
-            tree,
+            tree: self.finished()?,
             digits: self.digits,
             notes: self.notes,
         })

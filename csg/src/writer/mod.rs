@@ -38,6 +38,9 @@ pub enum WriteError {
         /// How many primitives there would be.
         leaves: u64,
     },
+    /// The part is of another builder.
+    #[error("a solid of another builder was used")]
+    ForeignSolid,
     /// The text would be too long.
     #[error("a text of more than {MAX_TEXT} bytes")]
     TooLong,
@@ -50,6 +53,9 @@ pub enum WriteError {
 /// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers that are no
 /// decimals.
 pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String, WriteError> {
+    if builder.is_foreign(part) {
+        return Err(WriteError::ForeignSolid);
+    }
     let leaves = builder.leaves(part);
     if leaves > MAX_LEAVES {
         return Err(WriteError::TooManyLeaves { leaves });

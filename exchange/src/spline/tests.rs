@@ -37,13 +37,7 @@ fn window(surface: Surface) -> ParameterWindow {
 }
 
 /// Both splines are within the accuracy of the surfaces, and of each other, all along.
-fn holds(
-    curve: &Curve,
-    range: [f64; 2],
-    surfaces: &[Surface],
-    pace: Pace,
-    accuracy: f64,
-) -> usize {
+fn holds(curve: &Curve, range: [f64; 2], surfaces: &[Surface], pace: Pace, accuracy: f64) -> usize {
     let windows: Vec<ParameterWindow> = surfaces.iter().map(|s| window(*s)).collect();
     let follow = Follow {
         pace,

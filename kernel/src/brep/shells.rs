@@ -5,7 +5,7 @@ use super::Brep;
 use super::assemble::AssemblyError;
 use super::face_integrals::{shell_volume, size};
 use super::point_in_solid::Closed;
-use super::topology::{CoedgeId, FaceId, Shell, ShellId, Solid, SolidId, Topology};
+use super::topology::{CoedgeId, FaceId, Lump, LumpId, Shell, ShellId, Topology};
 use crate::geometry::vector::rounded;
 use crate::number::float::Float;
 use crate::number::predicates::{Compare, Predicates};
@@ -121,8 +121,8 @@ pub(super) fn bind_shells<N: Float>(
     };
     let (mut outer, voids) = (of_kind(false), of_kind(true));
     for &s in &outer {
-        let id = SolidId(brep.topology.solids.len() as u32);
-        brep.topology.solids.push(Solid {
+        let id = LumpId(brep.topology.solids.len() as u32);
+        brep.topology.solids.push(Lump {
             shells: vec![ShellId(s as u32)],
         });
         brep.topology.shells[s].solid = id;
@@ -159,7 +159,7 @@ fn name_shells<N: Float>(
         };
         brep.topology.shells.push(Shell {
             faces: faces.clone(),
-            solid: SolidId(u32::MAX),
+            solid: LumpId(u32::MAX),
             void,
             genus: (2 - fans.euler[s]).div_euclid(2),
             odd: fans.euler[s].rem_euclid(2) == 1,

@@ -30,8 +30,8 @@ ids! {
     FaceId,
     /// A connected shell of faces.
     ShellId,
-    /// A solid: an outer shell and its voids.
-    SolidId,
+    /// A lump: a connected solid.
+    LumpId,
     /// A point at which the boundary touches itself.
     TouchId
 }
@@ -85,7 +85,7 @@ pub struct Shell {
     /// Its faces.
     pub faces: Vec<FaceId>,
     /// The solid it bounds.
-    pub solid: SolidId,
+    pub solid: LumpId,
     /// Whether it bounds a void.
     pub void: bool,
     /// Its genus: one less half its Euler characteristic.
@@ -94,9 +94,9 @@ pub struct Shell {
     pub odd: bool,
 }
 
-/// A solid: one outer shell, then its voids.
+/// A lump: a connected solid with one outer shell, then its voids.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Solid {
+pub struct Lump {
     /// The outer shell first.
     pub shells: Vec<ShellId>,
 }
@@ -131,7 +131,7 @@ pub struct Topology {
     /// The shells, by id.
     pub shells: Vec<Shell>,
     /// The solids, by id.
-    pub solids: Vec<Solid>,
+    pub solids: Vec<Lump>,
     /// The points at which the boundary touches itself, by id.
     pub touches: Vec<NonManifoldPoint>,
 }

@@ -5,7 +5,7 @@ use super::edge_samples::{EdgeSample, PartView};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_predict::sphere::{Lattice, SphereSampling, points};
-use premio_visibility::camera::Camera;
+use premio_visibility::camera::ViewCamera;
 use premio_visibility::camera::projection::Projection;
 use premio_visibility::contour_generator::junctions::Junctions;
 use premio_visibility::contour_generator::limb_arcs::{LimbArc, limb_arcs};
@@ -77,7 +77,7 @@ fn view(part: &SoughtPart<'_>, direction: &Vector3<f64>, stride: usize) -> PartV
         hidden: others.collect(),
         limbs: Vec::new(),
     };
-    let Ok(camera) = Camera::perspective(eye, part.centre, Vector3::z(), 1.0) else {
+    let Ok(camera) = ViewCamera::perspective(eye, part.centre, Vector3::z(), 1.0) else {
         return view;
     };
     let projection = Projection::new(&camera, part_size(part.brep));
@@ -191,7 +191,7 @@ mod tests {
         for direction in part.views.directions.iter().step_by(7) {
             let view = view(&part, direction, 1);
             let eye = part.centre + direction * (DISTANCE * part.radius);
-            let camera = Camera::perspective(eye, part.centre, Vector3::z(), 1.0).unwrap();
+            let camera = ViewCamera::perspective(eye, part.centre, Vector3::z(), 1.0).unwrap();
             let all = contours(part.brep, &camera, part.resolution)
                 .unwrap()
                 .contours;

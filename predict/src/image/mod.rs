@@ -1,8 +1,8 @@
 //! What the sensor makes of the light: radiance, coverage of pixels, blur, noise and grey levels.
 
-pub mod bitmap;
-pub mod blur;
-pub mod exposure;
+pub(crate) mod bitmap;
+pub(crate) mod blur;
+pub(crate) mod exposure;
 mod field;
-pub mod response;
+pub(crate) mod response;
 pub mod shading;

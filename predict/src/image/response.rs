@@ -36,13 +36,3 @@ fn noise(level: f64, top: f64, sensor: &Sensor, random: &mut Random) -> f64 {
     }
     value
 }
-
-/// The variance of a level's noise, with that of the steps.
-pub fn variance(level: f64, sensor: &Sensor) -> f64 {
-    let top = f64::from(sensor.levels - 1);
-    let photons = match sensor.electrons > 0.0 {
-        true => level.clamp(0.0, top) * top / sensor.electrons,
-        false => 0.0,
-    };
-    photons + sensor.read_noise * sensor.read_noise + 1.0 / 12.0
-}

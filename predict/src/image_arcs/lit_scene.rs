@@ -9,7 +9,7 @@ use crate::setup::{Setup, SetupError};
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_visibility::camera::projection::Projection;
-use premio_visibility::camera::{Camera, CameraError};
+use premio_visibility::camera::{CameraError, ViewCamera};
 use premio_visibility::contours::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
 use premio_visibility::ray_casting::OriginIncidence;
 use premio_visibility::scene::Scene;
@@ -56,13 +56,13 @@ impl StageError {
 #[derive(Clone, Debug)]
 pub struct Eye {
     /// The camera.
-    pub camera: Camera,
+    pub camera: ViewCamera,
     /// How it projects.
     pub projection: Projection,
 }
 
 impl Eye {
-    fn new(camera: Camera, subject: &PreparedPart<'_>) -> Self {
+    fn new(camera: ViewCamera, subject: &PreparedPart<'_>) -> Self {
         let projection = Projection::new(&camera, 2.0 * subject.radius);
         Self { camera, projection }
     }
@@ -130,18 +130,18 @@ fn no_view(table: &str, place: &str, error: &ViewError) -> SetupError {
 fn light_cameras(
     source: &light::LightSource,
     subject: &PreparedPart<'_>,
-) -> Result<Vec<Camera>, CameraError> {
+) -> Result<Vec<ViewCamera>, CameraError> {
     let centre = subject.centre;
     match source.place() {
         LightPlace::Far(d) => {
             let eye = centre + d * (4.0 * subject.radius);
-            Ok(vec![Camera::orthographic(eye, centre, upright(&d))?])
+            Ok(vec![ViewCamera::orthographic(eye, centre, upright(&d))?])
         }
         LightPlace::Near(p) => {
             let away = centre - p;
             let far = away.norm() > subject.radius;
             let towards = if far { away } else { Vector3::z() };
-            let looking = |d: Vector3<f64>| Camera::perspective(p, p + d, upright(&d), 1.0);
+            let looking = |d: Vector3<f64>| ViewCamera::perspective(p, p + d, upright(&d), 1.0);
             match far {
                 true => Ok(vec![looking(towards)?]),
                 false => Ok(vec![looking(towards)?, looking(-towards)?]),

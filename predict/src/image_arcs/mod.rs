@@ -1,15 +1,15 @@
 //! What divides an image into regions: the visible pieces of contours, the boundaries of cast shadows
 //! and the outlines of highlights.
 
-pub mod arc;
-pub mod crossings;
-pub mod flatten;
-pub mod highlight;
+pub(crate) mod arc;
+pub(crate) mod crossings;
+pub(crate) mod flatten;
+pub(crate) mod highlight;
 pub mod lit_scene;
-pub mod pierce;
-pub mod regions;
-pub mod scanline;
-pub mod shadow;
+pub(crate) mod pierce;
+pub(crate) mod regions;
+pub(crate) mod scanline;
+pub(crate) mod shadow;
 
 pub use arc::{ArcSource, PredictedArc};
 pub use lit_scene::LitScene;

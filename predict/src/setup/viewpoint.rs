@@ -3,7 +3,7 @@
 use super::SetupError;
 use super::sensor::Sensor;
 use nalgebra::{Matrix3, Point3, Vector3};
-use premio_visibility::camera::{Camera, CameraError, CameraModel};
+use premio_visibility::camera::{CameraError, CameraModel, ViewCamera};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -98,7 +98,7 @@ impl Viewpoint {
     ) -> Result<Matrices, SetupError> {
         let target = self.target.map_or(*centre, Point3::from);
         let up = Vector3::from(self.up.unwrap_or([0.0, 0.0, 1.0]));
-        Camera::perspective(eye, target, up, 1.0).map_err(told)?;
+        ViewCamera::perspective(eye, target, up, 1.0).map_err(told)?;
         let z = (target - eye).normalize();
         let x = across(&z, &up);
         let r = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
@@ -130,9 +130,9 @@ pub struct Matrices {
 
 impl Matrices {
     /// The camera of the matrices.
-    pub fn camera(&self) -> Result<Camera, SetupError> {
+    pub fn camera(&self) -> Result<ViewCamera, SetupError> {
         let Self { k, r, t } = *self;
-        Camera::new(CameraModel::Matrices {
+        ViewCamera::new(CameraModel::Matrices {
             k,
             r,
             t,

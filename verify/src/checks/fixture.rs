@@ -6,13 +6,13 @@ use premio_csg::tree::Tree;
 use premio_drawing::Drawing;
 use premio_drawing::sheet::StandardView;
 use premio_kernel::geometry::bounds::Aabb;
-use premio_visibility::{Camera, Contours, contours};
+use premio_visibility::{Contours, ViewCamera, contours};
 
 /// A part and its front view.
 pub(super) struct FrontView {
     pub tree: Tree,
     pub bounds: Aabb,
-    pub camera: Camera,
+    pub camera: ViewCamera,
     pub seen: Contours,
     pub drawing: Drawing,
 }

@@ -26,7 +26,7 @@ use premio_drawing::Drawing;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::camera::projection::Projection;
-use premio_visibility::{Camera, Contours, contours};
+use premio_visibility::{Contours, ViewCamera, contours};
 use std::fmt;
 
 /// How many standard errors a measured volume may be off.
@@ -246,12 +246,12 @@ impl<'a> Checker<'a> {
     }
 
     /// Counts the faces before every piece that a camera sees, and looks for missing contours.
-    pub fn view(&self, name: &str, camera: &Camera) -> Vec<Check> {
+    pub fn view(&self, name: &str, camera: &ViewCamera) -> Vec<Check> {
         self.view_with(name, camera, ViewChecks::CONTOURS)
     }
 
     /// The checks of a view that are asked for.
-    pub fn view_with(&self, name: &str, camera: &Camera, checks: ViewChecks) -> Vec<Check> {
+    pub fn view_with(&self, name: &str, camera: &ViewCamera, checks: ViewChecks) -> Vec<Check> {
         let failed = |finding, detail| {
             let subject = CheckSubject::View(name.to_owned());
             vec![Check {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
-use premio_visibility::Camera;
+use premio_visibility::ViewCamera;
 use std::f64::consts::{PI, SQRT_2};
 
 /// A camera with a name for messages.
@@ -11,7 +11,7 @@ pub struct CheckedView {
     /// What messages call it.
     pub name: String,
     /// The camera.
-    pub camera: Camera,
+    pub camera: ViewCamera,
 }
 
 /// How many perspective views in general position there are.
@@ -31,23 +31,23 @@ pub fn around(bounds: &Aabb) -> Vec<CheckedView> {
     let perspective = (0..PERSPECTIVE).filter_map(|k| {
         let distance = size * (0.8 + 0.3 * k as f64);
         let eye = centre + general(k, PERSPECTIVE) * distance;
-        let camera = Camera::perspective(eye, aim(&centre, size, k), Vector3::z(), 1.0).ok()?;
+        let camera = ViewCamera::perspective(eye, aim(&centre, size, k), Vector3::z(), 1.0).ok()?;
         Some(view(format!("perspective {}", k + 1), camera))
     });
     let orthographic = (0..ORTHOGRAPHIC).filter_map(|k| {
         let eye = centre + general(2 * k + 1, 2 * ORTHOGRAPHIC + 1) * size;
-        let camera = Camera::orthographic(eye, centre, Vector3::z()).ok()?;
+        let camera = ViewCamera::orthographic(eye, centre, Vector3::z()).ok()?;
         Some(view(format!("orthographic {}", k + 1), camera))
     });
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let along = axes.iter().zip(["x", "y", "z"]).filter_map(|(axis, name)| {
-        let camera = Camera::orthographic(centre + axis * size, centre, Vector3::z()).ok()?;
+        let camera = ViewCamera::orthographic(centre + axis * size, centre, Vector3::z()).ok()?;
         Some(view(format!("along {name}"), camera))
     });
     perspective.chain(orthographic).chain(along).collect()
 }
 
-fn view(name: String, camera: Camera) -> CheckedView {
+fn view(name: String, camera: ViewCamera) -> CheckedView {
     CheckedView { name, camera }
 }
 

@@ -51,7 +51,7 @@ impl CameraError {
 /// A camera; lengths in the part's unit and frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Raw", into = "Raw")]
-pub struct Camera {
+pub struct ViewCamera {
     /// How it projects.
     pub model: CameraModel,
     /// What lies nearer than this along the optical axis is cut away.
@@ -134,7 +134,7 @@ fn rows(m: &Matrix3<f64>) -> [[f64; 3]; 3] {
     std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
 }
 
-impl TryFrom<Raw> for Camera {
+impl TryFrom<Raw> for ViewCamera {
     type Error = CameraError;
 
     fn try_from(raw: Raw) -> Result<Self, CameraError> {
@@ -210,8 +210,8 @@ fn refuse(keys: &[(&'static str, bool)]) -> Result<(), CameraError> {
     }
 }
 
-impl From<Camera> for Raw {
-    fn from(camera: Camera) -> Self {
+impl From<ViewCamera> for Raw {
+    fn from(camera: ViewCamera) -> Self {
         let mut raw = Self {
             near: camera.near,
             ..Self::default()
@@ -250,7 +250,7 @@ impl Raw {
     }
 }
 
-impl Camera {
+impl ViewCamera {
     /// A perspective camera that looks from `eye` at `target`.
     pub fn perspective(
         eye: Point3<f64>,
@@ -398,7 +398,7 @@ mod tests {
             r#"{"projection":"orthographic","eye":[1.0,2.0,3.0],"target":[0.0,0.0,0.0],"up":[0.0,0.0,1.0],"near":0.5}"#,
             r#"{"K":[[800.0,0.0,320.0],[0.0,800.0,240.0],[0.0,0.0,1.0]],"R":[[1.0,0.0,0.0],[0.0,1.0,0.0],[0.0,0.0,1.0]],"t":[0.0,0.0,5.0],"width":640.0,"height":480.0}"#,
         ] {
-            let camera = Camera::from_json(text).unwrap();
+            let camera = ViewCamera::from_json(text).unwrap();
             assert_eq!(serde_json::to_string(&camera).unwrap(), text);
         }
     }
@@ -421,8 +421,11 @@ mod tests {
             ),
         ];
         for (text, error) in cases {
-            assert_eq!(Camera::from_json(text).unwrap_err(), error);
+            assert_eq!(ViewCamera::from_json(text).unwrap_err(), error);
         }
-        assert!(matches!(Camera::from_json("["), Err(CameraError::Text(_))));
+        assert!(matches!(
+            ViewCamera::from_json("["),
+            Err(CameraError::Text(_))
+        ));
     }
 }

@@ -5,7 +5,7 @@
 //! as large has twice the coordinates; the image point is A (h/h_z) with A affine. The camera's
 //! frame is x right, y up (or down, for pixels), z into the scene.
 
-use crate::camera::{Camera, CameraModel};
+use crate::camera::{CameraModel, ViewCamera};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use premio_kernel::geometry::frame::perpendicular;
 use premio_kernel::number::analytic::{Analytic, dot};
@@ -62,7 +62,7 @@ fn unit_of(size: f64) -> f64 {
 
 impl Projection {
     /// The projection of `camera` for a part of the given size (the diagonal of its box).
-    pub fn new(camera: &Camera, size: f64) -> Self {
+    pub fn new(camera: &ViewCamera, size: f64) -> Self {
         let mut projection = Self::without_inverse(camera, size);
         if let Some(inverse) = projection.affine.try_inverse() {
             projection.inverse = inverse;
@@ -70,7 +70,7 @@ impl Projection {
         projection
     }
 
-    fn without_inverse(camera: &Camera, size: f64) -> Self {
+    fn without_inverse(camera: &ViewCamera, size: f64) -> Self {
         // A positive distance, so that no contour reaches the eye's own plane.
         let least = size * ROUNDING.sqrt();
         let unit = unit_of(size);

@@ -1,6 +1,6 @@
 //! The contours of a part for a viewpoint.
 
-use crate::camera::Camera;
+use crate::camera::ViewCamera;
 use crate::camera::projection::Projection;
 use crate::contour_generator::contour_arc::{Change, ContourArc, Split};
 use crate::contour_generator::facing::is_limb;
@@ -53,14 +53,14 @@ pub enum ViewError {
 }
 
 /// The contours of a part seen by a camera; `resolution` is the part's resolution.
-pub fn contours(brep: &Brep, camera: &Camera, resolution: f64) -> Result<Contours, ViewError> {
+pub fn contours(brep: &Brep, camera: &ViewCamera, resolution: f64) -> Result<Contours, ViewError> {
     contours_with(brep, camera, resolution, Method::Propagated)
 }
 
 /// The same with the choice of how quantitative invisibility is found.
 pub fn contours_with(
     brep: &Brep,
-    camera: &Camera,
+    camera: &ViewCamera,
     resolution: f64,
     method: Method,
 ) -> Result<Contours, ViewError> {

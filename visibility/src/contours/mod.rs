@@ -6,7 +6,7 @@ pub use crate::contour_generator::junctions::{Junction, JunctionKind};
 pub use crate::invisibility::ContourPiece;
 pub use builder::{ViewError, contours, contours_with, part_size};
 
-use crate::camera::Camera;
+use crate::camera::ViewCamera;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::json;
@@ -89,7 +89,7 @@ pub struct Contours {
     /// [`SCHEMA`].
     pub schema: &'static str,
     /// The viewpoint.
-    pub camera: Camera,
+    pub camera: ViewCamera,
     /// What lies this near to each other coincides, in the part's unit.
     pub resolution: f64,
     /// The contours.

@@ -187,7 +187,7 @@ fn a_camera_inside_a_hole_sees_contours_too() {
     let eye = nalgebra::Point3::new(2.1, 2.2, 1.7);
     let target = nalgebra::Point3::new(2.0, 1.9, 4.0);
     let up = nalgebra::Vector3::y();
-    let camera = premio_visibility::Camera::perspective(eye, target, up, 1.0).unwrap();
+    let camera = premio_visibility::ViewCamera::perspective(eye, target, up, 1.0).unwrap();
     let name = "inside".to_owned();
     let mut seen = part.contours(&CheckedView { name, camera });
     let found = part.outlines(&seen);

@@ -1,0 +1,765 @@
+//! Solids as expressions: primitives, set operations and motions.
+
+use crate::number::{ExactNumber, NumberError};
+use crate::solid::Solid;
+use crate::{Error, Rational, Result};
+use premio_csg::builder::{Builder, SolidId};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::primitive::{Primitive, PrimitiveError};
+use premio_csg::reader::{Format, Note, Program};
+use premio_csg::transform::{Transform, TransformStep};
+use premio_csg::tree::{Operation, Tree};
+use premio_csg::writer;
+use premio_kernel::motion::MotionError;
+use premio_predict::model::record::DescriptionRecord;
+use std::collections::HashMap;
+use std::fmt;
+use std::iter::Sum;
+use std::ops::{Add, BitAnd, Sub};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Why an expression is no solid.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let error = block(1, 1, 1).scale(-2).evaluate().unwrap_err();
+/// assert!(matches!(error, premio::Error::Expression(premio::ExpressionError::Factor)));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExpressionError {
+    /// A length or an angle is not a number.
+    #[error(transparent)]
+    Number(#[from] NumberError),
+    /// A primitive with these lengths is no solid.
+    #[error(transparent)]
+    Primitive(#[from] PrimitiveError),
+    /// A motion is none.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// A factor is not above zero.
+    #[error("a scale factor must be greater than zero")]
+    Factor,
+}
+
+/// A solid as an expression of primitives, set operations and motions.
+///
+/// Operators make larger expressions: `+` is the union, `-` the difference, `&` the intersection. All
+/// three are regularised, so that no face or edge hangs loose. A clone is cheap. An expression is
+/// `Send` and `Sync`.
+///
+/// Numbers are exact, see [`ExactNumber`]. What is wrong with a number or a primitive becomes an error
+/// in [`Expression::evaluate`], so that expressions need no `?`.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let dice = (block(20, 20, 20) & sphere(13).translate([10, 10, 10])).rotate_z(30);
+/// let solid = dice.evaluate()?;
+/// assert_eq!(solid.faces().count(), 7);
+/// # Ok::<(), premio::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Expression(Result<Arc<Node>, ExpressionError>);
+
+/// A node of an expression.
+enum Node {
+    Empty,
+    Leaf(Primitive),
+    Operation(Operation, Vec<Arc<Node>>),
+    Moved(Arc<Node>, Transform),
+    MirroredY(Arc<Node>),
+    Scaled(Arc<Node>, Rational),
+    Described(Box<Description>),
+}
+
+/// What was read.
+struct Description {
+    program: Program,
+    record: DescriptionRecord,
+    name: String,
+}
+
+impl Node {
+    fn children(&self) -> &[Arc<Node>] {
+        match self {
+            Self::Operation(_, children) => children,
+            Self::Moved(child, _) | Self::MirroredY(child) | Self::Scaled(child, _) => {
+                std::slice::from_ref(child)
+            }
+            Self::Empty | Self::Leaf(_) | Self::Described(_) => &[],
+        }
+    }
+
+    fn take_children(&mut self) -> Vec<Arc<Node>> {
+        match std::mem::replace(self, Self::Empty) {
+            Self::Operation(_, ref mut children) => std::mem::take(children),
+            Self::Moved(ref child, _) | Self::MirroredY(ref child) | Self::Scaled(ref child, _) => {
+                vec![Arc::clone(child)]
+            }
+            Self::Empty | Self::Leaf(_) | Self::Described(_) => Vec::new(),
+        }
+    }
+}
+
+/// Without recursion: expressions may be deeper than the stack.
+impl Drop for Node {
+    fn drop(&mut self) {
+        if self.children().is_empty() {
+            return;
+        }
+        let mut rest = self.take_children();
+        while let Some(node) = rest.pop() {
+            if let Some(mut node) = Arc::into_inner(node) {
+                rest.extend(node.take_children());
+            }
+        }
+    }
+}
+
+/// Shows how many primitives an expression has.
+impl fmt::Debug for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Ok(root) => {
+                let leaves = nodes(root).into_iter();
+                let leaves = leaves.filter(|node| node.children().is_empty());
+                f.debug_struct("Expression")
+                    .field("primitives", &leaves.count())
+                    .finish()
+            }
+            Err(error) => f.debug_tuple("Expression").field(error).finish(),
+        }
+    }
+}
+
+/// The distinct nodes of an expression, children before their parents.
+fn nodes(root: &Arc<Node>) -> Vec<&Arc<Node>> {
+    let mut known: HashMap<*const Node, ()> = HashMap::new();
+    let mut order = Vec::new();
+    let mut rest = vec![(root, false)];
+    while let Some((node, is_after)) = rest.pop() {
+        if is_after {
+            order.push(node);
+        } else if known.insert(Arc::as_ptr(node), ()).is_none() {
+            rest.push((node, true));
+            rest.extend(node.children().iter().rev().map(|child| (child, false)));
+        }
+    }
+    order
+}
+
+/// A block with a corner at the origin and edges along the positive axes.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// assert_eq!(block(6, 4, 2).evaluate()?.volume(), 48.0);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn block(
+    x: impl Into<ExactNumber>,
+    y: impl Into<ExactNumber>,
+    z: impl Into<ExactNumber>,
+) -> Expression {
+    let size = numbers([x.into(), y.into(), z.into()]);
+    Expression::primitive(size.and_then(|size| Ok(Primitive::block(size)?)))
+}
+
+/// The half of a block where x/X + z/Z ≤ 1.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let ramp = wedge(6, 4, 2).evaluate()?;
+/// assert!((ramp.volume() - 24.0).abs() < 1e-12);
+/// assert_eq!(ramp.faces().count(), 5);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn wedge(
+    x: impl Into<ExactNumber>,
+    y: impl Into<ExactNumber>,
+    z: impl Into<ExactNumber>,
+) -> Expression {
+    let size = numbers([x.into(), y.into(), z.into()]);
+    Expression::primitive(size.and_then(|size| Ok(Primitive::wedge(size)?)))
+}
+
+/// A cylinder along +z, its base disc centred at the origin.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = cylinder(2, 5).evaluate()?;
+/// assert!((solid.volume() - 20.0 * std::f64::consts::PI).abs() < 1e-12);
+/// assert_eq!((solid.edges().count(), solid.vertices().count()), (2, 0));
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn cylinder(radius: impl Into<ExactNumber>, height: impl Into<ExactNumber>) -> Expression {
+    let lengths = numbers([radius.into(), height.into()]);
+    Expression::primitive(lengths.and_then(|[r, h]| Ok(Primitive::cylinder(r, h)?)))
+}
+
+/// A cone along +z: its base disc is centred at the origin, its apex is at `height`.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = cone(3, 4).evaluate()?;
+/// assert!((solid.volume() - 12.0 * std::f64::consts::PI).abs() < 1e-12);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn cone(radius: impl Into<ExactNumber>, height: impl Into<ExactNumber>) -> Expression {
+    let lengths = numbers([radius.into(), height.into()]);
+    Expression::primitive(lengths.and_then(|[r, h]| Ok(Primitive::cone(r, h)?)))
+}
+
+/// A frustum of a cone along +z, with the radii of its base and its top.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = frustum(3, 1, 6).evaluate()?;
+/// assert!((solid.volume() - 26.0 * std::f64::consts::PI).abs() < 1e-12);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn frustum(
+    base: impl Into<ExactNumber>,
+    top: impl Into<ExactNumber>,
+    height: impl Into<ExactNumber>,
+) -> Expression {
+    let lengths = numbers([base.into(), top.into(), height.into()]);
+    Expression::primitive(lengths.and_then(|[a, b, h]| Ok(Primitive::frustum(a, b, h)?)))
+}
+
+/// A sphere centred at the origin.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = sphere("1.5").evaluate()?;
+/// assert_eq!((solid.faces().count(), solid.edges().count()), (1, 0));
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn sphere(radius: impl Into<ExactNumber>) -> Expression {
+    let radius = numbers([radius.into()]);
+    Expression::primitive(radius.and_then(|[r]| Ok(Primitive::sphere(r)?)))
+}
+
+/// A ring torus centred at the origin, with axis z: the radius of the circle that the tube's centre
+/// runs along, and the smaller radius of the tube.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = torus(5, 1).evaluate()?;
+/// assert_eq!(solid.genus(), [1]);
+/// assert!(torus(1, 5).evaluate().is_err());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn torus(major: impl Into<ExactNumber>, minor: impl Into<ExactNumber>) -> Expression {
+    let lengths = numbers([major.into(), minor.into()]);
+    Expression::primitive(lengths.and_then(|[a, b]| Ok(Primitive::torus(a, b)?)))
+}
+
+impl Expression {
+    fn primitive(primitive: Result<Primitive, ExpressionError>) -> Self {
+        Self(primitive.map(|primitive| Arc::new(Node::Leaf(primitive))))
+    }
+
+    pub(crate) fn described(program: Program, record: DescriptionRecord, name: String) -> Self {
+        let description = Description {
+            program,
+            record,
+            name,
+        };
+        Self(Ok(Arc::new(Node::Described(Box::new(description)))))
+    }
+
+    /// The solid without any points.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// assert!(Expression::empty().evaluate()?.is_empty());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn empty() -> Self {
+        Self(Ok(Arc::new(Node::Empty)))
+    }
+
+    /// One operation on several expressions. The difference takes all later ones from the first.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let holes = (1..4).map(|k| cylinder(1, 2).translate([5 * k, 5, 0]));
+    /// let plate = std::iter::once(block(20, 10, 2)).chain(holes);
+    /// let solid = Expression::operation(Operation::Difference, plate).evaluate()?;
+    /// assert_eq!(solid.genus(), [3]);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn operation(op: Operation, parts: impl IntoIterator<Item = Self>) -> Self {
+        let nodes: Result<Vec<Arc<Node>>, ExpressionError> =
+            parts.into_iter().map(|part| part.0).collect();
+        Self(nodes.map(|nodes| Arc::new(Node::Operation(op, nodes))))
+    }
+
+    fn map(self, wrap: impl FnOnce(Arc<Node>) -> Result<Node, ExpressionError>) -> Self {
+        Self(self.0.and_then(wrap).map(Arc::new))
+    }
+
+    fn step(self, step: Result<TransformStep, ExpressionError>) -> Self {
+        self.map(|node| {
+            let mut transform = Transform::new();
+            transform.push(step?)?;
+            Ok(Node::Moved(node, transform))
+        })
+    }
+
+    /// Moves the solid along x, y and z.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(1, 1, 1).translate(["1/3", "0", "-2"]).evaluate()?;
+    /// assert_eq!(solid.bounds().min, [1.0 / 3.0, 0.0, -2.0]);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn translate<N: Into<ExactNumber>>(self, by: [N; 3]) -> Self {
+        self.step(vector(by).map(TransformStep::Shift))
+    }
+
+    /// Rotates the solid about the x axis, by degrees, right-handed.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(1, 2, 3).rotate_x(90).evaluate()?;
+    /// assert_eq!(solid.bounds().max, [1.0, 0.0, 2.0]);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn rotate_x(self, degrees: impl Into<ExactNumber>) -> Self {
+        self.rotate([1, 0, 0], degrees)
+    }
+
+    /// Rotates the solid about the y axis, by degrees, right-handed.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(1, 2, 3).rotate_y(90).evaluate()?;
+    /// assert_eq!(solid.bounds().max, [3.0, 2.0, 0.0]);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn rotate_y(self, degrees: impl Into<ExactNumber>) -> Self {
+        self.rotate([0, 1, 0], degrees)
+    }
+
+    /// Rotates the solid about the z axis, by degrees, right-handed.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(1, 2, 3).rotate_z(90).evaluate()?;
+    /// assert_eq!(solid.bounds().max, [0.0, 1.0, 3.0]);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn rotate_z(self, degrees: impl Into<ExactNumber>) -> Self {
+        self.rotate([0, 0, 1], degrees)
+    }
+
+    /// Rotates the solid about an axis through the origin, by degrees, right-handed. The axis may have
+    /// any length but zero.
+    ///
+    /// The motion is exactly orthogonal. Where the angle has no rational sine and cosine, a rational
+    /// rotation next to it is taken, as by the readers of descriptions.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// // A third of a turn about the diagonal brings x to y, y to z and z to x.
+    /// let solid = block(1, 2, 3).rotate([1, 1, 1], 120).evaluate()?;
+    /// assert!((solid.bounds().max[0] - 3.0).abs() < 1e-12);
+    /// assert!(block(1, 2, 3).rotate([0, 0, 0], 90).evaluate().is_err());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn rotate<N: Into<ExactNumber>>(
+        self,
+        axis: [N; 3],
+        degrees: impl Into<ExactNumber>,
+    ) -> Self {
+        let turn = || {
+            let (axis, degrees) = (vector(axis)?, degrees.into().value()?);
+            Ok(TransformStep::Turn { axis, degrees })
+        };
+        self.step(turn())
+    }
+
+    /// The image of the solid in the plane y = 0.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = wedge(1, 2, 3).mirror_y().evaluate()?;
+    /// assert_eq!(solid.bounds().min, [0.0, -2.0, 0.0]);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn mirror_y(self) -> Self {
+        self.map(|node| Ok(Node::MirroredY(node)))
+    }
+
+    /// The solid with all lengths multiplied by a factor above zero, about the origin.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let inches = block(1, 1, 1).scale("25.4").evaluate()?;
+    /// assert!((inches.volume() - 16387.064).abs() < 1e-9);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn scale(self, factor: impl Into<ExactNumber>) -> Self {
+        self.map(|node| {
+            let factor = factor.into().value()?;
+            match factor > Rational::ZERO {
+                true => Ok(Node::Scaled(node, factor)),
+                false => Err(ExpressionError::Factor),
+            }
+        })
+    }
+
+    /// What the reader noted, of all descriptions that the expression was made from.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let part = premio::read_text("A = BLO(X=1, Y=1, Z=1)", Format::Padl)?;
+    /// assert!(part.notes().is_empty());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn notes(&self) -> Vec<Note> {
+        let notes = self.descriptions().into_iter();
+        notes.flat_map(|d| d.program.notes.clone()).collect()
+    }
+
+    fn descriptions(&self) -> Vec<&Description> {
+        let Ok(root) = &self.0 else {
+            return Vec::new();
+        };
+        let described = |node: &&Arc<Node>| matches!(&***node, Node::Described(_));
+        let all = nodes(root).into_iter().filter(described);
+        all.filter_map(|node| match &**node {
+            Node::Described(description) => Some(&**description),
+            _ => None,
+        })
+        .collect()
+    }
+
+    /// The relative noise of the coordinates that were read.
+    fn noise(&self) -> Option<f64> {
+        let digits = self.descriptions().into_iter();
+        digits.filter_map(|d| d.program.digits).reduce(f64::max)
+    }
+
+    fn build(&self) -> Result<(Builder, SolidId)> {
+        let root = self.0.as_ref().map_err(|error| *error)?;
+        let mut builder = Builder::new();
+        let mut built: HashMap<*const Node, SolidId> = HashMap::new();
+        let mut last = SolidId::EMPTY;
+        for node in nodes(root) {
+            let child = |node: &Arc<Node>| built[&Arc::as_ptr(node)];
+            last = match &**node {
+                Node::Empty => SolidId::EMPTY,
+                Node::Leaf(primitive) => builder.primitive(primitive.clone()),
+                Node::Operation(op, children) => {
+                    let children: Vec<SolidId> = children.iter().map(child).collect();
+                    builder.operation(*op, &children)
+                }
+                Node::Moved(inner, transform) => builder.moved(child(inner), transform.clone()),
+                Node::MirroredY(inner) => builder.mirrored_y(child(inner)),
+                Node::Scaled(inner, factor) => builder.scaled(child(inner), factor.clone()),
+                Node::Described(d) => builder.import(&d.program.builder, d.program.part)?,
+            };
+            built.insert(Arc::as_ptr(node), last);
+        }
+        Ok((builder, last))
+    }
+
+    /// The tree of set operations, with every motion at its leaves.
+    ///
+    /// # Errors
+    /// A number, a primitive or a motion is none, or the tree is beyond a limit.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let plate = block(6, 4, 2) - cylinder(1, 2) - cylinder(1, 2).translate([6, 4, 0]);
+    /// assert_eq!(plate.tree()?.leaves().count(), 3);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn tree(&self) -> Result<Tree> {
+        if let Ok(Node::Described(d)) = self.0.as_deref() {
+            // The error has the place in the text.
+            return Ok(d.program.tree(&d.name, d.record.text.as_bytes())?);
+        }
+        let (builder, part) = self.build()?;
+        Ok(builder.finish(part)?)
+    }
+
+    /// The exact boundary, with the default options.
+    ///
+    /// # Errors
+    /// A number, a primitive or a motion is none, or the boundary is beyond a stated limit.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = (block(2, 2, 2) + block(2, 2, 2).translate([1, 1, 1])).evaluate()?;
+    /// assert!((solid.volume() - 15.0).abs() < 1e-12);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn evaluate(&self) -> Result<Solid> {
+        self.evaluate_with(&EvaluationOptions::default())
+    }
+
+    /// The exact boundary.
+    ///
+    /// # Errors
+    /// As [`Expression::evaluate`]; or an option is out of its range.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let options = EvaluationOptions { resolution: Some(1e-6), ..EvaluationOptions::default() };
+    /// let solid = block(1, 1, 1).evaluate_with(&options)?;
+    /// assert_eq!(solid.resolution(), 1e-6);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn evaluate_with(&self, options: &EvaluationOptions) -> Result<Solid> {
+        let tree = self.tree()?;
+        let options = EvaluationOptions {
+            noise: options.noise.or(self.noise()),
+            ..*options
+        };
+        let evaluation = evaluate(&tree, &options)?;
+        Ok(Solid::new(tree, evaluation, self.clone(), &options))
+    }
+
+    /// A description that is read as the same solid.
+    pub(crate) fn record(&self) -> Option<DescriptionRecord> {
+        match self.0.as_deref() {
+            Ok(Node::Described(description)) => Some(description.record.clone()),
+            // Decimals are exact in both languages; what is not is not a description of the solid.
+            _ => [Format::Padl, Format::Json].into_iter().find_map(|format| {
+                let text = self.to_description(format).ok()?;
+                let same =
+                    crate::read_text(&text, format).ok()?.tree().ok()? == self.tree().ok()?;
+                let record = DescriptionRecord {
+                    language: format.ending().to_owned(),
+                    text,
+                    ..DescriptionRecord::default()
+                };
+                same.then_some(record)
+            }),
+        }
+    }
+
+    /// The name of the file that the expression was read from.
+    pub(crate) fn name(&self) -> String {
+        match self.0.as_deref() {
+            Ok(Node::Described(description)) => description.name.clone(),
+            _ => "part".to_owned(),
+        }
+    }
+
+    /// The expression as a description in PADL, as the tree's JSON or as `.csg`.
+    ///
+    /// A number that the language cannot hold is written as the nearest f64.
+    ///
+    /// # Errors
+    /// The expression is none, the language is read only, or the text would be too long.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let plate = block(6, 4, 2) - cylinder(1, 2);
+    /// let text = plate.to_description(Format::Padl)?;
+    /// let again = premio::read_text(&text, Format::Padl)?;
+    /// assert_eq!(again.tree()?, plate.tree()?);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn to_description(&self, format: Format) -> Result<String> {
+        let (builder, part) = self.build()?;
+        Ok(writer::write(&builder, part, format)?)
+    }
+
+    /// Writes the expression as a description, in the language that the file's ending names.
+    ///
+    /// # Errors
+    /// As [`Expression::to_description`]; the ending names no language, or the file cannot be written.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// # let folder = tempfile::tempdir().unwrap();
+    /// # std::env::set_current_dir(&folder).unwrap();
+    /// let plate = block(6, 4, 2) - cylinder(1, 2);
+    /// plate.write("plate.csg")?;
+    /// assert_eq!(premio::read("plate.csg")?.tree()?, plate.tree()?);
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        let format = Format::from_path(path).ok_or_else(|| Error::UnknownFormat {
+            path: path.to_owned(),
+            expected: ".padl, .csg or .json",
+        })?;
+        crate::write::whole_file(path, self.to_description(format)?)
+    }
+}
+
+fn vector<N: Into<ExactNumber>>(of: [N; 3]) -> Result<[Rational; 3], ExpressionError> {
+    numbers(of.map(Into::into))
+}
+
+fn numbers<const N: usize>(of: [ExactNumber; N]) -> Result<[Rational; N], ExpressionError> {
+    let mut values = [const { Rational::ZERO }; N];
+    for (value, number) in values.iter_mut().zip(of) {
+        *value = number.value()?;
+    }
+    Ok(values)
+}
+
+/// The union.
+impl Add for Expression {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::operation(Operation::Union, [self, other])
+    }
+}
+
+/// The difference.
+impl Sub for Expression {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self::operation(Operation::Difference, [self, other])
+    }
+}
+
+/// The intersection.
+impl BitAnd for Expression {
+    type Output = Self;
+
+    fn bitand(self, other: Self) -> Self {
+        Self::operation(Operation::Intersection, [self, other])
+    }
+}
+
+/// The union of all.
+impl Sum for Expression {
+    fn sum<I: Iterator<Item = Self>>(parts: I) -> Self {
+        Self::operation(Operation::Union, parts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn deep_expressions_need_no_stack() {
+        let mut part = block(1, 1, 1);
+        for k in 0..100_000 {
+            part = match k % 2 {
+                0 => part + block(1, 1, 1),
+                _ => (part & block(9, 9, 9)).translate([1, 0, 0]),
+            };
+        }
+        assert_eq!(part.tree().unwrap().leaves().count(), 100_001);
+        assert!(format!("{part:?}").contains("100001"));
+    }
+
+    #[test]
+    fn shared_nodes_are_built_once() {
+        let mut part = block(1, 1, 1);
+        for _ in 0..200 {
+            part = part.clone() + part;
+        }
+        assert!(matches!(part.tree(), Err(Error::Tree(_))));
+    }
+
+    #[test]
+    fn the_first_error_of_an_expression_is_kept() {
+        let wrong = block(1, 1, 1) - sphere("x") + cylinder(-1, 1);
+        let error = wrong.evaluate().unwrap_err();
+        let number = ExpressionError::Number(NumberError::Decimal(
+            premio_kernel::number::rational::DecimalError::Malformed,
+        ));
+        assert!(matches!(error, Error::Expression(found) if found == number));
+        for wrong in [
+            block(1, 1, 1).scale(0),
+            block(1, 1, 1).translate([f64::NAN; 3]),
+        ] {
+            assert!(matches!(wrong.tree(), Err(Error::Expression(_))));
+        }
+    }
+}

@@ -1,0 +1,546 @@
+//! Where a solid is in pictures.
+
+use crate::model::Model;
+use crate::picture::{PictureError, PictureFormat, draw_match};
+use crate::{Error, Result, Solid};
+use nalgebra::Isometry3;
+use premio_detect::{Detector, Grey};
+use premio_kernel::brep::Brep;
+use premio_matching::camera::{CameraFile, Pinhole};
+use premio_matching::image::{ImageFeatures, detector, downsampled};
+use premio_matching::matcher::Matcher;
+use premio_matching::output::explain::explained;
+use premio_matching::output::report::{MatchReport, MatchSeconds, Pose};
+use premio_matching::part::SoughtPart;
+use premio_matching::part::detectability_prior::DetectabilityPrior;
+use premio_matching::verification::part_match::{PartMatch, SearchOptions, SearchResult};
+use std::fmt;
+use std::time::Instant;
+
+/// Looks for a solid in pictures.
+///
+/// A finder prepares the solid once: edges, symmetries, chains. It then takes any number of pictures.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+/// let setup = premio::read_setup("../examples/plate-setup.toml")?;
+/// let picture = solid.render(&setup, &Progress::new())?;
+/// let camera = CameraFile::from_json(r#"{"K": [[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]]}"#)?;
+/// let found = PartFinder::new(&solid)?.find(&picture, &camera)?;
+/// assert_eq!(found.report().image, "");
+/// assert!(found.pose().is_some());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub struct PartFinder<'s> {
+    part: SoughtPart<'s>,
+    prior: DetectabilityPrior,
+    detector: Detector,
+    options: SearchOptions,
+    name: String,
+}
+
+/// Shows how it detects and searches.
+impl fmt::Debug for PartFinder<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PartFinder")
+            .field("name", &self.name)
+            .field("detector", &self.detector)
+            .field("options", &self.options)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'s> PartFinder<'s> {
+    /// A finder of a solid of which no model is known.
+    ///
+    /// # Errors
+    /// The solid is empty, or f64 do not tell its surfaces apart.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// assert!(PartFinder::new(&block(6, 4, 2).evaluate()?).is_ok());
+    /// assert!(PartFinder::new(&Expression::empty().evaluate()?).is_err());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn new(solid: &'s Solid) -> Result<Self> {
+        Self::with_prior(solid, DetectabilityPrior::nothing(), detector())
+    }
+
+    /// A finder of a solid with its model. Features are detected as the model's setups say.
+    ///
+    /// # Errors
+    /// As [`PartFinder::new`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
+    /// let model = Model::train(&solid, &setups, &Progress::new())?;
+    /// let finder = PartFinder::with_model(&solid, &model)?;
+    /// assert!(format!("{finder:?}").starts_with("PartFinder"));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn with_model(solid: &'s Solid, model: &Model) -> Result<Self> {
+        let prior = DetectabilityPrior::new(model.records(), solid.brep());
+        let detector = model.head().setups.conditions.detector.clone();
+        Self::with_prior(solid, prior, detector)
+    }
+
+    fn with_prior(solid: &'s Solid, prior: DetectabilityPrior, detector: Detector) -> Result<Self> {
+        let resolution = solid.view_resolution()?;
+        let finder = Self::from_brep(solid.brep(), resolution, prior, detector)?;
+        Ok(finder.with_name(solid.expression().name()))
+    }
+
+    /// A finder of a boundary with its resolution, from what is known of its features.
+    ///
+    /// # Errors
+    /// There are no faces.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    /// use premio::{DetectabilityPrior, default_detector};
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let uniform = DetectabilityPrior::uniform();
+    /// let finder = PartFinder::from_brep(solid.brep(), 1e-10, uniform, default_detector())?;
+    /// assert!(format!("{finder:?}").contains("detector"));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn from_brep(
+        brep: &'s Brep,
+        resolution: f64,
+        prior: DetectabilityPrior,
+        detector: Detector,
+    ) -> Result<Self> {
+        if brep.topology.faces.is_empty() {
+            return Err(Error::Empty);
+        }
+        Ok(Self {
+            part: SoughtPart::new(brep, resolution, &prior),
+            prior,
+            detector,
+            options: SearchOptions::default(),
+            name: String::new(),
+        })
+    }
+
+    /// What reports call the solid.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let finder = PartFinder::new(&solid)?.with_name("brick");
+    /// assert!(format!("{finder:?}").contains("brick"));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// Detects features in another way.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let detector = Detector { shortest: 20.0, ..Detector::default() };
+    /// let finder = PartFinder::new(&solid)?.with_detector(detector);
+    /// assert!(format!("{finder:?}").contains("shortest: 20"));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_detector(mut self, detector: Detector) -> Self {
+        self.detector = detector;
+        self
+    }
+
+    /// Searches correspondences in another way.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let options = SearchOptions { strategy: Strategy::Stepped, ..SearchOptions::default() };
+    /// let finder = PartFinder::new(&solid)?.with_options(options);
+    /// assert!(format!("{finder:?}").contains("Stepped"));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_options(mut self, options: SearchOptions) -> Self {
+        self.options = options;
+        self
+    }
+
+    /// Looks for the solid in a picture, wherever it may be.
+    ///
+    /// # Errors
+    /// The camera did not take a picture of this size.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// assert!(!PartFinder::new(&solid)?.find(&nothing, &camera)?.is_found());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn find(&self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
+        let camera = camera.for_picture([picture.width, picture.height])?;
+        Ok(self.find_with(picture.clone(), camera, "", |matcher| {
+            (matcher.find(), None)
+        }))
+    }
+
+    /// Looks for the solid in a picture in the way of a function: the search result, and whether it was
+    /// looked for anew.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let camera = camera.for_picture([64, 48])?;
+    /// let finder = PartFinder::new(&solid)?;
+    /// let found = finder.find_with(nothing, camera, "a.png", |matcher| (matcher.find(), None));
+    /// assert_eq!(found.report().image, "a.png");
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn find_with(
+        &self,
+        picture: Grey,
+        camera: Pinhole,
+        name: &str,
+        look: impl FnOnce(&Matcher<'_>) -> (SearchResult, Option<bool>),
+    ) -> PictureMatch {
+        let started = Instant::now();
+        let (grey, camera, scale) = downsampled(picture, camera);
+        let features = ImageFeatures::new(&grey, &self.detector);
+        let detecting = started.elapsed().as_secs_f64();
+        let matcher = Matcher {
+            part: &self.part,
+            learned: &self.prior,
+            picture: &features,
+            camera: &camera,
+            options: &self.options,
+        };
+        let (result, anew) = look(&matcher);
+        let seconds = MatchSeconds {
+            features: detecting,
+            matching: started.elapsed().as_secs_f64() - detecting,
+        };
+        let names = [name, &self.name];
+        let mut report = MatchReport::new(&self.part, names, &features, &result, (scale, seconds));
+        report.anew = anew;
+        PictureMatch {
+            grey,
+            features,
+            result,
+            report,
+        }
+    }
+
+    /// Follows the solid through the pictures of a sequence.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let finder = PartFinder::new(&solid)?;
+    /// assert!(finder.track().last_pose().is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn track(&self) -> PartTracker<'_> {
+        let (finder, last) = (self, None);
+        PartTracker { finder, last }
+    }
+}
+
+/// Follows a solid through the pictures of a sequence: from its last pose, and where it is lost, by
+/// looking for it anew.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = block(6, 4, 2).evaluate()?;
+/// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+/// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+/// let finder = PartFinder::new(&solid)?;
+/// let mut tracker = finder.track();
+/// let found = tracker.next(&nothing, &camera)?;
+/// assert_eq!(found.report().anew, Some(true));
+/// # Ok::<(), premio::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PartTracker<'f> {
+    finder: &'f PartFinder<'f>,
+    last: Option<Isometry3<f64>>,
+}
+
+impl PartTracker<'_> {
+    /// The solid in the next picture.
+    ///
+    /// # Errors
+    /// The camera did not take a picture of this size.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let small = Grey { width: 4, height: 3, levels: vec![99.0; 12] };
+    /// let camera = CameraFile::from_json(r#"{"K": [[800, 0, 32], [0, 800, 24], [0, 0, 1]]}"#)?;
+    /// let finder = PartFinder::new(&solid)?;
+    /// assert!(finder.track().next(&small, &camera).is_err());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn next(&mut self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
+        let camera = camera.for_picture([picture.width, picture.height])?;
+        Ok(self.next_with(picture.clone(), camera, ""))
+    }
+
+    /// The solid in the next picture, with the picture's name and the camera for its size.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let camera = camera.for_picture([64, 48])?;
+    /// let finder = PartFinder::new(&solid)?;
+    /// assert_eq!(finder.track().next_with(nothing, camera, "1.png").report().image, "1.png");
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn next_with(&mut self, picture: Grey, camera: Pinhole, name: &str) -> PictureMatch {
+        let last = self.last;
+        let found = self.finder.find_with(picture, camera, name, |matcher| {
+            let (result, anew) = matcher.next(last.as_ref());
+            (result, Some(anew))
+        });
+        let accepted = found.best().filter(|m| m.is_accepted());
+        self.last = accepted.map(|m: &PartMatch| m.pose);
+        found
+    }
+
+    /// The pose in the last picture; none where the solid was not found.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// assert!(PartFinder::new(&solid)?.track().last_pose().is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn last_pose(&self) -> Option<Pose> {
+        self.last.as_ref().map(Pose::from)
+    }
+}
+
+/// What was found of a solid in a picture.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = block(6, 4, 2).evaluate()?;
+/// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+/// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+/// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+/// assert_eq!(found.probability(), 0.0);
+/// # Ok::<(), premio::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PictureMatch {
+    grey: Grey,
+    features: ImageFeatures,
+    result: SearchResult,
+    report: MatchReport,
+}
+
+impl PictureMatch {
+    /// Whether the solid is there.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+    /// assert!(!found.is_found());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn is_found(&self) -> bool {
+        self.report.found
+    }
+
+    /// How likely the solid is there.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+    /// assert!((0.0..=1.0).contains(&found.probability()));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn probability(&self) -> f64 {
+        self.report.probability
+    }
+
+    /// The pose: x_camera = R x + t. Of what is not found, the likeliest.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+    /// assert!(found.pose().is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn pose(&self) -> Option<Pose> {
+        self.report.pose
+    }
+
+    /// The report (`premio.match/1`).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+    /// assert!(found.report().instances.is_empty());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn report(&self) -> &MatchReport {
+        &self.report
+    }
+
+    /// The likeliest match, with its correspondences.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+    /// assert!(found.best().is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn best(&self) -> Option<&PartMatch> {
+        self.result.best()
+    }
+
+    /// What tells for and against the likeliest match, in words.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+    /// assert!(!found.explained().is_empty());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn explained(&self) -> String {
+        explained(self.best(), &self.report)
+    }
+
+    /// The bytes of the picture with the likeliest match drawn on it: contours green where they are
+    /// found, red and dashed where they are missed, the segments that they are in blue. None without a
+    /// match.
+    ///
+    /// # Errors
+    /// The picture cannot be encoded.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
+    /// assert!(found.overlay(premio::PictureFormat::Png)?.is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn overlay(&self, format: PictureFormat) -> Result<Option<Vec<u8>>, PictureError> {
+        let draw = |best| draw_match(&self.grey, &self.features, best, format);
+        self.best().map(draw).transpose()
+    }
+}
+
+impl Solid {
+    /// Looks for the solid in a picture, without a model.
+    ///
+    /// For several pictures, make one [`PartFinder`].
+    ///
+    /// # Errors
+    /// As [`PartFinder::new`] and [`PartFinder::find`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let picture = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// assert!(!block(6, 4, 2).evaluate()?.find(&picture, &camera)?.is_found());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn find(&self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
+        PartFinder::new(self)?.find(picture, camera)
+    }
+}

@@ -1,0 +1,19 @@
+//! What most callers need: `use premio::prelude::*;`.
+//!
+//! # Examples
+//!
+//! ```
+//! use premio::prelude::*;
+//!
+//! assert_eq!(block(1, 2, 3).evaluate()?.volume(), 6.0);
+//! # Ok::<(), premio::Error>(())
+//! ```
+
+pub use crate::{
+    Camera, CameraFile, CancelToken, ContourKind, Curve, Detector, Drawing, DrawingOptions,
+    EdgeRef, EvaluationOptions, ExactNumber, ExportSettings, Expression, FaceRef, Fineness, Format,
+    Grey, ImageCurve, JunctionKind, Model, Operation, Paper, PartFinder, PartTracker, PictureMatch,
+    Progress, Rational, ReadOptions, SearchOptions, Setup, Setups, SheetOptions, Solid,
+    SolidFormat, StandardView, Strategy, Surface, TriangleMesh, Unit, VertexRef, View, ViewArc,
+    block, cone, cylinder, frustum, sphere, torus, wedge,
+};

@@ -1,0 +1,108 @@
+//! Reading descriptions.
+
+use crate::{Error, Expression, Result};
+use premio_csg::reader::{self, Format, ReadOptions};
+use premio_predict::model::record::DescriptionRecord;
+use std::fs;
+use std::path::Path;
+
+/// Reads a description. The file's ending names its language: `.padl`, `.csg`, `.json`, `.asc` or
+/// `.pov`.
+///
+/// # Errors
+/// The file cannot be read, its ending names no language, or the text is no description. The error has
+/// the place in the text.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// # let folder = tempfile::tempdir().unwrap();
+/// # std::env::set_current_dir(&folder).unwrap();
+/// std::fs::write("ball.csg", "sphere($fn = 200, r = 2);").unwrap();
+/// let ball = premio::read("ball.csg")?.evaluate()?;
+/// assert_eq!(ball.faces().count(), 1);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn read(path: impl AsRef<Path>) -> Result<Expression> {
+    read_with(path, &ReadOptions::default())
+}
+
+/// Reads a description with options: which part of the text, and whether round primitives with few
+/// facets are smooth.
+///
+/// # Errors
+/// As [`read`].
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// # let folder = tempfile::tempdir().unwrap();
+/// # std::env::set_current_dir(&folder).unwrap();
+/// std::fs::write("two.padl", "A = BLO(X=1, Y=1, Z=1)\nB = SPH(R=1)\n").unwrap();
+/// let options = ReadOptions { part: Some("A".to_owned()), ..ReadOptions::default() };
+/// assert_eq!(premio::read_with("two.padl", &options)?.evaluate()?.faces().count(), 6);
+/// assert_eq!(premio::read("two.padl")?.evaluate()?.faces().count(), 1);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Expression> {
+    let path = path.as_ref();
+    let format = Format::from_path(path).ok_or_else(|| Error::UnknownFormat {
+        path: path.to_owned(),
+        expected: ".padl, .csg, .json, .asc or .pov",
+    })?;
+    let bytes = fs::read(path).map_err(|source| Error::file(path, source))?;
+    read_bytes(&path.display().to_string(), &bytes, format, options)
+}
+
+/// Reads a description from a text.
+///
+/// # Errors
+/// The text is no description. The error has the place in the text.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let text = r#"{"prim": "torus", "R": 5, "r": 1}"#;
+/// assert_eq!(premio::read_text(text, Format::Json)?.evaluate()?.genus(), [1]);
+/// assert!(premio::read_text("{", Format::Json).is_err());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn read_text(text: &str, format: Format) -> Result<Expression> {
+    read_bytes("part", text.as_bytes(), format, &ReadOptions::default())
+}
+
+/// Reads a description from bytes. `name` is what errors and models call it.
+///
+/// # Errors
+/// The bytes are no description. The error has the place in the text.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let error = premio::read_bytes("a.padl", b"A = BLO(X=1)", Format::Padl, &ReadOptions::default());
+/// assert!(error.unwrap_err().to_string().starts_with("a.padl:1:"));
+/// ```
+pub fn read_bytes(
+    name: &str,
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+) -> Result<Expression> {
+    let program = reader::parse(name, bytes, format, options)?;
+    let record = DescriptionRecord {
+        language: format.ending().to_owned(),
+        text: String::from_utf8_lossy(bytes).into_owned(),
+        part: options.part.clone(),
+        smooth: options.smooth,
+        ..DescriptionRecord::default()
+    };
+    Ok(Expression::described(program, record, name.to_owned()))
+}

@@ -138,9 +138,9 @@ const OF_TWO: &[PairMeasure] = &[
     PairMeasure::PlaneOnRuling,
     PairMeasure::PlaneAlongRuling(false),
     PairMeasure::PlaneAlongRuling(true),
-    PairMeasure::SphereBesideSphere,
+    PairMeasure::AdjacentSpheres,
     PairMeasure::SphereInSphere,
-    PairMeasure::CylinderBesideCylinder,
+    PairMeasure::AdjacentCylinders,
     PairMeasure::CylinderInCylinder,
     PairMeasure::PointOnQuadric,
 ];
@@ -152,7 +152,7 @@ const OF_TORUS: &[PairMeasure] = &[
     PairMeasure::SizeOfTube,
     PairMeasure::LineOnTube,
     PairMeasure::BetweenTubes,
-    PairMeasure::BesideTube,
+    PairMeasure::NextToTube,
     PairMeasure::InTube,
 ];
 

@@ -1,4 +1,4 @@
-//! Nothing that decides compares doubles by operators of its own: `kernel::number::sign` is asked.
+//! Nothing that decides compares doubles by operators of its own: `kernel::number::predicates` is asked.
 //!
 //! The sources are parsed, but types are not known here. An order (`<`, `>=`) is of doubles unless a
 //! side shows that it is of whole numbers; an equality is, where a side shows it. So these are not
@@ -36,7 +36,10 @@ const EXCEPTIONS: &[(&str, &str)] = &[
         "kernel/src/tessellation",
         "nothing is made of a mesh but a picture and a check",
     ),
-    ("csg/src/rays", "a measurement that no result rests on"),
+    (
+        "csg/src/ray_casting",
+        "a measurement that no result rests on",
+    ),
     ("csg/src/reader", "whether a text says what it may"),
     ("csg/src/writer", "how a text is written"),
     ("csg/src/primitive.rs", "whether lengths are what they may"),
@@ -73,7 +76,17 @@ const CONSTANTS: &[&str] = &[
 
 /// Calls that give doubles.
 const CALLS: &[&str] = &[
-    "dot", "length", "norm", "hypot", "distance", "signum", "sqrt", "sin", "cos", "band", "reach",
+    "dot",
+    "length",
+    "norm",
+    "hypot",
+    "distance",
+    "signum",
+    "sqrt",
+    "sin",
+    "cos",
+    "resolution",
+    "reach",
     "rounded",
 ];
 
@@ -331,7 +344,7 @@ fn comparisons_of_doubles_are_seen() {
         "k[2] < q",
         "turn as f64 > n",
         "side(p) != Some(0.0)",
-        "*step == judge.band::<N>()",
+        "*step == predicates.resolution::<N>()",
         "(lo..=hi).contains(&t)",
         "a.partial_cmp(&b)",
         "a.total_cmp(&b).is_lt()",

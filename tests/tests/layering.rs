@@ -33,7 +33,6 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         "premio-predict",
         &[
             "premio-visibility",
-            "premio-drawing",
             "premio-detect",
             "premio-kernel",
             "premio-text",
@@ -243,7 +242,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
         "the rounding of numbers that a file gives with six digits",
     ),
     (
-        "csg/src/reader/placement.rs",
+        "csg/src/reader/rigid_fit.rs",
         "the rounding of a matrix by the digits that it is written with",
     ),
     (

@@ -67,7 +67,7 @@ struct Names {
 }
 
 fn is_public(visibility: &Visibility) -> bool {
-    !matches!(visibility, Visibility::Inherited)
+    matches!(visibility, Visibility::Public(_))
 }
 
 fn is_for_tests(attributes: &[Attribute]) -> bool {

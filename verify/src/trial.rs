@@ -239,7 +239,10 @@ pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
         true => Verdict::Right(measures(&evaluation)),
         false => Verdict::Wrong(faults),
     };
-    let undetermined = report.checks_with(Finding::Untold).map(text).collect();
+    let undetermined = report
+        .checks_with(Finding::Undetermined)
+        .map(text)
+        .collect();
     TrialOutcome {
         verdict,
         close_calls,

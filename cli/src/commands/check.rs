@@ -45,9 +45,9 @@ impl<'a> Checked<'a> {
         let one = |check: &'a Check| One {
             subject: check.subject.to_string(),
             finding: match check.finding {
-                Finding::Holds => "holds",
+                Finding::Passes => "holds",
                 Finding::Fails => "fails",
-                Finding::Untold => "untold",
+                Finding::Undetermined => "untold",
             },
             detail: &check.detail,
         };

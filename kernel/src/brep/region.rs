@@ -239,7 +239,7 @@ impl<N: Float> Sorter<'_, N> {
                 .into_iter()
                 .any(|i| self.arcs.ends_at(i, &apex, self.resolution));
             if passed {
-                let near = (self.resolution / height).rough_root(2 + attempt as u32);
+                let near = (self.resolution / height).approximate_root(2 + attempt as u32);
                 let height = height * (N::ONE - near);
                 let corner = down.point(height);
                 let round =

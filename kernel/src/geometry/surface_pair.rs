@@ -189,11 +189,11 @@ pub enum PairMeasure {
     /// How far the nearer (`false`) or the farther ruling of a cone is from running along a plane.
     PlaneAlongRuling(bool),
     /// Two spheres: the gap between them.
-    SphereBesideSphere,
+    AdjacentSpheres,
     /// Two spheres: the gap by which one holds the other.
     SphereInSphere,
     /// Two parallel cylinders: the gap between them.
-    CylinderBesideCylinder,
+    AdjacentCylinders,
     /// Two parallel cylinders: the gap by which one holds the other.
     CylinderInCylinder,
     /// How far the second's point lies from the first, a cylinder, a sphere or a cone with both
@@ -211,7 +211,7 @@ pub enum PairMeasure {
     /// Between the centres of the tube and of the coaxial sphere or the other tube, in the profile.
     BetweenTubes,
     /// The gap between the tube and the coaxial sphere or the other tube.
-    BesideTube,
+    NextToTube,
     /// The gap by which one of them holds the other.
     InTube,
 }
@@ -446,9 +446,9 @@ impl<R: Enclosable> Over<R> {
             PairMeasure::PlaneAcrossCylinder => self.sine() * b.size.clone(),
             PairMeasure::PlaneOnRuling => self.plane_on_ruling(),
             PairMeasure::PlaneAlongRuling(far) => self.plane_along_ruling(far),
-            PairMeasure::SphereBesideSphere => Self::beside(norm(&self.away()), self.sizes()),
+            PairMeasure::AdjacentSpheres => Self::beside(norm(&self.away()), self.sizes()),
             PairMeasure::SphereInSphere => Self::within(norm(&self.away()), self.sizes()),
-            PairMeasure::CylinderBesideCylinder => Self::beside(self.between_axes(), self.sizes()),
+            PairMeasure::AdjacentCylinders => Self::beside(self.between_axes(), self.sizes()),
             PairMeasure::CylinderInCylinder => Self::within(self.between_axes(), self.sizes()),
             PairMeasure::PointOnQuadric => self.point_on_quadric(first),
             PairMeasure::Tilt => self.sine() * self.rim(),
@@ -456,7 +456,7 @@ impl<R: Enclosable> Over<R> {
             PairMeasure::PlaneOnBothSides => self.sine() * a.size.clone() - a.tube.clone(),
             PairMeasure::LineOnTube => self.line_on_tube(second),
             PairMeasure::BetweenTubes => self.between_tubes(second),
-            PairMeasure::BesideTube => {
+            PairMeasure::NextToTube => {
                 Self::beside(self.between_tubes(second), self.profile(second))
             }
             PairMeasure::InTube => Self::within(self.between_tubes(second), self.profile(second)),

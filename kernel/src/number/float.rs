@@ -70,7 +70,7 @@ pub trait Float:
     }
 
     /// The n-th root, to the digits of a double.
-    fn rough_root(self, n: u32) -> Self {
+    fn approximate_root(self, n: u32) -> Self {
         Self::from_f64(self.rounded().powf(1.0 / f64::from(n)))
     }
 

@@ -35,7 +35,8 @@ pub enum Reason {
         needed: f64,
     },
     /// Another arc next to it is found in its place.
-    Crowded {
+    #[serde(rename = "crowded")]
+    CloseNeighbour {
         /// Which.
         by: u32,
     },
@@ -61,7 +62,7 @@ impl fmt::Display for Reason {
                     "{contrast:.1} levels of contrast; the threshold takes {needed:.1}"
                 )
             }
-            Self::Crowded { by } => write!(f, "arc {by} is found next to it"),
+            Self::CloseNeighbour { by } => write!(f, "arc {by} is found next to it"),
             Self::Lost { contrast } => {
                 write!(
                     f,
@@ -132,7 +133,7 @@ pub fn reason(
         });
     }
     if let Some(by) = crowd(arc, evidence, ink, measure.radius as i64 + 1) {
-        return Some(Reason::Crowded { by });
+        return Some(Reason::CloseNeighbour { by });
     }
     // Where a part of it is too weak that is why it is broken.
     let least = differences().fold(f64::INFINITY, f64::min);

@@ -37,7 +37,7 @@ impl Checker<'_> {
         let evaluation = self.evaluation;
         let topology = &evaluation.brep.topology;
         if topology.solids.is_empty() {
-            return told(Finding::Holds, "nothing to write".to_owned());
+            return told(Finding::Passes, "nothing to write".to_owned());
         }
         let accuracy = Accuracy {
             deviation: mesh::DEVIATION * self.told.diagonal(),
@@ -46,7 +46,7 @@ impl Checker<'_> {
         let resolution = evaluation.f64_resolution();
         let facets = match Facets::new(&evaluation.brep, &accuracy, resolution) {
             Ok(facets) => facets,
-            Err(error) => return told(Finding::Holds, format!("refused: {error}")),
+            Err(error) => return told(Finding::Passes, format!("refused: {error}")),
         };
         let mass = evaluation.mass();
         let known = Known {
@@ -71,7 +71,7 @@ impl Checker<'_> {
             }
         }
         match wrong.is_empty() {
-            true => told(Finding::Holds, right.join(", ")),
+            true => told(Finding::Passes, right.join(", ")),
             false => told(Finding::Fails, wrong.join("; ")),
         }
     }

@@ -65,11 +65,11 @@ pub enum CheckSubject {
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Finding {
     /// It holds.
-    Holds,
+    Passes,
     /// Something is wrong.
     Fails,
     /// Too little could be looked at to tell, and nothing of that is wrong.
-    Untold,
+    Undetermined,
 }
 
 /// The outcome of one check.
@@ -141,7 +141,7 @@ impl CheckReport {
 impl Check {
     /// Whether it holds.
     pub fn contains(&self) -> bool {
-        self.finding == Finding::Holds
+        self.finding == Finding::Passes
     }
 }
 
@@ -149,7 +149,7 @@ impl Finding {
     /// Of a check that always tells.
     fn new(holds: bool) -> Self {
         match holds {
-            true => Self::Holds,
+            true => Self::Passes,
             false => Self::Fails,
         }
     }
@@ -262,7 +262,7 @@ impl<'a> Checker<'a> {
         };
         let Some(resolution) = self.evaluation.view_resolution() else {
             let refused = "refused: surfaces lie closer together than doubles tell";
-            return failed(Finding::Holds, refused.to_owned());
+            return failed(Finding::Passes, refused.to_owned());
         };
         let seen = match contours(&self.evaluation.brep, camera, resolution) {
             Ok(seen) => seen,
@@ -360,9 +360,9 @@ impl fmt::Display for CheckSubject {
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let outcome = match self.finding {
-            Finding::Holds => "ok",
+            Finding::Passes => "ok",
             Finding::Fails => "FAILED",
-            Finding::Untold => "UNTOLD",
+            Finding::Undetermined => "UNTOLD",
         };
         write!(f, "{outcome:<6} {}: {}", self.subject, self.detail)
     }
@@ -375,7 +375,7 @@ impl fmt::Display for CheckReport {
         }
         let all = self.checks.len();
         let [failed, untold] =
-            [Finding::Fails, Finding::Untold].map(|k| self.checks_with(k).count());
+            [Finding::Fails, Finding::Undetermined].map(|k| self.checks_with(k).count());
         match (failed, untold) {
             (0, 0) => writeln!(f, "all {all} checks hold"),
             (_, 0) => writeln!(f, "{failed} of {all} checks failed"),

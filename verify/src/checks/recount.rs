@@ -62,8 +62,8 @@ impl Recount {
     pub fn finding(&self) -> Finding {
         match (self.wrong.is_empty(), self.suffices()) {
             (false, _) => Finding::Fails,
-            (true, true) => Finding::Holds,
-            (true, false) => Finding::Untold,
+            (true, true) => Finding::Passes,
+            (true, false) => Finding::Undetermined,
         }
     }
 
@@ -229,10 +229,10 @@ mod tests {
             wrong: Vec::new(),
         };
         for told in [Recount::default(), of(7, 21), of(40, 80), of(216, 588)] {
-            assert_eq!(told.finding(), Finding::Holds, "{told}");
+            assert_eq!(told.finding(), Finding::Passes, "{told}");
         }
         for untold in [of(40, 120), of(40, 106)] {
-            assert_eq!(untold.finding(), Finding::Untold, "{untold}");
+            assert_eq!(untold.finding(), Finding::Undetermined, "{untold}");
         }
         assert!(of(40, 120).to_string().ends_with("too few to tell"));
     }

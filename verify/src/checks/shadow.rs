@@ -82,8 +82,8 @@ impl ShadowOutline {
     pub fn finding(&self) -> Finding {
         match (self.missing.is_empty(), self.unclear > self.drawn) {
             (false, _) => Finding::Fails,
-            (true, true) => Finding::Untold,
-            (true, false) => Finding::Holds,
+            (true, true) => Finding::Undetermined,
+            (true, false) => Finding::Passes,
         }
     }
 

@@ -29,7 +29,7 @@ impl Checker<'_> {
         };
         let evaluation = self.evaluation;
         if evaluation.brep.topology.solids.is_empty() {
-            return told(Finding::Holds, "nothing to write".to_owned());
+            return told(Finding::Passes, "nothing to write".to_owned());
         }
         let options = StepOptions {
             name: "part".to_owned(),
@@ -40,7 +40,7 @@ impl Checker<'_> {
         };
         let text = match step::write(&evaluation.brep, &options) {
             Ok(text) => text,
-            Err(error) => return told(Finding::Holds, format!("refused: {error}")),
+            Err(error) => return told(Finding::Passes, format!("refused: {error}")),
         };
         let shape = part21::read(&text).and_then(|instances| StepShape::new(&instances));
         let shape = match shape {
@@ -79,9 +79,12 @@ fn told_of(measured: &Measured, (solids, known): (usize, usize), volume: f64) ->
     } = measured;
     let figures = format!("{faces} faces, {edges} edges, curves within {off:.1e} of surfaces");
     let (finding, detail) = match (wrong.is_empty(), measured.volume) {
-        (true, Some(_)) => (Finding::Holds, format!("{figures}, the volume is {volume}")),
+        (true, Some(_)) => (
+            Finding::Passes,
+            format!("{figures}, the volume is {volume}"),
+        ),
         (true, None) => (
-            Finding::Holds,
+            Finding::Passes,
             format!("{figures}; an edge through a pole leaves the volume untold"),
         ),
         (false, _) => (Finding::Fails, wrong.join("; ")),

@@ -70,7 +70,7 @@ fn parallel_cylinders<N: Float>(
     };
     let foot = p + axis * x;
     let side = |gap| predicates.classify("cylinder along cylinder", pair.how(gap), place(&foot));
-    let outer = side(PairMeasure::CylinderBesideCylinder);
+    let outer = side(PairMeasure::AdjacentCylinders);
     match (outer, side(PairMeasure::CylinderInCylinder)) {
         (Side::On, _) => meeting.add(line(p + axis * r), true, extent),
         (_, Side::On) => meeting.add(line(p + axis * r.copysign(r - s)), true, extent),

@@ -29,7 +29,7 @@ pub(super) fn sphere_sphere<N: Float>(
     let beside = s.frame.origin + axis * r;
     let within = s.frame.origin + axis * r.copysign(r - q);
     let side = |gap, at| predicates.classify_at_point("sphere on sphere", pair.how(gap), place(at));
-    let outer = side(PairMeasure::SphereBesideSphere, &beside);
+    let outer = side(PairMeasure::AdjacentSpheres, &beside);
     match (outer, side(PairMeasure::SphereInSphere, &within)) {
         (Side::On, _) => SurfaceIntersection::touch(beside),
         (_, Side::On) => SurfaceIntersection::touch(within),

@@ -285,7 +285,7 @@ impl<N: Float> Profile<'_, N> {
         let axis = away / d;
         let foot = a + axis * (N::HALF * (d + (r - q) * (r + q) / d));
         let side = |gap| self.side("circle on circle of a profile", gap, &foot);
-        match (side(PairMeasure::BesideTube), side(PairMeasure::InTube)) {
+        match (side(PairMeasure::NextToTube), side(PairMeasure::InTube)) {
             (Side::On, _) => vec![(a + axis * r, true)],
             (_, Side::On) => vec![(a + axis * r.copysign(r - q), true)],
             (Side::Inside, Side::Inside) => {

@@ -160,7 +160,7 @@ fn size<N: Float>(k: &Taylor<N>, degree: usize) -> N {
 
 /// Where the terms of degree n leave the band, if none of a lower degree does within that.
 fn terms_vanish<N: Float>(k: &Taylor<N>, n: usize, resolution: N) -> Option<N> {
-    let reach = (resolution / size(k, n)).rough_root(n as u32);
+    let reach = (resolution / size(k, n)).approximate_root(n as u32);
     let vanish = (0..n).all(|d| size(k, d) * reach.powi(d as i32) <= resolution);
     vanish.then_some(reach)
 }
@@ -338,7 +338,7 @@ impl<N: Float> Sheet<N> {
 
     /// Where the term of order k leaves the band, if none of a lower order does within that.
     fn vanishes(&self, k: usize, resolution: N) -> Option<N> {
-        let reach = (resolution / self.along[k].abs()).rough_root(k as u32);
+        let reach = (resolution / self.along[k].abs()).approximate_root(k as u32);
         let vanish = (0..k).all(|j| self.along[j].abs() * reach.powi(j as i32) <= resolution);
         vanish.then_some(reach)
     }

@@ -222,7 +222,7 @@ impl PictureFormat {
 ///
 /// let picture = Grey { width: 2, height: 1, levels: vec![0.0, 200.0] };
 /// let bytes = premio::encode_picture(&picture, 256, PictureFormat::Pgm)?;
-/// assert!(bytes.starts_with(b"P5"));
+/// assert_eq!(premio::decode_picture(&bytes, 2)?, picture);
 /// # Ok::<(), premio::Error>(())
 /// ```
 pub fn encode_picture(

@@ -5,7 +5,7 @@
 //! ```
 //! use premio::prelude::*;
 //!
-//! assert_eq!(block(1, 2, 3).evaluate()?.volume(), 6.0);
+//! assert!((block(1, 2, 3).evaluate()?.volume() - 6.0).abs() < 1e-12);
 //! # Ok::<(), premio::Error>(())
 //! ```
 

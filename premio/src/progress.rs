@@ -109,7 +109,7 @@ impl From<Arc<AtomicBool>> for CancelToken {
 /// "#)?;
 /// let picture = block(20, 20, 10).evaluate()?.render(&setup, &progress)?;
 /// assert_eq!((picture.width, picture.height), (64, 48));
-/// assert_eq!(done.into_inner(), 48);
+/// assert_eq!(done.load(Ordering::Relaxed), 48);
 /// # Ok::<(), premio::Error>(())
 /// ```
 #[derive(Clone, Default)]

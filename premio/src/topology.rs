@@ -365,9 +365,9 @@ impl<'s> VertexRef<'s> {
     /// # Examples
     ///
     /// ```
-    /// let solid = premio::cone(1, 2).evaluate()?;
-    /// let apex = solid.vertices().next().unwrap();
-    /// assert_eq!(apex.point(), [0.0, 0.0, 2.0]);
+    /// let ramp = premio::wedge(1, 3, 2).evaluate()?;
+    /// let top = ramp.vertices().filter(|vertex| vertex.point()[2] == 2.0);
+    /// assert_eq!(top.count(), 2);
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn point(self) -> [f64; 3] {

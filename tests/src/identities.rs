@@ -5,7 +5,9 @@ use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_kernel::brep::face_integrals::Mass;
 use premio_kernel::brep::signature::Signature;
+use rayon::prelude::*;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// How far volumes and areas may be apart, as a part of those of the greatest part.
 const APART: f64 = 1e-9;
@@ -164,9 +166,9 @@ pub fn side(tree: &Value) -> Result<Side, String> {
     })
 }
 
-/// How a law is broken; nothing where it holds, or a decision on one side was close.
-pub fn broken(law: &Law) -> Option<String> {
-    let [a, b] = match law.sides.each_ref().map(side) {
+/// How a law is broken by its sides; nothing where it holds, or a decision on one side was close.
+fn broken(law: &Law, sides: [&Result<Side, String>; 2]) -> Option<String> {
+    let [a, b] = match sides {
         [Ok(a), Ok(b)] => [a, b],
         [Err(error), _] | [_, Err(error)] => return Some(format!("{}: {error}", law.name)),
     };
@@ -184,15 +186,21 @@ pub fn broken(law: &Law) -> Option<String> {
                 s.signature.counts, s.mass.volume, s.mass.area
             )
         };
-        format!("{}: {} for {}", law.name, say(&a), say(&b))
+        format!("{}: {} for {}", law.name, say(a), say(b))
     })
 }
 
 /// The laws that three random trees break.
 pub fn broken_by(seed: u64) -> Vec<String> {
     let [a, b, c] = [0, 1, 2].map(|k| tree(3 * seed + k));
-    let all = laws(&a, &b, &c).into_iter().chain(motions(&a));
-    all.filter_map(|law| broken(&law)).collect()
+    let laws: Vec<Law> = laws(&a, &b, &c).into_iter().chain(motions(&a)).collect();
+    // A tree that is a side of several laws is evaluated once.
+    let trees = laws.iter().flat_map(|law| &law.sides);
+    let trees: BTreeMap<String, &Value> = trees.map(|tree| (tree.to_string(), tree)).collect();
+    let sides = trees.into_par_iter().map(|(text, tree)| (text, side(tree)));
+    let sides: BTreeMap<String, Result<Side, String>> = sides.collect();
+    let of = |law: &Law| law.sides.each_ref().map(|tree| &sides[&tree.to_string()]);
+    laws.iter().filter_map(|law| broken(law, of(law))).collect()
 }
 
 #[cfg(test)]

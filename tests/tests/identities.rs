@@ -2,6 +2,7 @@
 
 use premio_tests::identities::broken_by;
 use premio_tests::mirror;
+use rayon::prelude::*;
 
 /// Three random trees each that once broke a law, with what is hard about them.
 const MENDED: [(u64, &str); 6] = [
@@ -29,12 +30,12 @@ const MENDED: [(u64, &str); 6] = [
 ];
 
 fn holds(seeds: impl Iterator<Item = (u64, &'static str)>) {
-    let broken: Vec<String> = seeds
-        .flat_map(|(seed, what)| {
-            let say = move |law| format!("{seed} {what}: {law}");
-            broken_by(seed).into_iter().map(say)
-        })
-        .collect();
+    let seeds: Vec<_> = seeds.collect();
+    let each = seeds.into_par_iter().flat_map_iter(|(seed, what)| {
+        let say = move |law| format!("{seed} {what}: {law}");
+        broken_by(seed).into_iter().map(say)
+    });
+    let broken: Vec<String> = each.collect();
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
@@ -50,6 +51,7 @@ fn laws_hold_for_trees_that_broke_them() {
 
 #[test]
 fn views_of_mirrored_trees_are_mirrored() {
-    let broken: Vec<String> = (0..40).flat_map(mirror::broken_by).collect();
+    let seeds = (0..40u64).into_par_iter();
+    let broken: Vec<String> = seeds.flat_map_iter(mirror::broken_by).collect();
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }

@@ -29,7 +29,7 @@ fuzz_target!(|bytes: &[u8]| {
         let held = material.contains(&p);
         let around = steps.iter().flat_map(|step| [p + step, p - step]);
         if around.clone().all(|q| material.contains(&q) == held)
-            && let Some(told) = holds(&known.brep, &p, resolution)
+            && let Some(told) = contains(&known.brep, &p, resolution)
         {
             assert_eq!(told, held, "at {p}\n{}", part.text);
         }

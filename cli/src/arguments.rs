@@ -136,7 +136,7 @@ pub struct DescriptionOptions {
     /// Let coincide only what is proven to, some hundred times slower
     #[arg(long, conflicts_with = "resolution")]
     pub exact: bool,
-    /// Decide nothing in doubles: the same boundary from numbers of 237 bits, some hundred times slower
+    /// Decide nothing in f64: the same boundary from numbers of 237 bits, some hundred times slower
     #[arg(long)]
     pub unfiltered: bool,
     #[command(flatten)]
@@ -390,7 +390,7 @@ impl ExportFormat {
 }
 
 impl OutputOptions {
-    /// The format that is asked for, or else that of the output's ending.
+    /// The format that is requested, or else that of the output's ending.
     ///
     /// # Errors
     /// There is none, and the ending says none.

@@ -24,7 +24,7 @@ use session::Session;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// The program's memory. It is here, so that what is read can be told where there is none.
+/// The allocator of the program. It is here so that a message can be printed where memory ends.
 #[global_allocator]
 static MEMORY: EndingAllocator = EndingAllocator::new();
 

@@ -53,7 +53,7 @@ impl Outputs {
     pub fn finish(self) -> Result<(), CliError> {
         let failed =
             |path: &Path, e: io::Error| CliError::input(format!("{}: {e}", path.display()));
-        // All are written beside their places before the first is put there.
+        // All are written next to their places before the first is put there.
         let mut whole = Vec::new();
         for (bytes, path) in self.files {
             let file = staged(&bytes, &path).map_err(|e| failed(&path, e))?;

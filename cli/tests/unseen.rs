@@ -40,7 +40,7 @@ fn an_empty_part_is_said_to_be_empty() {
     assert_says(&ends(path, words, 0), &["the part is empty"]);
 }
 
-/// Exact lengths tell every sliver from nothing, however thin; turns are rounded to doubles.
+/// Exact lengths tell every sliver from nothing, however thin; turns are rounded to f64 values.
 #[test]
 fn a_sliver_is_told_from_rounding() {
     let block = "A = BLO(X=1000, Y=1000, Z=1000)\n";

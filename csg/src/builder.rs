@@ -80,7 +80,7 @@ pub(crate) enum BuilderNode {
     },
 }
 
-/// How a part was placed, as it was asked for.
+/// How a solid was placed, as the caller requested.
 #[derive(Debug, Clone)]
 pub(crate) enum Placing {
     Steps(Vec<TransformStep>),

@@ -1,7 +1,7 @@
 //! The topological object model (`premio.object/1`): five levels and two relations.
 //!
 //! World, objects, faces, each with its surface and its boundaries, and arcs; the edge relation
-//! (faces that share an arc) and the vertex relation (arcs that meet at a vertex); beside them the
+//! (faces that share an arc) and the vertex relation (arcs that meet at a vertex); next to them the
 //! touches, where the boundary meets itself in a point and is no manifold. Every entity is named by
 //! its place in its list.
 
@@ -28,7 +28,7 @@ pub struct ObjectModel {
     pub shells: Vec<ModelShell>,
     /// The third level: maximal pieces of one surface.
     pub faces: Vec<ModelFace>,
-    /// The fourth level, beside each face's surface: closed runs of arcs.
+    /// The fourth level, next to each face's surface: closed runs of arcs.
     pub boundaries: Vec<ModelBoundary>,
     /// The fifth level: pieces of curves.
     pub arcs: Vec<ModelArc>,

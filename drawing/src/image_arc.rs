@@ -374,7 +374,7 @@ fn side_distance(p: &Point2<f64>, a: &Sample, b: &Sample) -> f64 {
     (a.point + d * t.clamp(0.0, 1.0) - p).norm()
 }
 
-/// Each narrows the bracket by 0.618: after so many it is as narrow as doubles tell a minimum.
+/// Each narrows the bracket by 0.618: after so many it is as narrow as f64 values tell a minimum.
 const GOLDEN_STEPS: u32 = 44;
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ pub struct DrawnArc<'c> {
 /// An ellipse thinner than this is drawn as a polyline.
 const THIN: f64 = 1.0 / 4096.0;
 
-/// How much of the pieces before and after a junction tells whether the image folds there.
+/// How much of the pieces before and after a junction determines whether the image folds there.
 const NEXT_TO: f64 = 1.0 / 64.0;
 
 /// How often an arc is halved at the most for its polyline.

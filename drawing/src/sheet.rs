@@ -168,7 +168,7 @@ impl std::fmt::Display for Scale {
     }
 }
 
-/// What stands on a sheet beside its views.
+/// What stands on a sheet next to its views.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SheetOptions {
     /// The title.
@@ -278,7 +278,7 @@ pub struct Sheet {
     pub factor: f64,
     /// The scale; none where the views are in perspective.
     pub scale: Option<Scale>,
-    /// What was asked for.
+    /// What was requested.
     pub options: SheetOptions,
 }
 
@@ -451,7 +451,7 @@ fn marks(options: &SheetOptions, scale: Option<Scale>) -> Vec<SheetMark> {
 }
 
 /// The symbol of the projection: a truncated cone from the side, and from its small end. That view
-/// stands beside the small end in the third angle, and beside the large end in the first.
+/// stands next to the small end in the third angle, and next to the large end in the first.
 fn symbol(middle: Point2<f64>, angle: Angle) -> Vec<SheetMark> {
     const SMALL: f64 = 2.0;
     const LARGE: f64 = 4.0;

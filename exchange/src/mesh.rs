@@ -3,7 +3,7 @@
 //! The kernel's mesh follows the boundary; here every side of a triangle gets two triangles, no more
 //! (`parted`), triangles that rounding leaves without an area are taken out (`sound`), and what is left
 //! is written, by the crates that keep to the formats: binary STL, OBJ (which no crate writes in
-//! doubles), binary glTF and 3MF.
+//! f64 values), binary glTF and 3MF.
 
 mod f32_points;
 pub mod glb;

@@ -90,7 +90,7 @@ impl ParameterWindow {
     }
 }
 
-/// What is nearer to the axis than this part of the face's reach is on it.
+/// What is closer to the axis than this part of the face's reach is on it.
 const AXIS: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// The same surface with its angle counted from another ruling or meridian.

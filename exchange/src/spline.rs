@@ -366,7 +366,7 @@ impl Follow<'_> {
     }
 }
 
-/// How far inside the range the curve is asked beside its ends, as a part of the range.
+/// How far inside the range the curve is asked next to its ends, as a part of the range.
 const INNER: f64 = 1.0 / (1 << 16) as f64;
 
 /// A curve that moves by less than this part of what it moves next to it stands still.

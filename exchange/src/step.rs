@@ -2,7 +2,7 @@
 //!
 //! Planes, cylinders, cones, spheres and tori are themselves, and so are lines, circles, ellipses,
 //! parabolas and hyperbolas; every other curve is a spline within a stated distance of the curve, with
-//! one in the parameters of each face beside it. The whole is one product, a solid for each solid,
+//! one in the parameters of each face next to it. The whole is one product, a solid for each solid,
 //! voids as voids. Of ISO 10303-42 no more is used than every application protocol with boundary
 //! representations has.
 
@@ -77,8 +77,8 @@ pub enum StepError {
 /// Splines are within this part of the part's size of the curves they follow, where nothing is said.
 pub const ACCURACY: f64 = 1.0 / 1_000_000.0;
 
-/// Splines are this many times nearer to their curves than is asked for: what their distance makes of
-/// a volume goes with the area beside it, which of a slender part is much.
+/// Splines are this many times closer to their curves than is requested: what their distance makes of
+/// a volume goes with the area next to it, which of a slender part is much.
 const NEARER: f64 = 64.0;
 
 /// The text of a file.

@@ -199,7 +199,7 @@ fn gltf_is_read_back() {
     assert_eq!(last.max(), Some(bin.len()));
 }
 
-/// Names are told apart from what follows, and a coordinate is its shortest decimal.
+/// Names are distinguished from what follows, and a coordinate is its shortest decimal.
 #[test]
 fn an_obj_has_an_object_for_each_solid() {
     let text = "A = BLO(X=0.1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=2)";

@@ -93,7 +93,7 @@ fn what_is_thicker_is_written() {
     assert!(written(text, Unit::Millimetre).is_ok());
 }
 
-/// A ring's inside touches a rod but for 1e-9: their curve turns within 3e-9, where doubles tell no angle
+/// A ring's inside touches a rod but for 1e-9: their curve turns within 3e-9, where f64 values tell no angle
 /// about the axis. Splines through points that jumped had coordinates that are no numbers.
 #[test]
 fn a_curve_that_turns_in_a_near_contact_is_followed() {

@@ -29,7 +29,7 @@ pub enum MotionError {
     /// An axis of length zero has no direction.
     #[error("an axis of length zero")]
     ZeroAxis,
-    /// A number lies beyond the range of doubles, in which the half angle's tangent is taken.
+    /// A number lies beyond the range of f64 values, in which the half angle's tangent is taken.
     #[error("an axis beyond the range of doubles")]
     OutOfRange,
 }
@@ -209,7 +209,7 @@ impl Motion {
         &self.translation
     }
 
-    /// The rotation matrix in doubles, each entry the nearest.
+    /// The rotation matrix in f64, each entry the nearest.
     pub fn rotation_f64(&self) -> Matrix3<f64> {
         self.rounded_rotation()
     }
@@ -222,7 +222,7 @@ impl Motion {
         }
     }
 
-    /// The translation in doubles, each entry the nearest.
+    /// The translation in f64, each entry the nearest.
     pub fn translation_f64(&self) -> Vector3<f64> {
         Vector3::from_fn(|i, _| to_f64(&self.translation[i]))
     }

@@ -1,4 +1,4 @@
-//! Relations between surfaces: what doubles cannot tell, more bits do.
+//! Relations between surfaces: what f64 values cannot tell, more bits do.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};

@@ -132,7 +132,7 @@ impl Matcher<'_> {
         let rms = (squares / weights.max(f64::MIN_POSITIVE)).sqrt();
         let distance = (pose * self.part.centre).z;
         let inverse = with_prior(&refined.information, distance).try_inverse()?;
-        // As far as attributes tell: of each found feature how far beside and how much askew it is.
+        // As far as attributes tell: of each found feature how far next to and how much askew it is.
         let weight: f64 = pulls.iter().flatten().map(|p| p.weight).sum();
         let found = solution.assignment.iter().flatten().count();
         let told = inverse * (ADJACENT.powi(2) * weight / (2.0 * found as f64));

@@ -29,7 +29,7 @@ const DEVIATION: f64 = 1.0 / 2000.0;
 /// The greatest angle between neighbouring normals, in radians.
 const ANGLE: f64 = 0.3;
 
-/// How far beside a sample the rays run, in deviations.
+/// How far next to a sample the rays run, in deviations.
 const ASIDE: f64 = 3.0;
 
 /// What a box in single precision is grown by, as a part of the size: more than its rounding.
@@ -65,7 +65,7 @@ struct Hit {
 /// What a triangle that a ray meets says of the sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Means {
-    /// The sample's own face, beside it.
+    /// The sample's own face, next to it.
     Itself,
     /// A face that may or may not lie before the sample.
     Unsure,
@@ -166,7 +166,7 @@ impl Cast {
         ASIDE * DEVIATION * self.size
     }
 
-    /// Within this distance before a sample lies what its own faces may still be: where a ray beside
+    /// Within this distance before a sample lies what its own faces may still be: where a ray next to
     /// a limb meets a surface as curved as the part.
     fn just_before(&self) -> f64 {
         (4.0 * self.size * self.lateral()).sqrt()
@@ -199,7 +199,7 @@ impl Cast {
         agreed.then_some([layers, layers + unsure])
     }
 
-    /// What it means for a contour's sample that a ray beside it meets a triangle.
+    /// What it means for a contour's sample that a ray next to it meets a triangle.
     fn means(&self, contour: &Contour, hit: &Hit) -> Means {
         let own = contour.faces.contains(&hit.face);
         if own && (hit.flat || hit.at <= 4.0 * self.lateral()) {

@@ -23,7 +23,7 @@ pub use premio_verify::trial::VIEWS;
 /// The place in a piece that is asked first for what lies before it, as a part of its range.
 const COUNTED_AT: f64 = 0.47;
 
-/// How far beside a contour its sides are looked at, in multiples of the resolution.
+/// How far next to a contour its sides are looked at, in multiples of the resolution.
 const ASIDE: f64 = 64.0;
 
 /// How many points of a piece are asked whether they pass near to a line of sight, and how often the
@@ -158,7 +158,7 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> 
 }
 
 /// How many contours pass the line of sight of a piece's middle, where it is counted, nearer than
-/// what is looked at beside it: on which side of it they do is not seen.
+/// what is looked at next to it: on which side of it they do is not seen.
 fn passing(
     evaluation: &Evaluation,
     seen: &Contours,
@@ -171,7 +171,7 @@ fn passing(
     let size = evaluation.bounds.diagonal();
     let (v, _) = Projection::new(camera, size).towards_eye(&p);
     let away = |q: Point3<f64>| (q - p).cross(&v).norm();
-    // A part of the contour itself is another one where it is well nearer to the eye.
+    // A part of the contour itself is another one where it is well closer to the eye.
     let before = |other: &Contour, q: Point3<f64>| {
         let own = other.id == contour.id;
         (q - p).dot(&v) > if own { size / f64::from(POINTS) } else { 0.0 }

@@ -1,9 +1,9 @@
-//! Nothing that decides compares doubles by operators of its own: `kernel::number::predicates` is asked.
+//! Nothing that decides compares f64 values by operators of its own: `kernel::number::predicates` is asked.
 //!
-//! The sources are parsed, but types are not known here. An order (`<`, `>=`) is of doubles unless a
+//! The sources are parsed, but types are not known here. An order (`<`, `>=`) is of f64 values unless a
 //! side shows that it is of whole numbers; an equality is, where a side shows it. So these are not
-//! seen: an equality of two plain names, or of arrays and structures of doubles; an order of two
-//! doubles one of which is named like a whole number; and what stands in a macro whose body is
+//! seen: an equality of two plain names, or of arrays and structures of f64 values; an order of two
+//! f64 values one of which is named like a whole number; and what stands in a macro whose body is
 //! neither a list of expressions nor that of `matches!`.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -15,10 +15,10 @@ use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 use syn::{BinOp, Expr, Lit, Token};
 
-/// The sources in which what is reckoned becomes a boundary and a view.
+/// The sources in which what is computed becomes a boundary and a view.
 const SOURCES: &[&str] = &["kernel/src", "csg/src", "visibility/src"];
 
-/// What of them may compare doubles, and why.
+/// What of them may compare f64 values, and why.
 const EXCEPTIONS: &[(&str, &str)] = &[
     (
         "kernel/src/number",
@@ -54,12 +54,12 @@ const WHOLE_NAMES: &[&str] = &[
     "i", "j", "k", "bits", "data", "depth", "entities", "junction", "leaves", "qi",
 ];
 
-/// Types that are told by their constructors, and are no doubles.
+/// Types that are told by their constructors, and are no f64 values.
 const WHOLE_TYPES: &[&str] = &[
     "usize", "isize", "u64", "i64", "u32", "i32", "u8", "Rational",
 ];
 
-/// Constants that are doubles, or wider.
+/// Constants that are f64 values, or wider.
 const CONSTANTS: &[&str] = &[
     "ZERO",
     "HALF",
@@ -74,7 +74,7 @@ const CONSTANTS: &[&str] = &[
     "NAN",
 ];
 
-/// Calls that give doubles.
+/// Calls that give f64 values.
 const CALLS: &[&str] = &[
     "dot",
     "length",
@@ -173,7 +173,7 @@ fn is_double(e: &Expr) -> bool {
     }
 }
 
-/// Whether it is reckoned, which ids and enums are not.
+/// Whether it is computed, which ids and enums are not.
 fn is_reckoned(e: &Expr) -> bool {
     match bare(e) {
         Expr::Binary(e) => matches!(
@@ -184,7 +184,7 @@ fn is_reckoned(e: &Expr) -> bool {
     }
 }
 
-/// Whether an operator compares what may be doubles.
+/// Whether an operator compares what may be f64 values.
 fn compares(op: &BinOp, sides: [&Expr; 2]) -> bool {
     let is_shown = sides.iter().any(|side| is_double(side));
     let is_open = !sides.iter().any(|side| is_whole(side));
@@ -197,7 +197,7 @@ fn compares(op: &BinOp, sides: [&Expr; 2]) -> bool {
     }
 }
 
-/// Whether it is a range that may be of doubles.
+/// Whether it is a range that may be of f64 values.
 fn is_open_range(e: &Expr) -> bool {
     let Expr::Range(range) = bare(e) else {
         return false;
@@ -229,7 +229,7 @@ fn expressions(tokens: proc_macro2::TokenStream) -> Vec<Expr> {
     matching.parse2(tokens).unwrap_or_default()
 }
 
-/// The comparisons that may be of doubles, by their lines.
+/// The comparisons that may be of f64 values, by their lines.
 #[derive(Default)]
 struct Comparisons(Vec<(usize, String)>);
 

@@ -76,7 +76,7 @@ impl Task {
     }
 
     /// What is wrong with how many decisions were made in which way, and whether the boundary is that
-    /// of the resolution and doubles.
+    /// of the resolution and f64 values.
     fn unlike(
         &self,
         how: EvaluationOptions,

@@ -1,6 +1,6 @@
 //! The named cases, exactly: every zero is proven, and the boundary is the one that the resolution
 //! tells, but where a description means more than it says. And by the resolution with no decision in
-//! doubles: the boundary is the same.
+//! f64 values: the boundary is the same.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationError, EvaluationOptions, evaluate};
@@ -73,7 +73,7 @@ fn evaluated(tree: &Tree, zeros: CoincidencePolicy) -> Evaluation {
     asked(tree, zeros).unwrap()
 }
 
-/// What is not as it should be where no decision is made in doubles.
+/// What is not as it should be where no decision is made in f64.
 fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
     let many = EvaluationOptions {
         digits: Arithmetic::Extended,
@@ -94,7 +94,7 @@ fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
 
 /// A cone less a ball that passes through its apex, and is tangent to it there: over the cone's
 /// rulings the curve is cut at the apex, where its equation has a double zero, and starts anywhere
-/// else. Doubles left a vertex at that start, in the middle of an edge.
+/// else. f64 values left a vertex at that start, in the middle of an edge.
 #[test]
 fn a_curve_through_an_apex_has_no_other_start() {
     let description = json!({"op":"union","children":[
@@ -293,7 +293,7 @@ fn cones_of_one_angle_lie_nearly_along_a_ruling() {
 /// A cone whose apex is where a ring touches a ball, but for the decimals of its angle: slivers of
 /// 1e-16 are all that is left there of either. Their edges end within the resolution of a vertex,
 /// farther apart than rounding, and what looked from far passed between them: the sliver was the whole
-/// ring but for itself. By the resolution of doubles there is nothing of it.
+/// ring but for itself. By the resolution of f64 values there is nothing of it.
 #[test]
 fn a_sliver_at_an_apex_is_not_the_whole_ring() {
     let text = "PART = ((SPH(R=2) AT (MOVZ=-2, ROTZ=90, ROTX=180)

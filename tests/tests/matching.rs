@@ -257,7 +257,7 @@ fn what_is_drawn_is_not_taken_for_a_cube() {
     }
 }
 
-/// A cube is found in its pictures, and the cube with a tube beside it is not, wherever the tube may be
+/// A cube is found in its pictures, and the cube with a tube next to it is not, wherever the tube may be
 /// hidden, or out of the picture.
 #[test]
 fn a_piece_of_a_part_is_not_the_part() {

@@ -1,4 +1,4 @@
-//! Random trees: none may be wrong in any way that can be told from outside.
+//! Random trees: none may be wrong in any way that can be distinguished from outside.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_tests::examine::{Depth, VIEWS, examine_within};

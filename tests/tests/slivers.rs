@@ -1,4 +1,4 @@
-//! The volumes of slivers in doubles, against closed forms: they are known as far as what is thin is
+//! The volumes of slivers in f64, against closed forms: they are known as far as what is thin is
 //! told by the rounding of coordinates.
 
 use premio_csg::evaluate::{EvaluationOptions, evaluate};

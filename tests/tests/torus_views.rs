@@ -372,7 +372,7 @@ fn limbs_are_cut_next_to_their_nodes() {
 /// A ring of radii 3/4 and 1/4 about the x axis and a block whose face x = 0 fills a quarter of its
 /// hole: at (0, 1, 1)/√8 on the inner equator the curvatures along the tube and around the axis are
 /// 4 and -2, so that the line of sight (-1, 1, -1) is asymptotic there. The limb has a cusp just
-/// where it ends on the edge, and no curvature tells which half of the edge is hidden.
+/// where it ends on the edge, and no curvature determines which half of the edge is hidden.
 #[test]
 fn a_cusp_on_an_edge_is_no_fold() {
     let text = "PART = TOR(RMAJ=0.75, RMIN=0.25) AT (ROTY=90) UN BLO(X=0.5, Y=0.5, Z=0.5)";

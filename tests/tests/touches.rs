@@ -140,7 +140,7 @@ proptest! {
     }
 }
 
-/// Two tori touch at (3, 0, 0). The bottom of a cylinder that ends beside it passes by in a plane
+/// Two tori touch at (3, 0, 0). The bottom of a cylinder that ends next to it passes by in a plane
 /// five resolutions above: its plane meets both tori in one point, which is none of the boundary.
 #[test]
 fn what_lies_next_to_a_touch_is_no_other() {

@@ -185,7 +185,7 @@ impl Parser<'_> {
             return Ok(Content::Whole(whole));
         }
         match (text.parse::<i64>(), text.parse()) {
-            // There is a zero below zero among doubles only.
+            // There is a zero below zero among f64 values only.
             (Ok(negative), _) if negative < 0 => Ok(Content::Negative(negative)),
             (_, Ok(number)) => Ok(Content::Float(number)),
             (_, Err(_)) => Err(TextError::at(span, "expected a number")),

@@ -1,5 +1,5 @@
 //! What one tree is put to: it is evaluated, the boundary keeps its rules, the volume is the rays',
-//! nothing is outside the box, the volumes of unions and intersections add up, and, if asked for, no
+//! nothing is outside the box, the volumes of unions and intersections add up, and, if requested, no
 //! piece of a view is wrong and no contour missing.
 
 use crate::checks::{Check, CheckReport, CheckSubject, Checker, Finding, ViewChecks, views};
@@ -38,7 +38,7 @@ pub struct TrialConfig {
     /// Whether STEP files and meshes are written and read back.
     #[serde(default)]
     pub step: bool,
-    /// Whether the tree is evaluated once more with no decision made in doubles.
+    /// Whether the tree is evaluated once more with no decision made in f64.
     #[serde(default)]
     pub unfiltered: bool,
     /// How many rays measure the volume.
@@ -57,7 +57,7 @@ pub enum FailureKind {
     Bounds,
     /// The volumes of A or B, A and B, A less B, A, and B do not add up.
     Sums,
-    /// With no decision made in doubles the boundary is another, or there is none.
+    /// With no decision made in f64 the boundary is another, or there is none.
     Filter,
     /// A piece of a view has another number of faces before it.
     View,
@@ -299,7 +299,7 @@ fn measures(evaluation: &Evaluation) -> TrialMeasures {
     }
 }
 
-/// Where the boundary is another with no decision made in doubles.
+/// Where the boundary is another with no decision made in f64.
 fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &TrialConfig) -> Option<Fault> {
     let unfiltered = EvaluationOptions {
         digits: Arithmetic::Extended,

@@ -395,7 +395,7 @@ fn up_along_the_line_of_sight_is_replaced() {
 
 #[test]
 fn what_lies_behind_the_eye_is_cut_at_the_near_plane() {
-    // Beside a long block, inside the box of it and another.
+    // Next to a long block, inside the box of it and another.
     let mut b = Builder::default();
     b.block(&Frame::world(), [20.0, 1.0, 1.0], &[]);
     b.cylinder(&Frame::world().at(Point3::new(10.0, 6.0, 0.0)), 1.0, 2.0);

@@ -27,7 +27,7 @@ pub struct FuzzOptions {
     /// How many trees at a time [default: as many as there are processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Evaluate each tree once more with no decision made in doubles, and compare
+    /// Evaluate each tree once more with no decision made in f64, and compare
     #[arg(long)]
     pub unfiltered: bool,
     /// Draw five views, follow the boundary of the shadow in each, and read the sheets back

@@ -83,7 +83,7 @@ pub struct ModelOptions {
     pub run: ModelRun,
 }
 
-/// The options of a run, if one is asked for: clap finds no options that are absent as a whole where
+/// The options of a run, if one is requested: clap finds no options that are absent as a whole where
 /// they hold others.
 #[derive(Debug)]
 pub struct ModelRun(pub Option<ModelRunOptions>);

@@ -7,7 +7,7 @@ use premio_drawing::sheet::{Angle, Paper, Scale, StandardView};
 /// A sheet of paper with a frame and a title block; any of these asks for it.
 #[derive(Debug, Args)]
 pub struct SheetArguments {
-    /// Views beside one another on a sheet, in place of a camera (svg, dxf)
+    /// Views next to one another on a sheet, in place of a camera (svg, dxf)
     #[arg(long, value_enum, value_name = "VIEWS", value_delimiter = ',',
           conflicts_with_all = ["view", "camera", "eye", "target", "up", "focal", "ortho"])]
     pub views: Vec<ViewName>,
@@ -30,7 +30,7 @@ pub struct SheetArguments {
 }
 
 impl SheetArguments {
-    /// Whether a sheet is asked for.
+    /// Whether a sheet is requested.
     pub fn is_requested(&self) -> bool {
         !self.views.is_empty()
             || self.paper.is_some()

@@ -147,7 +147,7 @@ fn whole(
     )?)
 }
 
-/// What this part in these setups is told from others by: all that observations depend on.
+/// What this part in these setups is distinguished from others by: all that observations depend on.
 fn told_apart(part: &EvaluatedPart, options: &ModelRunOptions, setups: &str) -> String {
     let description = part.written.text.as_bytes();
     let taken = options.description.reading.part.clone().unwrap_or_default();
@@ -162,7 +162,7 @@ fn told_apart(part: &EvaluatedPart, options: &ModelRunOptions, setups: &str) -> 
     ])
 }
 
-/// The folder of a run's shards, beside its output.
+/// The folder of a run's shards, next to its output.
 struct Parts {
     path: PathBuf,
     /// Whether an interrupted run left it.

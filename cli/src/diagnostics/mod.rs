@@ -134,7 +134,7 @@ pub enum Reporter {
 }
 
 impl Reporter {
-    /// For programs, if JSON is asked for.
+    /// For programs, if JSON is requested.
     pub fn new(json: bool) -> Self {
         match json {
             true => Self::Json,

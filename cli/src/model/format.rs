@@ -1,4 +1,4 @@
-//! The bytes of a model, in the format that is asked for.
+//! The bytes of a model, in the format that is requested.
 
 use crate::arguments::{ModelOutput, RecordsFormat};
 use crate::diagnostics::CliError;
@@ -8,7 +8,7 @@ use premio_predict::model::record::Record;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// The format that is asked for, by its name or by the file's ending; refused where the program
+/// The format that is requested, by its name or by the file's ending; refused where the program
 /// cannot write it, before anything is predicted.
 pub fn requested(output: &ModelOutput) -> Result<RecordsFormat, CliError> {
     let ending = output.output.as_deref().and_then(Path::extension);

@@ -69,7 +69,7 @@ impl<N: Float> IntersectionCurve<N> {
     }
 }
 
-/// The solids' boxes, to be asked for what lies near.
+/// The solids' boxes, searched for what lies near.
 pub(super) type SolidTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
 
 /// All carriers, curves and corners.
@@ -102,7 +102,7 @@ pub(super) fn arrange<'t, N: Float>(
         sources,
         sides,
     } = merge(tree, solids, extent, predicates);
-    // Faces that nearly meet are asked, too: a close call is listed on either side of the band.
+    // Faces that nearly meet are asked, too: a close call is listed on either side of the resolution.
     let reach = predicates.reach();
     let tree = tree_of(solids, 0..solids.all.len(), reach);
     let mut found = Arrangement {

@@ -1,6 +1,6 @@
 //! Every face asked of the tree itself, at a place of its own.
 //!
-//! A boundary is told from what meets: curves are cut, and around each piece the tree says where
+//! A boundary is evaluated from intersections: curves are cut, and around each piece the tree says where
 //! material is. What is told wrongly there may still close, and is a boundary, but of another solid. At
 //! a point inside a face, away from all that meets, the tree must have material just below and none
 //! just above, whatever was told on the way.

@@ -64,10 +64,10 @@ pub struct EvaluationOptions {
 /// In what numbers a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
-    /// In doubles, and in 237 bits where these do not tell.
+    /// In f64, and in 237 bits where these do not tell.
     #[default]
     Filtered,
-    /// In 237 bits: no decision is made in doubles.
+    /// In 237 bits: no decision is made in f64.
     Extended,
 }
 
@@ -87,29 +87,29 @@ pub struct Evaluation {
     pub bounds: Aabb,
     /// What it was told by.
     told: Told,
-    /// The resolution by which doubles tell the same boundary, where they do.
+    /// The resolution by which f64 values tell the same boundary, where they do.
     plain: Option<f64>,
-    /// Once it was asked for: with more digits it takes longer than the boundary.
+    /// Once it was requested: with more digits it takes longer than the boundary.
     mass: OnceLock<Mass>,
 }
 
 /// The numbers that told a boundary.
 #[derive(Debug)]
 enum Told {
-    /// Doubles.
+    /// f64 values.
     Doubles(FaceIntegrals),
     /// More digits: the boundary before it was rounded.
     Wide(Box<(Brep<F237>, FaceIntegrals<F237>)>),
 }
 
 impl Evaluation {
-    /// The resolution for views of the boundary, which are reckoned in doubles; none where doubles do
+    /// The resolution for views of the boundary, which are computed in f64; none where f64 values do
     /// not tell the boundary: rounded to them, surfaces may lie on one another that do not.
     pub fn view_resolution(&self) -> Option<f64> {
         self.plain
     }
 
-    /// What doubles tell of the boundary, however finely it was evaluated.
+    /// What f64 values tell of the boundary, however finely it was evaluated.
     pub fn f64_resolution(&self) -> f64 {
         let known = self.plain.unwrap_or(self.resolution);
         known.max(ROUNDING * self.bounds.diagonal())
@@ -174,7 +174,7 @@ impl From<Evaluated<f64>> for Evaluation {
 impl From<Evaluated<F237>> for Evaluation {
     fn from(known: Evaluated<F237>) -> Self {
         let mut decisions = known.decisions;
-        // All of them took more bits than doubles have.
+        // All of them took more bits than f64 values have.
         decisions.refined += std::mem::take(&mut decisions.filtered);
         Self {
             brep: known.brep.to_f64(),
@@ -200,7 +200,7 @@ pub enum EvaluationError {
         /// Near where.
         place: [f64; 3],
     },
-    /// Nothing tells whether a closed surface without an edge is a face.
+    /// Nothing determines whether a closed surface without an edge is a face.
     #[error(
         "whether the sphere or torus near ({:.6}, {:.6}, {:.6}) is a face cannot be told: all over it other surfaces are within the resolution",
         place[0], place[1], place[2]
@@ -212,7 +212,7 @@ pub enum EvaluationError {
     /// The pieces do not form a boundary.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
-    /// Surfaces lie so nearly along one another that doubles do not tell where they meet.
+    /// Surfaces lie so nearly along one another that f64 values do not determine where they meet.
     #[error(
         "what meets near ({:.6}, {:.6}, {:.6}) is known to {distance:.1e} only, and the resolution is {resolution:.1e}: surfaces lie nearly along one another there",
         place[0], place[1], place[2]
@@ -247,10 +247,10 @@ pub enum EvaluationError {
         /// Near where.
         place: [f64; 3],
     },
-    /// The description's numbers are too large or too small for doubles.
+    /// The description's numbers are too large or too small for f64 values.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
-    /// The part lies too far from the origin for doubles.
+    /// The part lies too far from the origin for f64 values.
     #[error(
         "the part, of size {size:.3e}, lies up to {far:.3e} from the origin: its coordinates are rounded by more than a millionth of its size"
     )]
@@ -260,14 +260,14 @@ pub enum EvaluationError {
         /// The diagonal of its box.
         size: f64,
     },
-    /// The resolution is finer than doubles are, or wider than the part.
+    /// The resolution is finer than f64 values are, or wider than the part.
     #[error(
         "a resolution of {asked:e} is beyond the range from {least:.1e} to {most:.1e} for a part of this size"
     )]
     Resolution {
-        /// What was asked for.
+        /// What was requested.
         asked: f64,
-        /// The least that doubles keep apart.
+        /// The least that f64 values keep apart.
         least: f64,
         /// The greatest: a hundredth of the part's size.
         most: f64,
@@ -293,7 +293,7 @@ pub enum EvaluationError {
 }
 
 impl EvaluationError {
-    /// Whether numbers with more digits may tell what doubles do not.
+    /// Whether numbers with more digits may tell what f64 values do not.
     fn is_of_doubles(&self) -> bool {
         match self {
             Self::Intersection(_)
@@ -313,13 +313,13 @@ impl EvaluationError {
     }
 }
 
-/// Trees of no more primitives are evaluated with more digits where doubles do not tell: that takes
+/// Trees of no more primitives are evaluated with more digits where f64 values do not tell: that takes
 /// some hundred times as long.
 const FEW: usize = 64;
 
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 ///
-/// In doubles, and where these do not tell what meets, in numbers of 237 bits by the same
+/// In f64, and where these do not tell what meets, in numbers of 237 bits by the same
 /// resolution.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     match (options.zeros, options.digits) {
@@ -354,7 +354,7 @@ fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<C
 }
 
 /// In 237 bits: by the resolution, and where what coincides by it contradicts itself, by the finest,
-/// unless one is asked for.
+/// unless one is requested.
 fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, EvaluationError> {
     match (evaluated::<F237>(tree, options), options.resolution) {
         (Err(error), None) => finely(tree, options).map_err(|_| error),
@@ -362,7 +362,7 @@ fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, E
     }
 }
 
-/// What is known in 237 bits. Where doubles tell a boundary of the same kind, it can be seen in them.
+/// What is known in 237 bits. Where f64 values tell a boundary of the same kind, it can be seen in them.
 fn seen(tree: &Tree, options: &EvaluationOptions, known: Evaluated<F237>) -> Evaluation {
     let by_resolution = EvaluationOptions {
         zeros: CoincidencePolicy::ByResolution,
@@ -469,7 +469,7 @@ fn evaluated<N: Float>(
     })
 }
 
-/// The resolution that is asked for, or the default: wider where the part lies so far from the
+/// The resolution that is requested, or the default: wider where the part lies so far from the
 /// origin that its coordinates are rounded by more.
 fn resolution_of<N: Float>(
     bounds: &Aabb,
@@ -500,5 +500,5 @@ const COARSEST: f64 = 0.01;
 /// The greatest rounding of coordinates, in terms of the part's size.
 const FARTHEST: f64 = 1.0 / (1 << 20) as f64;
 
-/// Beyond these lengths squares of doubles lose their range.
+/// Beyond these lengths squares of f64 values lose their range.
 const LARGEST: f64 = 1e100;

@@ -31,7 +31,7 @@ pub(super) enum Between {
 /// A close call, not yet listed.
 pub(super) type Unlisted = (CloseCall, Between);
 
-/// The primitives as a tree joins them, to be asked for what matters next to a point.
+/// The primitives as a tree joins them, to be requested what matters next to a point.
 pub(super) struct CloseCallFilter<'a, N: Float = f64> {
     pub solids: &'a HalfSpaceModel<N>,
     pub arrangement: &'a Arrangement<N>,

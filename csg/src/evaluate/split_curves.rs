@@ -25,13 +25,13 @@ pub(super) fn is_one_pass<N: Float>(t: N, other: N) -> bool {
     (t - other).abs().is_short_of(N::from_f64(CLOSE_PASS))
 }
 
-/// A contact of so high an order that many points are within the band.
+/// A contact of so high an order that many points are within the resolution.
 pub(super) struct Wide<N: Float = f64> {
     meeting: usize,
     carrier: usize,
     /// The parameter that fits best.
     t: N,
-    /// How far from there the points are within the band.
+    /// How far from there the points are within the resolution.
     pub reach: N,
 }
 
@@ -177,7 +177,7 @@ impl<N: Float> Arrangement<N> {
         let (t, vertex) = match best {
             Some(v) => {
                 let p = corners.all[v].point;
-                // A curve may pass its corner twice: only elsewhere its parameter is asked for.
+                // A curve may pass its corner twice: only elsewhere its parameter is requested.
                 let t = match predicates.within((p - middle).length()) {
                     true => w.t,
                     false => in_range(&m.curve, m.range, m.curve.parameter(&p)),

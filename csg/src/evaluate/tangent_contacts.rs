@@ -2,7 +2,7 @@
 //!
 //! Carriers that touch are within the resolution of one another over a strip. A curve of one of
 //! them and a third carrier that runs inside the strip lies on both, so the contact may as well be
-//! along that one, whose place is known: two curves that bound a strip in which nothing can be told
+//! along that one, whose place is known: two curves that bound a strip in which nothing can be determined
 //! apart would leave its faces without an order.
 
 use super::arrangement::{Arrangement, IntersectionCurve};

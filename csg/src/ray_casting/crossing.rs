@@ -170,7 +170,7 @@ impl<'a> Surfaces<'a> {
 
     /// Where a line enters and leaves material, in order; gaps, then slivers, no longer than `least`
     /// are closed. None where another surface is met no farther than that from one of them: the
-    /// two touch there, and rounding tells which is met.
+    /// two touch there, and rounding determines which is met.
     pub fn crossings(&self, ray: &Ray, least: f64) -> Option<Vec<SurfaceCrossing>> {
         let mut joined: Vec<[Event; 2]> = Vec::new();
         let material = self.material;

@@ -1,6 +1,6 @@
 //! The tree as a set of points, asked by rays: the oracle that knows nothing of boundaries.
 //!
-//! Every primitive answers a line with closed-form intervals in doubles, and the intervals are
+//! Every primitive answers a line with closed-form intervals in f64, and the intervals are
 //! combined up the tree. Nothing here is certified: it is what the boundary is checked against.
 
 mod crossing;

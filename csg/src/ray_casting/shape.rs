@@ -4,7 +4,7 @@ use crate::primitive::Primitive;
 use nalgebra::Vector3;
 use premio_kernel::number::rational::{Rational, to_f64};
 
-/// A primitive in its own frame, in doubles.
+/// A primitive in its own frame, in f64.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Shape {
     Block([f64; 3]),

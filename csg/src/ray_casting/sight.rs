@@ -27,7 +27,7 @@ pub struct Clearance {
     /// A count holds where it is the same on the lines of sight this far aside.
     pub lateral: f64,
     /// How far a curve along which round surfaces meet may lie from where it is told: they touch by
-    /// the resolution, and cross beside that.
+    /// the resolution, and cross next to that.
     pub shift: f64,
     /// The part's size.
     pub size: f64,

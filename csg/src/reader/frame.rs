@@ -1,6 +1,6 @@
 //! Directions and edges, as vectors in a text, as exact turns and lengths.
 //!
-//! Exact where the lengths are rational; else the nearest that doubles tell, so that a turn stays
+//! Exact where the lengths are rational; else the nearest that f64 values tell, so that a turn stays
 //! rigid.
 
 use premio_kernel::motion::{Motion, RationalMatrix};
@@ -30,7 +30,7 @@ pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
 }
 
 /// The length of a vector: exact where it is rational, else the nearest that a double tells;
-/// `None` beyond the range of doubles, and for zero.
+/// `None` beyond the range of f64 values, and for zero.
 pub(super) fn length(vector: &Vector) -> Option<Rational> {
     let square = dot(vector, vector);
     if square.is_zero() {

@@ -106,7 +106,7 @@ pub struct Description {
 pub struct Program {
     /// The parts of the text.
     pub builder: Builder,
-    /// The one that was asked for.
+    /// The one that was requested.
     pub part: SolidId,
     /// The noise of the coordinates; see [`Description::digits`].
     pub digits: Option<f64>,

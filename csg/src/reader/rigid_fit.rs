@@ -19,7 +19,7 @@ const NEAR_WHOLE: f64 = 1e-12;
 /// The rounding of a turn's entry, where numbers are written with six digits or fewer.
 const SIX_DIGITS: f64 = 1.1e-6;
 
-/// The rounding of a turn's entry, where it was reckoned and written with all digits of a double.
+/// The rounding of a turn's entry, where it was computed and written with all digits of a double.
 const ALL_DIGITS: f64 = 1e-15;
 
 /// `p -> R S p + t` or `p -> R p + t`, and how far its matrix is from the one written.
@@ -32,7 +32,7 @@ pub(super) struct Placement {
     full: bool,
 }
 
-/// What is less than this changes a matrix of doubles by their rounding only.
+/// What is less than this changes a matrix of f64 values by their rounding only.
 pub(super) const F64_DIGITS: f64 = 1e-12;
 
 impl Placement {
@@ -120,7 +120,7 @@ fn distance(a: &RationalMatrix, b: &RationalMatrix) -> f64 {
 }
 
 fn check_rigid(matrix: &Matrix3<f64>) -> Result<(), NotRigid> {
-    // A product of two columns doubles the error of an entry, and adds three of them.
+    // A product of two columns f64 values the error of an entry, and adds three of them.
     let gram = matrix.transpose() * matrix;
     let far = |target: f64| (gram - Matrix3::identity() * target).amax();
     if far(1.0) <= 6.0 * MAX_RESIDUAL {

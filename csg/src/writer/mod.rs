@@ -49,7 +49,7 @@ pub enum WriteError {
 /// The description of a part.
 ///
 /// Numbers are written with all their digits. What a language cannot hold is written as near as
-/// doubles are: in `.padl` turns about another than a coordinate axis, in `.csg` turns by other
+/// f64 values are: in `.padl` turns about another than a coordinate axis, in `.csg` turns by other
 /// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers that are no
 /// decimals.
 pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String, WriteError> {

@@ -7,7 +7,7 @@ use crate::transform::{Transform, TransformStep};
 
 /// Turns about coordinate axes, by degrees, that come to a step: the same turn where it is one, or
 /// where whole decimals of a degree about x, y and z in this order give it exactly; else the
-/// nearest that doubles tell. Nothing of a shift.
+/// nearest that f64 values tell. Nothing of a shift.
 pub(super) fn about_axes(step: &TransformStep) -> Vec<(usize, Rational)> {
     if let TransformStep::Turn { axis, degrees } = step {
         let others = |k: usize| (0..3).all(|i| i == k || axis[i].is_zero());

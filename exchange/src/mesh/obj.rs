@@ -1,4 +1,4 @@
-//! Wavefront OBJ: points and normals in doubles, an object for each solid, a group for each face.
+//! Wavefront OBJ: points and normals in f64, an object for each solid, a group for each face.
 //!
 //! Written here: the crates that write it write single precision.
 

@@ -1,4 +1,4 @@
-//! 3MF: points in doubles, an object for each solid, the unit.
+//! 3MF: points in f64, an object for each solid, the unit.
 
 use super::{Facet, Facets, MeshError};
 use premio_kernel::unit::Unit;

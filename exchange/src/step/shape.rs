@@ -254,7 +254,7 @@ impl<'s, 'e> Shape<'s, 'e> {
             .add(format_args!("{name}('',{placement}{all})"))
     }
 
-    /// The splines that follow an edge, in space and on some of the faces beside it.
+    /// The splines that follow an edge, in space and on some of the faces next to it.
     fn course(
         &self,
         edge: &SeamedEdge<'_>,

@@ -26,7 +26,7 @@ struct Sampled {
 /// Into how many steps a smooth piece of a curve is divided.
 const STEPS: u32 = 16;
 
-/// How far inside an edge it is asked beside its ends, as a part of it: at an apex there is no angle.
+/// How far inside an edge it is asked next to its ends, as a part of it: at an apex there is no angle.
 const INNER: f64 = 1.0 / (1 << 16) as f64;
 
 /// So many seams are tried.
@@ -190,7 +190,7 @@ pub(super) fn axes(
 const PARALLEL: f64 = 1.0 / (1u64 << 40) as f64;
 /// A pole is well away from the edges if its cosine to them is less by this than one.
 const CLEAR: f64 = 1.0 / 512.0;
-/// How many axes are tried beside a sphere's own.
+/// How many axes are tried next to a sphere's own.
 const SPREAD: u32 = 64;
 /// The golden angle: its multiples spread over the circle.
 const GOLDEN: f64 = 2.399_963_229_728_653;

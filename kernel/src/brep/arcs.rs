@@ -50,7 +50,7 @@ impl<N: Float> SelectionFunction<ArcBox> for Along<'_, N> {
     }
 }
 
-/// The parts of an arc, each with its box grown by the band; none where a plane meets the arc in a
+/// The parts of an arc, each with its box grown by the resolution; none where a plane meets the arc in a
 /// closed form.
 fn parts<N: Float>(arc: &DirectedArc<'_, N>, resolution: N) -> Vec<Part<N>> {
     let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {

@@ -95,7 +95,7 @@ pub enum AssemblyError {
     /// The loops of a surface cannot be sorted into faces.
     #[error(transparent)]
     Region(#[from] RegionError),
-    /// A shell encloses no volume that is told from rounding.
+    /// A shell encloses no volume that is distinguished from rounding.
     #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume that is told from rounding", place[0], place[1], place[2])]
     ZeroVolumeShell {
         /// A point of it.
@@ -109,7 +109,7 @@ pub enum AssemblyError {
     },
 }
 
-/// A small sphere around a vertex on which the edges there are told apart.
+/// A small sphere around a vertex on which the edges there are distinguished.
 struct Around {
     /// It reaches no further than any edge at this part of its range.
     along: f64,
@@ -287,7 +287,7 @@ impl<'a, N: Float> Assembler<'a, N> {
     }
 
     /// Edge ends in their order around a vertex, counterclockwise seen from outside: of the points
-    /// in which a small sphere around the vertex meets them. What is tangent, and not told apart
+    /// in which a small sphere around the vertex meets them. What is tangent, and not distinguished
     /// on one sphere, is on a wider one, which only these have to reach.
     fn order(
         &self,
@@ -308,7 +308,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         Ok(bundles.concat())
     }
 
-    /// Edge ends counterclockwise, in as many bundles as any sphere tells apart that all reach.
+    /// Edge ends counterclockwise, in as many bundles as any sphere distinguishes that all reach.
     fn told_apart(&self, v: &Point3<N>, frame: &Frame<N>, ends: &[End]) -> Vec<Vec<End>> {
         let mut best = Vec::new();
         for sphere in &SPHERES {

@@ -46,7 +46,7 @@ pub struct FaceIntegrals<N: Float = f64> {
 }
 
 impl<N: Float> FaceIntegrals<N> {
-    /// The measures of the faces of a boundary, as far as doubles tell them.
+    /// The measures of the faces of a boundary, as far as f64 values tell them.
     pub fn new(brep: &Brep<N>) -> Self {
         Self::with(brep, Care::Doubles)
     }
@@ -139,7 +139,7 @@ impl<N: Float> FaceIntegrals<N> {
     }
 }
 
-/// Where the volume is at least so much more than what doubles may make of it, they tell it.
+/// Where the volume is at least so much more than what f64 values may make of it, they tell it.
 const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;
 
 /// The signed volume that a shell encloses.
@@ -161,9 +161,9 @@ impl<N: Float> ShellVolume<N> {
 /// How closely integrals are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Care {
-    /// As doubles tell them.
+    /// As f64 values tell them.
     Doubles,
-    /// With more digits to far more than is told; as doubles tell them where there are no more.
+    /// With more digits to far more than is told; as f64 values tell them where there are no more.
     Digits,
     /// To the last digit.
     Last,
@@ -283,7 +283,7 @@ impl<N: Float> Amid<N> {
     }
 
     /// What the volume of faces may be off, by their area times the size of the part. Where numbers
-    /// of more digits are asked about in doubles, that area may itself be next to nothing.
+    /// of more digits are asked about in f64, that area may itself be next to nothing.
     fn noise(&self, brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, bulk: N) -> N {
         let by_area = self.part() * bulk;
         let floors = match self.tells_in_doubles() {
@@ -293,7 +293,7 @@ impl<N: Float> Amid<N> {
         N::from_f64(NOISE) * (by_area + floors)
     }
 
-    /// Whether doubles tell for numbers of more digits.
+    /// Whether f64 values tell for numbers of more digits.
     fn tells_in_doubles(&self) -> bool {
         !N::IS_DOUBLE && self.care == Care::Doubles
     }

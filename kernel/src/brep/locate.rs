@@ -151,7 +151,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         let DirectedArc { curve, range, .. } = self.arcs.all[i];
         let [lo, hi] = range;
         if let Curve::Circle(c) = curve {
-            // Most points in the box of a circle are plainly aside of it.
+            // Most points in the box of a circle are clearly aside of it.
             let q = c.frame.coordinates(p);
             let aside = q.x.hypot(q.y) - c.radius;
             if aside.abs().is_beyond(N::TWO * self.resolution) {
@@ -409,7 +409,7 @@ impl<N: Float> First<N> {
 }
 
 /// Answers for all faces of a boundary representation; each face's index is built when it is first
-/// asked for.
+/// requested.
 #[derive(Debug)]
 pub struct Locator<'a, N: Float = f64> {
     brep: &'a Brep<N>,

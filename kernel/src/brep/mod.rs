@@ -107,7 +107,7 @@ impl<N: Float> Brep<N> {
         }
     }
 
-    /// The same in doubles: what lies closer together than these tell has one place.
+    /// The same in f64: what lies closer together than these tell has one place.
     pub fn to_f64(&self) -> Brep {
         let g = &self.geometry;
         let arc = |a: &EdgeGeometry<N>| EdgeGeometry {

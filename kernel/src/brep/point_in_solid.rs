@@ -17,7 +17,7 @@ use nalgebra::{Point3, Vector3};
 const LINES: u32 = 64;
 
 /// Whether the solids hold a point that is not on the boundary; none where no ray from it crosses
-/// faces plainly, farther than `resolution` from their edges. That is no less than their places are rounded
+/// faces clearly, farther than `resolution` from their edges. That is no less than their places are rounded
 /// by.
 pub fn contains<N: Float>(brep: &Brep<N>, p: &Point3<N>, resolution: N) -> Option<bool> {
     let faces: Vec<FaceId> = brep.topology.face_ids().collect();
@@ -47,7 +47,7 @@ impl<'a, N: Float> Closed<'a, N> {
         }
     }
 
-    /// Whether they hold a point. Rays are tried until one crosses plainly.
+    /// Whether they hold a point. Rays are tried until one crosses clearly.
     fn contains(&self, p: &Point3<N>) -> Option<bool> {
         let crossings = (0..LINES).find_map(|k| {
             let ray = Line {
@@ -75,7 +75,7 @@ impl<'a, N: Float> Closed<'a, N> {
         })
     }
 
-    /// The k-th line through the box, which meets the faces or not: each at other depths beside
+    /// The k-th line through the box, which meets the faces or not: each at other depths next to
     /// its middle.
     fn line_across(&self, k: u32) -> Line<N> {
         let b = self.faces[k as usize % self.faces.len()].1;

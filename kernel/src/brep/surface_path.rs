@@ -442,7 +442,7 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
-    /// Where a walk along a circle plainly crosses a curve through the angles of a torus, of the whole
+    /// Where a walk along a circle clearly crosses a curve through the angles of a torus, of the whole
     /// curve: a circle of that torus, or of the curve's other surface. None where that is not plain,
     /// and of other walks and curves.
     fn met_on_torus(

@@ -222,7 +222,7 @@ impl<N: Float> Chart<N> {
         self.above(s, y) / self.sigma(s, y).powi(self.weights.rise as i32)
     }
 
-    /// The same in doubles.
+    /// The same in f64.
     pub(super) fn to_f64(&self) -> Chart {
         let round = |all: &Vec<N>| all.iter().map(|&x| x.rounded()).collect();
         Chart {

@@ -48,7 +48,7 @@ impl Aabb {
         }
     }
 
-    /// The box grown by `by` on all sides, if by less than doubles tell, then by what they do.
+    /// The box grown by `by` on all sides, if by less than f64 values tell, then by what they do.
     pub fn grown<N: Float>(&self, by: N) -> Self {
         let by = by.above();
         if by == 0.0 {
@@ -132,7 +132,7 @@ pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb
     all
 }
 
-/// The same of a curve of more digits: of the curve rounded to doubles, and grown by more than that
+/// The same of a curve of more digits: of the curve rounded to f64 values, and grown by more than that
 /// moves it, next to a node by the root of rounding.
 fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
     let mut rounded = pieces(&curve.to_f64(), [lo, hi].map(N::rounded));

@@ -10,7 +10,7 @@ use crate::number::float::Float;
 use crate::number::roots::{RootKind, Roots};
 use nalgebra::{Point3, Vector3};
 
-/// Where a curve meets a plane, over a range: reports each parameter and whether the curve plainly
+/// Where a curve meets a plane, over a range: reports each parameter and whether the curve clearly
 /// crosses there. Lines and conics with an angle in closed form.
 pub fn plane_roots<N: Float>(
     curve: &Curve<N>,
@@ -191,7 +191,7 @@ fn turn_roots<N: Float>(
 
 /// Where a line on one of two quadrics, by a point and its unit direction, meets the curve they
 /// share over a range: where it meets the other one, a cylinder. Reports each parameter, and that
-/// the curve is crossed plainly; false where no more can be said in closed form.
+/// the curve is crossed clearly; false where no more can be said in closed form.
 pub fn line_intersections<N: Float>(
     curve: &Curve<N>,
     [lo, hi]: [N; 2],

@@ -19,7 +19,7 @@ struct Height<'a, N: Float = f64> {
     surface: Cow<'a, Surface<N>>,
     /// The same of a line or circle, where coordinates may cancel by more than halving makes up for.
     restriction: Option<ImplicitOnCurve<N>>,
-    /// The same in doubles, of one of more digits.
+    /// The same in f64, of one of more digits.
     rounded_f64: Option<Box<Height<'static>>>,
 }
 
@@ -128,8 +128,8 @@ pub fn roots<N: Float>(
     }
 }
 
-/// The same of a curve of more digits than doubles have: isolated in doubles, where these follow the
-/// curve far more closely than the band, and then with all digits.
+/// The same of a curve of more digits than f64 values have: isolated in f64, where these follow the
+/// curve far more closely than the resolution, and then with all digits.
 fn rounded_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -177,7 +177,7 @@ fn rounded_roots<N: Float>(
     Some((found.into_iter().map(root).collect(), misses.collect()))
 }
 
-/// How many times nearer than the band doubles are to follow a curve.
+/// How many times nearer than the resolution f64 values are to follow a curve.
 const FOLLOWING: f64 = 64.0;
 /// Newton's steps from the digits of a double to those of 237 bits.
 const STEPS: u32 = 3;
@@ -198,7 +198,7 @@ fn touching<N: Float>([lo, hi]: [N; 2]) -> Roots<N> {
 
 /// Whether a point of a box can be within `margin` of a surface, by its distance and by its level.
 pub fn comes_near<N: Float>(surface: &Surface<N>, b: &Aabb, margin: N) -> bool {
-    // The distance of a surface changes by no more than the way, which doubles tell to rounding.
+    // The distance of a surface changes by no more than the way, which f64 values tell to rounding.
     let centre = b.centre();
     let rounding = f64::ROUNDING * (centre.coords.norm() + b.diagonal());
     let away = surface.distance(&centre.map(N::from_f64)).abs();
@@ -210,7 +210,7 @@ pub fn comes_near<N: Float>(surface: &Surface<N>, b: &Aabb, margin: N) -> bool {
     level.lo <= margin && level.hi >= -margin
 }
 
-/// Whether the curve lies on the surface, within the band.
+/// Whether the curve lies on the surface, within the resolution.
 pub fn lies_on<N: Float>(
     curve: &Curve<N>,
     [lo, hi]: [N; 2],

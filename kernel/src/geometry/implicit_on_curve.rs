@@ -1,7 +1,7 @@
 //! How far above a surface a line or a circle runs, as the few coefficients of a polynomial.
 //!
 //! What is nearly constant along it, a line nearly on a ruling or a circle about nearly the same
-//! axis as the surface, is told from these over long intervals; in coordinates it cancels, and only
+//! axis as the surface, is distinguished from these over long intervals; in coordinates it cancels, and only
 //! very short ones tell.
 
 use super::curve::{Circle, Curve, Line};
@@ -38,7 +38,7 @@ const POINTS: u32 = 5;
 const ROUNDINGS: f64 = 64.0;
 
 impl<N: Float> ImplicitOnCurve<N> {
-    /// None of curves that are neither, and where doubles do as well without.
+    /// None of curves that are neither, and where f64 values do as well without.
     pub(super) fn new(curve: &Curve<N>, surface: &Surface<N>) -> Option<Self> {
         match (curve, surface) {
             (Curve::Circle(circle), Surface::Torus(_)) => Some(Self::circle(circle, surface)),

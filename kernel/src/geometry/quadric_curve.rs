@@ -46,7 +46,7 @@ pub struct Along<N: Float = f64> {
     pub lead: N,
     /// B.
     pub linear: Trig1<N>,
-    /// C, where k is so small beside B that -B and ±√Δ may cancel.
+    /// C, where k is so small next to B that -B and ±√Δ may cancel.
     pub constant: Option<Trig2<N>>,
 }
 

@@ -1,6 +1,6 @@
 //! The singular points of F(θ, φ) = 0 on the parameter torus, by kind.
 //!
-//! Where F and its gradient vanish within the band, the Hessian tells: indefinite, two branches
+//! Where F and its gradient vanish within the resolution, the Hessian tells: indefinite, two branches
 //! cross; definite, the point stands alone. Where it is degenerate, the `leading` terms tell.
 
 mod leading_form;
@@ -35,7 +35,7 @@ pub(super) struct SingularPoint<N: Float = f64> {
 /// The critical points of F at which F is small.
 #[derive(Debug, Default)]
 pub(super) struct Critical<N: Float = f64> {
-    /// Those at which F is within the band, in the order of their angles.
+    /// Those at which F is within the resolution, in the order of their angles.
     pub singular: Vec<SingularPoint<N>>,
     /// The angles of these and of those at which it is nearly so.
     pub close: Vec<[N; 2]>,
@@ -46,12 +46,12 @@ const ZONE: f64 = 0.05;
 /// From this depth of cells on a degenerate point is looked for.
 const DEEP: u32 = 10;
 
-/// The critical points of F at which F is within the band, or so near to it that it is to be told.
+/// The critical points of F at which F is within the resolution, or so near to it that it is to be told.
 pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critical<N>, Unresolved> {
     let reach = N::from_f64(CLOSE) * tracer.resolution;
     let mut misses: Vec<[N; 2]> = Vec::new();
     let mut found: Vec<SingularPoint<N>> = Vec::new();
-    // Degenerate points, with how far from them F is within the band.
+    // Degenerate points, with how far from them F is within the resolution.
     let mut degenerate: Vec<(SingularPoint<N>, N)> = Vec::new();
     let mut stack: Vec<(Cell<N>, u32)> = regular_grid().into_iter().map(|c| (c, 0)).collect();
     let rounded_f64 = tracer.to_f64();

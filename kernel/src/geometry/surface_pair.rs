@@ -1,7 +1,7 @@
 //! How two surfaces lie to one another, as distances over the part's extent.
 //!
-//! A relation is written once, over any [`Enclosable`]: ranges in doubles first, exact coefficients with
-//! more bits where these do not tell. The constructions take the answers and work in doubles.
+//! A relation is written once, over any [`Enclosable`]: ranges in f64 first, exact coefficients with
+//! more bits where these do not tell. The constructions take the answers and work in f64.
 //! Directions need not have length one.
 
 use super::intersect::RegionOfInterest;
@@ -48,11 +48,11 @@ enum Source<'a> {
     Given,
     /// They were rounded from these.
     Rounded(&'a dyn Fn() -> Coefficients<Rational>),
-    /// A construction reckoned them.
+    /// A construction computed them.
     Constructed,
 }
 
-/// A surface in doubles, with the way to its exact coefficients.
+/// A surface in f64, with the way to its exact coefficients.
 #[derive(Clone, Copy)]
 pub struct Carrier<'a, N: Float = f64> {
     /// The surface: its numbers are the exact ones, rounded.
@@ -61,7 +61,7 @@ pub struct Carrier<'a, N: Float = f64> {
 }
 
 impl<'a, N: Float> Carrier<'a, N> {
-    /// A surface whose doubles are exact.
+    /// A surface whose f64 values are exact.
     pub fn given(surface: &'a Surface<N>) -> Self {
         Self {
             surface,
@@ -77,7 +77,7 @@ impl<'a, N: Float> Carrier<'a, N> {
         }
     }
 
-    /// A surface that a construction reckoned: how it lies is taken at its word, and not proven.
+    /// A surface that a construction computed: how it lies is taken at its word, and not proven.
     pub fn constructed(surface: &'a Surface<N>) -> Self {
         Self {
             surface,
@@ -101,7 +101,7 @@ impl<'a, N: Float> Carrier<'a, N> {
         numbers(self.surface, |x| x, |x| x)
     }
 
-    /// The exact coefficients, to be reckoned with to so many bits.
+    /// The exact coefficients, to be computed with to so many bits.
     pub fn computed(&self, bits: usize) -> Coefficients<RationalInterval> {
         self.exact()
             .map(|c| RationalInterval::exact(c.clone(), bits))
@@ -490,7 +490,7 @@ impl<'a, N: Float> SurfacePair<'a, N> {
         }
     }
 
-    /// How the two lie to one another, in doubles: enough to see that something is out of question.
+    /// How the two lie to one another, in f64: enough to see that something is out of question.
     pub fn estimate(&self, relation: PairMeasure) -> N {
         let [a, b] = [&self.a, &self.b].map(|c| c.numbers());
         How {

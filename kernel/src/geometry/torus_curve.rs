@@ -75,7 +75,7 @@ enum Fixed<N: Float = f64> {
     Chart([N; DEGREE + 1]),
 }
 
-/// So many steps in doubles come to their rounding.
+/// So many steps in f64 come to their rounding.
 const BEGUN: u32 = 6;
 
 impl<N: Float> Fixed<N> {
@@ -87,7 +87,7 @@ impl<N: Float> Fixed<N> {
         }
     }
 
-    /// The first digits of a root, by Newton's steps in doubles, where there are more.
+    /// The first digits of a root, by Newton's steps in f64, where there are more.
     fn begun(&self, start: N) -> N {
         if N::IS_DOUBLE {
             return start;

@@ -60,7 +60,7 @@ pub(super) struct Trigonometric<N: Float = f64> {
     derivatives: [Trig2<N>; 4],
     /// No value of the fourth derivative is greater.
     most: N,
-    /// The same in doubles, of one of more digits.
+    /// The same in f64, of one of more digits.
     rounded_f64: Option<Box<Trigonometric>>,
 }
 

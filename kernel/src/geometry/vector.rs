@@ -3,7 +3,7 @@
 use crate::number::float::Float;
 use nalgebra::{Point3, SVector, Vector3};
 
-/// What a vector's length is asked for.
+/// What a vector's length is requested.
 pub trait Length<N> {
     /// The length.
     fn length(&self) -> N;
@@ -59,7 +59,7 @@ pub fn direction<N: Float>(v: &Vector3<N>) -> Option<Vector3<N>> {
     (length > N::ZERO).then(|| v / length)
 }
 
-/// A point in doubles.
+/// A point in f64.
 pub fn rounded<N: Float>(p: &Point3<N>) -> [f64; 3] {
     [p.x, p.y, p.z].map(N::rounded)
 }

@@ -11,7 +11,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub trait Analytic:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
-    /// The numbers of the precision that it is reckoned in.
+    /// The numbers of the precision that it is computed in.
     type Float: Float;
     /// The constant `x`.
     fn constant(x: Self::Float) -> Self;

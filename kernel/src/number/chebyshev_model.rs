@@ -1,7 +1,7 @@
-//! A function of more digits than doubles have over a piece of its parameter, as the polynomial that
+//! A function of more digits than f64 values have over a piece of its parameter, as the polynomial that
 //! it is there within a part of the resolution.
 //!
-//! What runs along zero all over a piece, by far less than its first terms vary, is told from zero by
+//! What runs along zero all over a piece, by far less than its first terms vary, is distinguished from zero by
 //! halving only after a very great number of steps; from the polynomial, at once. How far the
 //! polynomial is off is estimated from its last coefficients and between its nodes (Trefethen,
 //! Approximation Theory and Approximation Practice, 2013, chapters 3 and 8), with a wide margin, and
@@ -16,7 +16,7 @@ use super::roots::{Function, probes};
 /// The number of its coefficients. More would cost the digits that powers cancel: for these, 18.
 const TERMS: u32 = 48;
 
-/// As many of the last coefficients of Chebyshev's series tell where it would end.
+/// As many of the last coefficients of Chebyshev's series determine where it would end.
 const LAST: usize = 6;
 
 /// At how many places between its nodes it is compared.

@@ -1,5 +1,5 @@
-//! What the relations between surfaces are measured over: doubles for an estimate, intervals of
-//! doubles for the answer, enclosures with more bits where those do not tell.
+//! What the relations between surfaces are measured over: f64 values for an estimate, intervals of
+//! f64 values for the answer, enclosures with more bits where those do not tell.
 
 use super::analytic::Analytic;
 use super::float::Float;

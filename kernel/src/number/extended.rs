@@ -1,4 +1,4 @@
-//! Numbers of 237 bits: for what doubles do not tell.
+//! Numbers of 237 bits: for what f64 values do not tell.
 
 mod circular;
 
@@ -180,7 +180,7 @@ impl Float for F237 {
 
     fn rules() -> &'static GaussRules<Self> {
         // Halves that agree to 2^-64 differ from the integral by far less, and what is told is told in
-        // doubles.
+        // f64 values.
         static RULES: LazyLock<GaussRules<F237>> =
             LazyLock::new(|| GaussRules::new(16, F237(power(-64))));
         &RULES
@@ -386,7 +386,7 @@ static SHARES: LazyLock<[F237; 24]> = LazyLock::new(|| {
     })
 });
 
-/// x times two to the power of n, also where the power alone is beyond doubles.
+/// x times two to the power of n, also where the power alone is beyond f64 values.
 fn by_power(x: f64, n: i32) -> f64 {
     if n.unsigned_abs() < 1022 {
         return x * f64::from_bits(((1023 + n) as u64) << 52);

@@ -1,4 +1,4 @@
-//! What doubles tell of a function of more digits: where it is plainly apart from zero.
+//! What f64 values tell of a function of more digits: where it is clearly apart from zero.
 
 use super::analytic::Analytic;
 use super::float::Float;
@@ -6,7 +6,7 @@ use super::interval::Interval;
 use super::jet::Jet;
 use super::roots::{Function, probes};
 
-/// A function in doubles that follows one of more digits over a piece of its parameter.
+/// A function in f64 that follows one of more digits over a piece of its parameter.
 pub struct F64Filter<'a> {
     rounded_f64: &'a dyn Function,
     /// How far its value may be off.
@@ -20,7 +20,7 @@ const PLACES: usize = 5;
 const FARTHER: f64 = 64.0;
 
 impl<'a> F64Filter<'a> {
-    /// The function in doubles, by how far it is off at some places; `least` is what rounding alone
+    /// The function in f64, by how far it is off at some places; `least` is what rounding alone
     /// takes it off.
     pub fn new<N: Float>(
         whole: &dyn Function<N>,

@@ -1,4 +1,4 @@
-//! Closed intervals of doubles, rounded outwards: the first filter of every sign.
+//! Closed intervals of f64 values, rounded outwards: the first filter of every sign.
 
 use super::analytic::{Analytic, harmonic, harmonic_slope, sinc_jet};
 use super::float::Float;
@@ -130,7 +130,7 @@ impl<N: Float> Interval<N> {
         self
     }
 
-    /// The same between doubles.
+    /// The same between f64 values.
     pub fn to_f64(self) -> Interval {
         Interval {
             lo: self.lo.below(),

@@ -1,4 +1,4 @@
-//! Intervals of many digits, reckoned in doubles where they are so wide that the digits are lost on
+//! Intervals of many digits, computed in f64 where they are so wide that the digits are lost on
 //! them: that costs a small part of the time.
 
 use super::float::Float;
@@ -8,7 +8,7 @@ use super::interval::Interval;
 const BROAD: f64 = 1.0 / (1u64 << 32) as f64;
 
 impl<N: Float> Interval<N> {
-    /// An interval of doubles that holds this one.
+    /// An interval of f64 values that holds this one.
     pub(super) fn enclosed(self) -> Interval {
         let outside = |x: N, step: fn(f64) -> f64| match x == N::ZERO {
             true => 0.0,
@@ -27,7 +27,7 @@ impl<N: Float> Interval<N> {
         }
     }
 
-    /// A function of it, where doubles tell that as well.
+    /// A function of it, where f64 values tell that as well.
     pub(super) fn coarsely<const D: usize>(
         self,
         f: impl FnOnce(Interval) -> [Interval; D],
@@ -40,7 +40,7 @@ impl<N: Float> Interval<N> {
         is_broad.then(|| f(x).map(Self::back))
     }
 
-    /// A product or a quotient with another one, where doubles tell it as well.
+    /// A product or a quotient with another one, where f64 values tell it as well.
     pub(super) fn coarse_product(
         self,
         o: Self,
@@ -50,7 +50,7 @@ impl<N: Float> Interval<N> {
         self.coarse_pair(o, |x, y| is_broad(x) || is_broad(y), f)
     }
 
-    /// A sum or a difference with another one, where doubles tell it as well.
+    /// A sum or a difference with another one, where f64 values tell it as well.
     pub(super) fn coarse_sum(
         self,
         o: Self,

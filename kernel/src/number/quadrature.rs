@@ -1,4 +1,4 @@
-//! Gauss-Legendre quadrature, adaptive for analytic integrands; of numbers of more digits by doubles
+//! Gauss-Legendre quadrature, adaptive for analytic integrands; of numbers of more digits by f64
 //! where these are good enough.
 
 use super::float::Float;
@@ -79,7 +79,7 @@ pub trait Integrand<N: Float, const D: usize> {
     /// The values.
     fn at(&self, t: N) -> [N; D];
 
-    /// The same reckoned in doubles, where that may be good enough for numbers of more digits.
+    /// The same computed in f64, where that may be good enough for numbers of more digits.
     fn roughly(&self, _: f64) -> Option<[f64; D]> {
         None
     }
@@ -122,7 +122,7 @@ impl<N: Float, const D: usize> PartialEq for Part<N, D> {
 impl<N: Float, const D: usize> Eq for Part<N, D> {}
 
 /// How many parts are halved: each power of two towards a singular place takes one or two. More is
-/// asked for by rounding alone, which no halving takes away.
+/// requested by rounding alone, which no halving takes away.
 const MOST: usize = 192;
 
 /// The integral over [a, b], halved where both halves are farthest off the whole until they agree to
@@ -156,7 +156,7 @@ fn halved<N: Float>([a, b]: [N; 2]) -> [[N; 2]; 2] {
     [[a, m], [m, b]]
 }
 
-/// At how many places doubles are held to the function itself.
+/// At how many places f64 values are held to the function itself.
 const PLACES: usize = 5;
 
 impl<N: Float, const D: usize> Part<N, D> {
@@ -178,7 +178,7 @@ impl<N: Float, const D: usize> Part<N, D> {
         }
     }
 
-    /// The same by the short rules, where they agree: of a function that doubles would tell, but for
+    /// The same by the short rules, where they agree: of a function that f64 values would tell, but for
     /// their rounding, and that may come in many small pieces.
     fn in_short([a, b]: [N; 2], floor: &[N; D], f: &impl Integrand<N, D>) -> Option<Self> {
         f.roughly(a.rounded())?;
@@ -193,7 +193,7 @@ impl<N: Float, const D: usize> Part<N, D> {
         })
     }
 
-    /// The same by doubles, where these are the function's values as far as matters.
+    /// The same by f64, where these are the function's values as far as matters.
     fn to_f64(range: [N; 2], floor: &[N; D], f: &impl Integrand<N, D>) -> Option<Self> {
         let ends = range.map(N::rounded);
         f.roughly(ends[0])?;

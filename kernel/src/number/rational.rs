@@ -1,4 +1,4 @@
-//! Exact rational numbers, from decimal text and from doubles, and back to doubles.
+//! Exact rational numbers, from decimal text and from f64 values, and back to f64 values.
 
 use dashu::base::BitTest;
 use dashu::integer::{IBig, UBig};
@@ -81,7 +81,7 @@ pub fn from_f64(value: f64) -> Option<Rational> {
     Rational::try_from(value).ok()
 }
 
-/// The nearest double, ties to even; an infinity beyond the range of doubles.
+/// The nearest double, ties to even; an infinity beyond the range of f64 values.
 pub fn to_f64(value: &Rational) -> f64 {
     value.to_f64().value()
 }

@@ -77,7 +77,7 @@ fn root(x: &Rational, bits: usize, toward: Toward) -> Rational {
 }
 
 impl RationalInterval {
-    /// An exact number, to be reckoned with to so many bits.
+    /// An exact number, to be computed with to so many bits.
     pub fn exact(x: Rational, bits: usize) -> Self {
         Self {
             ends: Some([x.clone(), x]),

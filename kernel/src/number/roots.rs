@@ -2,9 +2,9 @@
 //!
 //! The function is given as a jet over an interval: a certified range of its value and of two
 //! derivatives. Where the first derivative keeps its sign there is at most one root; where the
-//! second does, at most two, and the extremum between them tells which: outside the band by its
+//! second does, at most two, and the extremum between them determines which: outside the resolution by its
 //! certified sign, within it a tangency. Everything else is halved. The values are distances, so
-//! the band is the part's resolution.
+//! the resolution is the part's resolution.
 
 use super::analytic::Analytic;
 use super::bisection::{bisect, bisect_newton};
@@ -21,13 +21,13 @@ use super::predicates::CLOSE;
 pub enum RootKind {
     /// A simple root.
     Simple,
-    /// An even number of roots within the band: the function touches zero.
+    /// An even number of roots within the resolution: the function touches zero.
     Touching,
-    /// An odd number, more than one, within the band.
+    /// An odd number, more than one, within the resolution.
     Inflected,
 }
 
-/// An isolated root, or a cluster of roots within the band.
+/// An isolated root, or a cluster of roots within the resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root<N: Float = f64> {
     /// The best parameter.
@@ -45,7 +45,7 @@ pub struct Root<N: Float = f64> {
 /// The zeros of a function on an interval.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Roots<N: Float = f64> {
-    /// The function is within the band throughout.
+    /// The function is within the resolution throughout.
     Everywhere,
     /// The roots, and what was found to be apart from zero by little.
     At {
@@ -71,7 +71,7 @@ struct Cluster<N: Float = f64> {
 enum Kind {
     /// A root between opposite signs of a monotone function.
     Simple,
-    /// The function is monotone, and within the band.
+    /// The function is monotone, and within the resolution.
     Level,
     /// The extremum.
     Extremum,
@@ -79,10 +79,10 @@ enum Kind {
     Loose,
 }
 
-/// How far beyond its range, as a part of it, the function is asked for its sign.
+/// How far beyond its range, as a part of it, the function is requested its sign.
 const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 
-/// A function that leaves the band by no more than this has not left it: next to the band's edge
+/// A function that leaves the resolution by no more than this has not left it: next to the resolution's edge
 /// rounding takes it in and out.
 const FRINGE: f64 = 1.0 + 1.0 / 64.0;
 
@@ -96,12 +96,12 @@ pub trait Function<N: Float = f64> {
         Interval::ENTIRE
     }
 
-    /// The same in doubles over a piece, where it is one of more digits that doubles follow.
+    /// The same in f64 over a piece, where it is one of more digits that f64 values follow.
     fn roughly(&self, _piece: [N; 2]) -> Option<F64Filter<'_>> {
         None
     }
 
-    /// The value and two derivatives at a point, in doubles.
+    /// The value and two derivatives at a point, in f64.
     fn at(&self, t: N) -> Jet<N> {
         let j = self.over(Interval::point(t));
         Jet {
@@ -111,7 +111,7 @@ pub trait Function<N: Float = f64> {
         }
     }
 
-    /// The value at a point, in doubles.
+    /// The value at a point, in f64.
     fn value(&self, t: N) -> N {
         self.at(t).v
     }
@@ -128,7 +128,7 @@ impl<N: Float, F: Fn(Interval<N>) -> Jet<Interval<N>>> Function<N> for F {
 const SMALL: f64 = 1.0 / 16.0;
 
 /// More than twice the number of zeros that what is asked along any of the curves can have: what is
-/// within the band at that many places is so in between.
+/// within the resolution at that many places is so in between.
 const PROBES: u32 = 67;
 
 /// Fractions of a range: the first few already lie far apart, by steps of the golden section.
@@ -143,7 +143,7 @@ const SOME: u32 = 8;
 /// From so many halvings of a piece on a polynomial is tried for each of its parts.
 const MANY: u32 = 64;
 
-/// How far a polynomial may be off, as a part of the band: less than half of the fringe, so that
+/// How far a polynomial may be off, as a part of the resolution: less than half of the fringe, so that
 /// something is always told of what is level.
 const FINE: f64 = 1.0 / 256.0;
 
@@ -280,7 +280,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         }
     }
 
-    /// The same of a function that is a polynomial there within a small part of the band; false where
+    /// The same of a function that is a polynomial there within a small part of the resolution; false where
     /// it is none.
     fn interpolated(&mut self, a: N, b: N) -> bool {
         let Some(polynomial) =
@@ -334,8 +334,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         v.width() <= N::TWO * self.value_over(middle).width()
     }
 
-    /// Whether the function is within the band throughout, by its values at enough places. Halving
-    /// finds it, too, but one that is zero is halved down to the root of the band.
+    /// Whether the function is within the resolution throughout, by its values at enough places. Halving
+    /// finds it, too, but one that is zero is halved down to the root of the resolution.
     fn vanishes(&self, a: N, b: N) -> bool {
         probes().all(|part| self.value(a + (b - a) * part).abs() <= self.resolution)
     }
@@ -345,7 +345,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         v.lo > self.reach || v.hi < -self.reach
     }
 
-    /// -1, 0 (within the band) or 1.
+    /// -1, 0 (within the resolution) or 1.
     fn sign(&self, value: N) -> i8 {
         if value.abs() <= self.resolution {
             0
@@ -414,7 +414,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         self.monotone(t, b);
     }
 
-    /// How far from an extremum or an end within the band towards `end` the function stays within it.
+    /// How far from an extremum or an end within the resolution towards `end` the function stays within it.
     fn limit(&self, extremum: N, end: N) -> N {
         let sign = self.value(end).signum();
         let beyond = |t: N| sign * self.value(t) - self.resolution;

@@ -40,9 +40,9 @@ pub struct AlgebraicPoint {
 pub(super) const FIRST: usize = 256;
 /// Newton's steps from a place that is known to some thirty digits to all of the first bits.
 const STEPS: usize = 5;
-/// More bits than this are not reckoned with.
+/// More bits than this are not computed with.
 const MOST: usize = 1 << 17;
-/// How far gradients must reach out of one another's span: plainly, or at all.
+/// How far gradients must reach out of one another's span: clearly, or at all.
 const INDEPENDENT: [f64; 3] = [
     1.0 / (1 << 6) as f64,
     1.0 / (1 << 20) as f64,

@@ -243,7 +243,7 @@ fn spread() -> impl Iterator<Item = Vector3<f64>> {
 /// How many directions are tried as the centre of a projection.
 const SPREAD: u32 = 64;
 
-/// How many powers of two nearer than an arc is long they are tried beside it.
+/// How many powers of two nearer than an arc is long they are tried next to it.
 const NEAREST: u32 = 16;
 
 /// The golden angle: its multiples spread over the circle.

@@ -423,7 +423,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the corners along both seams, and tells which sides beyond them are the same.
+    /// Adds the corners along both seams, and determines which sides beyond them are the same.
     fn add_seams(&mut self, torus: &Torus, seams: &Seams) {
         let lengths = [TAU * torus.major, TAU * torus.minor];
         let origin = Surface::Torus(*torus).point(seams.at[0], seams.at[1]);
@@ -491,7 +491,7 @@ impl<'a> Builder<'a> {
 /// How many sides a cap has: its triangles have equal ones.
 const RIM: u32 = 6;
 
-/// Nodes this near to the end of a chord, as a part of it, are beside that end.
+/// Nodes this near to the end of a chord, as a part of it, are next to that end.
 const BESIDE: f64 = 1.0 / 16.0;
 
 /// A step along a seam this part of a step from a point of it is left out.

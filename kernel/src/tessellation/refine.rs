@@ -89,7 +89,7 @@ impl<'a> Refiner<'a> {
                 return Err(TessellationError::Sides { face });
             }
         }
-        // What is missing is there: the doubles of the chart are too coarse.
+        // What is missing is there: the f64 values of the chart are too coarse.
         if domain.net.num_vertices() == before {
             return Err(TessellationError::Crossing { face });
         }

@@ -48,7 +48,7 @@ struct Tip {
 pub struct Endpoints(Vec<Vec<Tip>>);
 
 impl Endpoints {
-    /// The ends of arcs in a picture; `order` tells which arc a feature is.
+    /// The ends of arcs in a picture; `order` determines which arc a feature is.
     pub fn new(
         part: &SoughtPart<'_>,
         picture: &ImageFeatures,

@@ -1,7 +1,7 @@
 //! The correspondences of predicted arcs and segments of a picture, as a problem of search.
 //!
-//! A segment can be an arc where it runs along it, a few pixels beside it at the most. Its attributes
-//! are how far beside, how much askew, and what share of the arc it covers; pieces that lie end to end
+//! A segment can be an arc where it runs along it, a few pixels next to it at the most. Its attributes
+//! are how far next to, how much askew, and what share of the arc it covers; pieces that lie end to end
 //! are candidates together, as a broken edge.
 
 pub mod clutter;
@@ -22,11 +22,11 @@ use problem::{Candidate, Problem, ProblemFeature};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// How far beside an arc, in pixels, a segment may run.
+/// How far next to an arc, in pixels, a segment may run.
 const REACH: f64 = 6.0;
 /// The least cosine of the angle between an edge's normal and an arc's.
 const COSINE: f64 = 0.96;
-/// The standard deviation of how far beside an arc its segment runs, in pixels.
+/// The standard deviation of how far next to an arc its segment runs, in pixels.
 pub const ADJACENT: f64 = 1.5;
 /// The standard deviation of an angle, in radians: at best, and of an end in pixels.
 const ASKEW: f64 = 1.0 / 48.0;
@@ -36,7 +36,7 @@ const ANGLES: f64 = 0.28;
 /// The least share of an arc that a segment covers to be a candidate, and the fewest points.
 const SHARE: f64 = 0.12;
 const FEWEST: usize = 3;
-/// Pieces of one edge lie beside one another by no more than this, in pixels, and share no more of
+/// Pieces of one edge lie next to one another by no more than this, in pixels, and share no more of
 /// their length.
 const PIECES: f64 = 1.6;
 /// They are no more askew than this, in standard deviations.
@@ -54,7 +54,7 @@ pub struct FeatureChoice {
     pub segments: Vec<u32>,
     /// The covered share of the arc within the picture.
     pub share: f64,
-    /// How far beside the arc, in pixels, along its normals.
+    /// How far next to the arc, in pixels, along its normals.
     pub offset: f64,
     /// By point of the arc: the edge, and the piece that it is of.
     pub hits: Vec<(usize, Point2<f64>, u32)>,
@@ -272,7 +272,7 @@ fn tilt(choice: &FeatureChoice, arc: &PredictedContour) -> f64 {
     if own > 0.0 { (both / own).atan() } else { 0.0 }
 }
 
-/// A point of an arc, the edge there, how far beside, and its piece.
+/// A point of an arc, the edge there, how far next to, and its piece.
 type Run = (usize, Point2<f64>, f64, u32);
 
 /// What runs along an arc: single segments, and those that lie end to end.

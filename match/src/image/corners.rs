@@ -110,7 +110,7 @@ fn meeting(lines: &[ImageLine]) -> Vec<(usize, usize, [usize; 2], f64)> {
             let slack = SHORT + PART * a.length.min(b.length);
             for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let gap = (a.ends[p] - b.ends[q]).norm();
-                // Not where one doubles back on the other.
+                // Not where one f64 values back on the other.
                 let way =
                     |l: &ImageLine, end: usize| if end == 0 { l.direction } else { -l.direction };
                 let turns = way(a, p).dot(&way(b, q)) < 1.0 - SHARP;

@@ -87,7 +87,7 @@ pub struct FeatureReport {
     pub share: f64,
     /// At how many of its vertices that are seen its edge ends, and goes on.
     pub ends: Option<[u32; 2]>,
-    /// How far beside it, in pixels, its edge runs.
+    /// How far next to it, in pixels, its edge runs.
     pub offset: Option<f64>,
     /// How far the edge is off its contour at the pose, as root mean squares in pixels.
     #[serde(rename = "astray")]
@@ -178,7 +178,7 @@ pub struct MatchReport {
     pub odds: Option<f64>,
     /// What is told of the part's shape.
     pub shape: Option<ShapeEvidence>,
-    /// How far features are off as wholes, and their edges beside that: of another thing that is like the
+    /// How far features are off as wholes, and their edges next to that: of another thing that is like the
     /// part the former is more.
     #[serde(rename = "astray")]
     pub systematic_offset: Option<SystematicOffset>,

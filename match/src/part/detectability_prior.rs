@@ -162,7 +162,7 @@ fn is_outline(brep: &Brep, source: &ArcSource, view: &[f64]) -> bool {
     turned.is_none_or(|t| t < 0.0)
 }
 
-/// No rate is nearer to certainty.
+/// No rate is closer to certainty.
 pub(crate) const MIN_RATE: f64 = 1.0 / 64.0;
 
 fn pair(a: &ArcSource, b: &ArcSource) -> [ArcSource; 2] {

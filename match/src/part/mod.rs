@@ -104,7 +104,7 @@ impl<'a> SoughtPart<'a> {
         [0, 1].map(|k| self.brep.topology.face_of(side(k)))
     }
 
-    /// Four points that tell where the part is: its middle, and three about it; of a part that is turned
+    /// Four points that determine where the part is: its middle, and three about it; of a part that is turned
     /// about an axis, which may be turned by any angle, all on that.
     pub fn probes(&self) -> [Point3<f64>; 4] {
         if let Some(axis) = &self.axis {

@@ -89,7 +89,7 @@ fn gain(terms: &Potentials, feature: usize, choice: SearchChoice, rival: SearchC
     let links = terms.all[feature].iter().map(|&l| {
         let link = &terms.links[l];
         let neighbour = link.other(feature);
-        // Beside the choice the neighbour uses none of its pieces.
+        // Next to the choice the neighbour uses none of its pieces.
         let others = terms.live[neighbour].iter().filter(|&&other| {
             let used = terms.pieces(neighbour, other);
             !used.iter().any(|piece| pieces.contains(piece))

@@ -14,7 +14,7 @@ use premio_predict::image_arcs::ArcSource;
 use std::cmp::Ordering;
 use std::collections::HashSet;
 
-/// An edge that is off a feature as a whole by more pixels than these runs beside it.
+/// An edge that is off a feature as a whole by more pixels than these runs next to it.
 const ADJACENT: f64 = 2.0;
 
 /// How much work is done at the most.
@@ -66,7 +66,7 @@ pub struct FeaturePair {
 }
 
 impl FeaturePair {
-    /// Whether the feature is not found, or only an edge that runs beside it.
+    /// Whether the feature is not found, or only an edge that runs next to it.
     pub(crate) fn is_missed(&self) -> bool {
         let found = self.found.as_ref();
         found.is_none_or(|f| f.systematic_offset.wholes > ADJACENT)
@@ -82,7 +82,7 @@ pub struct Found {
     pub segments: Vec<u32>,
     /// The covered share of the feature.
     pub share: f64,
-    /// How far beside it they run, in pixels.
+    /// How far next to it they run, in pixels.
     pub offset: f64,
     /// How far they are off it at the pose of the match.
     pub systematic_offset: SystematicOffset,
@@ -98,7 +98,7 @@ pub struct PartMatch {
     pub covariance: Matrix6<f64>,
     /// The root mean square distance of edges from contours, in pixels.
     pub rms: f64,
-    /// How far features are off as wholes, and their edges beside that.
+    /// How far features are off as wholes, and their edges next to that.
     pub systematic_offset: SystematicOffset,
     /// The logarithm of how much more likely the picture is with it than if all were clutter.
     pub score: f64,
@@ -188,7 +188,7 @@ impl PartMatch {
         accepted.then(other.weight().total_cmp(&self.weight()))
     }
 
-    /// The share of the visible length in the picture that is missed, or whose edges run beside it.
+    /// The share of the visible length in the picture that is missed, or whose edges run next to it.
     pub fn missed(&self) -> f64 {
         let missed = self.pairs.iter().filter(|p| p.is_missed());
         let missed: f64 = missed.map(|p| p.length).sum();

@@ -1,7 +1,7 @@
 //! How far features are off their contours as wholes, against how rough their edges are.
 //!
 //! The features of a part lie where its contours do, however rough their edges are; those of another
-//! thing may have as fine edges, and lie beside the contours, or askew. What a move, a turn and a scale
+//! thing may have as fine edges, and lie next to the contours, or askew. What a move, a turn and a scale
 //! of the image bring nearer is taken for the former, what is left for the latter.
 
 use crate::camera::Pinhole;
@@ -19,7 +19,7 @@ const FREE: [f64; 2] = [6.0, 0.25];
 pub struct SystematicOffset {
     /// Features as wholes.
     pub wholes: f64,
-    /// The edges of each, beside that.
+    /// The edges of each, next to that.
     pub edges: f64,
 }
 
@@ -50,7 +50,7 @@ impl SystematicOffset {
     }
 }
 
-/// The weighted squares of how far a feature's edges are off as a whole, and beside that, and the sum of
+/// The weighted squares of how far a feature's edges are off as a whole, and next to that, and the sum of
 /// weights; none where there is no weight.
 fn squares(camera: &Pinhole, pose: &Isometry3<f64>, pulls: &[PointToLine]) -> Option<[f64; 3]> {
     let seen = pulls.iter().filter_map(|pull| {

@@ -36,7 +36,7 @@ const SHARE: [f64; 2] = [10.0, 0.8];
 const ROUGH: [f64; 2] = [2.0, 5.2];
 const SMOOTH: f64 = 0.11;
 /// What it tells that features are off as wholes, on the average of them, by the logarithm of how many
-/// times as far as their edges are off beside that: up to so much, and how far, in pixels, both are off
+/// times as far as their edges are off next to that: up to so much, and how far, in pixels, both are off
 /// at least.
 const ASTRAY: [f64; 2] = [4.8, 3.0];
 const SLIGHT: f64 = 0.05;
@@ -102,7 +102,7 @@ fn rough(found: &PartMatch, straightness: f64) -> f64 {
     (contours / lines).ln().max(0.0)
 }
 
-/// The logarithm of how many times as far as their edges beside that features are off as wholes, on the
+/// The logarithm of how many times as far as their edges next to that features are off as wholes, on the
 /// average of those that are found.
 fn systematic_offset(found: &PartMatch) -> f64 {
     let features = found.pairs.iter().filter_map(|p| p.found.as_ref());

@@ -5,7 +5,7 @@
 //! their holes anywhere. What is found is weighed for the part against such a thing by Laplace's method:
 //! both are drawn to the same edges by their pose and their carriers, which differ little from part to
 //! part and much from thing to thing. Where the edges tell the shape, the part foretold it and the thing
-//! did not (the Occam factor: MacKay 1992); where the thing comes nearer to them, that tells against the
+//! did not (the Occam factor: MacKay 1992); where the thing comes closer to them, that tells against the
 //! part. A rectangle can be a face of many boxes, and tells next to nothing of which.
 
 use crate::camera::Pinhole;
@@ -55,7 +55,7 @@ pub struct ShapeEvidence {
 
 impl ShapeEvidence {
     /// What the edges of a match tell; nothing where there are none. Features that are found so badly that
-    /// they tell against the part are not asked for its shape.
+    /// they tell against the part are not requested its shape.
     pub fn new(part: &SoughtPart<'_>, camera: &Pinhole, found: &PartMatch) -> Self {
         let pairs = found.pairs.iter().zip(&found.pulls);
         let well = pairs.filter(|(pair, _)| pair.score > 0.0);

@@ -119,7 +119,7 @@ fn nearest(ink: &ArcRaster, pixel: &EdgePixel, reach: f64) -> Option<(u32, f64, 
                 if across.abs() > reach || along.abs() > 1.0 || aligned < ALIGNED {
                     continue;
                 }
-                // A pixel that is beside in direction is as bad as one that is a pixel off.
+                // A pixel that is next to in direction is as bad as one that is a pixel off.
                 let cost = d[0].hypot(d[1]) + (1.0 - aligned) / (1.0 - ALIGNED);
                 if best.is_none_or(|known| cost < known.0) {
                     best = Some((cost, (near.arc, near.along + along, across)));

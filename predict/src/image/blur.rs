@@ -32,7 +32,7 @@ pub fn blur_by(image: &mut Grey, domain: &PixelMask, sigma: f64, across: &mut Ve
     }
     let weights = weights(sigma);
     let (width, height) = (image.width, image.height);
-    // What is blurred across is kept beside, and blurred down from there.
+    // What is blurred across is kept next to, and blurred down from there.
     across.resize(image.levels.len(), 0.0);
     let wide = grown_rows(domain, reach(sigma));
     for (y, runs) in wide.iter().enumerate() {

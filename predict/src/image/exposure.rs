@@ -8,7 +8,7 @@ use crate::image_arcs::{Region, Regions};
 use premio_detect::{Grey, PixelMask};
 use std::ops::Range;
 
-/// How many pixels apart the light of one region is reckoned, where it runs straight in between.
+/// How many pixels apart the light of one region is computed, where it runs straight in between.
 const KNOTS: u32 = 8;
 /// How far from a straight course it may be, in grey levels.
 const STRAIGHT: f64 = 1.0 / 16.0;
@@ -68,7 +68,7 @@ pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, imag
 struct Light<'s, 'p> {
     shading: &'s Shading<'p>,
     regions: &'s Regions,
-    /// By region: how far the place is that was asked for last.
+    /// By region: how far the place is that was requested last.
     hints: Vec<f64>,
     /// By region: its field, if it is flat.
     fields: Vec<Option<Field>>,

@@ -246,7 +246,7 @@ impl<'a> LitScene<'a> {
 
 impl Sightings<'_> {
     /// The visible pieces of the contours, cut where others end on them, as polylines within `fine`;
-    /// `ordinals` tells which limb of its face each is.
+    /// `ordinals` determines which limb of its face each is.
     pub fn arcs(&self, ordinals: &[u32], fine: f64, window: &ImageWindow) -> Vec<PredictedArc> {
         let contours = &self.contours;
         let projection = self.scene.projection;
@@ -258,7 +258,7 @@ impl Sightings<'_> {
                 let Some(mut line) = flatten(curve, piece.t, straight, (fine, window)) else {
                     continue;
                 };
-                // Pieces that meet do so in one point, however it was reckoned.
+                // Pieces that meet do so in one point, however it was computed.
                 pin(&mut line, contours, piece);
                 arcs.push(PredictedArc {
                     source: source(contour, ordinals[contour.id as usize]),

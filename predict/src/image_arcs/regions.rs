@@ -18,9 +18,9 @@ const BANDS: usize = 3;
 const ACROSS: [f64; 3] = [0.5, 0.12, 0.88];
 /// Of a smaller region, in pixels, only the middles of gaps are asked.
 const SMALL: f64 = 64.0;
-/// How far beside the middle of a section it is asked, in pixels.
+/// How far next to the middle of a section it is asked, in pixels.
 const BESIDE: f64 = 0.5;
-/// A point tells whether a light reaches a region only where it does not graze the face.
+/// A point determines whether a light reaches a region only where it does not graze the face.
 const GRAZING: f64 = 1.0 / 64.0;
 
 /// What is seen in a region.
@@ -37,7 +37,7 @@ pub struct RegionSample {
 /// A region of an image.
 #[derive(Clone, Debug)]
 pub struct Region {
-    /// What is seen in it; none where every point has to be asked for itself.
+    /// What is seen in it; none where every point has to be requested itself.
     pub seen: Option<RegionSample>,
     /// Its area within the image, in pixels.
     pub area: f64,
@@ -229,7 +229,7 @@ impl Regions {
         self.doubt(stage, arcs);
     }
 
-    /// Asks beside the middle of every section: a region that shows something else there than it is
+    /// Asks next to the middle of every section: a region that shows something else there than it is
     /// told to, because arcs leave a gap that no line passes, is told nothing of.
     fn doubt(&mut self, stage: &LitScene<'_>, arcs: &[PredictedArc]) {
         for section in 0..self.sections.all.len() {

@@ -21,7 +21,7 @@ pub struct ScanlineCrossing {
     pub section: u32,
     /// The side of the section that is to the right on the page.
     pub right: ArcSide,
-    /// Whether it is plainly this section that crosses, apart from all others.
+    /// Whether it is clearly this section that crosses, apart from all others.
     pub firm: bool,
     /// The sine of the angle at which it crosses: what a polyline is off its curve moves the crossing
     /// by as much over this.

@@ -17,7 +17,7 @@ const ASIDE: f64 = 1.0 / 65_536.0;
 /// How fine the polylines of a light's view are, in the part's size: they only say which curve another
 /// one ends on, and about where.
 const LIGHT_FINE: f64 = 1.0 / 4096.0;
-/// How far something has to be behind a contour for a shadow on it to be told apart, in the part's
+/// How far something has to be behind a contour for a shadow on it to be distinguished, in the part's
 /// size.
 const BEHIND: f64 = 1.0 / 1024.0;
 /// By how many pixels the ends of a shadow's boundary are drawn out, so that they reach what they end
@@ -178,7 +178,7 @@ fn light_unit(stage: &LitScene<'_>, view: &Sightings<'_>) -> f64 {
     (projection.project(&(centre + across)) - projection.project(&centre)).norm()
 }
 
-/// The parameter at a point of a polyline; where something ends behind it, as near as doubles tell.
+/// The parameter at a point of a polyline; where something ends behind it, as near as f64 values tell.
 fn stage_parameter(view: &Sightings<'_>, contour: &Contour, line: &Polyline, k: usize) -> f64 {
     let mut t = line.parameters[k];
     if k == 0 || k + 1 == line.points.len() {
@@ -300,7 +300,7 @@ fn draw_out(line: &mut Polyline) {
     }
 }
 
-/// The side of a shadow's boundary that is lit: that of a point next to its middle, which is nearer to
+/// The side of a shadow's boundary that is lit: that of a point next to its middle, which is closer to
 /// it than a polyline is.
 fn lit_side(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<ArcSide> {
     let [from, to] = cast.range;

@@ -59,7 +59,7 @@ pub struct ModelHead {
     pub part: String,
     /// The part's description.
     pub description: DescriptionRecord,
-    /// What part and setups are told from others by.
+    /// What part and setups are distinguished from others by.
     pub digest: String,
     /// The setups.
     pub setups: Setups,
@@ -158,7 +158,7 @@ pub struct FeatureRecord {
     pub detectability: Rate,
     /// How likely it is found where it is visible.
     pub detectability_visible: Rate,
-    /// How likely it is told from all others of its aspect by its attributes, where it is found.
+    /// How likely it is distinguished from all others of its aspect by its attributes, where it is found.
     pub reliability: Rate,
     /// By how much the deviations of the pose, turn and move, grow without it (geometric mean).
     pub accuracy: Option<[f64; 2]>,

@@ -63,7 +63,7 @@ pub struct FeatureSums {
     pub share: Moments<1>,
     /// The logarithms by which the pose's deviations grow without it.
     pub growth: Moments<2>,
-    /// Of the times that it was found and put to the test, how often it was told from all others.
+    /// Of the times that it was found and put to the test, how often it was distinguished from all others.
     pub reliability: Proportion,
 }
 

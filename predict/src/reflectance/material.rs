@@ -112,7 +112,7 @@ impl Material {
                 });
             }
         }
-        // Fractions written in decimals whose sum is 1 also add up to 1 in doubles.
+        // Fractions written in decimals whose sum is 1 also add up to 1 in f64.
         if c.s + c.d > 1.0 {
             return Err(MaterialError::Fractions { s: c.s, d: c.d });
         }

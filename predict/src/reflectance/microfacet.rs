@@ -11,7 +11,7 @@ pub fn distribution(m: f64, cos_alpha: f64) -> f64 {
     let cos2 = cos_alpha * cos_alpha;
     let m2 = m * m;
     let exponent = (1.0 - cos2).max(0.0) / (m2 * cos2);
-    // Beyond it the exponential is zero in doubles, and 1/cos⁴α may be infinite.
+    // Beyond it the exponential is zero in f64, and 1/cos⁴α may be infinite.
     if cos_alpha > 0.0 && exponent < 746.0 {
         (-exponent).exp() / (m2 * cos2 * cos2)
     } else {

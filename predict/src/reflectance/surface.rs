@@ -14,7 +14,7 @@ pub struct Reflectance {
     pub total: f64,
 }
 
-/// A material with what does not depend on the directions reckoned beforehand.
+/// A material with what does not depend on the directions computed beforehand.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceFinish {
     optics: Optics,
@@ -69,7 +69,7 @@ impl SurfaceFinish {
         polarisation: Polarisation,
     ) -> Reflectance {
         let (n_l, n_v) = (normal.dot(light), normal.dot(viewer));
-        // Doubles do not tell a smaller cosine of unit vectors from none.
+        // f64 values do not tell a smaller cosine of unit vectors from none.
         if n_l <= f64::EPSILON || n_v <= f64::EPSILON {
             return Reflectance::default();
         }

@@ -182,7 +182,7 @@ pub struct Conditions {
     pub sensor: Sensor,
     /// The radiance of the surroundings, I_a.
     pub ambient: f64,
-    /// The radiance of what is seen beside the part.
+    /// The radiance of what is seen next to the part.
     pub background: f64,
     /// The material of the part.
     pub material: Finish,

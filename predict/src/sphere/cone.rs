@@ -42,7 +42,7 @@ impl Cap {
             return Err(SphereError::HalfAngle { cone, angle });
         }
         let axis = Vector3::from(cone.axis);
-        // Scaled first: the squares of what is very long or short are not doubles.
+        // Scaled first: the squares of what is very long or short are not f64 values.
         let axis = (axis / axis.amax()).normalize();
         if !axis.iter().all(|x| x.is_finite()) {
             return Err(SphereError::Axis(index));

@@ -39,7 +39,7 @@ pub struct DependenceNode<const K: usize> {
 /// Theory 14, 1968): of all distributions in which each feature depends on one other, the one nearest
 /// to the counts.
 ///
-/// It is reckoned from the counts, and not merged: those are. The root is the feature that has the
+/// It is computed from the counts, and not merged: those are. The root is the feature that has the
 /// most information about all others together. Of what is as good to 2^-40 nats, the feature of the
 /// lower index is taken, as the root, as the next to be joined, and as the parent.
 #[derive(Clone, Debug, PartialEq)]

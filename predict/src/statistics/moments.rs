@@ -16,7 +16,7 @@ const RANGE: u32 = 20;
 /// numbers of 128 bits, whose addition is associative: the result does not depend on the order of the
 /// samples, nor on how they were split. Values are from −2^20 to 2^20, so that the sums hold 2^47
 /// samples (should more come, they wrap, still in no order). Of the mean the error is 2^-41 and
-/// of the covariance 2^-41 + (σx + σy) 2^-41, next to the rounding of doubles: the mean is taken off
+/// of the covariance 2^-41 + (σx + σy) 2^-41, next to the rounding of f64 values: the mean is taken off
 /// in whole numbers, so that nothing cancels. Values much below 2^-20 are to be scaled beforehand.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Written", into = "Written")]
@@ -137,7 +137,7 @@ impl<const N: usize> Moments<N> {
         }
         let count = self.count as f64;
         let (p, q) = (self.pivot(i), self.pivot(j));
-        // The sum of (x − p)(y − q), in units of 2^-60; in doubles if it does not fit.
+        // The sum of (x − p)(y − q), in units of 2^-60; in f64 if it does not fit.
         let sum = self.exact(i, j, p, q).map_or_else(
             || {
                 let (p, q) = (double(p, RANGE), double(q, RANGE));

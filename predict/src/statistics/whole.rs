@@ -1,10 +1,10 @@
-//! Whole numbers in JSON: as a string where a reader that has doubles alone would round them.
+//! Whole numbers in JSON: as a string where a reader that has f64 values alone would round them.
 
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
-/// The largest number to which all whole numbers are doubles: 2^53.
+/// The largest number to which all whole numbers are f64 values: 2^53.
 const EXACT: u128 = 1 << 53;
 
 /// A whole number that is written without loss.

@@ -44,7 +44,7 @@ pub struct ShardHead {
     pub part: String,
     /// The part's description.
     pub description: DescriptionRecord,
-    /// What part and setups are told from others by.
+    /// What part and setups are distinguished from others by.
     pub digest: String,
     /// The setups, as they were written.
     pub setups: String,
@@ -142,7 +142,7 @@ pub struct ShardRun {
     pub part: String,
     /// The part's description.
     pub description: DescriptionRecord,
-    /// What part and setups are told from others by.
+    /// What part and setups are distinguished from others by.
     pub digest: String,
     /// The setups, as they were written.
     pub text: String,
@@ -212,7 +212,7 @@ struct End {
     sha256: String,
 }
 
-/// A shard that is being written, beside its place.
+/// A shard that is being written, next to its place.
 #[derive(Debug)]
 pub(crate) struct ShardWriter {
     out: BufWriter<NamedTempFile>,

@@ -117,7 +117,7 @@ pub fn decode(bytes: &[u8], memory: u64) -> Result<Raster, PngError> {
         bytes: usize::try_from(memory).unwrap_or(usize::MAX),
     };
     let mut decoder = ::png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // The checksum of the compressed data is not compared unless it is asked for.
+    // The checksum of the compressed data is not compared unless it is requested.
     decoder.ignore_checksums(false);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);

@@ -250,7 +250,7 @@ impl<'a> Checker<'a> {
         self.view_with(name, camera, ViewChecks::CONTOURS)
     }
 
-    /// The checks of a view that are asked for.
+    /// The checks of a view that are requested.
     pub fn view_with(&self, name: &str, camera: &ViewCamera, checks: ViewChecks) -> Vec<Check> {
         let failed = |finding, detail| {
             let subject = CheckSubject::View(name.to_owned());
@@ -328,7 +328,7 @@ impl<'a> Checker<'a> {
     fn clearance(&self) -> Clearance {
         let size = self.evaluation.bounds.diagonal();
         let known = self.evaluation;
-        // Rays are doubles, however finely the boundary was evaluated.
+        // Rays are f64 values, however finely the boundary was evaluated.
         let resolution = known.f64_resolution();
         Clearance {
             sliver: 100.0 * resolution,

@@ -263,7 +263,7 @@ impl Search<'_> {
         let near = NEAR * width + self.clearance.shift / self.window.scale(depth);
         let until = self.steep_until(change, index, deep).unwrap_or(depth);
         let there = |p: &Passing| p.depth[0] - deep <= until && depth <= p.depth[1] + deep;
-        // What begins there nearer to the eye may be narrower than the interval.
+        // What begins there closer to the eye may be narrower than the interval.
         let before = |p: &Passing| p.depth[1] < depth;
         let lack = if !images.any(a, near, |_| true) {
             Lack::Contour

@@ -133,7 +133,7 @@ impl Recount {
                         }
                     };
                     match counted {
-                        // Seen end-on it has no two sides; the rays beside it may all miss what
+                        // Seen end-on it has no two sides; the rays next to it may all miss what
                         // covers a narrow angle of its surroundings.
                         _ if end_on && counted != piece.qi => recount.ambiguous += 1,
                         _ if counted == piece.qi && piece.visible == (counted == 0) => {
@@ -142,7 +142,7 @@ impl Recount {
                         _ if folds && piece.qi == counted + 1 && !piece.visible => {
                             recount.ambiguous += 1;
                         }
-                        // Depends on how far beside the rays run.
+                        // Depends on how far next to the rays run.
                         _ if !holds(&place, counted) => recount.ambiguous += 1,
                         _ => {
                             wrong = Some(WrongPiece {

@@ -1,4 +1,4 @@
-//! A model: a tree of operations on primitives as a description writes it, in doubles.
+//! A model: a tree of operations on primitives as a description writes it, in f64.
 //!
 //! It lies in one arena, children before their parents and the root last, so that models of any
 //! depth can be made, walked, changed and dropped without recursion.

@@ -17,7 +17,7 @@ pub use premio_csg::reader::Format;
 ///
 /// What is read from padl and json is the same tree. A csg has matrices, which the reader makes
 /// turns by whole quarters of a degree where that explains their digits, and else rigid to the
-/// last digits: other turns are read as near as doubles are.
+/// last digits: other turns are read as near as f64 values are.
 pub fn write(model: &PartModel, format: Format) -> String {
     let (builder, part) = built(model);
     // A model is small, and made of primitives.

@@ -34,7 +34,7 @@ impl Passing {
     }
 }
 
-/// What a split does to the quantitative invisibility along the strand.
+/// What a split does to the quantitative invisibility along the arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// It changes as the other contour says.
@@ -43,7 +43,7 @@ pub enum Change {
     Correct,
 }
 
-/// A point at which a strand is cut.
+/// A point at which an arc is cut.
 #[derive(Clone, Copy, Debug)]
 pub struct Split {
     /// The parameter.

@@ -272,7 +272,7 @@ fn slope(s: &Torus, sight: &LocalSight) -> f64 {
 
 /// The surfaces that cut the limbs out of a surface, and meet it across there. For a quadric that
 /// is the polar plane of the eye. Across a torus's axis it is the plane of the two circles of the
-/// tube and the cylinder through those at the top and at the bottom: each by itself tells where a
+/// tube and the cylinder through those at the top and at the bottom: each by itself determines where a
 /// curve crosses a limb however near to another, which their product does not. None where the
 /// whole surface is seen edge-on or from inside, and where no such surface is known.
 pub fn cutters(surface: &Surface, sight: &ViewRay) -> Vec<Surface> {

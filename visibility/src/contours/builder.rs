@@ -37,7 +37,7 @@ pub enum ViewError {
     /// The eye lies in the material.
     #[error("the eye ({}, {}, {}) lies inside the material", .0.x, .0.y, .0.z)]
     EyeInside(Point3<f64>),
-    /// The eye is so far that doubles do not keep apart there what the resolution does.
+    /// The eye is so far that f64 values do not keep apart there what the resolution does.
     #[error(
         "the eye is {distance:.3e} away from the part, beyond the limit of {most:.3e} for this resolution"
     )]
@@ -149,7 +149,7 @@ pub fn part_size(brep: &Brep) -> f64 {
     if size.is_finite() { size } else { 1.0 }
 }
 
-/// An arc on its way to become strands of a contour.
+/// An arc on its way to become arcs of a contour.
 #[derive(Clone)]
 struct Source<'a> {
     curve: &'a Curve,
@@ -357,7 +357,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         }
     }
 
-    /// Makes a strand of an arc that is not cut.
+    /// Makes an arc of an arc that is not cut.
     fn push(&mut self, source: Source<'a>, mut seen: Image) {
         let (range, closed) = (source.range, source.closed);
         let [lo, hi] = range;

@@ -27,12 +27,12 @@ pub struct Edgewise {
     pub turns: Vec<f64>,
 }
 
-/// Places that tell whether a curve lies on a surface: no curve of the kinds there are meets a
+/// Places that determine whether a curve lies on a surface: no curve of the kinds there are meets a
 /// cylinder in so many points of a range without lying on it, other than by design.
 const PLACES: usize = 17;
 
 impl Edgewise {
-    /// The curve over `range` on one of the surfaces, if that is seen edge-on: nearer to parallel sight
+    /// The curve over `range` on one of the surfaces, if that is seen edge-on: closer to parallel sight
     /// than `tilt`. `resolution` is the resolution.
     pub fn new<'a>(
         curve: &Curve,

@@ -1,4 +1,4 @@
-//! Real roots of polynomials to the fourth degree on an interval, on plain doubles.
+//! Real roots of polynomials to the fourth degree on an interval, on plain f64 values.
 //!
 //! The roots of each derivative separate those of the next lower one, so each is bracketed. Where
 //! an extremum is as good as zero, by the caller's measure, the polynomial touches zero: a double

@@ -18,10 +18,10 @@ use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
-/// The end of a piece of a strand at a junction.
+/// The end of a piece of an arc at a junction.
 #[derive(Clone, Copy, Debug)]
 pub struct End<'s, 'a> {
-    /// The strand.
+    /// The arc.
     pub arc: &'s ContourArc<'a>,
     /// The parameter at the junction.
     pub t: f64,
@@ -95,7 +95,7 @@ pub struct Corrections<'s, 'a> {
     scene: &'s Scene<'a>,
     /// The pairs of coedges that come to a vertex and leave it, in the order of the vertices.
     corners: Vec<(VertexId, [CoedgeId; 2])>,
-    /// By vertex: what is seen there, once it was asked for.
+    /// By vertex: what is seen there, once it was requested.
     seen: Vec<OnceCell<Seen>>,
 }
 
@@ -286,7 +286,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         sign * self.scene.brep.surface(face).normal_curvature(p, v)
     }
 
-    /// Whether a face plainly bends along the line of sight: on a torus it may not, next to a cusp.
+    /// Whether a face clearly bends along the line of sight: on a torus it may not, next to a cusp.
     fn bends(&self, face: FaceId, p: &Point3<f64>, v: &Vector3<f64>) -> bool {
         let bend = self.bend(face, p, v);
         match self.scene.brep.surface(face) {

@@ -30,7 +30,7 @@ pub struct ContourPiece {
     pub start: Option<u32>,
     /// The junction at its end.
     pub end: Option<u32>,
-    /// Points of it, where asked for.
+    /// Points of it, where requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub samples: Option<Vec<[f64; 3]>>,
 }
@@ -52,7 +52,7 @@ const LOOSE: f64 = 16.0;
 /// that part slowly are farthest apart.
 const PLACES: [f64; 5] = [0.47, 0.31, 0.73, 0.07, 0.93];
 
-/// The count for a piece of a strand over [lo, hi].
+/// The count for a piece of an arc over [lo, hi].
 pub fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occluders {
     let at = |part: f64| count_at(scene, arc, lo + (hi - lo) * part);
     let mut unplain = Vec::with_capacity(PLACES.len());
@@ -110,21 +110,21 @@ fn inward(
     directions.filter(|d| d.norm().is_beyond(0.5)).collect()
 }
 
-/// A part of a strand between two junctions.
+/// A part of an arc between two junctions.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     range: [f64; 2],
     ends: [Option<u32>; 2],
 }
 
-/// A strand cut into spans, and what happens between each and the next.
+/// An arc cut into spans, and what happens between each and the next.
 struct Chain {
     spans: Vec<Span>,
     between: Vec<Change>,
 }
 
 impl Chain {
-    /// Cuts a strand at its splits; those at one point are taken together, and crowd each other.
+    /// Cuts an arc at its splits; those at one point are taken together, and crowd each other.
     fn new(arc: &mut ContourArc<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
         arc.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
         let arc = &*arc;
@@ -179,7 +179,7 @@ impl Chain {
             });
             from = to;
         }
-        // Contours that are not apart by the time of the next junction are not passed plainly.
+        // Contours that are not apart by the time of the next junction are not passed clearly.
         for (around, change) in spans.windows(2).zip(&mut between) {
             let [before, at] = around[0].range;
             let after = around[1].range[1];
@@ -192,8 +192,8 @@ impl Chain {
     }
 }
 
-/// The pieces of all strands, in order: one count at one piece of each connected part of the
-/// contours, carried on from there where what hides changes plainly.
+/// The pieces of all arcs, in order: one count at one piece of each connected part of the
+/// contours, carried on from there where what hides changes clearly.
 pub fn pieces(
     scene: &Scene<'_>,
     strands: &mut [ContourArc<'_>],
@@ -245,11 +245,11 @@ struct Carrying<'s, 'a> {
     corrections: Corrections<'s, 'a>,
     /// By junction: what hides all contours there, less the faces through the junction.
     beyond: Vec<Option<Occluders>>,
-    /// The strands through the junctions: junction and strand, in order.
+    /// The arcs through the junctions: junction and arc, in order.
     through: Vec<(u32, u32)>,
-    /// By strand: what hides each span.
+    /// By arc: what hides each span.
     counts: Vec<Vec<Option<Occluders>>>,
-    /// The strands that are connected to what is known.
+    /// The arcs that are connected to what is known.
     next: Vec<u32>,
     /// Whether what was carried to a junction on two ways agreed.
     sound: bool,
@@ -301,7 +301,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         self.counts.into_iter().map(whole).collect()
     }
 
-    /// Counts along a strand, from the end at which something is known.
+    /// Counts along an arc, from the end at which something is known.
     fn arc(&mut self, i: usize) {
         let n = self.chains[i].spans.len();
         let first = self.enter(i, 0, 0);
@@ -459,7 +459,7 @@ fn order_after(
 enum Slot {
     /// Just before the one with this index, behind all others before it.
     Before(usize),
-    /// Behind those before this index; not plainly before or behind that one.
+    /// Behind those before this index; not clearly before or behind that one.
     Unclear(usize),
 }
 

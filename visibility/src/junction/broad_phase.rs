@@ -10,7 +10,7 @@ use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 use std::f64::consts::TAU;
 
-/// A link of a chain: its box in the image, and the strand it belongs to.
+/// A link of a chain: its box in the image, and the arc it belongs to.
 type Link = (ImageBox, u32);
 
 /// So few links are swept in less time than a tree of them takes to build.
@@ -42,7 +42,7 @@ fn extremes(image: &Image, lo: f64) -> ([f64; 4], usize) {
     found
 }
 
-/// The boxes of the links of a strand, each about `step` long.
+/// The boxes of the links of an arc, each about `step` long.
 fn links(
     strand: &ContourArc<'_>,
     projection: &Projection,
@@ -84,8 +84,8 @@ fn links(
     }
 }
 
-/// The pairs of strands whose images may meet, each once and in order; notes the hull of each
-/// strand's image. `near` is what counts as touching, as a distance in space.
+/// The pairs of arcs whose images may meet, each once and in order; notes the hull of each
+/// arc's image. `near` is what counts as touching, as a distance in space.
 pub fn candidates(
     strands: &mut [ContourArc<'_>],
     projection: &Projection,
@@ -129,7 +129,7 @@ pub fn candidates(
     pairs
 }
 
-/// The pairs of strands whose links meet, by a sweep along x.
+/// The pairs of arcs whose links meet, by a sweep along x.
 fn few_meeting(links: &mut [Link]) -> Vec<(u32, u32)> {
     links.sort_unstable_by(|(a, _), (b, _)| a.min[0].total_cmp(&b.min[0]));
     let mut pairs = Vec::new();

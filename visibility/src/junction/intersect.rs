@@ -34,7 +34,7 @@ pub enum Overlap {
 /// them to fall on one another.
 const LOOSE: f64 = 8.0;
 
-/// Places that tell whether a curve falls on a line or a conic.
+/// Places that determine whether a curve falls on a line or a conic.
 const PLACES: usize = 19;
 
 /// Curves on one another are together over more than the whole by this.
@@ -43,7 +43,7 @@ const MOST: f64 = 64.0;
 /// A turn without meaning: conics of symmetric parts must not cross at the ends of the halves.
 const TURN: f64 = 0.618_033_988_749_894_9;
 
-/// Reports the crossings of two strands in the image: the parameters on both.
+/// Reports the crossings of two arcs in the image: the parameters on both.
 pub fn cross(
     a: &ContourArc<'_>,
     b: &ContourArc<'_>,
@@ -104,7 +104,7 @@ fn lines(
     Overlap::No
 }
 
-/// Where a strand on a line meets another line in the image.
+/// Where an arc on a line meets another line in the image.
 fn line_parameters(a: &ContourArc<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)) {
     match &a.image {
         Image::Line {
@@ -342,7 +342,7 @@ fn general(
     overlap_of(together, a)
 }
 
-/// The least slope of a conic's equation on a strand of it, at some of its points brought to depth
+/// The least slope of a conic's equation on an arc of it, at some of its points brought to depth
 /// one: by it a value is a distance from the conic, or more. Away from the conic the slope may
 /// vanish.
 fn least_slope(b: &ContourArc<'_>, projection: &Projection) -> f64 {
@@ -464,7 +464,7 @@ fn edgewise(
     Overlap::No
 }
 
-/// The parameters at which a strand's image passes that of a point, where it does.
+/// The parameters at which an arc's image passes that of a point, where it does.
 pub fn parameters_at(
     strand: &ContourArc<'_>,
     p: &Point3<f64>,

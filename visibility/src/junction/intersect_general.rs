@@ -4,7 +4,7 @@
 //! meet are graphs over one direction x: the first y = f(x), the second (x(s), y(s)). They cross
 //! where D(s) = y(s) - f(x(s)) changes its sign. If their cones of directions are apart, D is
 //! monotone and its ends decide; else its roots are isolated with their multiplicity, so a touch
-//! is told from two crossings, and curves that fall on one another are seen to do so.
+//! is distinguished from two crossings, and curves that fall on one another are seen to do so.
 
 use crate::camera::projection::Projection;
 use crate::contour_generator::contour_arc::ContourArc;

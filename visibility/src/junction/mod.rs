@@ -29,7 +29,7 @@ use premio_kernel::number::predicates::{Compare, ROUNDING};
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 8.0;
 
-/// Whether a strand passes a junction in the image at that junction and nowhere else: one of its own,
+/// Whether an arc passes a junction in the image at that junction and nowhere else: one of its own,
 /// and it is straight.
 fn passes_once(strand: &ContourArc<'_>, id: u32) -> bool {
     matches!(strand.image, Image::Line { .. }) && strand.junctions().any(|(own, _)| own == id)
@@ -49,25 +49,25 @@ struct Hidden {
 struct Search<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
-    /// (strand, split) found so far.
+    /// (arc, split) found so far.
     splits: Vec<(u32, Split)>,
-    /// By strand: the points of the image at which others that fall on it end.
+    /// By arc: the points of the image at which others that fall on it end.
     asked: Vec<Vec<[f64; 2]>>,
-    /// What lies behind junctions of other strands.
+    /// What lies behind junctions of other arcs.
     behind: Vec<Behind>,
 }
 
-/// Where a junction of a nearer strand falls on a farther one in the image.
+/// Where a junction of a nearer arc falls on a farther one in the image.
 #[derive(Clone, Copy, Debug)]
 struct Behind {
-    /// The farther strand, and its parameter.
+    /// The farther arc, and its parameter.
     strand: u32,
     t: f64,
-    /// The contours of the nearer and of the farther strand.
+    /// The contours of the nearer and of the farther arc.
     contours: [u32; 2],
 }
 
-/// Finds all T-junctions and notes them as splits of the farther strands.
+/// Finds all T-junctions and notes them as splits of the farther arcs.
 pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
     split_at_touches(strands, scene, junctions);
     let pairs = candidates(strands, scene.projection, LOOSE * scene.resolution);
@@ -116,7 +116,7 @@ pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut J
 }
 
 impl Behind {
-    /// Cuts the farther strand, where it is not cut yet; what a contour does that crosses it there is
+    /// Cuts the farther arc, where it is not cut yet; what a contour does that crosses it there is
     /// not all that changes.
     fn cut(self, strand: &mut ContourArc<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
         let near = 2.0 * LOOSE * scene.resolution;
@@ -143,7 +143,7 @@ impl Behind {
 type At<'x, 'a> = (u32, &'x ContourArc<'a>, f64);
 
 impl Search<'_, '_, '_, '_> {
-    /// The parameter on its strand; where the image turns back on itself counts as an end.
+    /// The parameter on its arc; where the image turns back on itself counts as an end.
     fn settle(&self, strand: &ContourArc<'_>, t: f64) -> Option<Settled> {
         let near = LOOSE * self.scene.resolution;
         let settled = settle(strand, t, near)?;
@@ -157,7 +157,7 @@ impl Search<'_, '_, '_, '_> {
         Some(settled)
     }
 
-    /// The turn or end of a strand that is straight on from `t` and in the image no farther than
+    /// The turn or end of an arc that is straight on from `t` and in the image no farther than
     /// `near` from `q`.
     fn stop_next_to(
         &self,
@@ -196,7 +196,7 @@ impl Search<'_, '_, '_, '_> {
             .is_at_most(LOOSE * self.scene.resolution)
     }
 
-    /// Whether a crossing is that at a junction of both strands: their images may touch there, as
+    /// Whether a crossing is that at a junction of both arcs: their images may touch there, as
     /// a limb's and an edge's do where the limb ends on the edge, and rounding moves such a root a
     /// long way. Up to the junction both images are straight to within the resolution, so nothing
     /// tells them from each other.
@@ -261,7 +261,7 @@ impl Search<'_, '_, '_, '_> {
         }));
     }
 
-    /// The turns of a strand's image that touch another contour, where their images do not cross.
+    /// The turns of an arc's image that touch another contour, where their images do not cross.
     fn turns(&mut self, (i, a): (u32, &ContourArc<'_>), (j, b): (u32, &ContourArc<'_>)) {
         let near = LOOSE * self.scene.resolution;
         for &t in &a.turns {
@@ -276,7 +276,7 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// Another contour passes the end of a strand that is at a parameter.
+    /// Another contour passes the end of an arc that is at a parameter.
     fn mark_ambiguous(&mut self, strand: &ContourArc<'_>, at: Settled) {
         if !at.at_end {
             return;
@@ -363,7 +363,7 @@ impl Search<'_, '_, '_, '_> {
         })
     }
 
-    /// Whether all faces along a strand are turned away at a point of it, or seen edge-on, so that
+    /// Whether all faces along an arc are turned away at a point of it, or seen edge-on, so that
     /// they hide nothing.
     fn is_turned_away(&self, strand: &ContourArc<'_>, q: &Point3<f64>, v: &Vector3<f64>) -> bool {
         let t = strand.curve.tangent(strand.curve.parameter(q));
@@ -374,14 +374,14 @@ impl Search<'_, '_, '_, '_> {
         !strand.faces.iter().any(hides)
     }
 
-    /// Another contour falls on a strand.
+    /// Another contour falls on an arc.
     fn crowd_all(&mut self, strand: &ContourArc<'_>) {
         for (id, _) in strand.junctions() {
             self.junctions.mark_ambiguous(id);
         }
     }
 
-    /// The nearer strand splits the farther.
+    /// The nearer arc splits the farther.
     fn junction(
         &mut self,
         (_, near, s, q): (u32, &ContourArc<'_>, Settled, Point3<f64>),

@@ -95,7 +95,7 @@ impl<'x> Run<'x> {
             let of = self.change(a.v, |x, s| Some(x.graphs.gap(s).v))?;
             return Some(of.graphs.crossing(of.on, a.v));
         }
-        // Where one of the curves ends nothing is beside the other any more.
+        // Where one of the curves ends nothing is next to the other any more.
         for (of, s, gap) in [(first, lo, &a), (last, hi, &b)] {
             if of.graphs.ends(gap.t, s) && gap.v.is_within(resolution) {
                 return Some((gap.t, s));

@@ -1,4 +1,4 @@
-//! Parameters on strands, and the points where the boundary touches itself.
+//! Parameters on arcs, and the points where the boundary touches itself.
 
 use crate::contour_generator::contour_arc::{Change, ContourArc, Split};
 use crate::contour_generator::junctions::JunctionKind;
@@ -9,7 +9,7 @@ use premio_kernel::number::predicates::Compare;
 /// Distances between points found on two ways, in multiples of the resolution.
 const LOOSE: f64 = 8.0;
 
-/// A parameter on a strand: within it, or at one of its ends.
+/// A parameter on an arc: within it, or at one of its ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Settled {
     /// The parameter.
@@ -18,14 +18,14 @@ pub struct Settled {
     pub at_end: bool,
 }
 
-/// The parameter as one of the strand, or at its end where it is no further than `near` beyond; none
+/// The parameter as one of the arc, or at its end where it is no further than `near` beyond; none
 /// where it is.
 pub fn settle(strand: &ContourArc<'_>, t: f64, near: f64) -> Option<Settled> {
     let [lo, hi] = strand.range;
     let t = match strand.curve.period() {
         Some(period) => {
             let t = lo + (t - lo).rem_euclid(period);
-            // Just before the start is nearer to the start than to the end.
+            // Just before the start is closer to the start than to the end.
             if !strand.closed && (t - hi).is_beyond(lo + period - t) {
                 t - period
             } else {
@@ -56,7 +56,7 @@ pub fn nearest_turn(strand: &ContourArc<'_>, from: f64, t: f64) -> f64 {
     }
 }
 
-/// Splits the strands that meet where the boundary touches itself: which is in front may change
+/// Splits the arcs that meet where the boundary touches itself: which is in front may change
 /// there, also for those that fall on one another in the image.
 pub fn split_at_touches(
     strands: &mut [ContourArc<'_>],

@@ -2,7 +2,7 @@
 //!
 //! A line of sight runs from the point towards the eye: P + s v, s > 0. A contour's own faces pass
 //! through P, so there the root s = 0 is divided out (twice where the line is tangent, on a limb),
-//! and never has to be told from zero.
+//! and never has to be distinguished from zero.
 
 pub(crate) mod first_hit;
 mod intersections;
@@ -54,7 +54,7 @@ pub struct SightHit {
     pub unambiguous: bool,
 }
 
-/// Which of the faces on a line of sight are asked for.
+/// Which of the faces on a line of sight are requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceQuery {
     /// All of them.
@@ -73,7 +73,7 @@ pub struct Occluders {
     /// Those nearest to the eye, the nearest first, as far as their order is known: at least one
     /// if there are any.
     pub order: Vec<FaceId>,
-    /// Whether all were met plainly.
+    /// Whether all were met clearly.
     pub unambiguous: bool,
 }
 
@@ -185,7 +185,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether any face is met plainly on a line of sight.
+    /// Whether any face is met clearly on a line of sight.
     pub fn is_blocked(&self, ray: &SightLine, own: &impl Fn(FaceId) -> OriginIncidence) -> bool {
         self.passed(ray).any(|face| {
             let mut met = false;
@@ -329,7 +329,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Those of the faces that are met plainly which are still met just aside: next to an edge one
+    /// Those of the faces that are met clearly which are still met just aside: next to an edge one
     /// face of it may begin where the other one ends.
     fn kept_beside(
         &self,
@@ -349,7 +349,7 @@ impl Scene<'_> {
     }
 
     /// The faces turned towards the eye on the line of sight just aside, of those that the line of
-    /// sight itself does not meet plainly.
+    /// sight itself does not meet clearly.
     fn layers_beside(
         &self,
         ray: &SightLine,
@@ -454,7 +454,7 @@ impl Scene<'_> {
         if !part.contains(&eye) {
             return false;
         }
-        // Directions without a common pattern, until one meets every face plainly.
+        // Directions without a common pattern, until one meets every face clearly.
         let mut votes = 0i32;
         for k in 0..16u32 {
             let a = f64::from(k) * 2.399_963_229_728_653 + 0.7;

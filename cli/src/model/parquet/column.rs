@@ -17,7 +17,7 @@ pub enum ColumnKind {
     Real,
     /// A list of whole numbers.
     Wholes,
-    /// A list of doubles; of a matrix row by row.
+    /// A list of f64 values; of a matrix row by row.
     Reals,
 }
 

@@ -355,7 +355,7 @@ impl<'a> Reader<'a> {
         Ok(self.builder.moved(part, matrix.moves))
     }
 
-    /// Tells that vectors or a matrix were replaced, unless by the rounding of doubles only.
+    /// Tells that vectors or a matrix were replaced, unless by the rounding of f64 values only.
     fn replaced(&mut self, residual: f64, span: Range<usize>) {
         if residual > F64_DIGITS {
             self.notes.snapped(residual, span);

@@ -27,7 +27,7 @@ pub(super) enum Unsupported {
     Oblique,
     /// Eight corners, but of no block and no right-angled wedge.
     Polyhedron,
-    /// A vector of no length, or beyond the range of doubles.
+    /// A vector of no length, or beyond the range of f64 values.
     NoDirection,
     /// A length that makes no solid.
     Size(PrimitiveError),

@@ -354,7 +354,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The part asked for, or the last solid, and where it was set.
+    /// The part requested, or the last solid, and where it was set.
     fn part(&self, wanted: Option<&str>) -> Result<(SolidId, Range<usize>), SpannedError> {
         let end = self.cursor.source().len();
         let Some(wanted) = wanted else {

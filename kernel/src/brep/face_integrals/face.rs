@@ -23,7 +23,7 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 /// What a face is measured by.
 pub(super) struct Density<'a, N: Float = f64> {
     pub ground: Ground<N>,
-    /// The same in doubles, where these may tell.
+    /// The same in f64, where these may tell.
     pub rounded_f64: Option<Ground>,
     pub amid: &'a Amid<N>,
     /// The errors that do not matter.
@@ -93,7 +93,7 @@ pub(super) fn moments<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) ->
     }
 }
 
-/// The same surface in a frame by which it is well measured: its origin beside the reference, where
+/// The same surface in a frame by which it is well measured: its origin next to the reference, where
 /// it may be anywhere, so that a thin strip is not a difference of large coordinates; its poles clear
 /// of the edges.
 fn convenient<N: Float>(
@@ -176,7 +176,7 @@ pub(super) fn add<N: Float>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// Points of the edges of a face, in doubles.
+/// Points of the edges of a face, in f64.
 fn samples<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId]) -> Vec<Point3<f64>> {
     let of_edge = |&c: &CoedgeId| {
         let edge = brep.topology.coedge(c).edge;
@@ -311,7 +311,7 @@ fn with_far<N: Float>(sum: Moments<N>, whole: Moments<N>, holds: Option<bool>) -
 }
 
 /// Where the edges of a torus's face pass the parallel at which it is opened: by coedge, the
-/// parameters; none where one does not plainly cross it.
+/// parameters; none where one does not clearly cross it.
 fn opening_passes<N: Float>(
     brep: &Brep<N>,
     coedges: &[CoedgeId],
@@ -327,7 +327,7 @@ fn opening_passes<N: Float>(
     let directed = coedges.iter().map(|&c| DirectedArc::new(brep, c));
     let arcs = Arcs::new(directed.collect(), N::ZERO);
     // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
-    // that is told from it to rounding, or to the finest resolution.
+    // that is distinguished from it to rounding, or to the finest resolution.
     let resolution = N::ROUNDING.max(N::from_f64(FINEST_RESOLUTION)) * d.amid.size;
     let mut passes: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
     let mut plain = true;

@@ -1,4 +1,4 @@
-//! What is integrated for a face: along its edges, and between two v; in doubles, too, where these may
+//! What is integrated for a face: along its edges, and between two v; in f64, too, where these may
 //! tell.
 
 use super::Moments;
@@ -45,7 +45,7 @@ impl<N: Float> Middle<N> {
 }
 
 impl<N: Float> Ground<N> {
-    /// The same in doubles.
+    /// The same in f64.
     pub fn to_f64(&self) -> Ground {
         Ground {
             surface: self.surface.to_f64(),

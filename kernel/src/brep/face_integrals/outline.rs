@@ -76,7 +76,7 @@ fn loop_sum<N: Float>(
         breaks.extend(marks(c));
         breaks.sort_by(N::total_cmp);
         let sign = coedge.sense.sign::<N>();
-        // What does not matter is shared by the pieces; to doubles it is their rounding.
+        // What does not matter is shared by the pieces; to f64 values it is their rounding.
         let floor = match N::IS_DOUBLE {
             true => floor,
             false => floor.map(|f| f / N::from_f64(breaks.len() as f64)),

@@ -1,6 +1,6 @@
 //! A point inside a face.
 //!
-//! From a point of the boundary a walk goes into the face, up to where it plainly leaves it: on the
+//! From a point of the boundary a walk goes into the face, up to where it clearly leaves it: on the
 //! way it is inside. Half way symmetric parts touch themselves.
 
 use super::FaceLocator;
@@ -94,7 +94,7 @@ impl<N: Float> FaceLocator<'_, N> {
         walks
     }
 
-    /// Where a walk from the boundary plainly leaves the face, before it meets anything else.
+    /// Where a walk from the boundary clearly leaves the face, before it meets anything else.
     fn left_at(&self, walk: &SurfacePath<N>) -> Option<N> {
         let start = N::from_f64(NEXT) * self.resolution;
         let mut first: Option<(N, CrossingSense)> = None;

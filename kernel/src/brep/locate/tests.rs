@@ -156,7 +156,7 @@ proptest! {
 #[test]
 fn on_a_torus_no_order_of_the_arcs_hides_a_way() {
     // A piece between two equators and two circles of the tube, seen from a point of an equator
-    // beside it: along the equator every walk runs into an arc.
+    // next to it: along the equator every walk runs into an arc.
     let f = tilted();
     let torus = Torus {
         frame: f,

@@ -1,4 +1,4 @@
-//! Which boxes a walk may pass through, in doubles for walks of any precision: what is beside by
+//! Which boxes a walk may pass through, in f64 for walks of any precision: what is next to by
 //! more than the resolution and rounding is passed over.
 
 use super::{Branch, Track};
@@ -134,7 +134,7 @@ impl Reach {
 }
 
 impl Beside {
-    /// Whether a box is plainly on the other side.
+    /// Whether a box is clearly on the other side.
     fn is_off(&self, b: &Middle, resolution: f64) -> bool {
         let arm = b.centre - self.axis.origin;
         let [up, _] = self.axis.span(b);

@@ -73,7 +73,7 @@ impl<N: Float> BivariateTrigPoly<N> {
 }
 
 impl<N: Float> Reaches<N> {
-    /// The same in doubles.
+    /// The same in f64.
     pub fn to_f64(&self) -> Reaches {
         Reaches(self.0.map(|row| row.map(N::rounded)))
     }

@@ -24,7 +24,7 @@ use crate::number::predicates::Predicates;
 use crate::number::roots::{Function, Roots, isolate};
 use nalgebra::Point3;
 
-/// A ball that holds the part: what lies outside is not asked for.
+/// A ball that holds the part: what lies outside is not requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionOfInterest<N: Float = f64> {
     /// The centre.
@@ -144,7 +144,7 @@ pub fn intersect<N: Float>(
     })
 }
 
-/// Whether the axes of two carriers are one line within the band.
+/// Whether the axes of two carriers are one line within the resolution.
 fn same_line<N: Float>(
     pair: &SurfacePair<'_, N>,
     place: [f64; 3],
@@ -168,7 +168,7 @@ pub fn coincidence<N: Float>(
         return None;
     }
     let pair = SurfacePair::new(a, b, extent);
-    // Most pairs are far apart: only what could matter is put to the judge.
+    // Most pairs are far apart: only what could matter is put to the predicates.
     if pair.estimate(PairMeasure::Apart) > N::TWO * predicates.reach() {
         return None;
     }

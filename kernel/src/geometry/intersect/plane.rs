@@ -67,11 +67,11 @@ pub(super) fn plane_sphere<N: Float>(
     }
 }
 
-/// How many times as far as what is asked about lies the centre of a conic that is told from a
+/// How many times as far as what is asked about lies the centre of a conic that is distinguished from a
 /// point of it.
 const FAR: f64 = 256.0;
 
-/// How many times as far as what is asked about lies a vertex that a long ellipse is told from.
+/// How many times as far as what is asked about lies a vertex that a long ellipse is distinguished from.
 const NEAR: f64 = 16.0;
 
 pub(super) fn plane_cylinder<N: Float>(
@@ -307,7 +307,7 @@ fn plane_beside_apex<N: Float>(
     }
     let ahead = rates.map(|r| -h / r > N::ZERO);
     let near = match ahead {
-        // The vertex that is nearer to the apex.
+        // The vertex that is closer to the apex.
         [true, true] => usize::from(rates[1].abs() > rates[0].abs()),
         [true, false] => 0,
         [false, true] => 1,

@@ -174,7 +174,7 @@ fn circle_of<N: Float>(
 }
 
 /// The end of a part of a closed curve, or the singular point there: next to one, rounding is all
-/// that tells where the curve leaves a nappe.
+/// that determines where the curve leaves a nappe.
 fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], predicates: &Predicates) -> N {
     let there = curve.point(end);
     let near = passes.iter().map(|&at| {

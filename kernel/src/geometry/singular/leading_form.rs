@@ -10,7 +10,7 @@
 //!   which F_y vanishes F is h(s), and F = k₀₂ (y - Y)² + h_k sᵏ to the least order: A_(k-1). For an
 //!   odd k a cusp, for an even one two branches that touch, or a single point.
 //!
-//! What vanishes is what stays within the band as far as the leading terms do. In the coordinates
+//! What vanishes is what stays within the resolution as far as the leading terms do. In the coordinates
 //! of a [`Chart`] these are G(0, κ), and the zone of the point is as far as G and G_κ are nowhere
 //! zero both: then every zero of G belongs to a branch that runs on to σ = 0.
 
@@ -27,17 +27,17 @@ use crate::number::roots::{RootKind, Roots, isolate};
 
 /// The orders of forms whose roots are told.
 const FORMS: [usize; 2] = [3, 4];
-/// The orders k to which F may vanish along the curve Y: beyond, the band is too wide.
+/// The orders k to which F may vanish along the curve Y: beyond, the resolution is too wide.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
-/// How far the leading terms lie above what is neglected where they leave the band.
+/// How far the leading terms lie above what is neglected where they leave the resolution.
 const LEAD: f64 = 4.0;
-/// How far the band lies above what Taylor's polynomials neglect.
+/// How far the resolution lies above what Taylor's polynomials neglect.
 const WHOLE: f64 = 16.0;
 /// Newton's steps towards a degenerate point.
 const STEPS: usize = 12;
-/// The same from the digits of doubles on.
+/// The same from the digits of f64 values on.
 const MORE_STEPS: usize = 4;
-/// How much farther off Taylor's terms may be in doubles than a form's value.
+/// How much farther off Taylor's terms may be in f64 than a form's value.
 const OFF: f64 = 1024.0;
 
 /// A critical point with a Hessian of rank two; none where no zone is plain.
@@ -52,7 +52,7 @@ pub(super) fn simple<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option
     fold(tracer, angles, 2, directions)
 }
 
-/// The degenerate point next to `start`, and how far from it F is within the band.
+/// The degenerate point next to `start`, and how far from it F is within the resolution.
 pub(super) fn degenerate<N: Float>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
@@ -106,7 +106,7 @@ impl Kind {
     }
 
     /// The place next to `start` where a point of the kind may be. Of a form of more digits it is
-    /// found in doubles first: what is none there, within what these are off, is none.
+    /// found in f64 first: what is none there, within what these are off, is none.
     fn near<N: Float>(self, tracer: &Tracer<'_, N>, start: [N; 2]) -> Option<[N; 2]> {
         let exactly = |p| self.step(tracer.form, p);
         let Some((form, slop)) = tracer.f64_form() else {
@@ -158,7 +158,7 @@ fn size<N: Float>(k: &Taylor<N>, degree: usize) -> N {
     (0..=degree).map(|j| k[degree - j][j].abs()).sum()
 }
 
-/// Where the terms of degree n leave the band, if none of a lower degree does within that.
+/// Where the terms of degree n leave the resolution, if none of a lower degree does within that.
 fn terms_vanish<N: Float>(k: &Taylor<N>, n: usize, resolution: N) -> Option<N> {
     let reach = (resolution / size(k, n)).approximate_root(n as u32);
     let vanish = (0..n).all(|d| size(k, d) * reach.powi(d as i32) <= resolution);
@@ -259,7 +259,7 @@ fn zone<N: Float>(holds: impl Fn(N) -> bool) -> Option<N> {
     zones.into_iter().find(|&z| holds(z))
 }
 
-/// Whether Taylor's polynomial is F well within the band, for |σ| and |κ| up to the given ones.
+/// Whether Taylor's polynomial is F well within the resolution, for |σ| and |κ| up to the given ones.
 fn is_whole<N: Float>(chart: &Chart<N>, resolution: N, sigma: N, kappa: N) -> bool {
     N::from_f64(WHOLE) * chart.left(sigma, kappa) <= resolution
 }
@@ -336,7 +336,7 @@ impl<N: Float> Sheet<N> {
         }
     }
 
-    /// Where the term of order k leaves the band, if none of a lower order does within that.
+    /// Where the term of order k leaves the resolution, if none of a lower order does within that.
     fn vanishes(&self, k: usize, resolution: N) -> Option<N> {
         let reach = (resolution / self.along[k].abs()).approximate_root(k as u32);
         let vanish = (0..k).all(|j| self.along[j].abs() * reach.powi(j as i32) <= resolution);

@@ -13,10 +13,10 @@ use crate::geometry::trigonometric::simple_zeros;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 
-/// What lies so many times farther from a curve than it may be off is plainly beside it.
+/// What lies so many times farther from a curve than it may be off is clearly next to it.
 const BESIDE: f64 = (1 << 20) as f64;
 
-/// Where on a curve, in parts of its length, its other surface is asked for.
+/// Where on a curve, in parts of its length, its other surface is requested.
 const PARTS: [f64; 3] = [0.13, 0.47, 0.86];
 
 /// How far a curve may be off its own surface, in roundings.
@@ -145,7 +145,7 @@ mod tests {
     use crate::geometry::trace::trace;
     use nalgebra::{Point3, Vector3};
 
-    /// The branches in which a torus meets a cylinder beside its axis and tilted.
+    /// The branches in which a torus meets a cylinder next to its axis and tilted.
     fn branches(minor: f64, beside: f64, radius: f64) -> Vec<TorusCurve> {
         let torus = Torus {
             frame: Frame::world(),

@@ -29,13 +29,13 @@ impl<N: Float> Cell<N> {
         ]
     }
 
-    /// Whether doubles tell of it as much as more digits do: what a form's terms differ by over it is
+    /// Whether f64 values tell of it as much as more digits do: what a form's terms differ by over it is
     /// far more than they are rounded by.
     pub fn is_coarse(&self) -> bool {
         self.half().into_iter().all(|h| h.rounded() > COARSE)
     }
 
-    /// The same in doubles.
+    /// The same in f64.
     pub fn to_f64(&self) -> Cell {
         let [lo, hi] = [self.lo, self.hi].map(|angles| angles.map(N::rounded));
         Cell { lo, hi }
@@ -51,7 +51,7 @@ impl<N: Float> Cell<N> {
     }
 }
 
-/// Half the side of the least cell that is coarse: its square is far more than doubles are rounded by.
+/// Half the side of the least cell that is coarse: its square is far more than f64 values are rounded by.
 const COARSE: f64 = 1.0 / (1 << 16) as f64;
 
 /// The cells of the first grid along each angle.

@@ -4,7 +4,7 @@
 //! derivatives dominates the other, so that the curve in the cell is a graph of bounded slope
 //! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor's with bounds of the third
 //! derivatives over the cell. Cells are joined through the roots on their sides. Singular points, where F
-//! and its gradient vanish within the band, are found first and stand in cells of their own.
+//! and its gradient vanish within the resolution, are found first and stand in cells of their own.
 
 pub(super) mod grid;
 mod join;
@@ -39,7 +39,7 @@ pub struct Traced<N: Float = f64> {
     pub close: Vec<[N; 2]>,
 }
 
-/// The curve has a singular point of a kind that is not known, or branches too close to be told apart.
+/// The curve has a singular point of a kind that is not known, or branches too close to be distinguished.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("a curve on a torus could not be resolved near the angles ({:.6}, {:.6})", angles[0], angles[1])]
 pub struct Unresolved {
@@ -115,7 +115,7 @@ pub(super) struct Tracer<'a, N: Float = f64> {
     /// A bound of the rounding error of the form.
     pub slop: N,
     pub resolution: N,
-    /// The form in doubles, of one of more digits.
+    /// The form in f64, of one of more digits.
     f64_form: Option<Box<BivariateTrigPoly>>,
     /// How many cells may still be looked at.
     cells: Counter<u32>,
@@ -131,7 +131,7 @@ fn slop<N: Float>(form: &BivariateTrigPoly<N>) -> N {
 }
 
 /// The depth at which a cell that is still undecided is given up: where its sides are next to the
-/// root of the numbers' precision, in doubles 1e-7 radians.
+/// root of the numbers' precision, in f64 1e-7 radians.
 pub(super) fn deepest<N: Float>() -> u32 {
     let bits = -N::EPSILON.rounded().log2();
     bits as u32 - SPARED
@@ -163,13 +163,13 @@ impl<'a, N: Float> Tracer<'a, N> {
         Ok(())
     }
 
-    /// The form in doubles, of one of more digits, and how far it is off.
+    /// The form in f64, of one of more digits, and how far it is off.
     pub(super) fn f64_form(&self) -> Option<(&BivariateTrigPoly, f64)> {
         let form = self.f64_form.as_deref()?;
         Some((form, slop(form)))
     }
 
-    /// The same in doubles, of a form of more digits: what it bounds holds, but may tell less.
+    /// The same in f64, of a form of more digits: what it bounds holds, but may tell less.
     pub(super) fn to_f64(&self) -> Option<Tracer<'_>> {
         let (form, slop) = self.f64_form()?;
         Some(Tracer {

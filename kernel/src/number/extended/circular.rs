@@ -1,7 +1,7 @@
 //! Sines and angles of 237 bits: what is most often asked of these numbers.
 //!
 //! An angle is brought to within an eighth turn of a quarter turn, and to within 2^-10 of a place of a
-//! table; what is left has a short series. An angle of a tangent is that in doubles, and the rest,
+//! table; what is left has a short series. An angle of a tangent is that in f64, and the rest,
 //! whose sine is known.
 
 use super::{F237, Float, SHARES, scaled};
@@ -110,7 +110,7 @@ fn series(x: F237) -> (F237, F237) {
     (x * sum(1), F237::ONE - square * sum(2))
 }
 
-/// The angle of a direction; none where doubles do not know it nearly.
+/// The angle of a direction; none where f64 values do not know it nearly.
 pub(super) fn angle(side: F237, along: F237) -> Option<F237> {
     let across = Float::abs(side);
     let near = across.rounded().atan2(along.rounded());

@@ -74,7 +74,7 @@ fn functions_have_all_digits() {
     assert!(near(third * F237::from_f64(3.0), F237::ONE));
 }
 
-/// Where the functions of doubles and of wide numbers are held against each other: special
+/// Where the functions of f64 values and of wide numbers are held against each other: special
 /// values, and ordinary ones.
 const PLACES: [f64; 17] = [
     0.0, 1e-300, 1e-20, 1e-9, 0.25, 0.5, 0.7, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 10.0, 700.0, 1e9,

@@ -27,7 +27,7 @@ enum Effort {
 }
 
 /// The side of a distance in [lo, hi], where the range tells: `resolution` and `below` are the two edges of
-/// the band.
+/// the resolution.
 fn side_of<N: PartialOrd>(lo: N, hi: N, resolution: N, below: N) -> Option<Side> {
     if lo > resolution {
         Some(Side::Outside)
@@ -40,7 +40,7 @@ fn side_of<N: PartialOrd>(lo: N, hi: N, resolution: N, below: N) -> Option<Side>
     }
 }
 
-/// The side of a distance within the band: on it only if it is zero, where that can be told.
+/// The side of a distance within the resolution: on it only if it is zero, where that can be determined.
 fn proven_side(distance: &impl CertifiedDistance) -> (Side, Effort) {
     let Some(bits) = distance.separation() else {
         return (Side::On, Effort::Construction);
@@ -230,7 +230,7 @@ impl Predicates {
         self.classify(question, distance, place) == Side::On
     }
 
-    /// The side by more bits. What cannot be told from the edge of the band lies on it, and
+    /// The side by more bits. What cannot be distinguished from the edge of the resolution lies on it, and
     /// coincides.
     fn refined_side(&self, distance: &impl CertifiedDistance) -> Side {
         let Some(resolution) = from_f64(self.resolution) else {
@@ -249,7 +249,7 @@ impl Predicates {
         Side::On
     }
 
-    /// Whether `distance` is within the band, without counting it: for searches that ask many
+    /// Whether `distance` is within the resolution, without counting it: for searches that ask many
     /// times before one decision is made.
     pub fn within<N: Float>(&self, distance: N) -> bool {
         distance.abs() <= self.resolution()

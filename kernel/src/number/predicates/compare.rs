@@ -2,7 +2,7 @@
 
 use crate::number::float::Float;
 
-/// The questions about a number that a construction reckoned: it is taken at its word, as the
+/// The questions about a number that a construction computed: it is taken at its word, as the
 /// [`CertifiedDistance`](super::Distance) is that it makes.
 ///
 /// What is not a number answers no to each of them.

@@ -8,10 +8,10 @@ use crate::number::separation_bound::SeparationBound;
 
 /// A signed distance between geometric things, in the part's unit.
 pub trait CertifiedDistance {
-    /// A certified range, in doubles.
+    /// A certified range, in f64.
     fn range(&self) -> Interval;
 
-    /// A certified range reckoned to so many bits; none where no more is known.
+    /// A certified range computed to so many bits; none where no more is known.
     fn refined(&self, bits: usize) -> Option<RationalInterval>;
 
     /// The number of bits after the point from which on a distance that is still zero is zero; none

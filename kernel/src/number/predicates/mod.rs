@@ -1,15 +1,15 @@
 //! The one place that decides signs and coincidence.
 //!
 //! Every question that shapes topology ends here as a distance between geometric things, in the
-//! part's unit, and leaves as an enum. What lies within the band of the part's one resolution
+//! part's unit, and leaves as an enum. What lies within the resolution of the part's one resolution
 //! coincides; what lies outside is apart, by its certified sign. A distance within a hundred times
-//! the band on either side of it is a close call and is listed.
+//! the resolution on either side of it is a close call and is listed.
 //!
 //! A relation between two surfaces is a [`CertifiedDistance`] that is known to more than one precision: its
-//! range in doubles tells nearly always; where the edge of the band lies in the range, ranges of
+//! range in f64 tells nearly always; where the edge of the resolution lies in the range, ranges of
 //! growing precision do.
 //!
-//! What is asked of a number that a construction reckoned, of its sign, or whether it exceeds a
+//! What is asked of a number that a construction computed, of its sign, or whether it exceeds a
 //! limit, is asked by the words of [`Compare`] and [`Side::new`]: nothing that decides compares numbers
 //! by operators of its own.
 
@@ -23,7 +23,7 @@ pub use distance::CertifiedDistance;
 
 use super::float::Float;
 
-/// The factor on either side of the band within which a decision is a close call.
+/// The factor on either side of the resolution within which a decision is a close call.
 pub(crate) const CLOSE: f64 = 100.0;
 
 /// The default resolution: this times the size of the part.
@@ -33,7 +33,7 @@ pub const RELATIVE_RESOLUTION: f64 = 1e-11;
 /// says in numbers of a few dozen digits, what lies nearer is one.
 pub const FINEST_RESOLUTION: f64 = 1e-45;
 
-/// The relative rounding error allowed to a short chain of operations on doubles.
+/// The relative rounding error allowed to a short chain of operations on f64 values.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The side of something that a point lies on.
@@ -97,9 +97,9 @@ pub struct CloseCall {
 /// How the decisions of one evaluation were made.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct DecisionStats {
-    /// Settled by intervals of doubles.
+    /// Settled by intervals of f64 values.
     pub filtered: u64,
-    /// Settled with more bits than doubles have, either way.
+    /// Settled with more bits than f64 values have, either way.
     pub refined: u64,
     /// Settled by an exact zero test.
     pub exact: u64,

@@ -71,7 +71,7 @@ fn a_double_root_touches_and_a_triple_one_crosses() {
 
 #[test]
 fn roots_apart_by_more_than_the_band_stay_apart() {
-    // The extremum is -1e-10, ten times the band.
+    // The extremum is -1e-10, ten times the resolution.
     let r = roots(|t| (t - k(0.3)).square() - k(1e-10), &[0.0, 1.0]);
     assert_eq!(r.len(), 2);
     // The extremum is 1e-10: no root.
@@ -81,7 +81,7 @@ fn roots_apart_by_more_than_the_band_stay_apart() {
 
 #[test]
 fn rounding_at_the_edge_of_the_band_makes_no_roots() {
-    // A triple root, and noise of a thousandth of the band.
+    // A triple root, and noise of a thousandth of the resolution.
     let noise = |t: Interval| Interval::point(1e-14 * (t.mid() * 1e9).sin());
     let f = |t: Interval| {
         let x = Jet::variable(t) - k(0.3);
@@ -108,7 +108,7 @@ fn trigonometric_roots_and_a_zero_function() {
 #[test]
 fn a_crossing_lies_in_its_cluster() {
     // Flat next to 0, where it touches; the crossing is where it has long bent away again, and
-    // the pieces next to it are within the band.
+    // the pieces next to it are within the resolution.
     let f = |t: Jet<Interval>| t.square() * t.square() * (k(1.0) - t).scale(1e-8);
     let r = roots(f, &[0.0, 0.5, 1.0 - 1e-4, 1.0 + 1e-4, 1.5]);
     let [touch, crossing] = r.as_slice() else {
@@ -126,7 +126,7 @@ fn a_root_at_the_very_end_is_kept() {
     assert!((r[0].t - 1.0).abs() < 1e-11);
 }
 
-/// Next to zero, and known to no better than a little more than the band at every point: halved down
+/// Next to zero, and known to no better than a little more than the resolution at every point: halved down
 /// to the last digit it would be told in millions of pieces.
 #[test]
 fn what_rounding_hides_is_told_in_few_pieces() {
@@ -154,7 +154,7 @@ fn what_rounding_hides_is_told_in_few_pieces() {
 }
 
 /// Along a curve that is solved for ranges are far wider than values. What runs along zero by 1e-20 all
-/// over a piece is told from the polynomial that it is, not by halving down to where it starts.
+/// over a piece is distinguished from the polynomial that it is, not by halving down to where it starts.
 #[test]
 fn what_runs_along_zero_is_told_at_once() {
     struct Along<'a>(&'a Cell<usize>);

@@ -70,7 +70,7 @@ fn of_blocks() {
     // Two rims of a hole through the middle of the square sides.
     let hole = [cylinder(0.5, 9.0, [0.0; 3])];
     check(&less(&block([2.0, 2.0, 3.0]), &hole), 8, 1);
-    // And beside it.
+    // And next to it.
     let hole = [cylinder(0.5, 9.0, [0.2, 0.1, 0.0])];
     check(&less(&block([2.0, 2.0, 3.0]), &hole), 1, 2);
     let hole = [cylinder(0.5, 9.0, [0.2, 0.0, 0.0])];
@@ -132,7 +132,7 @@ fn of_a_bulge_and_a_hollow() {
     check(&less(&bulge, &[ball(-2.0)]), 4, 2);
 }
 
-/// A ball or a ring beside a part has no edge, and is a part of it all the same.
+/// A ball or a ring next to a part has no edge, and is a part of it all the same.
 #[test]
 fn of_what_has_no_edges() {
     let aside = [at(r#""sphere", "r": 0.5"#, [0.0, 5.0, 0.0])];

@@ -146,7 +146,7 @@ const QUADRATURE: f64 = 1.0 / (1u64 << 33) as f64;
 /// The same of a piece of an edge.
 const FINE: f64 = 1.0 / (1u64 << 42) as f64;
 
-/// A start nearer to a period than this may be taken for its end.
+/// A start closer to a period than this may be taken for its end.
 const PERIOD: f64 = 1.0 / (1u64 << 26) as f64;
 
 fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
@@ -169,7 +169,7 @@ fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
     let points: Vec<Point3<f64>> = steps.map(|t| edge.curve.at(t).0).collect();
     let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let is_open = edge.ends[0] != edge.ends[1];
-    // Of a turn between two vertices next to each other no reader can tell whether it is a turn or
+    // Of a turn between two vertices next to each other no reader can determine whether it is a turn or
     // nothing; between two in the very same place it is a turn.
     let chord = (to - from).norm();
     let shortest = match is_open && edge.curve.is_periodic() && chord > 0.0 {
@@ -222,7 +222,7 @@ struct Walk<'s> {
     cusp: Option<(Pole, f64)>,
     /// Whether loops are run counterclockwise as the surface's normal sees them.
     along: bool,
-    /// What is nearer to a pole is on it.
+    /// What is closer to a pole is on it.
     tolerance: f64,
     /// How far a piece's integral may be off.
     fine: f64,
@@ -319,10 +319,10 @@ impl Measured {
 /// At how many places a piece of a curve is held against surfaces.
 const PLACES: u32 = 11;
 
-/// What is nearer to a pole than this part of the size is on it.
+/// What is closer to a pole than this part of the size is on it.
 const POLE: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Loops may be open by this part: vertices and curves are doubles, and splines are followed.
+/// Loops may be open by this part: vertices and curves are f64 values, and splines are followed.
 const GAP: f64 = 1.0 / 1024.0;
 
 fn tail(shape: &StepShape, used: &StepEdgeUse) -> (u32, Point3<f64>) {
@@ -362,7 +362,7 @@ impl Walk<'_> {
         };
         let poles = [start, end].map(|p| self.surface.pole(&p, self.tolerance));
         for (k, pair) in stops.windows(2).enumerate() {
-            // Between the ends, so that no angle is asked for at a pole.
+            // Between the ends, so that no angle is requested at a pole.
             let (is_first, is_last) = (k == 0, k + 2 == stops.len());
             let inner = (pair[1] - pair[0]) * INNER;
             let from = if is_first && poles[0].is_some() {

@@ -22,7 +22,7 @@ pub(super) struct Difference<N: Float = f64> {
     pub c: N,
 }
 
-/// Directions that lie apart by less than this are reckoned with more bits.
+/// Directions that lie apart by less than this are computed with more bits.
 const LEAN: f64 = 1.0 / (1 << 10) as f64;
 
 /// To so many bits.

@@ -33,7 +33,7 @@ impl<N: Float> Rulings<'_, N> {
         Ok(meeting)
     }
 
-    /// The s of degree one with Δ = s², if within the band there is one.
+    /// The s of degree one with Δ = s², if within the resolution there is one.
     fn square_root(&self, predicates: &Predicates) -> Option<Trig1<N>> {
         let [a0, c1, s1, c2, s2] = self.radicand;
         let rho = (N::TWO * c2.hypot(s2)).sqrt();

@@ -6,5 +6,6 @@ pub mod geometry;
 pub mod motion;
 pub mod number;
 pub mod proof;
+pub mod random;
 pub mod tessellation;
 pub mod unit;

@@ -26,7 +26,7 @@ use std::time::Instant;
 /// ```
 /// use premio::prelude::*;
 ///
-/// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+/// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
 /// let setup = premio::read_setup("../examples/plate-setup.toml")?;
 /// let picture = solid.render(&setup, &Progress::new())?;
 /// let camera = CameraFile::from_json(r#"{"K": [[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]]}"#)?;
@@ -83,7 +83,7 @@ impl<'s> PartFinder<'s> {
     /// ```
     /// use premio::prelude::*;
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
     /// let model = Model::train(&solid, &setups, &Progress::new())?;
     /// let finder = PartFinder::with_model(&solid, &model)?;

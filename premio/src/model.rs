@@ -59,7 +59,7 @@ use std::path::Path;
 /// ```
 /// use premio::prelude::*;
 ///
-/// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+/// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
 /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
 /// let model = Model::train(&solid, &setups, &Progress::new())?;
 /// assert_eq!(model.head().count, 8);
@@ -85,7 +85,7 @@ impl Model {
     /// use premio::prelude::*;
     /// use std::sync::atomic::{AtomicU64, Ordering};
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
     /// let steps = AtomicU64::new(0);
     /// let count = |_| { steps.fetch_add(1, Ordering::Relaxed); };
@@ -169,7 +169,7 @@ impl Model {
     /// use premio::prelude::*;
     ///
     /// # let folder = tempfile::tempdir().unwrap();
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
     /// let model = Model::train(&solid, &setups, &Progress::new())?;
     /// let path = folder.path().join("plate.model");
@@ -188,7 +188,7 @@ impl Model {
     /// ```
     /// use premio::prelude::*;
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
     /// let model = Model::train(&solid, &setups, &Progress::new())?;
     /// assert_eq!(model.text().lines().count(), model.records().len());
@@ -205,7 +205,7 @@ impl Model {
     /// ```
     /// use premio::prelude::*;
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
     /// let model = Model::train(&solid, &setups, &Progress::new())?;
     /// assert!(model.head().features > 9);
@@ -223,7 +223,7 @@ impl Model {
     /// use premio::prelude::*;
     /// use premio::shards::Record;
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
     /// let model = Model::train(&solid, &setups, &Progress::new())?;
     /// let features = model.records().iter().filter(|r| matches!(r, Record::Feature(_)));

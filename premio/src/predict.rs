@@ -56,7 +56,7 @@ pub(crate) fn text_of(path: &Path) -> Result<String> {
 /// ```
 /// use premio::prelude::*;
 ///
-/// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+/// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
 /// let setup = premio::read_setup("../examples/plate-setup.toml")?;
 /// let picture = solid.render(&setup, &Progress::new())?;
 /// let agreement = solid.compare(&setup, &picture)?;
@@ -84,7 +84,7 @@ impl PredictionAgreement {
     /// use premio::prelude::*;
     /// use premio::PredictionAgreement;
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setup = premio::read_setup("../examples/plate-setup.toml")?;
     /// let grey = Grey { width: 160, height: 120, levels: vec![99.0; 160 * 120] };
     /// let agreement = solid.with_prediction(&setup, |image| {
@@ -124,7 +124,7 @@ const STRIP: usize = 16;
 /// ```
 /// use premio::prelude::*;
 ///
-/// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+/// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
 /// let mut setup = premio::read_setup("../examples/plate-setup.toml")?;
 /// setup.conditions.sensor.read_noise = 2.0;
 /// let other = solid.with_prediction(&setup, |image| premio::rendered(image, 7, &Progress::new()))??;
@@ -166,7 +166,7 @@ impl Solid {
     /// # Examples
     ///
     /// ```
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setup = premio::read_setup("../examples/plate-setup.toml")?;
     /// let arcs = solid.with_prediction(&setup, |image| image.arcs.len())?;
     /// assert!(arcs > 9);
@@ -189,7 +189,7 @@ impl Solid {
     /// # Examples
     ///
     /// ```
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setup = premio::read_setup("../examples/plate-setup.toml")?;
     /// let prediction = solid.predict(&setup)?;
     /// assert!(!prediction.segments.is_empty());
@@ -211,7 +211,7 @@ impl Solid {
     /// ```
     /// use premio::prelude::*;
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setup = premio::read_setup("../examples/plate-setup.toml")?;
     /// let picture = solid.render(&setup, &Progress::new())?;
     /// assert_eq!(picture.levels.len(), 160 * 120);
@@ -236,7 +236,7 @@ impl Solid {
     /// ```
     /// use premio::prelude::*;
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setup = premio::read_setup("../examples/plate-setup.toml")?;
     /// let picture = Grey { width: 3, height: 3, levels: vec![0.0; 9] };
     /// assert!(solid.compare(&setup, &picture).is_err());

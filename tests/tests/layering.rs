@@ -56,12 +56,10 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         "premio-verify",
         &[
             "premio-kernel",
-            "premio-text",
             "premio-csg",
             "premio-visibility",
             "premio-drawing",
             "premio-exchange",
-            "premio-predict",
         ],
     ),
     (
@@ -105,7 +103,7 @@ const STAGES: &[(&str, &[&[&str]])] = &[
     (
         "kernel",
         &[
-            &["unit", "number"],
+            &["unit", "random", "number"],
             &["motion"],
             &["geometry"],
             &["proof", "brep"],

@@ -6,6 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
+use premio_kernel::random::Random as Bits;
 use premio_visibility::camera::projection::{Projection, ViewRay};
 use premio_visibility::contours::contours_with;
 use premio_visibility::contours::{ContourKind, Contours, JunctionKind};
@@ -41,15 +42,11 @@ fn part(json: &str) -> Evaluation {
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 
-struct Random(u64);
+struct Random(Bits);
 
 impl Random {
     fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+        self.0.uniform()
     }
 
     fn direction(&mut self) -> Vector3<f64> {
@@ -273,7 +270,7 @@ impl Tally {
 
 fn examine(t: Torus, seed: u64) {
     let part = torus(t);
-    let mut random = Random(seed);
+    let mut random = Random(Bits::new(seed));
     let reach = t.major + t.minor;
     let mut tally = Tally::default();
     for k in 0..200 {

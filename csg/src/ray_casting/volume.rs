@@ -5,6 +5,7 @@ use super::{Ray, RayOracle};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::frame::Frame;
+use premio_kernel::random::Random;
 use std::f64::consts::{PI, SQRT_2};
 
 /// A measured value.
@@ -76,10 +77,10 @@ impl RayOracle {
         let window = Window::around(bounds);
         let mut scratch = self.scratch();
         let each = (rays / GRIDS).max(1);
-        let mut random = SplitMix(seed);
+        let mut random = Random::new(seed);
         let mut means = [0.0; GRIDS];
         for mean in &mut means {
-            let shift = [random.next(), random.next()];
+            let shift = [random.uniform(), random.uniform()];
             let mut sum = 0.0;
             for k in 0..each {
                 let at = |i: usize| (shift[i] + k as f64 * STEPS[i]).fract();
@@ -157,18 +158,5 @@ impl Window {
             origin,
             direction: self.frame.z,
         }
-    }
-}
-
-/// Steele, Lea and Flood's generator (2014).
-struct SplitMix(u64);
-
-impl SplitMix {
-    /// A number in [0, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 }

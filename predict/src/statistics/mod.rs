@@ -8,7 +8,6 @@ mod chow_liu;
 mod histogram;
 mod moments;
 mod pairs;
-mod random;
 mod whole;
 
 pub use beta::{CredibleInterval, Proportion};
@@ -16,7 +15,7 @@ pub use chow_liu::{DependenceNode, DependenceTree, Smoothing};
 pub use histogram::Histogram;
 pub use moments::Moments;
 pub use pairs::Pairs;
-pub use random::{Random, hash};
+pub use premio_kernel::random::{Random, hash};
 use thiserror::Error;
 
 /// Why something is not counted, merged or read.

@@ -26,7 +26,7 @@ const BATCH: usize = 64;
 /// use premio::prelude::*;
 /// use premio::shards::{Finishes, PreparedPart, SetupObserver};
 ///
-/// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+/// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
 /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
 /// let part = PreparedPart::new(solid.brep(), solid.resolution()).unwrap();
 /// let finishes = Finishes::new(&part, &setups.conditions)?;
@@ -62,7 +62,7 @@ impl SetupObserver<'_> {
     /// use premio::prelude::*;
     /// use premio::shards::{Finishes, PreparedPart, SetupObserver};
     ///
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = premio::read_setups("../examples/plate-setups.toml")?;
     /// let part = PreparedPart::new(solid.brep(), solid.resolution()).unwrap();
     /// let finishes = Finishes::new(&part, &setups.conditions)?;
@@ -108,7 +108,7 @@ impl SetupObserver<'_> {
     /// use premio::shards::{Finishes, PreparedPart, SetupObserver, Shard, ShardRun};
     ///
     /// # let folder = tempfile::tempdir().unwrap();
-    /// let solid = premio::read("../examples/plate.padl")?.evaluate()?;
+    /// let solid = premio::read("../examples/bored-block.padl")?.evaluate()?;
     /// let setups = std::fs::read_to_string("../examples/plate-setups.toml").unwrap();
     /// let run = ShardRun::new(&solid, &setups)?;
     /// let part = PreparedPart::new(solid.brep(), solid.resolution()).unwrap();

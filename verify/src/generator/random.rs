@@ -1,6 +1,6 @@
 //! Random numbers: the same ones for a seed, everywhere and always.
 
-use premio_predict::statistics::Random as Bits;
+use premio_kernel::random::Random as Bits;
 
 /// Choices out of random bits.
 #[derive(Clone, Debug)]

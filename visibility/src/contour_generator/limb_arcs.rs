@@ -3,6 +3,7 @@
 use super::junctions::{JunctionKind, JunctionSupport, Junctions};
 use super::limb::{Limb, cusps, cutters, limbs, torus_limb_on};
 use crate::scene::Scene;
+use crate::scene::tolerance::SPACE_TOLERANCE;
 use nalgebra::Point3;
 use premio_kernel::brep::locate::PointLocation;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
@@ -39,10 +40,6 @@ pub struct LimbArcs {
     /// By edge: parameter and junction of each limb's end on it.
     pub on_edges: Vec<Vec<(f64, u32)>>,
 }
-
-/// What the point-like comparisons allow, in multiples of the resolution: positions come out of
-/// a few more operations than the distances that the resolution was applied to.
-const LOOSE: f64 = 16.0;
 
 /// Trims the limbs of every surface by the faces on it.
 pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<LimbArcs, Unresolved> {
@@ -94,7 +91,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         for edge in face_edges(self.scene, face) {
             for t in self.intersects(surface, (limbs, &cutters), edge) {
                 let p = self.scene.brep.curve(edge).point(t);
-                let met = limbs_through(limbs, &p, LOOSE * self.scene.resolution);
+                let met = limbs_through(limbs, &p, SPACE_TOLERANCE * self.scene.resolution);
                 if met.is_empty() {
                     continue;
                 }
@@ -108,7 +105,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         for (limb, mut ends) in limbs.iter().zip(ends) {
             if let Some(from) = limb.from {
                 let p = limb.curve.point(from);
-                let near = LOOSE * self.scene.resolution;
+                let near = SPACE_TOLERANCE * self.scene.resolution;
                 if ends.iter().all(|e| (e.0 - from).abs().is_beyond(near)) {
                     let add = || {
                         self.junctions
@@ -172,7 +169,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         let nodes = limbs
             .iter()
             .flat_map(|limb| limb.nodes.iter().map(|&t| limb.curve.point(t)));
-        let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, LOOSE * resolution));
+        let nodes = nodes.filter_map(|p| on_arc(curve, range, &p, SPACE_TOLERANCE * resolution));
         match torus_limb_on(s, &self.scene.projection.sight, curve, range, resolution) {
             // Where the edge runs along one limb, others cross both there.
             Roots::Everywhere => {
@@ -193,7 +190,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     /// The junction where a limb ends on an edge, shared by the faces on both sides.
     fn end_on(&mut self, edge: EdgeId, t: f64, p: &Point3<f64>) -> u32 {
         let brep = self.scene.brep;
-        let near = LOOSE * self.scene.resolution;
+        let near = SPACE_TOLERANCE * self.scene.resolution;
         if let Some(ends) = brep.topology.edge(edge).ends {
             for v in ends {
                 let q = brep.point(v);
@@ -220,7 +217,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     fn limb(&mut self, face: FaceId, limb: &Limb, mut ends: Vec<(f64, u32)>) {
         let curve = &limb.curve;
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let near = LOOSE * self.scene.resolution;
+        let near = SPACE_TOLERANCE * self.scene.resolution;
         let apart = |t: f64, s: f64| (curve.point(t) - curve.point(s)).norm();
         ends.dedup_by(|b, a| a.1 == b.1 || apart(a.0, b.0).is_within(near));
         let Some(period) = curve.period() else {

@@ -16,6 +16,7 @@ use crate::image_curve::{Image, image};
 use crate::invisibility::{Method, pieces};
 use crate::junction;
 use crate::scene::Scene;
+use crate::scene::tolerance::SPACE_TOLERANCE;
 use nalgebra::Point3;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};
@@ -27,9 +28,6 @@ use premio_kernel::geometry::surface::Plane;
 use premio_kernel::geometry::trace::Unresolved;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::time::Instant;
-
-/// Distances between points found on two ways, in multiples of the resolution.
-const LOOSE: f64 = 16.0;
 
 /// Why there are no contours.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -392,7 +390,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         };
         // A turn at the very end of an arc is no point of its own.
         let ends_at = [source.curve.point(lo), source.curve.point(hi)];
-        let near = LOOSE * self.scene.resolution;
+        let near = SPACE_TOLERANCE * self.scene.resolution;
         let at_end = |t: f64| {
             let p = source.curve.point(t);
             ends_at.iter().any(|end| (p - end).norm().is_within(near))

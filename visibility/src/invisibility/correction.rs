@@ -11,6 +11,7 @@ use crate::contour_generator::contour_arc::ContourArc;
 use crate::contour_generator::junctions::JunctionKind;
 use crate::contour_generator::junctions::{JunctionSupport, Junctions};
 use crate::scene::Scene;
+use crate::scene::tolerance::SPACE_TOLERANCE;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::surface::Surface;
@@ -45,8 +46,6 @@ impl End<'_, '_> {
     }
 }
 
-/// Distances between points found on two ways, in multiples of the resolution.
-const LOOSE: f64 = 16.0;
 /// Sines and angles less than this are not plain.
 const PLAIN: f64 = 1.0 / 64.0;
 
@@ -326,7 +325,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         match self.scene.brep.surface(face) {
             Surface::Cone(s) => {
                 let away = (p - s.frame.origin).norm();
-                away.is_within(LOOSE * self.scene.resolution)
+                away.is_within(SPACE_TOLERANCE * self.scene.resolution)
             }
             _ => false,
         }

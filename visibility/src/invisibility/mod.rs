@@ -9,6 +9,7 @@ use crate::image_curve::Image;
 use crate::invisibility::correction::{Corrections, End};
 use crate::ray_casting::{Occluders, OriginIncidence};
 use crate::scene::Scene;
+use crate::scene::tolerance::SPACE_TOLERANCE;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
@@ -45,8 +46,6 @@ pub enum Method {
     Recounted,
 }
 
-/// Distances between points found on two ways, in multiples of the resolution.
-const LOOSE: f64 = 16.0;
 /// Where in a piece its faces in front are counted, one after the other until an answer is plain. Not
 /// in the middle, where a symmetric part has its special points; at last near the ends, where contours
 /// that part slowly are farthest apart.
@@ -79,7 +78,7 @@ fn count_at(scene: &Scene<'_>, arc: &ContourArc<'_>, t: f64) -> Occluders {
         // A limb that runs along the edge is no farther away than points found on two ways are:
         // over this length the normal turns with the surface's bend.
         let bend = surface.normal_curvature(p, &v).abs();
-        let turned = LOOSE * (scene.resolution * bend + ROUNDING);
+        let turned = SPACE_TOLERANCE * (scene.resolution * bend + ROUNDING);
         let grazing = surface.normal(p).dot(&v).is_within(turned);
         if arc.limb || grazing {
             OriginIncidence::Tangent
@@ -200,7 +199,7 @@ pub fn pieces(
     junctions: &mut Junctions<'_>,
     method: Method,
 ) -> Vec<Vec<ContourPiece>> {
-    let near = LOOSE * scene.resolution;
+    let near = SPACE_TOLERANCE * scene.resolution;
     let cut = strands.iter_mut();
     let chains: Vec<Chain> = cut.map(|s| Chain::new(s, junctions, near)).collect();
     let strands = &*strands;
@@ -465,7 +464,7 @@ enum Slot {
 
 /// Where in the order of the faces before `p` the distance `ahead` belongs.
 fn slot(scene: &Scene<'_>, p: &Point3<f64>, order: &[FaceId], ahead: f64) -> Slot {
-    let margin = LOOSE * scene.resolution;
+    let margin = SPACE_TOLERANCE * scene.resolution;
     for (k, &face) in order.iter().enumerate() {
         let (mut before, mut behind) = (false, false);
         scene.depths(p, face, &mut |s| {

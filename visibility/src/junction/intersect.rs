@@ -13,6 +13,7 @@ use crate::image_curve::polynomial::{QuarticPolynomial, crossings};
 use crate::image_curve::{Basis, Image, flat_of, line_on_conic};
 use crate::junction::intersect_general::general_pair;
 use crate::scene::Scene;
+use crate::scene::tolerance::IMAGE_TOLERANCE;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use premio_kernel::number::analytic::{Analytic, dot};
 use premio_kernel::number::bisection::bisect;
@@ -29,10 +30,6 @@ pub enum Overlap {
     /// They are on one curve.
     Yes,
 }
-
-/// What the distances between contours in the image may be, in multiples of the resolution, for
-/// them to fall on one another.
-const LOOSE: f64 = 8.0;
 
 /// Places that determine whether a curve falls on a line or a conic.
 const PLACES: usize = 19;
@@ -51,7 +48,7 @@ pub fn cross(
     resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    let near = LOOSE * resolution;
+    let near = IMAGE_TOLERANCE * resolution;
     match (&a.image, &b.image) {
         (Image::Point, _) | (_, Image::Point) => Overlap::No,
         (Image::Edgewise(on), _) => edgewise(on, a, b, resolution, found),
@@ -292,7 +289,7 @@ fn general(
     resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    if falls_on(a, b, projection, LOOSE * resolution) {
+    if falls_on(a, b, projection, IMAGE_TOLERANCE * resolution) {
         return Overlap::Yes;
     }
     let middle = a.curve.point(0.5 * (a.range[0] + a.range[1]));
@@ -454,7 +451,7 @@ fn edgewise(
     resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    if on.contains(b.curve, b.range, LOOSE * resolution) {
+    if on.contains(b.curve, b.range, IMAGE_TOLERANCE * resolution) {
         return Overlap::Yes;
     }
     for s in on.passed_by(b.curve, b.range, resolution) {

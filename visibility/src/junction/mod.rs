@@ -21,13 +21,11 @@ use crate::junction::broad_phase::candidates;
 use crate::junction::intersect::{Overlap, cross, parameters_at};
 use crate::junction::snap::{Settled, nearest_turn, settle, split_at_touches};
 use crate::scene::Scene;
+use crate::scene::tolerance::IMAGE_TOLERANCE;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
-
-/// Distances between points found on two ways, in multiples of the resolution.
-const LOOSE: f64 = 8.0;
 
 /// Whether an arc passes a junction in the image at that junction and nowhere else: one of its own,
 /// and it is straight.
@@ -70,7 +68,11 @@ struct Behind {
 /// Finds all T-junctions and notes them as splits of the farther arcs.
 pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
     split_at_touches(strands, scene, junctions);
-    let pairs = candidates(strands, scene.projection, LOOSE * scene.resolution);
+    let pairs = candidates(
+        strands,
+        scene.projection,
+        IMAGE_TOLERANCE * scene.resolution,
+    );
     let mut search = Search {
         scene,
         junctions,
@@ -119,7 +121,7 @@ impl Behind {
     /// Cuts the farther arc, where it is not cut yet; what a contour does that crosses it there is
     /// not all that changes.
     fn cut(self, strand: &mut ContourArc<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
-        let near = 2.0 * LOOSE * scene.resolution;
+        let near = 2.0 * IMAGE_TOLERANCE * scene.resolution;
         let curve = strand.curve;
         let p = curve.point(self.t);
         let here = |t: f64| (curve.point(t) - p).norm().is_within(near);
@@ -145,7 +147,7 @@ type At<'x, 'a> = (u32, &'x ContourArc<'a>, f64);
 impl Search<'_, '_, '_, '_> {
     /// The parameter on its arc; where the image turns back on itself counts as an end.
     fn settle(&self, strand: &ContourArc<'_>, t: f64) -> Option<Settled> {
-        let near = LOOSE * self.scene.resolution;
+        let near = IMAGE_TOLERANCE * self.scene.resolution;
         let settled = settle(strand, t, near)?;
         if !strand.turns.is_empty() {
             // The image stands still at a turn: there little of the image is much of the curve.
@@ -193,7 +195,7 @@ impl Search<'_, '_, '_, '_> {
         let [p, m, q] = [from, 0.5 * (from + to), to].map(|t| strand.curve.point(t));
         let chord = Point3::from((p.coords + q.coords) * 0.5);
         self.apart(&m, &chord)
-            .is_at_most(LOOSE * self.scene.resolution)
+            .is_at_most(IMAGE_TOLERANCE * self.scene.resolution)
     }
 
     /// Whether a crossing is that at a junction of both arcs: their images may touch there, as
@@ -212,7 +214,7 @@ impl Search<'_, '_, '_, '_> {
     }
 
     fn crossing(&mut self, (i, a, t): At<'_, '_>, (j, b, s): At<'_, '_>) {
-        let near = LOOSE * self.scene.resolution;
+        let near = IMAGE_TOLERANCE * self.scene.resolution;
         if a.junctions()
             .any(|(id, _)| passes_once(a, id) && passes_once(b, id))
         {
@@ -263,7 +265,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// The turns of an arc's image that touch another contour, where their images do not cross.
     fn turns(&mut self, (i, a): (u32, &ContourArc<'_>), (j, b): (u32, &ContourArc<'_>)) {
-        let near = LOOSE * self.scene.resolution;
+        let near = IMAGE_TOLERANCE * self.scene.resolution;
         for &t in &a.turns {
             let p = a.curve.point(t);
             let mut met = Vec::new();
@@ -285,7 +287,7 @@ impl Search<'_, '_, '_, '_> {
         let p = strand.curve.point(at.t);
         let nearest = usize::from((at.t - lo).is_beyond(hi - at.t));
         for (k, (id, t)) in strand.ends.iter().zip(strand.range).enumerate() {
-            let near = 2.0 * LOOSE * self.scene.resolution;
+            let near = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
             let passed = k == nearest || self.apart(&p, &strand.curve.point(t)).is_at_most(near);
             if let (true, &Some(id)) = (passed, id) {
                 self.junctions.mark_ambiguous(id);
@@ -296,7 +298,7 @@ impl Search<'_, '_, '_, '_> {
     /// Notes the junctions of `far` that `near` passes before in the image, be it by a touch that is
     /// no crossing.
     fn crowd_passed(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
-        let margin = 2.0 * LOOSE * self.scene.resolution;
+        let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
         for (id, t) in far.junctions() {
             let known = passes_once(near, id) || self.junctions.is_ambiguous(id);
             if known || !near.hull.contains(self.junctions.image(id)) {
@@ -339,7 +341,7 @@ impl Search<'_, '_, '_, '_> {
         (id, q): (u32, &Point3<f64>),
         (strand, far, t): At<'_, '_>,
     ) -> Option<Behind> {
-        let margin = 2.0 * LOOSE * self.scene.resolution;
+        let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
         let Settled { t, at_end: false } = self.settle(far, t)? else {
             return None;
         };
@@ -527,11 +529,11 @@ impl Search<'_, '_, '_, '_> {
                 let p = a.curve.point(t.t);
                 // Where a curve without a closed form is not met, its nearest point is no end.
                 let apart = self.apart(&p, &q);
-                if t.at_end || apart.is_beyond(4.0 * LOOSE * self.scene.resolution) {
+                if t.at_end || apart.is_beyond(4.0 * IMAGE_TOLERANCE * self.scene.resolution) {
                     continue;
                 }
                 // Next to a turn or an end, where no stretch has a direction, that is meant.
-                let nearest = apart.max(LOOSE * self.scene.resolution);
+                let nearest = apart.max(IMAGE_TOLERANCE * self.scene.resolution);
                 if self.stop_next_to(a, t.t, &q, nearest).is_some() {
                     continue;
                 }

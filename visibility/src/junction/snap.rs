@@ -4,10 +4,8 @@ use crate::contour_generator::contour_arc::{Change, ContourArc, Split};
 use crate::contour_generator::junctions::JunctionKind;
 use crate::contour_generator::junctions::{JunctionSupport, Junctions};
 use crate::scene::Scene;
+use crate::scene::tolerance::IMAGE_TOLERANCE;
 use premio_kernel::number::predicates::Compare;
-
-/// Distances between points found on two ways, in multiples of the resolution.
-const LOOSE: f64 = 8.0;
 
 /// A parameter on an arc: within it, or at one of its ends.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +61,7 @@ pub fn split_at_touches(
     scene: &Scene<'_>,
     junctions: &mut Junctions<'_>,
 ) {
-    let near = LOOSE * scene.resolution;
+    let near = IMAGE_TOLERANCE * scene.resolution;
     let (topology, geometry) = (&scene.brep.topology, &scene.brep.geometry);
     for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
         let within = |strand: &ContourArc<'_>| match strand.edge {

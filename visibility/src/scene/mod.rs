@@ -1,6 +1,7 @@
 //! The part before the camera: its boundary, the projection, and where points lie in its faces.
 
 pub(crate) mod face_box;
+pub(crate) mod tolerance;
 
 use crate::camera::projection::{Projection, ViewRay};
 use face_box::{FaceBox, face_box};

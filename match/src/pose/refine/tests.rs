@@ -3,6 +3,7 @@
 
 use super::*;
 use nalgebra::Translation3;
+use premio_kernel::random::Random as Bits;
 use std::f64::consts::{PI, TAU};
 
 const CAMERA: Pinhole = Pinhole {
@@ -14,17 +15,13 @@ const CAMERA: Pinhole = Pinhole {
 /// The deviation of edges, in pixels.
 const SIGMA: f64 = 0.4;
 
-/// Numbers that are the same every time (SplitMix64: G. Steele, D. Lea, C. Flood, OOPSLA 2014).
-struct Random(u64);
+/// Numbers that are the same every time.
+struct Random(Bits);
 
 impl Random {
     /// From 0 to 1.
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+        self.0.uniform()
     }
 
     fn within(&mut self, lo: f64, hi: f64) -> f64 {
@@ -141,7 +138,7 @@ fn refined(
 
 #[test]
 fn what_has_no_noise_is_found_to_the_last_digits() {
-    let mut random = Random(1);
+    let mut random = Random(Bits::new(1));
     for _ in 0..100 {
         let planted = random.pose();
         let pulls = pulls(&planted, &mut random, 0.0);
@@ -152,7 +149,7 @@ fn what_has_no_noise_is_found_to_the_last_digits() {
 
 #[test]
 fn a_pose_that_is_away_comes_back() {
-    let mut random = Random(2);
+    let mut random = Random(Bits::new(2));
     for _ in 0..100 {
         let planted = random.pose();
         let pulls = pulls(&planted, &mut random, SIGMA);
@@ -163,7 +160,7 @@ fn a_pose_that_is_away_comes_back() {
 
 #[test]
 fn a_pose_that_is_away_comes_back_though_a_fifth_is_wrong() {
-    let mut random = Random(3);
+    let mut random = Random(Bits::new(3));
     for _ in 0..100 {
         let planted = random.pose();
         let mut pulls = pulls(&planted, &mut random, SIGMA);
@@ -183,7 +180,7 @@ fn a_pose_that_is_away_comes_back_though_a_fifth_is_wrong() {
 #[test]
 fn errors_are_as_great_as_they_are_said_to_be() {
     const TRIALS: usize = 400;
-    let mut random = Random(4);
+    let mut random = Random(Bits::new(4));
     let mut sum = 0.0;
     for _ in 0..TRIALS {
         let planted = random.pose();

@@ -33,7 +33,9 @@ fn chunks() -> Vec<Vec<u8>> {
     let mut encoder = png::Encoder::new(&mut bytes, 160, 120);
     encoder.set_color(png::ColorType::Grayscale);
     let mut writer = encoder.write_header().unwrap();
-    let grey: Vec<u8> = (0..160 * 120).map(|i| (i % 160 ^ i / 160) as u8).collect();
+    let grey: Vec<u8> = (0..160 * 120)
+        .map(|i| ((i % 160) ^ (i / 160)) as u8)
+        .collect();
     writer.write_image_data(&grey).unwrap();
     writer.finish().unwrap();
     let mut chunks = vec![bytes[..8].to_vec()];

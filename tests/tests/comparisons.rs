@@ -238,7 +238,7 @@ fn expressions(tokens: proc_macro2::TokenStream) -> Vec<Expr> {
 struct Comparisons(Vec<(usize, String)>);
 
 impl Comparisons {
-    fn new(text: &str) -> Vec<(usize, String)> {
+    fn in_text(text: &str) -> Vec<(usize, String)> {
         let mut all = Self::default();
         all.visit_file(&syn::parse_file(text).unwrap());
         all.0
@@ -332,7 +332,7 @@ fn deciding() -> Vec<PathBuf> {
 
 /// The comparisons in an expression.
 fn found_in(expression: &str) -> usize {
-    Comparisons::new(&format!("fn f() {{ {expression}; }}")).len()
+    Comparisons::in_text(&format!("fn f() {{ {expression}; }}")).len()
 }
 
 #[test]
@@ -387,7 +387,7 @@ fn what_is_whole_or_exact_passes() {
         assert_eq!(found_in(expression), 0, "{expression}");
     }
     let test = "#[cfg(test)] mod tests { fn f() { x < y; } }";
-    assert_eq!(Comparisons::new(test), []);
+    assert_eq!(Comparisons::in_text(test), []);
 }
 
 #[test]
@@ -400,7 +400,7 @@ fn numbers_are_asked_about_in_one_place() {
     let mut wrong = Vec::new();
     for path in files {
         let text = fs::read_to_string(&path).unwrap();
-        for (line, text) in Comparisons::new(&text) {
+        for (line, text) in Comparisons::in_text(&text) {
             wrong.push(format!("{}:{line}: {text}", path.display()));
         }
     }

@@ -21,7 +21,7 @@ impl<N: Float> Frame<N> {
 }
 
 impl<N: Float> Cylinder<N> {
-    fn to_f64(&self) -> Cylinder {
+    fn to_f64(self) -> Cylinder {
         Cylinder {
             frame: self.frame.to_f64(),
             radius: self.radius.rounded(),
@@ -30,7 +30,7 @@ impl<N: Float> Cylinder<N> {
 }
 
 impl<N: Float> Cone<N> {
-    fn to_f64(&self) -> Cone {
+    fn to_f64(self) -> Cone {
         Cone {
             frame: self.frame.to_f64(),
             sin: self.sin.rounded(),
@@ -40,7 +40,7 @@ impl<N: Float> Cone<N> {
 }
 
 impl<N: Float> Torus<N> {
-    fn to_f64(&self) -> Torus {
+    fn to_f64(self) -> Torus {
         Torus {
             frame: self.frame.to_f64(),
             major: self.major.rounded(),
@@ -108,7 +108,7 @@ impl<N: Float> Curve<N> {
 }
 
 impl<N: Float> Along<N> {
-    fn to_f64(&self) -> Along {
+    fn to_f64(self) -> Along {
         Along {
             lead: self.lead.rounded(),
             linear: self.linear.map(N::rounded),
@@ -118,7 +118,7 @@ impl<N: Float> Along<N> {
 }
 
 impl<N: Float> QuadricCurve<N> {
-    fn to_f64(&self) -> QuadricCurve {
+    fn to_f64(self) -> QuadricCurve {
         let base = match &self.base {
             Ruled::Cylinder(s) => Ruled::Cylinder(s.to_f64()),
             Ruled::Cone(s) => Ruled::Cone(s.to_f64()),
@@ -139,7 +139,7 @@ impl<N: Float> QuadricCurve<N> {
 }
 
 impl<N: Float> Height<N> {
-    fn to_f64(&self) -> Height {
+    fn to_f64(self) -> Height {
         match self {
             Self::Whole {
                 along,
@@ -182,6 +182,7 @@ impl<N: Float> TorusCurve<N> {
             segments: self
                 .segments
                 .iter()
+                .copied()
                 .map(TorusCurveSegment::to_f64)
                 .collect(),
             closed: self.closed,
@@ -190,7 +191,7 @@ impl<N: Float> TorusCurve<N> {
 }
 
 impl<N: Float> TorusCurveSegment<N> {
-    fn to_f64(&self) -> TorusCurveSegment {
+    fn to_f64(self) -> TorusCurveSegment {
         TorusCurveSegment {
             axis: self.axis,
             from: self.from.rounded(),

@@ -11,8 +11,8 @@ fn samples_are_read_as_they_were_written() {
     ] {
         let count = 31 * 17 * channels.count() as u32;
         for samples in [
-            Samples::Bytes((0..count).map(|i| (7 * i ^ i / 31) as u8).collect()),
-            Samples::Words((0..count).map(|i| (977 * i ^ i / 31) as u16).collect()),
+            Samples::Bytes((0..count).map(|i| ((7 * i) ^ (i / 31)) as u8).collect()),
+            Samples::Words((0..count).map(|i| ((977 * i) ^ (i / 31)) as u16).collect()),
         ] {
             let raster = Raster {
                 size: [31, 17],

@@ -35,7 +35,7 @@ impl<N: Float> Middle<N> {
         Self { angle, sin, cos }
     }
 
-    fn to_f64(&self) -> Middle {
+    fn to_f64(self) -> Middle {
         Middle {
             angle: self.angle.rounded(),
             sin: self.sin.rounded(),

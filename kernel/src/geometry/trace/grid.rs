@@ -36,7 +36,7 @@ impl<N: Float> Cell<N> {
     }
 
     /// The same in f64.
-    pub fn to_f64(&self) -> Cell {
+    pub fn to_f64(self) -> Cell {
         let [lo, hi] = [self.lo, self.hi].map(|angles| angles.map(N::rounded));
         Cell { lo, hi }
     }

@@ -2,7 +2,7 @@
 //! lines, conics and corners, for a whole grey image and for the known pixels of a predicted one.
 //!
 //! The steps: [gradient masks](Mask) (ch. 7), [thinning](Thinning) (ch. 6), hysteresis (Canny
-//! 1986), linking of pixels to [chains](Chain) (ch. 11), splitting of chains at corners (Ramer
+//! 1986), linking of pixels to [chains](EdgeChain) (ch. 11), splitting of chains at corners (Ramer
 //! 1972), and [fits](fit) of lines and ellipses to the pieces (ch. 11, Fitzgibbon 1999).
 //!
 //! No step looks at a pixel outside the [`PixelMask`], so that an image of which little is known gives

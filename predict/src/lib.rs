@@ -1,6 +1,6 @@
 //! What a sensor and a detector will find of a part.
 //!
-//! A [`Subject`](subject::Subject) is put before a camera and under lights ([`setup`]); the visible
+//! A [`PreparedPart`](prepared_part::PreparedPart) is put before a camera and under lights ([`setup`]); the visible
 //! contours, the boundaries of cast shadows and the outlines of highlights divide the image into
 //! regions ([`image_arcs`]); pixels next to these get their grey levels ([`image`]); the detector
 //! ([`premio_detect`]) finds edges in them, and these are told to what they are the image of

@@ -3,7 +3,7 @@
 use crate::number::float::Float;
 
 /// The questions about a number that a construction computed: it is taken at its word, as the
-/// [`CertifiedDistance`](super::Distance) is that it makes.
+/// [`CertifiedDistance`](super::CertifiedDistance) is that it makes.
 ///
 /// What is not a number answers no to each of them.
 pub trait Compare: Float {

@@ -11,7 +11,7 @@ use premio::fuzz::{KernelMeasures, KernelTrial, Profile};
 use premio::prelude::*;
 
 /// The points of the grid along each axis.
-const POINTS: u32 = 24;
+const POINTS: u32 = 10;
 
 /// The volume by the share of the points of a grid that are in the material.
 fn by_points(part: &Expression) -> Result<KernelMeasures, String> {
@@ -37,13 +37,13 @@ fn by_points(part: &Expression) -> Result<KernelMeasures, String> {
 }
 
 fn main() -> premio::Result<()> {
-    // The grid is coarse: five parts of a hundred pass, what is farther off does not.
+    // The grid is coarse: a fifth more or less passes, what is farther off does not.
     let trial = KernelTrial {
-        tolerance: 0.05,
-        tries: 20,
+        tolerance: 0.2,
+        tries: 4,
         ..KernelTrial::new(Profile::Grid)
     };
-    let report = trial.run(0..12, by_points, &Progress::new())?;
+    let report = trial.run(0..6, by_points, &Progress::new())?;
     let (agreed, skipped) = (report.agreed, report.skipped);
     println!(
         "{agreed} parts agree, {skipped} are skipped, {} differ",

@@ -126,14 +126,6 @@ impl<N: Float> Form<'_, N> {
         }
     }
 
-    /// What the value of F is a sum of, in magnitude; none where the coordinates are a chart's.
-    fn bound(&self) -> N {
-        match self {
-            Self::Angles(form, _) => form.bound(),
-            Self::Chart(_) => N::ZERO,
-        }
-    }
-
     fn partials(&self, x: N, y: N) -> Partials<N> {
         match self {
             Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
@@ -215,15 +207,6 @@ impl<N: Float> TorusCurveSegment<N> {
             true => begun,
             false => start,
         };
-        // Where the branches of a near contact turn, rounding moves the root farther than the segment
-        // is long: then the cubic is as near to F = 0 as any root is, and joins on to its neighbours.
-        let [value, slope] = section.at(y);
-        let rise = (self.ends[1] - self.ends[0]).abs();
-        let extent = rise.max((self.to - self.from).abs());
-        let noise = N::ROUNDING * form.bound().max(section.size());
-        if value.abs() <= noise && (value / slope).abs() > extent {
-            return y;
-        }
         let mut last = N::INFINITY;
         for _ in 0..12 {
             let [value, slope] = section.at(y);

@@ -135,7 +135,7 @@ mod tests {
         rules::measure(&shape, known)
     }
 
-    const PARTS: [&str; 17] = [
+    const PARTS: [&str; 16] = [
         "A = BLO(X=3, Y=4, Z=5)",
         "A = SPH(R=2) AT (ROTX=17, MOVX=9)",
         "A = TOR(RMAJ=3, RMIN=1) AT (ROTX=17, MOVZ=-4)",
@@ -171,9 +171,6 @@ mod tests {
             DIF SPH(R=0.5) AT (MOVZ=-0.5)) AT (ROTZ=45)",
         // A parabola on a cone.
         "A = CON(R=2, H=2) DIF WED(X=5, Y=5, Z=5) AT (MOVX=-4, MOVY=-2)",
-        // A curve leaves a cone's apex and comes back to it, alone in its loop.
-        "A = TOR(RMAJ=1.5, RMIN=0.5) AT (MOVX=1, MOVZ=1)
-            INT CON(R=1, H=3) AT (ROTZ=90, MOVX=1, MOVY=-1, MOVZ=-2)",
         // Planes that nearly pass through an apex.
         "A = CON(R=1, H=1.5) AT (MOVX=0.0000019, MOVY=0.0000019) INT BLO(X=4, Y=4, Z=4)",
     ];

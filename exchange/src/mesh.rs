@@ -1,8 +1,8 @@
 //! Triangles for other programs: STL, OBJ, glTF and 3MF.
 //!
-//! The kernel's mesh follows the boundary; here every side of a triangle gets two triangles, no more
-//! (`parted`), triangles that rounding leaves without an area are taken out (`sound`), and what is left
-//! is written, by the crates that keep to the formats: binary STL, OBJ (which no crate writes in
+//! The kernel's mesh follows the boundary. `split_non_manifold` gives every side of a triangle exactly
+//! two triangles. `remove_slivers` removes triangles that rounding leaves without an area. The rest is
+//! written by the crates that implement the formats: binary STL, OBJ (here, since no crate writes its
 //! f64 values), binary glTF and 3MF.
 
 mod f32_points;

@@ -1,17 +1,18 @@
 //! A boundary as other kernels keep it: every edge has two faces and ends in vertices, and no face
 //! closes around its surface.
 //!
-//! An edge of four faces or more is taken apart into pairs of faces that enclose material between
-//! them, a vertex into its fans (`pairs`); so the solids that touch there are as many as before. A
-//! face that closes around its surface is cut along a ruling, a meridian or a circle of a torus, its
-//! seam, which it has on both sides (`seams`, `linked`). What is smaller than the points of other
-//! kernels are apart is closed (`short`).
+//! `pairs` splits an edge of four faces or more into pairs of faces that enclose material between
+//! them, and a vertex into its fans, so that solids which touch there stay as many. `tracks` and
+//! `seams` cut a face that closes around its surface along a seam: a ruling, a meridian or a circle of
+//! a torus. `loops` links the edges and the two sides of each seam to loops. `short` merges what is
+//! smaller than the distance at which other kernels merge points.
 
 mod gaps;
 mod loops;
 mod pairs;
 mod seams;
 pub(crate) mod short;
+mod tracks;
 
 use crate::parameters::ParameterWindow;
 use nalgebra::Point3;

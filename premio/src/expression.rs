@@ -1,5 +1,10 @@
 //! Solids as expressions: primitives, set operations and motions.
 
+mod operators;
+mod primitives;
+
+pub use primitives::{block, cone, cylinder, frustum, sphere, torus, wedge};
+
 use crate::number::{ExactNumber, NumberError};
 use crate::solid::Solid;
 use crate::{Error, Rational, Result};
@@ -14,8 +19,6 @@ use premio_kernel::motion::MotionError;
 use premio_predict::model::record::DescriptionRecord;
 use std::collections::HashMap;
 use std::fmt;
-use std::iter::Sum;
-use std::ops::{Add, BitAnd, Sub};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -153,133 +156,6 @@ fn nodes(root: &Arc<Node>) -> Vec<&Arc<Node>> {
         }
     }
     order
-}
-
-/// A block with a corner at the origin and edges along the positive axes.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// assert!((block(6, 4, 2).evaluate()?.volume() - 48.0).abs() < 1e-12);
-/// # Ok::<(), premio::Error>(())
-/// ```
-pub fn block(
-    x: impl Into<ExactNumber>,
-    y: impl Into<ExactNumber>,
-    z: impl Into<ExactNumber>,
-) -> Expression {
-    let size = numbers([x.into(), y.into(), z.into()]);
-    Expression::primitive(size.and_then(|size| Ok(Primitive::block(size)?)))
-}
-
-/// The half of a block where x/X + z/Z ≤ 1.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let ramp = wedge(6, 4, 2).evaluate()?;
-/// assert!((ramp.volume() - 24.0).abs() < 1e-12);
-/// assert_eq!(ramp.faces().count(), 5);
-/// # Ok::<(), premio::Error>(())
-/// ```
-pub fn wedge(
-    x: impl Into<ExactNumber>,
-    y: impl Into<ExactNumber>,
-    z: impl Into<ExactNumber>,
-) -> Expression {
-    let size = numbers([x.into(), y.into(), z.into()]);
-    Expression::primitive(size.and_then(|size| Ok(Primitive::wedge(size)?)))
-}
-
-/// A cylinder along +z, its base disc centred at the origin.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let solid = cylinder(2, 5).evaluate()?;
-/// assert!((solid.volume() - 20.0 * std::f64::consts::PI).abs() < 1e-12);
-/// assert_eq!((solid.edges().count(), solid.vertices().count()), (2, 0));
-/// # Ok::<(), premio::Error>(())
-/// ```
-pub fn cylinder(radius: impl Into<ExactNumber>, height: impl Into<ExactNumber>) -> Expression {
-    let lengths = numbers([radius.into(), height.into()]);
-    Expression::primitive(lengths.and_then(|[r, h]| Ok(Primitive::cylinder(r, h)?)))
-}
-
-/// A cone along +z: its base disc is centred at the origin, its apex is at `height`.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let solid = cone(3, 4).evaluate()?;
-/// assert!((solid.volume() - 12.0 * std::f64::consts::PI).abs() < 1e-12);
-/// # Ok::<(), premio::Error>(())
-/// ```
-pub fn cone(radius: impl Into<ExactNumber>, height: impl Into<ExactNumber>) -> Expression {
-    let lengths = numbers([radius.into(), height.into()]);
-    Expression::primitive(lengths.and_then(|[r, h]| Ok(Primitive::cone(r, h)?)))
-}
-
-/// A frustum of a cone along +z, with the radii of its base and its top.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let solid = frustum(3, 1, 6).evaluate()?;
-/// assert!((solid.volume() - 26.0 * std::f64::consts::PI).abs() < 1e-12);
-/// # Ok::<(), premio::Error>(())
-/// ```
-pub fn frustum(
-    base: impl Into<ExactNumber>,
-    top: impl Into<ExactNumber>,
-    height: impl Into<ExactNumber>,
-) -> Expression {
-    let lengths = numbers([base.into(), top.into(), height.into()]);
-    Expression::primitive(lengths.and_then(|[a, b, h]| Ok(Primitive::frustum(a, b, h)?)))
-}
-
-/// A sphere centred at the origin.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let solid = sphere("1.5").evaluate()?;
-/// assert_eq!((solid.faces().count(), solid.edges().count()), (1, 0));
-/// # Ok::<(), premio::Error>(())
-/// ```
-pub fn sphere(radius: impl Into<ExactNumber>) -> Expression {
-    let radius = numbers([radius.into()]);
-    Expression::primitive(radius.and_then(|[r]| Ok(Primitive::sphere(r)?)))
-}
-
-/// A ring torus centred at the origin, with axis z: the radius of the circle that the tube's centre
-/// runs along, and the smaller radius of the tube.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let solid = torus(5, 1).evaluate()?;
-/// assert_eq!(solid.genus(), [1]);
-/// assert!(torus(1, 5).evaluate().is_err());
-/// # Ok::<(), premio::Error>(())
-/// ```
-pub fn torus(major: impl Into<ExactNumber>, minor: impl Into<ExactNumber>) -> Expression {
-    let lengths = numbers([major.into(), minor.into()]);
-    Expression::primitive(lengths.and_then(|[a, b]| Ok(Primitive::torus(a, b)?)))
 }
 
 impl Expression {
@@ -687,79 +563,5 @@ fn numbers<const N: usize>(of: [ExactNumber; N]) -> Result<[Rational; N], Expres
     Ok(values)
 }
 
-/// The union.
-impl Add for Expression {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self::operation(Operation::Union, [self, other])
-    }
-}
-
-/// The difference.
-impl Sub for Expression {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self::operation(Operation::Difference, [self, other])
-    }
-}
-
-/// The intersection.
-impl BitAnd for Expression {
-    type Output = Self;
-
-    fn bitand(self, other: Self) -> Self {
-        Self::operation(Operation::Intersection, [self, other])
-    }
-}
-
-/// The union of all.
-impl Sum for Expression {
-    fn sum<I: Iterator<Item = Self>>(parts: I) -> Self {
-        Self::operation(Operation::Union, parts)
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn deep_expressions_need_no_stack() {
-        let mut part = block(1, 1, 1);
-        for k in 0..100_000 {
-            part = match k % 2 {
-                0 => part + block(1, 1, 1),
-                _ => (part & block(9, 9, 9)).translate([1, 0, 0]),
-            };
-        }
-        assert_eq!(part.tree().unwrap().leaves().count(), 100_001);
-        assert!(format!("{part:?}").contains("100001"));
-    }
-
-    #[test]
-    fn shared_nodes_are_built_once() {
-        let mut part = block(1, 1, 1);
-        for _ in 0..200 {
-            part = part.clone() + part;
-        }
-        assert!(matches!(part.tree(), Err(Error::Tree(_))));
-    }
-
-    #[test]
-    fn the_first_error_of_an_expression_is_kept() {
-        let wrong = block(1, 1, 1) - sphere("x") + cylinder(-1, 1);
-        let error = wrong.evaluate().unwrap_err();
-        let number = ExpressionError::Number(NumberError::Decimal(
-            premio_kernel::number::rational::DecimalError::Malformed,
-        ));
-        assert!(matches!(error, Error::Expression(found) if found == number));
-        for wrong in [
-            block(1, 1, 1).scale(0),
-            block(1, 1, 1).translate([f64::NAN; 3]),
-        ] {
-            assert!(matches!(wrong.tree(), Err(Error::Expression(_))));
-        }
-    }
-}
+mod tests;

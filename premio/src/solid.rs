@@ -290,7 +290,7 @@ impl Solid {
     ///
     /// ```
     /// let report = premio::block(6, 4, 2).evaluate()?.check(2000);
-    /// assert!(report.holds(), "{report}");
+    /// assert!(report.passes(), "{report}");
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn check(&self, rays: usize) -> CheckReport {

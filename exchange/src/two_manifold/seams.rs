@@ -1,22 +1,22 @@
 //! The seams of a face.
 //!
 //! A seam is a ruling of a cylinder or a cone, a meridian of a sphere, a circle about the tube of a
-//! torus or a parallel of it. Where it lies in the face is told by its crossings with the edges, as a
-//! walk of `brep::walk` tells them; of the places that are tried the one is taken that cuts least. Two
-//! seams of a torus cross in a vertex of their own.
+//! torus or a parallel of it. The crossings of a seam with the edges of its face say which part of it
+//! lies in the face (`kernel::brep::surface_path`). Of the tracks that are tried, the one that needs
+//! the fewest cuts is taken. Two seams of a torus cross in a vertex of their own.
 
 use super::SeamError;
 use super::gaps::{Samples, axes};
+use super::tracks::{Course, Track, meridian, ruling, tube};
 use crate::parameters::{ParameterWindow, turned, with_axis};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::{FaceLocator, PointLocation};
 use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, SurfacePath};
 use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense};
-use premio_kernel::geometry::curve::{Circle, Curve, Line};
-use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::curve::{Circle, Curve};
 use premio_kernel::geometry::surface::Surface;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// How a face is cut.
 #[derive(Debug)]
@@ -53,28 +53,6 @@ pub(super) enum End {
     Pole(Point3<f64>),
     /// Where the two seams of a torus cross inside the face.
     Crossing,
-}
-
-/// A line of constant angle.
-struct Track {
-    walk: SurfacePath,
-    curve: Curve,
-    /// The curve's parameter at the start, and by the length of the walk.
-    start: f64,
-    by: f64,
-    course: Course,
-}
-
-/// What a track is at its ends.
-enum Course {
-    /// It closes.
-    Round,
-    /// It starts at a point of the surface, at which the face's boundary is not, and ends at another
-    /// one or beyond the face.
-    Open {
-        first: Option<f64>,
-        last: Option<f64>,
-    },
 }
 
 struct Faced<'a> {
@@ -509,56 +487,6 @@ fn least(cuts: impl Iterator<Item = Option<Cut>>) -> Option<Cut> {
         }
     }
     best
-}
-
-fn ruling(surface: &Surface, from: Point3<f64>, course: Course) -> Option<Track> {
-    let walk = SurfacePath::ruling(surface, &from, 0.0, Sense::Along)?;
-    let direction = (walk.point(1.0) - from).normalize();
-    let line = Line {
-        origin: from,
-        direction,
-    };
-    Some(Track {
-        walk,
-        curve: Curve::Line(line),
-        start: 0.0,
-        by: 1.0,
-        course,
-    })
-}
-
-/// The half of a great circle at the angle zero, from pole to pole.
-fn meridian(surface: &Surface, radius: f64) -> Option<Track> {
-    let f = surface.frame();
-    let [south, equator] = [-FRAC_PI_2, 0.0].map(|v| surface.point(0.0, v));
-    let walk = SurfacePath::great_circle(&f.origin, &south, &equator)?.upto(0.5 * TAU * radius);
-    Some(Track {
-        walk,
-        curve: upright(f, f.origin, radius),
-        start: -FRAC_PI_2,
-        by: 1.0 / radius,
-        course: Course::Open {
-            first: Some(-FRAC_PI_2),
-            last: Some(FRAC_PI_2),
-        },
-    })
-}
-
-/// The circle about the tube at the angle zero.
-fn tube(surface: &Surface, major: f64, minor: f64) -> Curve {
-    let f = surface.frame();
-    upright(f, f.origin + f.x * major, minor)
-}
-
-/// A circle in the plane of x and the axis.
-fn upright(f: &Frame, origin: Point3<f64>, radius: f64) -> Curve {
-    let frame = Frame {
-        origin,
-        x: f.x,
-        y: f.z,
-        z: f.x.cross(&f.z),
-    };
-    Curve::Circle(Circle { frame, radius })
 }
 
 impl Cut {

@@ -1,6 +1,13 @@
 //! Shards: the observations of a range of setups, a line each, whole or absent.
 
+mod error;
+mod lines;
+mod writer;
+
 use crate::{Solid, files};
+pub use error::ShardError;
+use error::failed;
+use lines::Lines;
 use premio_csg::reader::Format;
 use premio_predict::model::consistency::{
     Inconsistency, SourceLimits, check_description, check_observation,
@@ -8,16 +15,14 @@ use premio_predict::model::consistency::{
 use premio_predict::model::file::hexadecimal;
 use premio_predict::model::record::DescriptionRecord;
 use premio_predict::model::{Observation, Setups};
-use premio_text::escape::{self, quote};
-use premio_text::{Content, Document, LineColumn, TextError};
+use premio_text::escape::quote;
+use premio_text::{Content, Document, TextError};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fmt;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, BufWriter, ErrorKind, Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
+use writer::End;
+pub(crate) use writer::ShardWriter;
 
 /// The name of the format.
 const SCHEMA: &str = "premio.observations/2";
@@ -200,162 +205,6 @@ pub fn digest<'b>(all: impl IntoIterator<Item = &'b [u8]>) -> String {
         }
     }
     format!("{hash:016x}")
-}
-
-/// The last line of a shard.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct End {
-    /// How many lines are before it.
-    lines: u64,
-    /// SHA-256 of all bytes before it.
-    sha256: String,
-}
-
-/// A shard that is being written, next to its place.
-#[derive(Debug)]
-pub(crate) struct ShardWriter {
-    out: BufWriter<NamedTempFile>,
-    path: PathBuf,
-    hash: Sha256,
-    lines: u64,
-}
-
-impl ShardWriter {
-    /// A shard to be.
-    pub(crate) fn new(path: &Path, head: &ShardHead) -> Result<Self, ShardError> {
-        let path = files::target(path).map_err(|e| failed(path, &e))?;
-        if files::is_no_file(&path) {
-            return Err(failed(&path, &"a shard is a file, and this is none"));
-        }
-        let file = files::temporary(&path).map_err(|e| failed(&path, &e))?;
-        let out = BufWriter::new(file);
-        let mut writer = Self {
-            out,
-            path,
-            hash: Sha256::new(),
-            lines: 0,
-        };
-        writer.line(head)?;
-        Ok(writer)
-    }
-
-    /// Adds a line.
-    pub(crate) fn line(&mut self, value: &impl Serialize) -> Result<(), ShardError> {
-        let text = json_text(value).map_err(|e| failed(&self.path, &e))? + "\n";
-        self.hash.update(&text);
-        self.lines += 1;
-        let written = self.out.write_all(text.as_bytes());
-        written.map_err(|e| failed(&self.path, &e))
-    }
-
-    /// Puts the shard in its place.
-    pub(crate) fn finish(mut self) -> Result<(), ShardError> {
-        let end = End {
-            lines: self.lines,
-            sha256: hexadecimal(&self.hash.clone().finalize()),
-        };
-        self.line(&end)?;
-        let path = self.path;
-        let file = self.out.into_inner().map_err(|e| failed(&path, &e))?;
-        file.as_file().sync_all().map_err(|e| failed(&path, &e))?;
-        file.persist(&path).map_err(|e| failed(&path, &e))?;
-        Ok(())
-    }
-}
-
-fn failed(path: &Path, error: &dyn fmt::Display) -> ShardError {
-    ShardError {
-        path: path.to_owned(),
-        place: None,
-        words: error.to_string(),
-        is_too_long: false,
-    }
-}
-
-fn not_read(path: &Path, error: &io::Error) -> ShardError {
-    ShardError {
-        is_too_long: error.kind() == ErrorKind::FileTooLarge,
-        ..failed(path, error)
-    }
-}
-
-/// A value as JSON, in one line, without characters that a terminal obeys.
-fn json_text(value: &impl Serialize) -> Result<String, serde_json::Error> {
-    serde_json::to_string(value).map(escape::json)
-}
-
-/// What is wrong with a shard, and where.
-///
-/// # Examples
-///
-/// ```
-/// use premio::shards::Shard;
-///
-/// # let folder = tempfile::tempdir().unwrap();
-/// # std::env::set_current_dir(&folder).unwrap();
-/// std::fs::write("a.shard", "{}\n").unwrap();
-/// let error = Shard::open("a.shard".as_ref(), u64::MAX).unwrap_err();
-/// assert!(error.to_string().starts_with("a.shard:1:1: "));
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ShardError {
-    path: PathBuf,
-    /// The line and the column.
-    place: Option<[usize; 2]>,
-    words: String,
-    is_too_long: bool,
-}
-
-impl ShardError {
-    /// Whether the file has more bytes than the limit.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::shards::Shard;
-    ///
-    /// # let folder = tempfile::tempdir().unwrap();
-    /// # std::env::set_current_dir(&folder).unwrap();
-    /// std::fs::write("a.shard", "{}\n").unwrap();
-    /// assert!(Shard::open("a.shard".as_ref(), 1).unwrap_err().is_too_long());
-    /// ```
-    pub fn is_too_long(&self) -> bool {
-        self.is_too_long
-    }
-}
-
-impl fmt::Display for ShardError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (path, words) = (self.path.display(), &self.words);
-        match self.place {
-            Some([line, column]) => write!(f, "{path}:{line}:{column}: {words}"),
-            None => write!(f, "{path}: {words}"),
-        }
-    }
-}
-
-impl std::error::Error for ShardError {}
-
-/// A file of which no more is read than a limit.
-#[derive(Debug)]
-struct LimitedFile {
-    file: File,
-    left: u64,
-}
-
-impl Read for LimitedFile {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let read = self.file.read(into)?;
-        match self.left.checked_sub(read as u64) {
-            Some(left) => self.left = left,
-            None => {
-                let said = "found more than the limit of bytes";
-                return Err(io::Error::new(ErrorKind::FileTooLarge, said));
-            }
-        }
-        Ok(read)
-    }
 }
 
 /// A shard in a file, which is as it was written.
@@ -602,115 +451,5 @@ impl ShardHead {
     }
 }
 
-impl End {
-    fn from_json(line: &str) -> Result<Self, TextError> {
-        Document::from_json(line)?.read()
-    }
-}
-
-/// The lines of a file.
-struct Lines {
-    reader: BufReader<LimitedFile>,
-    path: PathBuf,
-    /// How many have been read.
-    count: usize,
-}
-
-impl Lines {
-    fn open(path: &Path, max_bytes: u64) -> Result<Self, ShardError> {
-        let file = File::open(path).map_err(|e| not_read(path, &e))?;
-        let left = max_bytes;
-        let reader = BufReader::new(LimitedFile { file, left });
-        Ok(Self {
-            reader,
-            path: path.to_owned(),
-            count: 0,
-        })
-    }
-
-    fn next_line(&mut self) -> Result<Option<String>, ShardError> {
-        let mut bytes = Vec::new();
-        let read = self.reader.read_until(b'\n', &mut bytes);
-        let read = read.map_err(|e| not_read(&self.path, &e))?;
-        self.count += usize::from(read > 0);
-        let text = String::from_utf8(bytes).map_err(|e| {
-            let at = e.utf8_error().valid_up_to();
-            let byte = e.as_bytes().get(at).copied().unwrap_or_default();
-            let said = format!("found the byte {byte:#04x}, expected a text in UTF-8");
-            self.wrong(at..at + 1, &String::from_utf8_lossy(e.as_bytes()), &said)
-        })?;
-        Ok((read > 0).then_some(text))
-    }
-
-    fn parsed<T>(
-        &self,
-        line: &str,
-        parse: impl Fn(&str) -> Result<T, TextError>,
-    ) -> Result<T, ShardError> {
-        parse(line).map_err(|e| self.wrong(e.span.clone().unwrap_or(0..0), line, &e.to_string()))
-    }
-
-    /// What is wrong with the line that was read last.
-    fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> ShardError {
-        let LineColumn { column, .. } = LineColumn::new(line.as_bytes(), span.start);
-        ShardError {
-            place: Some([self.count.max(1), column]),
-            ..failed(&self.path, &words)
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shards_share_the_setups_without_rest() {
-        for (count, of) in [(10, 3), (3, 10), (1000, 7), (0, 2)] {
-            let head = |index| ShardHead {
-                shard: [index, of],
-                count,
-                ..head()
-            };
-            let all: Vec<usize> = (1..=of).flat_map(|i| head(i).range()).collect();
-            assert_eq!(all, (0..count).collect::<Vec<_>>());
-        }
-    }
-
-    fn head() -> ShardHead {
-        ShardHead {
-            schema: SCHEMA.to_owned(),
-            description: DescriptionRecord::default(),
-            part: String::new(),
-            digest: String::new(),
-            setups: String::new(),
-            shard: [1, 1],
-            count: 0,
-        }
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_shard_is_as_readable_as_any_other_file() {
-        use std::os::unix::fs::PermissionsExt;
-        let folder = tempfile::tempdir().unwrap();
-        let [shard, other] = ["a.shard", "other"].map(|name| folder.path().join(name));
-        ShardWriter::new(&shard, &head()).unwrap().finish().unwrap();
-        std::fs::write(&other, "").unwrap();
-        let [a, b] = [&shard, &other].map(|path| std::fs::metadata(path).unwrap().permissions());
-        assert_eq!(a.mode(), b.mode());
-    }
-
-    #[test]
-    fn a_folder_is_no_place_for_a_shard() {
-        let folder = tempfile::tempdir().unwrap();
-        assert!(ShardWriter::new(folder.path(), &head()).is_err());
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-    }
-
-    #[test]
-    fn digests_tell_where_texts_end() {
-        let [a, b] = [["ab", "c"], ["a", "bc"]].map(|texts| digest(texts.map(str::as_bytes)));
-        assert_ne!(a, b);
-    }
-}
+mod tests;

@@ -1,0 +1,81 @@
+//! The lines of constant angle along which seams run: rulings, meridians and circles about a tube.
+
+use nalgebra::Point3;
+use premio_kernel::brep::surface_path::SurfacePath;
+use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::curve::{Circle, Curve, Line};
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::Surface;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// A line of constant angle.
+pub(super) struct Track {
+    pub(super) walk: SurfacePath,
+    pub(super) curve: Curve,
+    /// The curve's parameter at the start, and by the length of the walk.
+    pub(super) start: f64,
+    pub(super) by: f64,
+    pub(super) course: Course,
+}
+
+/// What a track is at its ends.
+pub(super) enum Course {
+    /// It closes.
+    Round,
+    /// It starts at a point of the surface, at which the face's boundary is not, and ends at another
+    /// one or beyond the face.
+    Open {
+        first: Option<f64>,
+        last: Option<f64>,
+    },
+}
+
+pub(super) fn ruling(surface: &Surface, from: Point3<f64>, course: Course) -> Option<Track> {
+    let walk = SurfacePath::ruling(surface, &from, 0.0, Sense::Along)?;
+    let direction = (walk.point(1.0) - from).normalize();
+    let line = Line {
+        origin: from,
+        direction,
+    };
+    Some(Track {
+        walk,
+        curve: Curve::Line(line),
+        start: 0.0,
+        by: 1.0,
+        course,
+    })
+}
+
+/// The half of a great circle at the angle zero, from pole to pole.
+pub(super) fn meridian(surface: &Surface, radius: f64) -> Option<Track> {
+    let f = surface.frame();
+    let [south, equator] = [-FRAC_PI_2, 0.0].map(|v| surface.point(0.0, v));
+    let walk = SurfacePath::great_circle(&f.origin, &south, &equator)?.upto(0.5 * TAU * radius);
+    Some(Track {
+        walk,
+        curve: upright(f, f.origin, radius),
+        start: -FRAC_PI_2,
+        by: 1.0 / radius,
+        course: Course::Open {
+            first: Some(-FRAC_PI_2),
+            last: Some(FRAC_PI_2),
+        },
+    })
+}
+
+/// The circle about the tube at the angle zero.
+pub(super) fn tube(surface: &Surface, major: f64, minor: f64) -> Curve {
+    let f = surface.frame();
+    upright(f, f.origin + f.x * major, minor)
+}
+
+/// A circle in the plane of x and the axis.
+pub(super) fn upright(f: &Frame, origin: Point3<f64>, radius: f64) -> Curve {
+    let frame = Frame {
+        origin,
+        x: f.x,
+        y: f.z,
+        z: f.x.cross(&f.z),
+    };
+    Curve::Circle(Circle { frame, radius })
+}

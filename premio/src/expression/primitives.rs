@@ -1,0 +1,132 @@
+//! Primitives as expressions.
+
+use super::{Expression, numbers};
+use crate::number::ExactNumber;
+use premio_csg::primitive::Primitive;
+
+/// A block with a corner at the origin and edges along the positive axes.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// assert!((block(6, 4, 2).evaluate()?.volume() - 48.0).abs() < 1e-12);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn block(
+    x: impl Into<ExactNumber>,
+    y: impl Into<ExactNumber>,
+    z: impl Into<ExactNumber>,
+) -> Expression {
+    let size = numbers([x.into(), y.into(), z.into()]);
+    Expression::primitive(size.and_then(|size| Ok(Primitive::block(size)?)))
+}
+
+/// The half of a block where x/X + z/Z ≤ 1.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let ramp = wedge(6, 4, 2).evaluate()?;
+/// assert!((ramp.volume() - 24.0).abs() < 1e-12);
+/// assert_eq!(ramp.faces().count(), 5);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn wedge(
+    x: impl Into<ExactNumber>,
+    y: impl Into<ExactNumber>,
+    z: impl Into<ExactNumber>,
+) -> Expression {
+    let size = numbers([x.into(), y.into(), z.into()]);
+    Expression::primitive(size.and_then(|size| Ok(Primitive::wedge(size)?)))
+}
+
+/// A cylinder along +z, its base disc centred at the origin.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = cylinder(2, 5).evaluate()?;
+/// assert!((solid.volume() - 20.0 * std::f64::consts::PI).abs() < 1e-12);
+/// assert_eq!((solid.edges().count(), solid.vertices().count()), (2, 0));
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn cylinder(radius: impl Into<ExactNumber>, height: impl Into<ExactNumber>) -> Expression {
+    let lengths = numbers([radius.into(), height.into()]);
+    Expression::primitive(lengths.and_then(|[r, h]| Ok(Primitive::cylinder(r, h)?)))
+}
+
+/// A cone along +z: its base disc is centred at the origin, its apex is at `height`.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = cone(3, 4).evaluate()?;
+/// assert!((solid.volume() - 12.0 * std::f64::consts::PI).abs() < 1e-12);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn cone(radius: impl Into<ExactNumber>, height: impl Into<ExactNumber>) -> Expression {
+    let lengths = numbers([radius.into(), height.into()]);
+    Expression::primitive(lengths.and_then(|[r, h]| Ok(Primitive::cone(r, h)?)))
+}
+
+/// A frustum of a cone along +z, with the radii of its base and its top.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = frustum(3, 1, 6).evaluate()?;
+/// assert!((solid.volume() - 26.0 * std::f64::consts::PI).abs() < 1e-12);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn frustum(
+    base: impl Into<ExactNumber>,
+    top: impl Into<ExactNumber>,
+    height: impl Into<ExactNumber>,
+) -> Expression {
+    let lengths = numbers([base.into(), top.into(), height.into()]);
+    Expression::primitive(lengths.and_then(|[a, b, h]| Ok(Primitive::frustum(a, b, h)?)))
+}
+
+/// A sphere centred at the origin.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = sphere("1.5").evaluate()?;
+/// assert_eq!((solid.faces().count(), solid.edges().count()), (1, 0));
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn sphere(radius: impl Into<ExactNumber>) -> Expression {
+    let radius = numbers([radius.into()]);
+    Expression::primitive(radius.and_then(|[r]| Ok(Primitive::sphere(r)?)))
+}
+
+/// A ring torus centred at the origin, with axis z: the radius of the circle that the tube's centre
+/// runs along, and the smaller radius of the tube.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = torus(5, 1).evaluate()?;
+/// assert_eq!(solid.genus(), [1]);
+/// assert!(torus(1, 5).evaluate().is_err());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn torus(major: impl Into<ExactNumber>, minor: impl Into<ExactNumber>) -> Expression {
+    let lengths = numbers([major.into(), minor.into()]);
+    Expression::primitive(lengths.and_then(|[a, b]| Ok(Primitive::torus(a, b)?)))
+}

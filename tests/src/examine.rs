@@ -92,7 +92,7 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(depth.rays);
     let drawn = evaluation.view_resolution().is_some();
-    if drawn && !depth.views.is_empty() && report.contains() {
+    if drawn && !depth.views.is_empty() && report.passes() {
         let all = views::around(&evaluation.bounds);
         let cast = Cast::new(&evaluation);
         match &cast {

@@ -142,7 +142,7 @@ fn unlike_rays(tree: &Tree, evaluation: &Evaluation) -> Vec<String> {
     let checks = seen
         .iter()
         .flat_map(|v| checker.view_with(&v.name, &v.camera, ViewChecks::ALL));
-    let failed = checks.filter(|c| !c.contains());
+    let failed = checks.filter(|c| !c.passes());
     failed.map(|c| c.to_string()).collect()
 }
 

@@ -100,7 +100,7 @@ fn examine(name: &str, json: &Value) -> Vec<f64> {
     for (view, camera) in cameras() {
         for check in checker.view(view, &camera) {
             println!("{name}: {check}");
-            if !check.contains() {
+            if !check.passes() {
                 wrong.push(check.to_string());
             }
         }

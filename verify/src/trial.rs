@@ -220,14 +220,14 @@ pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
         contours: terms.views,
         drawing: terms.sheets,
     };
-    if report.contains() && (asked.contours || asked.drawing) {
+    if report.passes() && (asked.contours || asked.drawing) {
         let all = views::around(&evaluation.bounds);
         for view in all.iter().filter(|v| VIEWS.contains(&v.name.as_str())) {
             let checks = checker.view_with(&view.name, &view.camera, asked);
             report.checks.extend(checks);
         }
     }
-    if terms.step && report.contains() {
+    if terms.step && report.passes() {
         report.checks.extend([checker.step(), checker.mesh()]);
     }
     let mut faults = faults(&report);

@@ -53,7 +53,7 @@ impl<'a> Checked<'a> {
         };
         Self {
             schema: "premio.check/1",
-            holds: report.contains(),
+            holds: report.passes(),
             checks: report.checks.iter().map(one).collect(),
         }
     }

@@ -1,4 +1,4 @@
-//! The pieces of curves between consecutive corners, each once, however many pairs of carriers
+//! The pieces of curves between consecutive vertices, each once, however many pairs of carriers
 //! gave its curve.
 
 use super::arrangement::{Arrangement, IntersectionCurve};

@@ -1,11 +1,12 @@
-//! Which pieces are edges, and where their faces lie: neighbourhoods.
+//! Which pieces are edges, and where their faces lie, by the neighbourhood of each piece.
 //!
-//! Around a piece its carriers stand like the leaves of an open book: each gives two half sheets.
-//! Between two neighbouring sheets the side of every carrier is known, so the tree says whether
+//! The carriers around a piece stand like the leaves of an open book: each gives two half sheets.
+//! Between two neighbouring half sheets the side of every carrier is known, so the tree decides whether
 //! there is material. A piece is an edge where the pattern is neither constant nor one smooth
-//! sheet; a sheet where it changes is a face there. Notation: T is the tangent of the piece, d the
-//! direction of a sheet away from it, l = T × d the direction counterclockwise, n the carrier's
-//! normal.
+//! sheet; a half sheet where it changes is a face there.
+//!
+//! Notation: T is the tangent of the piece, d the direction of a half sheet away from it, l = T × d the
+//! direction counterclockwise, n the carrier's normal.
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;
@@ -221,7 +222,7 @@ impl<N: Float> Classifier<'_, N> {
         let first = changes.iter().position(|c| c.1).unwrap_or(0);
         changes.rotate_left(first);
         debug_assert!(n >= changes.len());
-        let wing = |&(i, after): &(usize, bool)| {
+        let face_use = |&(i, after): &(usize, bool)| {
             let s = &sheets[i];
             // Material beyond: the outward normal is -l, the face lies to the right of T.
             let outward = if (s.beyond == Sense::Along) == after {
@@ -236,7 +237,7 @@ impl<N: Float> Classifier<'_, N> {
                 sense,
             }
         };
-        Ok(changes.iter().map(wing).collect())
+        Ok(changes.iter().map(face_use).collect())
     }
 
     /// Whether the two faces of an edge continue one another smoothly.
@@ -260,8 +261,8 @@ impl<N: Float> Classifier<'_, N> {
     /// The closed carriers without any edge that are faces as a whole.
     fn whole_surfaces(&self, edges: &[Joined<N>]) -> Result<Vec<(usize, Sense)>, EvaluationError> {
         let mut bounded = vec![false; self.arrangement.carriers.len()];
-        for wing in edges.iter().flat_map(|e| &e.face_uses) {
-            bounded[wing.surface] = true;
+        for face_use in edges.iter().flat_map(|e| &e.face_uses) {
+            bounded[face_use.surface] = true;
         }
         let mut whole = Vec::new();
         for (c, surface) in self.arrangement.carriers.iter().enumerate() {

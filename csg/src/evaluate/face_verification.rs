@@ -1,9 +1,9 @@
-//! Every face asked of the tree itself, at a place of its own.
+//! Every face checked against the tree, at a point inside the face.
 //!
-//! A boundary is evaluated from intersections: curves are cut, and around each piece the tree says where
-//! material is. What is told wrongly there may still close, and is a boundary, but of another solid. At
-//! a point inside a face, away from all that meets, the tree must have material just below and none
-//! just above, whatever was told on the way.
+//! A boundary is evaluated from intersections: curves are cut, and the tree decides around each piece
+//! where material is. A wrong decision there may still give a closed boundary, but of another solid. At
+//! a point inside a face, away from all intersections, the tree must have material just below and none
+//! just above.
 
 use super::relevance::CloseCallFilter;
 use crate::tree::NodeId;
@@ -27,7 +27,7 @@ struct FaceVerifier<'a, N: Float> {
 }
 
 /// What a surface does next to a face.
-enum Beside {
+enum Adjacency {
     /// It is the face's own, or off it: below and above the face, whether the half space holds.
     Plain([bool; 2]),
     /// It meets the face there, or lies nearly on it.
@@ -74,10 +74,10 @@ impl<N: Float> CloseCallFilter<'_, N> {
             for (side, (carrier, _)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
                 let is_own = self.arrangement.carriers[*carrier] == *at.surface;
                 match self.beside(&side.surface, is_own, at) {
-                    Beside::Plain(holds) => {
+                    Adjacency::Plain(holds) => {
                         inside = [inside[0] && holds[0], inside[1] && holds[1]];
                     }
-                    Beside::Unclear => return None,
+                    Adjacency::Unclear => return None,
                 }
             }
             for (held, inside) in held.iter_mut().zip(inside) {
@@ -92,15 +92,15 @@ impl<N: Float> CloseCallFilter<'_, N> {
         }))
     }
 
-    fn beside(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Beside {
+    fn beside(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Adjacency {
         let step = N::from_f64(STEP) * self.predicates.resolution::<N>();
         let places = [-step, step].map(|away| surface.distance(&(at.point + at.normal * away)));
         let holds = places.map(N::is_below_zero);
         let is_near = places.iter().any(|d| d.is_within(N::HALF * step));
         // Another one may touch the face there alone.
         match is_near || (holds[0] != holds[1] && !is_own) {
-            true => Beside::Unclear,
-            false => Beside::Plain(holds),
+            true => Adjacency::Unclear,
+            false => Adjacency::Plain(holds),
         }
     }
 }

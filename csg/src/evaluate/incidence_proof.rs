@@ -1,10 +1,10 @@
 //! What passes through a point and along a curve, proven without rounding: for exact evaluation.
 //!
-//! Numbers of 237 bits propose the corners and the carriers through each, the curves and the carriers
-//! that hold them. Here the corner is made the exact zero of three polynomials, and every other one
-//! that is to vanish there is proven to: the levels of its carriers, and where gradients seem to
-//! depend on one another, what says that they do. A carrier holds a curve if it passes through more
-//! points of it than it could otherwise (Bézout).
+//! Extended precision (237 bits) proposes the vertices and the carriers through each, the curves and the
+//! carriers that contain them. Here each vertex becomes the exact zero of three polynomials. Every other
+//! polynomial that should vanish there is proven to vanish: the implicit forms of its carriers, and the
+//! determinants of gradients that seem to depend on one another. A carrier contains a curve if it
+//! passes through more points of it than it could otherwise (Bézout).
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;

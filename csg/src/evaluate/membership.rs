@@ -1,5 +1,5 @@
-//! Whether a choice of sides is material: the tree as a function of the primitives that hold a
-//! point. Only those need be named; all others are taken as not holding it.
+//! Whether a choice of sides is material: the tree as a function of the primitives that contain a
+//! point. Only those need be named; the point is outside of all others.
 
 use crate::tree::{NodeId, Operation, Tree, TreeNode};
 use std::collections::{BTreeMap, BinaryHeap};

@@ -1,14 +1,27 @@
 //! The boundary of a tree: generate and classify (Requicha and Voelcker 1985).
 //!
-//! `tapers` looks for frustums that are nearly cylinders. `halfspaces` gives every primitive as half
-//! spaces, `carriers` the distinct surfaces of these,
-//! `arrangement` the curves in which they meet; `contacts` puts the curves along which surfaces touch
-//! where other curves run next to them. `cuts` gives the common points of curves and surfaces, which
-//! `corners` makes one, and `pieces` what lies between. `membership` asks the tree whether a choice
-//! of sides is material; `sheets` puts the carriers around a piece in order, and `face_uses` decides
-//! which pieces are edges, and where their faces lie; for exact evaluation `proof` proves what lies
-//! on what; `concern` tells the close calls on which the
-//! boundary depends. The kernel assembles the rest.
+//! The stages, in order:
+//!
+//! | module | what it gives |
+//! | --- | --- |
+//! | `near_cylinders` | refuses frustums that are nearly cylinders |
+//! | `vanished` | drops primitives thinner than the resolution |
+//! | `halfspaces` | every primitive as half-spaces |
+//! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
+//! | `arrangement` | the curves in which carriers intersect |
+//! | `tangent_contacts` | moves a curve of contact onto a curve that runs next to it |
+//! | `split_curves` | the common points of curves and carriers |
+//! | `vertices` | equal points merged |
+//! | `edge_candidates` | the pieces of curves between vertices |
+//! | `membership` | whether a choice of sides is material, by the tree |
+//! | `radial_order` | the order of carriers around a piece |
+//! | `edge_classification` | which pieces are edges, and where their faces lie |
+//! | `exact_coefficients` | in exact evaluation, surfaces with rational coefficients |
+//! | `incidence_proof` | in exact evaluation, proofs of what passes through what |
+//! | `relevance` | the close calls on which the boundary depends |
+//! | `face_verification` | every face checked against the tree |
+//!
+//! The kernel assembles edges to loops, faces, shells and solids.
 
 mod arrangement;
 mod distinct_surfaces;

@@ -1,9 +1,9 @@
 //! Where two carriers touch along a curve, and another curve runs next to it.
 //!
 //! Carriers that touch are within the resolution of one another over a strip. A curve of one of
-//! them and a third carrier that runs inside the strip lies on both, so the contact may as well be
-//! along that one, whose place is known: two curves that bound a strip in which nothing can be determined
-//! apart would leave its faces without an order.
+//! them and a third carrier that runs inside the strip lies on both. The contact may then lie along
+//! that curve, whose place is known: two curves that bound a strip too narrow to be resolved would
+//! leave its faces without an order.
 
 use super::arrangement::{Arrangement, IntersectionCurve};
 use nalgebra::Point3;

@@ -1,4 +1,4 @@
-//! The corners: points where curves are cut, equal ones made one.
+//! The vertices: points where curves are cut, with equal points merged.
 
 use super::relevance::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};

@@ -2,7 +2,7 @@
 //!
 //! Loops: at a vertex a coedge is followed by the next one clockwise, seen from outside, so that
 //! the face stays to the left. Faces: loops of one surface that bound one region (`region`).
-//! Shells and solids: `shells`. Where all these touch: `touches`.
+//! Shells and solids: `shells`. Where several of these touch: `non_manifold_points`.
 
 use super::non_manifold_points::touches;
 use super::region::{RegionError, regions};
@@ -140,7 +140,7 @@ const SPHERES: [Around; 7] = {
 #[derive(Clone, Copy, Debug)]
 struct Half {
     edge: usize,
-    wing: FaceUse,
+    face_use: FaceUse,
 }
 
 type Group = (usize, Sense);
@@ -199,7 +199,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         let mut first = Vec::new();
         for (edge, e) in raw.edges.iter().enumerate() {
             first.push(halves.len());
-            halves.extend(e.face_uses.iter().map(|&wing| Half { edge, wing }));
+            halves.extend(e.face_uses.iter().map(|&face_use| Half { edge, face_use }));
         }
         let next = vec![usize::MAX; halves.len()];
         Self {
@@ -215,7 +215,7 @@ impl<'a, N: Float> Assembler<'a, N> {
     fn end(&self, half: usize, at_end: bool) -> Option<usize> {
         let h = &self.halves[half];
         let ends = self.raw.edges[h.edge].ends?;
-        Some(ends[usize::from(at_end == (h.wing.sense == Sense::Along))])
+        Some(ends[usize::from(at_end == (h.face_use.sense == Sense::Along))])
     }
 
     /// Finds the follower of every half.
@@ -223,7 +223,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         // Per vertex and group: the halves that come in and those that go out.
         let mut meeting: BTreeMap<(usize, Group), [Vec<usize>; 2]> = BTreeMap::new();
         for i in 0..self.halves.len() {
-            let w = self.halves[i].wing;
+            let w = self.halves[i].face_use;
             match (self.end(i, false), self.end(i, true)) {
                 (Some(start), Some(end)) => {
                     let group = (w.surface, w.outward);
@@ -283,7 +283,7 @@ impl<'a, N: Float> Assembler<'a, N> {
 
     /// Whether a half's end (`at_end`) or start is the first end of its edge.
     fn at_first_end(&self, half: usize, at_end: bool) -> bool {
-        at_end != (self.halves[half].wing.sense == Sense::Along)
+        at_end != (self.halves[half].face_use.sense == Sense::Along)
     }
 
     /// Edge ends in their order around a vertex, counterclockwise seen from outside: of the points
@@ -398,7 +398,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         DirectedArc {
             curve: &self.raw.curves[e.curve],
             range: e.range,
-            sense: h.wing.sense,
+            sense: h.face_use.sense,
         }
     }
 
@@ -406,7 +406,7 @@ impl<'a, N: Float> Assembler<'a, N> {
     fn faces(&self, rings: &[Vec<usize>]) -> Result<Vec<Region>, AssemblyError> {
         let mut groups: BTreeMap<Group, Vec<usize>> = BTreeMap::new();
         for (i, ring) in rings.iter().enumerate() {
-            let w = self.halves[ring[0]].wing;
+            let w = self.halves[ring[0]].face_use;
             groups.entry((w.surface, w.outward)).or_default().push(i);
         }
         let mut faces = Vec::new();
@@ -477,7 +477,7 @@ impl<'a, N: Float> Assembler<'a, N> {
             let edge = EdgeId(h.edge as u32);
             topology.coedges.push(Coedge {
                 edge,
-                sense: h.wing.sense,
+                sense: h.face_use.sense,
                 owner: unowned,
             });
         }

@@ -83,8 +83,8 @@ impl Edges {
                 through.push(EdgeId(id as u32));
             }
             for &point in edge.ends.iter().flatten().chain(&edge.passes) {
-                for wing in &edge.face_uses {
-                    let surface = names.surface_of[&wing.surface];
+                for face_use in &edge.face_uses {
+                    let surface = names.surface_of[&face_use.surface];
                     found.bounding.insert((point, surface));
                 }
             }

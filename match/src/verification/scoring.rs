@@ -38,7 +38,7 @@ const SMOOTH: f64 = 0.11;
 /// What it tells that features are off as wholes, on the average of them, by the logarithm of how many
 /// times as far as their edges are off next to that: up to so much, and how far, in pixels, both are off
 /// at least.
-const ASTRAY: [f64; 2] = [4.8, 3.0];
+const OFFSET_WEIGHT: [f64; 2] = [4.8, 3.0];
 const SLIGHT: f64 = 0.05;
 /// What it tells that the border of the picture cuts contours off, by the logarithm of what is left:
 /// what is out of the picture can be anything.
@@ -46,13 +46,13 @@ const CUT: f64 = 9.0;
 /// What it tells that features are missed, by their share of the length, and that little is found, by the
 /// logarithm of its length in pixels to this.
 const MISSED: f64 = 19.5;
-const LITTLE: f64 = 10.2;
+const SHORTNESS_WEIGHT: f64 = 10.2;
 const ENOUGH: f64 = 640.0;
 /// What it tells that an edge goes on past a vertex of the part, for each.
 const PAST: f64 = 3.0;
 /// What it tells that the shape is not told, by the logarithm of its ratio to this: from so much on,
 /// either way, it tells no more.
-const TOLD: f64 = 1.0;
+const SHAPE_SCALE: f64 = 1.0;
 const SHAPE: f64 = 6.0;
 /// What it tells that nothing is found of some carriers, by the logarithm of the share of the others: what
 /// is found may be all that there is.
@@ -109,7 +109,9 @@ fn systematic_offset(found: &PartMatch) -> f64 {
     let times = features.map(|f| {
         let [wholes, edges] =
             [f.systematic_offset.wholes, f.systematic_offset.edges].map(|off| off + SLIGHT);
-        (wholes / edges).ln().clamp(-ASTRAY[1], ASTRAY[1])
+        (wholes / edges)
+            .ln()
+            .clamp(-OFFSET_WEIGHT[1], OFFSET_WEIGHT[1])
     });
     times.sum::<f64>() / found.found().max(1) as f64
 }
@@ -121,12 +123,12 @@ pub fn odds(found: &PartMatch, straightness: f64) -> f64 {
     let inside = found.inside().max(f64::MIN_POSITIVE);
     let length = found.share() * found.length() / ENOUGH;
     let shape = found.shape.ratio();
-    ODDS - ROUGH[1] * rough(found, straightness) - ASTRAY[0] * systematic_offset(found)
+    ODDS - ROUGH[1] * rough(found, straightness) - OFFSET_WEIGHT[0] * systematic_offset(found)
         + CUT * inside.ln()
         - MISSED * found.missed()
-        + LITTLE * length.clamp(f64::MIN_POSITIVE, 1.0).ln()
+        + SHORTNESS_WEIGHT * length.clamp(f64::MIN_POSITIVE, 1.0).ln()
         - PAST * f64::from(found.past())
-        + TOLD * (shape.clamp(-SHAPE, SHAPE) - SHAPE)
+        + SHAPE_SCALE * (shape.clamp(-SHAPE, SHAPE) - SHAPE)
         + CARRIERS * found.shape.carriers.max(f64::MIN_POSITIVE).ln()
         - FLAT * flat(&found.shape)
         - FRAMED * framed(found)

@@ -122,9 +122,9 @@ pub struct Checker<'a> {
 }
 
 impl CheckReport {
-    /// Whether all checks hold.
-    pub fn contains(&self) -> bool {
-        self.checks.iter().all(Check::contains)
+    /// Whether every check passes.
+    pub fn passes(&self) -> bool {
+        self.checks.iter().all(Check::passes)
     }
 
     /// The checks that find one thing.
@@ -132,23 +132,23 @@ impl CheckReport {
         self.checks.iter().filter(move |c| c.finding == finding)
     }
 
-    /// The checks that do not hold: they fail, or do not tell.
+    /// The checks that do not pass: they fail or are undecided.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|c| !c.contains())
+        self.checks.iter().filter(|c| !c.passes())
     }
 }
 
 impl Check {
-    /// Whether it holds.
-    pub fn contains(&self) -> bool {
+    /// Whether it passes.
+    pub fn passes(&self) -> bool {
         self.finding == Finding::Passes
     }
 }
 
 impl Finding {
-    /// Of a check that always tells.
-    fn new(holds: bool) -> Self {
-        match holds {
+    /// The finding of a check that always decides.
+    fn new(passes: bool) -> Self {
+        match passes {
             true => Self::Passes,
             false => Self::Fails,
         }

@@ -88,17 +88,17 @@ pub fn contours_with(
         scene: &scene,
         junctions: &mut junctions,
         contours: Vec::with_capacity(all),
-        strands: Vec::with_capacity(all),
+        contour_arcs: Vec::with_capacity(all),
     };
     weave.edges(&limbs);
     weave.limbs(&limbs);
-    let (mut contours, mut strands) = (weave.contours, weave.strands);
-    junction::find(&mut strands, &scene, &mut junctions);
+    let (mut contours, mut contour_arcs) = (weave.contours, weave.contour_arcs);
+    junction::find(&mut contour_arcs, &scene, &mut junctions);
     seconds.junctions = started.elapsed().as_secs_f64();
     let started = Instant::now();
-    let found = pieces(&scene, &mut strands, &mut junctions, method);
-    for (strand, pieces) in strands.iter().zip(found) {
-        let all = &mut contours[strand.contour as usize].pieces;
+    let found = pieces(&scene, &mut contour_arcs, &mut junctions, method);
+    for (contour_arc, pieces) in contour_arcs.iter().zip(found) {
+        let all = &mut contours[contour_arc.contour as usize].pieces;
         match all.is_empty() {
             true => *all = pieces,
             false => all.extend(pieces),
@@ -187,7 +187,7 @@ struct ContourBuilder<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
     contours: Vec<Contour>,
-    strands: Vec<ContourArc<'a>>,
+    contour_arcs: Vec<ContourArc<'a>>,
 }
 
 impl<'a> ContourBuilder<'_, 'a, '_, '_> {
@@ -229,7 +229,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         let seen = self.image(&source);
         let contour = self.contour(&source, &seen, kind);
         self.contours.push(Contour { smooth, ..contour });
-        self.strand(source, seen);
+        self.contour_arc(source, seen);
     }
 
     /// A smooth edge, cut where it begins or ceases to be the limb.
@@ -271,7 +271,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             let seen = self.image(&source);
             let contour = self.contour(&source, &seen, ContourKind::Limb);
             self.contours.push(contour);
-            self.strand(source, seen);
+            self.contour_arc(source, seen);
         }
     }
 
@@ -302,7 +302,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
     }
 
     /// Cuts an arc at the near plane and keeps what lies beyond.
-    fn strand(&mut self, source: Source<'a>, seen: Image) {
+    fn contour_arc(&mut self, source: Source<'a>, seen: Image) {
         let projection = self.scene.projection;
         let hull = bounds(source.curve, source.range);
         let corner = |k: usize| {
@@ -419,7 +419,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                 });
             }
         }
-        self.strands.push(ContourArc {
+        self.contour_arcs.push(ContourArc {
             curve: source.curve,
             range,
             closed,

@@ -8,8 +8,7 @@
 //! plain; elsewhere the faces are counted anew.
 
 use crate::contour_generator::contour_arc::ContourArc;
-use crate::contour_generator::junctions::JunctionKind;
-use crate::contour_generator::junctions::{JunctionSupport, Junctions};
+use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctions};
 use crate::scene::Scene;
 use crate::scene::tolerance::SPACE_TOLERANCE;
 use nalgebra::{Point3, Vector3};

@@ -195,20 +195,20 @@ impl Chain {
 /// contours, carried on from there where what hides changes clearly.
 pub fn pieces(
     scene: &Scene<'_>,
-    strands: &mut [ContourArc<'_>],
+    contour_arcs: &mut [ContourArc<'_>],
     junctions: &mut Junctions<'_>,
     method: Method,
 ) -> Vec<Vec<ContourPiece>> {
     let near = SPACE_TOLERANCE * scene.resolution;
-    let cut = strands.iter_mut();
+    let cut = contour_arcs.iter_mut();
     let chains: Vec<Chain> = cut.map(|s| Chain::new(s, junctions, near)).collect();
-    let strands = &*strands;
+    let contour_arcs = &*contour_arcs;
     let carried = match method {
-        Method::Propagated => Carrying::new(scene, strands, &chains, junctions).counts(),
+        Method::Propagated => Carrying::new(scene, contour_arcs, &chains, junctions).counts(),
         Method::Recounted => None,
     };
     let counted = || {
-        let all = strands.iter().zip(&chains);
+        let all = contour_arcs.iter().zip(&chains);
         let of = |(arc, chain): (_, &Chain)| {
             let spans = chain.spans.iter();
             spans.map(|s| count(scene, arc, s.range)).collect()
@@ -238,7 +238,7 @@ fn piece(span: &Span, count: &Occluders) -> ContourPiece {
 /// Quantitative invisibility on its way through the connected parts of the contours.
 struct Carrying<'s, 'a> {
     scene: &'s Scene<'a>,
-    strands: &'s [ContourArc<'s>],
+    contour_arcs: &'s [ContourArc<'s>],
     chains: &'s [Chain],
     junctions: &'s Junctions<'s>,
     corrections: Corrections<'s, 'a>,
@@ -257,7 +257,7 @@ struct Carrying<'s, 'a> {
 impl<'s, 'a> Carrying<'s, 'a> {
     fn new(
         scene: &'s Scene<'a>,
-        strands: &'s [ContourArc<'s>],
+        contour_arcs: &'s [ContourArc<'s>],
         chains: &'s [Chain],
         junctions: &'s Junctions<'s>,
     ) -> Self {
@@ -270,7 +270,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         through.dedup();
         Self {
             scene,
-            strands,
+            contour_arcs,
             chains,
             junctions,
             corrections: Corrections::new(scene),
@@ -285,7 +285,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
     /// What hides every span; none where the ways to a junction contradict each other, so that a
     /// change must have been missed.
     fn counts(mut self) -> Option<Vec<Vec<Occluders>>> {
-        for i in 0..self.strands.len() as u32 {
+        for i in 0..self.contour_arcs.len() as u32 {
             self.next.push(i);
             while let Some(i) = self.next.pop() {
                 if self.counts[i as usize].iter().any(Option::is_none) {
@@ -315,7 +315,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
             let [entry, exit] = if backward { [1, 0] } else { [0, 1] };
             let span = self.chains[i].spans[k];
             let now = known.take().unwrap_or_else(|| {
-                let now = count(self.scene, &self.strands[i], span.range);
+                let now = count(self.scene, &self.contour_arcs[i], span.range);
                 self.leave(i, k, entry, &now);
                 now
             });
@@ -326,7 +326,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
             known = match change {
                 // What is counted where contours fall on one another is not carried on.
                 Some(Change::Pass(passing)) if now.unambiguous => {
-                    let p = self.strands[i].curve.point(span.range[exit]);
+                    let p = self.contour_arcs[i].curve.point(span.range[exit]);
                     let passing = if backward {
                         passing.reversed()
                     } else {
@@ -350,7 +350,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
             return None;
         }
         let end = End {
-            arc: &self.strands[i],
+            arc: &self.contour_arcs[i],
             t: range[which],
             middle: 0.5 * (range[0] + range[1]),
         };

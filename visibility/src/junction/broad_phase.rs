@@ -44,30 +44,34 @@ fn extremes(image: &Image, lo: f64) -> ([f64; 4], usize) {
 
 /// The boxes of the links of an arc, each about `step` long.
 fn links(
-    strand: &ContourArc<'_>,
+    contour_arc: &ContourArc<'_>,
     projection: &Projection,
     step: f64,
     push: &mut impl FnMut(ImageBox),
 ) {
-    if !strand.stretches.is_empty() {
-        return strand.stretches.iter().for_each(|s| push(s.bounds));
+    if !contour_arc.stretches.is_empty() {
+        return contour_arc.stretches.iter().for_each(|s| push(s.bounds));
     }
-    let [lo, hi] = strand.range;
-    let (turns, count) = extremes(&strand.image, lo);
-    let point = |t: f64| flat_of(projection, &strand.curve.point(t));
+    let [lo, hi] = contour_arc.range;
+    let (turns, count) = extremes(&contour_arc.image, lo);
+    let point = |t: f64| flat_of(projection, &contour_arc.curve.point(t));
     let chain = |[from, to]: [f64; 2], ends: [[f64; 2]; 2]| {
         let mut b = ImageBox::EMPTY.with(ends[0]).with(ends[1]);
         for &t in turns[..count].iter().filter(|t| t.lies_between([from, to])) {
             b = b.with(point(t));
         }
-        for &t in strand.turns.iter().filter(|t| t.lies_between([from, to])) {
+        for &t in contour_arc
+            .turns
+            .iter()
+            .filter(|t| t.lies_between([from, to]))
+        {
             b = b.with(point(t));
         }
         b
     };
     let whole = chain([lo, hi], [point(lo), point(hi)]);
     let [w, h] = whole.sides();
-    let thick = match strand.image {
+    let thick = match contour_arc.image {
         Image::Line { .. } => w.min(h),
         _ => w.max(h),
     };
@@ -87,15 +91,15 @@ fn links(
 /// The pairs of arcs whose images may meet, each once and in order; notes the hull of each
 /// arc's image. `near` is what counts as touching, as a distance in space.
 pub fn candidates(
-    strands: &mut [ContourArc<'_>],
+    contour_arcs: &mut [ContourArc<'_>],
     projection: &Projection,
     near: f64,
 ) -> Vec<(u32, u32)> {
     let mut part = ImageBox::EMPTY;
     let mut least = f64::INFINITY;
-    for strand in &*strands {
-        for t in strand.range {
-            let p = strand.curve.point(t);
+    for contour_arc in &*contour_arcs {
+        for t in contour_arc.range {
+            let p = contour_arc.curve.point(t);
             part = part.with(flat_of(projection, &p));
             least = least.min(projection.homogeneous(&p).z);
         }
@@ -103,18 +107,18 @@ pub fn candidates(
     let [w, h] = part.sides();
     let step = w.max(h) / LINKS;
     let grow = (near / least.max(near)).min(step);
-    let mut all: Vec<Link> = Vec::with_capacity(strands.len() * 2);
-    for (i, strand) in strands.iter_mut().enumerate() {
-        if matches!(strand.image, Image::Point) {
+    let mut all: Vec<Link> = Vec::with_capacity(contour_arcs.len() * 2);
+    for (i, contour_arc) in contour_arcs.iter_mut().enumerate() {
+        if matches!(contour_arc.image, Image::Point) {
             continue;
         }
         let mut hull = ImageBox::EMPTY;
-        links(strand, projection, step, &mut |b| {
+        links(contour_arc, projection, step, &mut |b| {
             let b = b.grown(grow);
             hull = hull.hull(&b);
             all.push((b, i as u32));
         });
-        strand.hull = hull;
+        contour_arc.hull = hull;
     }
     let mut pairs = if all.len() <= FEW {
         few_meeting(&mut all)
@@ -122,7 +126,7 @@ pub fn candidates(
         many_meeting(&all)
     };
     let general = |s: &ContourArc<'_>| matches!(s.image, Image::General);
-    let own = strands.iter().enumerate().filter(|(_, s)| general(s));
+    let own = contour_arcs.iter().enumerate().filter(|(_, s)| general(s));
     pairs.extend(own.map(|(i, _)| (i as u32, i as u32)));
     pairs.sort_unstable();
     pairs.dedup();

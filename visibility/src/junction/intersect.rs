@@ -64,8 +64,8 @@ pub fn cross(
 }
 
 /// The homogeneous image at a parameter.
-fn at(strand: &ContourArc<'_>, t: f64) -> Vector3<f64> {
-    match &strand.image {
+fn at(contour_arc: &ContourArc<'_>, t: f64) -> Vector3<f64> {
+    match &contour_arc.image {
         Image::Line {
             origin, direction, ..
         } => origin + direction * t,
@@ -463,20 +463,30 @@ fn edgewise(
 
 /// The parameters at which an arc's image passes that of a point, where it does.
 pub fn parameters_at(
-    strand: &ContourArc<'_>,
+    contour_arc: &ContourArc<'_>,
     p: &Point3<f64>,
     scene: &Scene<'_>,
     found: &mut impl FnMut(f64),
 ) {
     let projection = scene.projection;
-    match &strand.image {
-        Image::Edgewise(on) => {
-            on.parameters(strand.curve, strand.range, *p, scene.resolution, found)
-        }
+    match &contour_arc.image {
+        Image::Edgewise(on) => on.parameters(
+            contour_arc.curve,
+            contour_arc.range,
+            *p,
+            scene.resolution,
+            found,
+        ),
         Image::General => {
             let p = flat_of(projection, p);
-            passes(strand.curve, &strand.stretches, projection, p, found);
+            passes(
+                contour_arc.curve,
+                &contour_arc.stretches,
+                projection,
+                p,
+                found,
+            );
         }
-        image => image.parameters(&projection.homogeneous(p), strand.range, found),
+        image => image.parameters(&projection.homogeneous(p), contour_arc.range, found),
     }
 }

@@ -113,7 +113,7 @@ fn own_pairs<'x>(a: &'x ContourArc<'_>, both: &mut impl FnMut(&'x MonotoneArc, &
 
 /// Two stretches as graphs over a common direction.
 pub struct Graphs<'x> {
-    strands: [&'x ContourArc<'x>; 2],
+    contour_arcs: [&'x ContourArc<'x>; 2],
     a: &'x Curve,
     b: &'x Curve,
     projection: &'x Projection,
@@ -153,7 +153,7 @@ impl<'x> Graphs<'x> {
         let e = [sum[0] / size, sum[1] / size];
         let [under, over] = courses.map(|c| c.slope_over(e));
         Some(Self {
-            strands: [a, b],
+            contour_arcs: [a, b],
             a: a.curve,
             b: b.curve,
             projection,
@@ -249,10 +249,10 @@ impl<'x> Graphs<'x> {
 
     /// Whether one of the curves ends at a parameter.
     pub fn ends(&self, t: f64, s: f64) -> bool {
-        let ends = |strand: &ContourArc<'_>, t: f64| {
-            !strand.closed && strand.range.iter().any(|end| end.is_exactly(t))
+        let ends = |contour_arc: &ContourArc<'_>, t: f64| {
+            !contour_arc.closed && contour_arc.range.iter().any(|end| end.is_exactly(t))
         };
-        let [a, b] = self.strands;
+        let [a, b] = self.contour_arcs;
         ends(a, t) || ends(b, s)
     }
 
@@ -305,7 +305,7 @@ impl<'x> Graphs<'x> {
         match isolate(&self, &[lo, hi], resolution) {
             Roots::Everywhere => common.shared.push(Shared::new(self, [lo, hi])),
             Roots::At { roots, .. } => {
-                let [a, b] = self.strands;
+                let [a, b] = self.contour_arcs;
                 let place = |r: &Root| place_of(r, [b, a], |s| self.ahead(s));
                 for s in roots.iter().filter_map(place) {
                     common.roots.push((self.gap(s).t, s));

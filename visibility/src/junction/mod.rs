@@ -14,8 +14,7 @@ pub(crate) mod overlap;
 pub(crate) mod snap;
 
 use crate::contour_generator::contour_arc::{Change, ContourArc, Passing, Split};
-use crate::contour_generator::junctions::JunctionKind;
-use crate::contour_generator::junctions::{JunctionSupport, Junctions};
+use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctions};
 use crate::image_curve::{Image, flat_of};
 use crate::junction::broad_phase::candidates;
 use crate::junction::intersect::{Overlap, cross, parameters_at};
@@ -29,8 +28,9 @@ use premio_kernel::number::predicates::{Compare, ROUNDING};
 
 /// Whether an arc passes a junction in the image at that junction and nowhere else: one of its own,
 /// and it is straight.
-fn passes_once(strand: &ContourArc<'_>, id: u32) -> bool {
-    matches!(strand.image, Image::Line { .. }) && strand.junctions().any(|(own, _)| own == id)
+fn passes_once(contour_arc: &ContourArc<'_>, id: u32) -> bool {
+    matches!(contour_arc.image, Image::Line { .. })
+        && contour_arc.junctions().any(|(own, _)| own == id)
 }
 
 /// What a contour does to one that passes behind it.
@@ -59,17 +59,17 @@ struct Search<'s, 'a, 'j, 'p> {
 #[derive(Clone, Copy, Debug)]
 struct Behind {
     /// The farther arc, and its parameter.
-    strand: u32,
+    contour_arc: u32,
     t: f64,
     /// The contours of the nearer and of the farther arc.
     contours: [u32; 2],
 }
 
 /// Finds all T-junctions and notes them as splits of the farther arcs.
-pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
-    split_at_touches(strands, scene, junctions);
+pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    split_at_touches(contour_arcs, scene, junctions);
     let pairs = candidates(
-        strands,
+        contour_arcs,
         scene.projection,
         IMAGE_TOLERANCE * scene.resolution,
     );
@@ -77,11 +77,11 @@ pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut J
         scene,
         junctions,
         splits: Vec::new(),
-        asked: vec![Vec::new(); strands.len()],
+        asked: vec![Vec::new(); contour_arcs.len()],
         behind: Vec::new(),
     };
     for (i, j) in pairs {
-        let (a, b) = (&strands[i as usize], &strands[j as usize]);
+        let (a, b) = (&contour_arcs[i as usize], &contour_arcs[j as usize]);
         let mut found = |t: f64, s: f64| search.crossing((i, a, t), (j, b, s));
         let overlap = cross(a, b, scene.projection, scene.resolution, &mut found);
         search.crowd_passed(a, b);
@@ -95,38 +95,47 @@ pub fn find(strands: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut J
         if overlap == Overlap::Yes && i != j {
             search.overlap((i, a), (j, b));
             search.overlap((j, b), (i, a));
-            search.crowd_all(a);
-            search.crowd_all(b);
+            search.mark_all_ambiguous(a);
+            search.mark_all_ambiguous(b);
         }
     }
     // An image that turns back falls on itself.
-    for (i, a) in strands.iter().enumerate() {
+    for (i, a) in contour_arcs.iter().enumerate() {
         if !a.turns.is_empty() {
             search.overlap((i as u32, a), (i as u32, a));
         }
         if !a.turns.is_empty() || matches!(a.image, Image::Point) {
-            search.crowd_all(a);
+            search.mark_all_ambiguous(a);
         }
     }
     let Search { splits, behind, .. } = search;
-    for (strand, split) in splits {
-        strands[strand as usize].splits.push(split);
+    for (contour_arc, split) in splits {
+        contour_arcs[contour_arc as usize].splits.push(split);
     }
     for behind in behind {
-        behind.cut(&mut strands[behind.strand as usize], scene, junctions);
+        behind.cut(
+            &mut contour_arcs[behind.contour_arc as usize],
+            scene,
+            junctions,
+        );
     }
 }
 
 impl Behind {
     /// Cuts the farther arc, where it is not cut yet; what a contour does that crosses it there is
     /// not all that changes.
-    fn cut(self, strand: &mut ContourArc<'_>, scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
+    fn cut(
+        self,
+        contour_arc: &mut ContourArc<'_>,
+        scene: &Scene<'_>,
+        junctions: &mut Junctions<'_>,
+    ) {
         let near = 2.0 * IMAGE_TOLERANCE * scene.resolution;
-        let curve = strand.curve;
+        let curve = contour_arc.curve;
         let p = curve.point(self.t);
         let here = |t: f64| (curve.point(t) - p).norm().is_within(near);
-        let is_cut = strand.junctions().any(|(_, t)| here(t));
-        for split in strand.splits.iter_mut().filter(|split| here(split.t)) {
+        let is_cut = contour_arc.junctions().any(|(_, t)| here(t));
+        for split in contour_arc.splits.iter_mut().filter(|split| here(split.t)) {
             split.change = Change::Correct;
         }
         if is_cut {
@@ -134,7 +143,7 @@ impl Behind {
         }
         let junction = junctions.add(JunctionKind::T, JunctionSupport::Alone, &p);
         junctions.list[junction as usize].contours = self.contours.to_vec();
-        strand.splits.push(Split {
+        contour_arc.splits.push(Split {
             t: self.t,
             junction,
             change: Change::Correct,
@@ -146,13 +155,13 @@ type At<'x, 'a> = (u32, &'x ContourArc<'a>, f64);
 
 impl Search<'_, '_, '_, '_> {
     /// The parameter on its arc; where the image turns back on itself counts as an end.
-    fn settle(&self, strand: &ContourArc<'_>, t: f64) -> Option<Settled> {
+    fn settle(&self, contour_arc: &ContourArc<'_>, t: f64) -> Option<Settled> {
         let near = IMAGE_TOLERANCE * self.scene.resolution;
-        let settled = settle(strand, t, near)?;
-        if !strand.turns.is_empty() {
+        let settled = settle(contour_arc, t, near)?;
+        if !contour_arc.turns.is_empty() {
             // The image stands still at a turn: there little of the image is much of the curve.
-            let p = strand.curve.point(settled.t);
-            if let Some(t) = self.stop_next_to(strand, settled.t, &p, near) {
+            let p = contour_arc.curve.point(settled.t);
+            if let Some(t) = self.stop_next_to(contour_arc, settled.t, &p, near) {
                 return Some(Settled { t, at_end: true });
             }
         }
@@ -163,20 +172,20 @@ impl Search<'_, '_, '_, '_> {
     /// `near` from `q`.
     fn stop_next_to(
         &self,
-        strand: &ContourArc<'_>,
+        contour_arc: &ContourArc<'_>,
         t: f64,
         q: &Point3<f64>,
         near: f64,
     ) -> Option<f64> {
-        let ends = (!strand.closed).then_some(strand.range);
-        let mut stops = strand
+        let ends = (!contour_arc.closed).then_some(contour_arc.range);
+        let mut stops = contour_arc
             .turns
             .iter()
             .copied()
             .chain(ends.into_iter().flatten());
         stops.find(|&stop| {
-            let apart = self.apart(q, &strand.curve.point(stop));
-            apart.is_at_most(near) && self.straight(strand, stop, t)
+            let apart = self.apart(q, &contour_arc.curve.point(stop));
+            apart.is_at_most(near) && self.straight(contour_arc, stop, t)
         })
     }
 
@@ -188,11 +197,11 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Whether the image between two parameters is straight to within the resolution.
-    fn straight(&self, strand: &ContourArc<'_>, from: f64, to: f64) -> bool {
-        if let Image::Line { .. } = strand.image {
+    fn straight(&self, contour_arc: &ContourArc<'_>, from: f64, to: f64) -> bool {
+        if let Image::Line { .. } = contour_arc.image {
             return true;
         }
-        let [p, m, q] = [from, 0.5 * (from + to), to].map(|t| strand.curve.point(t));
+        let [p, m, q] = [from, 0.5 * (from + to), to].map(|t| contour_arc.curve.point(t));
         let chord = Point3::from((p.coords + q.coords) * 0.5);
         self.apart(&m, &chord)
             .is_at_most(IMAGE_TOLERANCE * self.scene.resolution)
@@ -249,8 +258,10 @@ impl Search<'_, '_, '_, '_> {
         let junction = self
             .junctions
             .add(JunctionKind::T, JunctionSupport::Alone, p);
-        self.junctions.list[junction as usize].contours =
-            both.iter().map(|(_, strand, _)| strand.contour).collect();
+        self.junctions.list[junction as usize].contours = both
+            .iter()
+            .map(|(_, contour_arc, _)| contour_arc.contour)
+            .collect();
         self.junctions.mark_ambiguous(junction);
         let change = Change::Correct;
         self.splits.extend(both.map(|(i, _, t)| {
@@ -279,16 +290,17 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Another contour passes the end of an arc that is at a parameter.
-    fn mark_ambiguous(&mut self, strand: &ContourArc<'_>, at: Settled) {
+    fn mark_ambiguous(&mut self, contour_arc: &ContourArc<'_>, at: Settled) {
         if !at.at_end {
             return;
         }
-        let [lo, hi] = strand.range;
-        let p = strand.curve.point(at.t);
+        let [lo, hi] = contour_arc.range;
+        let p = contour_arc.curve.point(at.t);
         let nearest = usize::from((at.t - lo).is_beyond(hi - at.t));
-        for (k, (id, t)) in strand.ends.iter().zip(strand.range).enumerate() {
+        for (k, (id, t)) in contour_arc.ends.iter().zip(contour_arc.range).enumerate() {
             let near = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
-            let passed = k == nearest || self.apart(&p, &strand.curve.point(t)).is_at_most(near);
+            let passed =
+                k == nearest || self.apart(&p, &contour_arc.curve.point(t)).is_at_most(near);
             if let (true, &Some(id)) = (passed, id) {
                 self.junctions.mark_ambiguous(id);
             }
@@ -320,7 +332,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// Notes where `far` passes behind the junctions of `near` in the image: contours that only
     /// touch it there end there, or begin to be hidden, so that it may enter what lies between them.
-    fn pass_behind(&mut self, near: &ContourArc<'_>, (strand, far): (u32, &ContourArc<'_>)) {
+    fn pass_behind(&mut self, near: &ContourArc<'_>, (contour_arc, far): (u32, &ContourArc<'_>)) {
         for (id, s) in near.junctions() {
             if !far.hull.contains(self.junctions.image(id)) || passes_once(far, id) {
                 continue;
@@ -328,7 +340,7 @@ impl Search<'_, '_, '_, '_> {
             let q = near.curve.point(s);
             let mut behind = std::mem::take(&mut self.behind);
             parameters_at(far, &q, self.scene, &mut |t| {
-                behind.extend(self.behind_at(near, (id, &q), (strand, far, t)));
+                behind.extend(self.behind_at(near, (id, &q), (contour_arc, far, t)));
             });
             self.behind = behind;
         }
@@ -339,7 +351,7 @@ impl Search<'_, '_, '_, '_> {
         &self,
         near: &ContourArc<'_>,
         (id, q): (u32, &Point3<f64>),
-        (strand, far, t): At<'_, '_>,
+        (contour_arc, far, t): At<'_, '_>,
     ) -> Option<Behind> {
         let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
         let Settled { t, at_end: false } = self.settle(far, t)? else {
@@ -359,7 +371,7 @@ impl Search<'_, '_, '_, '_> {
             return None;
         }
         Some(Behind {
-            strand,
+            contour_arc,
             t,
             contours: [near.contour, far.contour],
         })
@@ -367,18 +379,23 @@ impl Search<'_, '_, '_, '_> {
 
     /// Whether all faces along an arc are turned away at a point of it, or seen edge-on, so that
     /// they hide nothing.
-    fn is_turned_away(&self, strand: &ContourArc<'_>, q: &Point3<f64>, v: &Vector3<f64>) -> bool {
-        let t = strand.curve.tangent(strand.curve.parameter(q));
+    fn is_turned_away(
+        &self,
+        contour_arc: &ContourArc<'_>,
+        q: &Point3<f64>,
+        v: &Vector3<f64>,
+    ) -> bool {
+        let t = contour_arc.curve.tangent(contour_arc.curve.parameter(q));
         let hides = |&(face, sense): &(FaceId, Sense)| {
-            let side = self.image_side(strand, face, sense, &t, q, v);
+            let side = self.image_side(contour_arc, face, sense, &t, q, v);
             !side.is_some_and(|side| side.is_exactly(0.0))
         };
-        !strand.faces.iter().any(hides)
+        !contour_arc.faces.iter().any(hides)
     }
 
     /// Another contour falls on an arc.
-    fn crowd_all(&mut self, strand: &ContourArc<'_>) {
-        for (id, _) in strand.junctions() {
+    fn mark_all_ambiguous(&mut self, contour_arc: &ContourArc<'_>) {
+        for (id, _) in contour_arc.junctions() {
             self.junctions.mark_ambiguous(id);
         }
     }

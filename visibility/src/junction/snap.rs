@@ -1,8 +1,7 @@
 //! Parameters on arcs, and the points where the boundary touches itself.
 
 use crate::contour_generator::contour_arc::{Change, ContourArc, Split};
-use crate::contour_generator::junctions::JunctionKind;
-use crate::contour_generator::junctions::{JunctionSupport, Junctions};
+use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctions};
 use crate::scene::Scene;
 use crate::scene::tolerance::IMAGE_TOLERANCE;
 use premio_kernel::number::predicates::Compare;
@@ -18,13 +17,13 @@ pub struct Settled {
 
 /// The parameter as one of the arc, or at its end where it is no further than `near` beyond; none
 /// where it is.
-pub fn settle(strand: &ContourArc<'_>, t: f64, near: f64) -> Option<Settled> {
-    let [lo, hi] = strand.range;
-    let t = match strand.curve.period() {
+pub fn settle(contour_arc: &ContourArc<'_>, t: f64, near: f64) -> Option<Settled> {
+    let [lo, hi] = contour_arc.range;
+    let t = match contour_arc.curve.period() {
         Some(period) => {
             let t = lo + (t - lo).rem_euclid(period);
             // Just before the start is closer to the start than to the end.
-            if !strand.closed && (t - hi).is_beyond(lo + period - t) {
+            if !contour_arc.closed && (t - hi).is_beyond(lo + period - t) {
                 t - period
             } else {
                 t
@@ -32,10 +31,10 @@ pub fn settle(strand: &ContourArc<'_>, t: f64, near: f64) -> Option<Settled> {
         }
         None => t,
     };
-    if strand.closed {
+    if contour_arc.closed {
         return Some(Settled { t, at_end: false });
     }
-    let slack = near / strand.curve.speed(t);
+    let slack = near / contour_arc.curve.speed(t);
     if t.is_short_of(lo - slack) || t.is_beyond(hi + slack) || t.is_nan() {
         return None;
     }
@@ -47,9 +46,9 @@ pub fn settle(strand: &ContourArc<'_>, t: f64, near: f64) -> Option<Settled> {
 }
 
 /// Of the parameters of one point of a closed curve, the one nearest to `t`.
-pub fn nearest_turn(strand: &ContourArc<'_>, from: f64, t: f64) -> f64 {
-    match strand.curve.period() {
-        Some(period) if strand.closed => from + ((t - from) / period).round() * period,
+pub fn nearest_turn(contour_arc: &ContourArc<'_>, from: f64, t: f64) -> f64 {
+    match contour_arc.curve.period() {
+        Some(period) if contour_arc.closed => from + ((t - from) / period).round() * period,
         _ => from,
     }
 }
@@ -57,23 +56,27 @@ pub fn nearest_turn(strand: &ContourArc<'_>, from: f64, t: f64) -> f64 {
 /// Splits the arcs that meet where the boundary touches itself: which is in front may change
 /// there, also for those that fall on one another in the image.
 pub fn split_at_touches(
-    strands: &mut [ContourArc<'_>],
+    contour_arcs: &mut [ContourArc<'_>],
     scene: &Scene<'_>,
     junctions: &mut Junctions<'_>,
 ) {
     let near = IMAGE_TOLERANCE * scene.resolution;
     let (topology, geometry) = (&scene.brep.topology, &scene.brep.geometry);
     for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
-        let within = |strand: &ContourArc<'_>| match strand.edge {
+        let within = |contour_arc: &ContourArc<'_>| match contour_arc.edge {
             Some(edge) => touch.edges.contains(&edge),
-            None => strand.faces.iter().any(|f| touch.faces.contains(&f.0)),
+            None => contour_arc.faces.iter().any(|f| touch.faces.contains(&f.0)),
         };
-        let meeting = |strand: &ContourArc<'_>| {
-            let at = settle(strand, strand.curve.parameter(place), near)?;
-            let met = (strand.curve.point(at.t) - place).norm().is_within(near);
+        let meeting = |contour_arc: &ContourArc<'_>| {
+            let at = settle(contour_arc, contour_arc.curve.parameter(place), near)?;
+            let met = (contour_arc.curve.point(at.t) - place)
+                .norm()
+                .is_within(near);
             met.then_some(at)
         };
-        let all = strands.iter_mut().filter(|strand| within(strand));
+        let all = contour_arcs
+            .iter_mut()
+            .filter(|contour_arc| within(contour_arc));
         let met: Vec<_> = all.filter_map(|s| Some((meeting(s)?, s))).collect();
         // Limbs that end there, at an apex, may hide one that passes.
         if met.len() < if touch.fans > 0 { 1 } else { 2 } {
@@ -89,10 +92,10 @@ pub fn split_at_touches(
             None => junctions.add(JunctionKind::T, JunctionSupport::Alone, place),
         };
         junctions.mark_ambiguous(junction);
-        for (at, strand) in passing {
+        for (at, contour_arc) in passing {
             let contours = &mut junctions.list[junction as usize].contours;
-            contours.push(strand.contour);
-            strand.splits.push(Split {
+            contours.push(contour_arc.contour);
+            contour_arc.splits.push(Split {
                 t: at.t,
                 junction,
                 change: Change::Correct,

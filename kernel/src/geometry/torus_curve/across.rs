@@ -14,7 +14,7 @@ use crate::geometry::vector::Length;
 use crate::number::float::Float;
 
 /// What lies so many times farther from a curve than it may be off is clearly next to it.
-const BESIDE: f64 = (1 << 20) as f64;
+const CLEARLY_APART: f64 = (1 << 20) as f64;
 
 /// Where on a curve, in parts of its length, its other surface is requested.
 const PARTS: [f64; 3] = [0.13, 0.47, 0.86];
@@ -120,7 +120,8 @@ impl<N: Float> TorusCurve<N> {
         }
         let [_, y] = arrange(s.axis, theta, phi);
         let rough = wrap(s.hermite(x) - y).abs();
-        if rough > N::TWO * s.steep.max(N::ONE) * length.abs() + N::from_f64(BESIDE) * slack {
+        if rough > N::TWO * s.steep.max(N::ONE) * length.abs() + N::from_f64(CLEARLY_APART) * slack
+        {
             return Place::Beside;
         }
         let tau = ((x - s.from) / length).clamp(N::ZERO, N::ONE);
@@ -128,7 +129,7 @@ impl<N: Float> TorusCurve<N> {
         let away = wrap(theta - a).hypot(wrap(phi - b));
         if away <= slack {
             Place::On(tau)
-        } else if away > N::from_f64(BESIDE) * slack {
+        } else if away > N::from_f64(CLEARLY_APART) * slack {
             Place::Beside
         } else {
             Place::Unclear

@@ -60,8 +60,8 @@ pub enum CrossingSense {
     Entering,
     /// It goes out of the face, from the arc's left to its right.
     Leaving,
-    /// It touches the arc, runs along it, or passes an end of it within the resolution: take
-    /// another walk.
+    /// It touches the arc, runs along it, passes an end of it within the resolution, or crosses it
+    /// where rounding moves it by more than the resolution: take another walk.
     Unclear,
 }
 
@@ -395,7 +395,11 @@ impl<N: Float> SurfacePath<N> {
             let turn = sign * across.dot(&arc.curve.tangent(t));
             let at_end = s.is_at_most(resolution) || s.reaches(self.length - resolution);
             let is_along = turn.is_nan() || turn.abs().is_short_of(N::ROUNDING.sqrt());
-            let passage = if !plain || at_end || is_along {
+            let is_vague = || match arc.curve {
+                Curve::Toric(c) => c.rounding_error(t).is_beyond(resolution),
+                _ => false,
+            };
+            let passage = if !plain || at_end || is_along || is_vague() {
                 CrossingSense::Unclear
             } else if turn.is_above_zero() {
                 CrossingSense::Entering

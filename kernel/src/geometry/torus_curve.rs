@@ -389,6 +389,19 @@ impl<N: Float> TorusCurve<N> {
         t.frame.world_of([rho * ct, rho * st, sp.scale(t.minor)])
     }
 
+    /// How far the point at t may be off by the rounding of F: F's rounding divided by its gradient.
+    /// In a chart of a singular point the curve is as well known as elsewhere: zero.
+    pub fn rounding_error(&self, t: N) -> N {
+        let (s, tau) = self.locate(t);
+        if s.chart.is_some() {
+            return N::ZERO;
+        }
+        let [theta, phi] = self.angles_on(s, tau);
+        let p = self.form.partials(theta, phi);
+        let (along, about) = (self.torus.major + self.torus.minor, self.torus.minor);
+        self.form.bound() * N::ROUNDING / (p.x / along).hypot(p.y / about)
+    }
+
     /// Whether the curve turns back at t: whether a cusp is there.
     pub fn turns_back(&self, t: N) -> bool {
         let n = self.segments.len();

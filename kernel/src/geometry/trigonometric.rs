@@ -147,15 +147,25 @@ pub(super) fn zeros_of<N: Float>(k: &Trig2<N>) -> Vec<(N, bool)> {
     zeros.into_iter().map(|(u, c)| (u, changes(c))).collect()
 }
 
-/// The same where all are simple, of a polynomial that is off by `resolution`, each with how far it is off
-/// itself; else none.
+/// Two simple zeros are at least so many times farther from each other than both may be off.
+const SEPARATION: f64 = 64.0;
+
+/// The zeros of a polynomial whose values are off by `resolution`, each with how far it may be off
+/// itself. None where one is not simple, or where two are too close to each other to be distinguished
+/// from a double zero.
 pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, N)>> {
     let slope = harmonic_slope(k);
     let off = |u: N| resolution / harmonic(&slope, u.sin_cos()).abs();
     let zeros = zeros_once(k, resolution)?.into_iter();
-    zeros
+    let zeros: Vec<(N, N)> = zeros
         .map(|(u, contact)| (contact == RootKind::Simple).then(|| (u, off(u))))
-        .collect()
+        .collect::<Option<_>>()?;
+    let are_separate = |i: usize| {
+        let [(a, off_a), (b, off_b)] = [zeros[i], zeros[(i + 1) % zeros.len()]];
+        let gap = (b - a).rem_euclid(N::TAU);
+        gap > N::from_f64(SEPARATION) * (off_a + off_b)
+    };
+    (zeros.len() < 2 || (0..zeros.len()).all(are_separate)).then_some(zeros)
 }
 
 /// The zeros over one turn; none of what vanishes everywhere.

@@ -1,11 +1,13 @@
 //! Quantitative invisibility of the pieces of contours (Appel 1967, Loutrel 1970; section 4.1.2
 //! of the paper).
 
+mod chain;
 pub(crate) mod correction;
 
-use crate::contour_generator::contour_arc::{Change, ContourArc, Passing, Split};
+use crate::contour_generator::contour_arc::{Change, ContourArc, Passing};
 use crate::contour_generator::junctions::Junctions;
 use crate::image_curve::Image;
+use crate::invisibility::chain::{Chain, Span};
 use crate::invisibility::correction::{Corrections, End};
 use crate::ray_casting::{Occluders, OriginIncidence};
 use crate::scene::Scene;
@@ -109,88 +111,6 @@ fn inward(
     directions.filter(|d| d.norm().is_beyond(0.5)).collect()
 }
 
-/// A part of an arc between two junctions.
-#[derive(Clone, Copy, Debug)]
-struct Span {
-    range: [f64; 2],
-    ends: [Option<u32>; 2],
-}
-
-/// An arc cut into spans, and what happens between each and the next.
-struct Chain {
-    spans: Vec<Span>,
-    between: Vec<Change>,
-}
-
-impl Chain {
-    /// Cuts an arc at its splits; those at one point are taken together, and crowd each other.
-    fn new(arc: &mut ContourArc<'_>, junctions: &mut Junctions<'_>, near: f64) -> Self {
-        arc.splits.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let arc = &*arc;
-        let [lo, hi] = arc.range;
-        let apart = |s: f64, t: f64| (t - s).abs() * arc.curve.speed(t);
-        let one = |s: f64, t: f64| s.is_exactly(t) || apart(s, t).is_at_most(near);
-        let mut splits: Vec<Split> = Vec::with_capacity(arc.splits.len());
-        for &split in &arc.splits {
-            let end = [0, 1].map(|k| one(arc.range[k], split.t) && !arc.closed);
-            let around = match splits.first() {
-                Some(first) => arc.closed && one(first.t + (hi - lo), split.t),
-                None => false,
-            };
-            let met = match end {
-                [true, _] => arc.ends[0],
-                [_, true] => arc.ends[1],
-                _ => {
-                    let next_to = match splits.last_mut() {
-                        _ if around => splits.first_mut(),
-                        Some(last) if one(last.t, split.t) => Some(last),
-                        _ => None,
-                    };
-                    let Some(other) = next_to else {
-                        splits.push(split);
-                        continue;
-                    };
-                    other.change = Change::Correct;
-                    Some(other.junction)
-                }
-            };
-            for id in met.into_iter().chain([split.junction]) {
-                junctions.mark_ambiguous(id);
-            }
-        }
-        let mut between: Vec<Change> = splits.iter().map(|s| s.change).collect();
-        let (first, inner, last) = match splits.split_first() {
-            Some((first, inner)) if arc.closed => {
-                between.remove(0);
-                let junction = Some(first.junction);
-                let last = (first.t + (hi - lo), junction);
-                ((first.t, junction), inner, last)
-            }
-            _ => ((lo, arc.ends[0]), &splits[..], (hi, arc.ends[1])),
-        };
-        let inner = inner.iter().map(|s| (s.t, Some(s.junction)));
-        let mut spans: Vec<Span> = Vec::with_capacity(splits.len() + 1);
-        let mut from = first;
-        for to in inner.chain([last]) {
-            spans.push(Span {
-                range: [from.0, to.0],
-                ends: [from.1, to.1],
-            });
-            from = to;
-        }
-        // Contours that are not apart by the time of the next junction are not passed clearly.
-        for (around, change) in spans.windows(2).zip(&mut between) {
-            let [before, at] = around[0].range;
-            let after = around[1].range[1];
-            let way = (at - before).min(after - at) * arc.curve.speed(at);
-            if matches!(change, Change::Pass(passing) if (way * passing.lateral).is_at_most(near)) {
-                *change = Change::Correct;
-            }
-        }
-        Self { spans, between }
-    }
-}
-
 /// The pieces of all arcs, in order: one count at one piece of each connected part of the
 /// contours, carried on from there where what hides changes clearly.
 pub fn pieces(
@@ -211,7 +131,7 @@ pub fn pieces(
         let all = contour_arcs.iter().zip(&chains);
         let of = |(arc, chain): (_, &Chain)| {
             let spans = chain.spans.iter();
-            spans.map(|s| count(scene, arc, s.range)).collect()
+            spans.map(|s| count(scene, arc, s.clear)).collect()
         };
         all.map(of).collect()
     };
@@ -315,7 +235,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
             let [entry, exit] = if backward { [1, 0] } else { [0, 1] };
             let span = self.chains[i].spans[k];
             let now = known.take().unwrap_or_else(|| {
-                let now = count(self.scene, &self.contour_arcs[i], span.range);
+                let now = count(self.scene, &self.contour_arcs[i], span.clear);
                 self.leave(i, k, entry, &now);
                 now
             });
@@ -344,7 +264,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
     /// The faces at a junction at an end of a span that hide it there, where it is plain that
     /// these alone make the difference between the contours at the junction.
     fn local(&self, i: usize, k: usize, which: usize) -> Option<(u32, Vec<FaceId>)> {
-        let Span { range, ends } = self.chains[i].spans[k];
+        let Span { range, ends, .. } = self.chains[i].spans[k];
         let junction = ends[which]?;
         if self.junctions.is_ambiguous(junction) {
             return None;

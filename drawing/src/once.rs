@@ -184,6 +184,12 @@ const BENT: f64 = 1.5;
 /// How often a span is halved to find where arcs part.
 const HALVINGS: u32 = 40;
 
+/// Consecutive parts of an arc whose middles lie on another: the first and the last.
+struct Run {
+    first: [f64; 2],
+    last: [f64; 2],
+}
+
 /// The search for where an arc runs along others, between two parameters.
 struct Search<'a, 'c> {
     arc: &'a ImageArc<'c>,
@@ -210,7 +216,7 @@ impl Search<'_, '_> {
         let [lo, hi] = self.span;
         let at = |k: u32| lo + (hi - lo) * f64::from(k) / f64::from(PARTS);
         let mut parts: Vec<[f64; 2]> = (0..PARTS).rev().map(|k| [at(k), at(k + 1)]).collect();
-        let mut runs: Vec<[f64; 2]> = Vec::new();
+        let mut runs: Vec<Run> = Vec::new();
         let reach = self.tolerance + other.deviation();
         while let Some([a, b]) = parts.pop() {
             let middle = 0.5 * (a + b);
@@ -227,23 +233,31 @@ impl Search<'_, '_> {
             if !self.is_on(middle, other) {
                 continue;
             }
+            let part = [a, b];
             match runs.last_mut() {
-                Some(last) if last[1] == a => last[1] = b,
-                _ => runs.push([a, b]),
+                Some(run) if run.last[1] == a => run.last = part,
+                _ => runs.push(Run {
+                    first: part,
+                    last: part,
+                }),
             }
         }
-        let ends = runs.into_iter().map(|run| self.ends(run, other));
+        let ends = runs.iter().map(|run| self.ends(run, other));
         let length = |[a, b]: [f64; 2]| (self.arc.point(b) - self.arc.point(a)).norm();
         ends.filter(|run| length(*run) > TOUCHING * self.tolerance)
             .collect()
     }
 
-    /// Where a run really starts and ends: a little outside or inside of where it was seen.
-    fn ends(&self, [a, b]: [f64; 2], other: &ImageArc<'_>) -> [f64; 2] {
-        let middle = 0.5 * (a + b);
+    /// Where a run really starts and ends: between the middle of its outermost part and the middle of
+    /// one as long next to it.
+    fn ends(&self, run: &Run, other: &ImageArc<'_>) -> [f64; 2] {
         let [lo, hi] = self.span;
-        let outside = [a - 0.5 * (b - a), b + 0.5 * (b - a)].map(|t| t.clamp(lo, hi));
-        outside.map(|outside| {
+        let [a, b] = run.first;
+        let start = [1.5 * a - 0.5 * b, 0.5 * (a + b)];
+        let [a, b] = run.last;
+        let end = [1.5 * b - 0.5 * a, 0.5 * (a + b)];
+        [start, end].map(|[outside, middle]| {
+            let outside = outside.clamp(lo, hi);
             if self.is_on(outside, other) {
                 return outside;
             }
@@ -317,6 +331,26 @@ mod tests {
     fn parallel_lines_stay_two() {
         let arcs = [1.0, 1.001].map(|y| drawn(segment([0.0, 1.0], y), true));
         assert_eq!(strokes(arcs.into(), TOLERANCE).len(), 2);
+    }
+
+    /// y = x² (1 - x) / 2000 leaves y = 0 at x = 0.046 and comes back at its end: what lies between is
+    /// drawn.
+    #[test]
+    fn a_curve_that_comes_back_to_a_line_is_drawn_where_it_is_off() {
+        let curve = |t: f64| Point2::new(t, t * t * (1.0 - t) / 2000.0);
+        let sample = |k: i32| {
+            let t = f64::from(k) / 64.0;
+            Sample { t, point: curve(t) }
+        };
+        let hidden = ImageArc::Projected {
+            curve: Rc::new(curve),
+            samples: (0..=64).map(sample).collect(),
+        };
+        let arcs = vec![drawn(segment([0.0, 1.0], 0.0), true), drawn(hidden, false)];
+        let [visible, hidden] = lengths(&strokes(arcs, TOLERANCE));
+        assert_eq!(visible, 1.0);
+        // Drawn from t² (1 - t) = 0.002, which is t = 0.04578: at the end the two only touch.
+        assert!((hidden - 0.95422).abs() < 1e-4, "{hidden}");
     }
 
     /// A whole circle behind half of itself, whose parameters begin elsewhere.

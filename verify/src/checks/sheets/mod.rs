@@ -250,18 +250,62 @@ impl SheetReport {
         let pieces: Vec<_> = drawn
             .flat_map(|c| c.pieces.iter().map(move |piece| (c, piece)))
             .collect();
+        let mut undrawn = Vec::new();
         for (contour, piece) in pieces.iter().step_by(pieces.len().div_ceil(MOST).max(1)) {
             let [lo, hi] = piece.t;
-            for part in ON_PIECES {
-                let p = projection.project_y_up(&contour.curve3.point(lo + (hi - lo) * part));
-                let suits = |s: &Stroke| s.visible || !piece.visible;
-                match strokes.passing(&p, tolerance).any(|(_, s)| suits(s)) {
-                    true => self.right += 1,
-                    false => self.faults.push(SheetFault::Undrawn(p)),
-                }
+            let at =
+                |part: f64| projection.project_y_up(&contour.curve3.point(lo + (hi - lo) * part));
+            let suits = |s: &Stroke| s.visible || !piece.visible;
+            let is_drawn = |p: &Point2<f64>| strokes.passing(p, tolerance).any(|(_, s)| suits(s));
+            let missing: Vec<_> = ON_PIECES
+                .map(at)
+                .into_iter()
+                .filter(|p| !is_drawn(p))
+                .collect();
+            self.right += ON_PIECES.len() - missing.len();
+            if !missing.is_empty() {
+                undrawn.push(UndrawnPiece {
+                    ends: [piece.start, piece.end],
+                    extent: [0.0, 0.5, 1.0].map(at),
+                    missing,
+                });
             }
         }
+        let faults = connected(undrawn).into_iter().filter(|group| {
+            // A dot: what is connected is smaller than what is drawn.
+            let points = || group.iter().flat_map(|piece| piece.extent);
+            points().any(|a| points().any(|b| (a - b).norm() > tolerance))
+        });
+        let places = faults.flatten().flat_map(|piece| piece.missing);
+        self.faults.extend(places.map(SheetFault::Undrawn));
     }
+}
+
+/// A piece of a contour that is not on a stroke everywhere.
+struct UndrawnPiece {
+    /// The junctions at its ends.
+    ends: [Option<u32>; 2],
+    /// Its ends and its middle, in the drawing.
+    extent: [Point2<f64>; 3],
+    /// Where it is not drawn.
+    missing: Vec<Point2<f64>>,
+}
+
+/// Pieces in groups that are connected by junctions.
+fn connected(pieces: Vec<UndrawnPiece>) -> Vec<Vec<UndrawnPiece>> {
+    let mut groups: Vec<Vec<UndrawnPiece>> = Vec::new();
+    for piece in pieces {
+        let touches = |other: &UndrawnPiece| {
+            let ends = piece.ends.iter().flatten();
+            ends.into_iter().any(|id| other.ends.contains(&Some(*id)))
+        };
+        let (joined, apart) = groups
+            .into_iter()
+            .partition::<Vec<_>, _>(|group| group.iter().any(touches));
+        groups = apart;
+        groups.push(joined.into_iter().flatten().chain([piece]).collect());
+    }
+    groups
 }
 
 /// How many rounded points a shape is written by.

@@ -9,6 +9,7 @@ use super::strokes::{Strokes, is_outline, point};
 use nalgebra::{Point2, Vector2};
 use premio_csg::ray_casting::{Ray, RayOracle};
 use premio_drawing::Drawing;
+use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::camera::projection::{Projection, ViewRay};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -25,6 +26,8 @@ const RADIUS: f64 = 1.0 / 512.0;
 const HALVINGS: u32 = 40;
 /// The powers of the plastic number, by which Roberts's sequence steps through the unit square.
 const SPREAD: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+/// How far rays place surfaces that coincide from one another, in roundings of the part's size.
+const ROUNDINGS: f64 = 64.0;
 /// How many places are named.
 const NAMED: usize = 5;
 
@@ -44,6 +47,8 @@ struct Shadow<'a> {
     material: &'a RayOracle,
     projection: &'a Projection,
     sliver: f64,
+    /// Rays find slivers up to this length where two surfaces coincide and nothing is.
+    rounding: f64,
 }
 
 /// Where a course across the image crosses the boundary of the shadow: between the place up to which
@@ -98,6 +103,7 @@ impl ShadowOutline {
             material,
             projection,
             sliver: tolerance.sliver,
+            rounding: ROUNDINGS * ROUNDING * material.bounds().diagonal(),
         };
         let strokes = Strokes::new(&drawing.strokes);
         let mut outline = Self::default();
@@ -158,7 +164,7 @@ impl Shadow<'_> {
                 _ => continue,
             };
             let thick = last(inside, outside, is_thick);
-            let is_any = |t: f64| self.covers(&course(t), 0.0);
+            let is_any = |t: f64| self.covers(&course(t), self.rounding);
             let none = (!is_any(outside)).then(|| course(last(thick, outside, is_any)));
             let thick = course(thick);
             found.push(Crossing { thick, none });
@@ -225,6 +231,43 @@ mod tests {
             sliver: 0.0,
         };
         ShadowOutline::new(&RayOracle::new(&tree), &projection, &drawing, tolerance)
+    }
+
+    /// A countersunk hole seen at an angle: where its cone leaves the plate both surfaces coincide, and
+    /// rays through the hole find slivers of rounding.
+    #[test]
+    fn slivers_of_rounding_are_no_material() {
+        let text = "P = (BLO(X=48.472, Y=36.734, Z=6.996)
+            DIF CYL(R=3.894, H=8.996) AT (MOVX=38.103, MOVY=27.5505, MOVZ=-1)
+            DIF CON(R=3.894, H=2.276, R2=6.17) AT (MOVX=38.103, MOVY=27.5505, MOVZ=4.72)
+          ) AT (ROTY=45, ROTX=123.9, MOVX=-45.971, MOVY=-59.247, MOVZ=-31.455)";
+        let FrontView {
+            tree,
+            camera,
+            drawing,
+            bounds,
+            ..
+        } = front_view(text);
+        let projection = Projection::new(&camera, bounds.diagonal());
+        let shadow = Shadow {
+            material: &RayOracle::new(&tree),
+            projection: &projection,
+            sliver: 1e-8,
+            rounding: ROUNDINGS * ROUNDING * bounds.diagonal(),
+        };
+        let [lo, hi] = drawing.extent;
+        let mut crossings = 0;
+        for k in 0..200 {
+            let part = (k as f64 * SPREAD[0]).fract();
+            let y = lo.y + (hi.y - lo.y) * part;
+            let course = |t: f64| Point2::new(lo.x - 1.0 + (hi.x - lo.x + 2.0) * t, y);
+            for Crossing { thick, none } in shadow.crossings(&course, 64) {
+                let none = none.unwrap();
+                assert!((none - thick).norm() < 1e-6, "{thick:?} {none:?}");
+                crossings += 1;
+            }
+        }
+        assert!(crossings >= 400, "{crossings}");
     }
 
     #[test]

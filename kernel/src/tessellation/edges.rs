@@ -113,15 +113,30 @@ impl Polylines {
     pub fn divide(&mut self, brep: &Brep, mut divisions: Vec<Division>) {
         divisions.sort_by(|a, b| a.edge.cmp(&b.edge).then(a.t.total_cmp(&b.t)));
         divisions.dedup();
-        for Division { edge, t } in divisions {
-            let [lo, hi] = brep.range(edge);
-            let nodes = self.nodes(edge);
-            let next = nodes.partition_point(|n| n.t < t).clamp(1, nodes.len() - 1);
-            let room = (t - nodes[next - 1].t).min(nodes[next].t - t);
-            if room > (hi - lo) * FINEST {
-                self.insert(brep, edge, t);
+        for of_edge in divisions.chunk_by(|a, b| a.edge == b.edge) {
+            self.divide_edge(brep, of_edge[0].edge, of_edge.iter().map(|d| d.t));
+        }
+    }
+
+    /// Divides an edge at increasing parameters.
+    fn divide_edge(&mut self, brep: &Brep, edge: EdgeId, at: impl Iterator<Item = f64>) {
+        let [lo, hi] = brep.range(edge);
+        let finest = (hi - lo) * FINEST;
+        let nodes = std::mem::take(&mut self.nodes[edge.index()]);
+        let mut divided: Vec<Node> = Vec::with_capacity(2 * nodes.len());
+        let mut rest = nodes.into_iter().peekable();
+        for t in at {
+            divided.extend(std::iter::from_fn(|| rest.next_if(|n| n.t < t)));
+            let (Some(before), Some(after)) = (divided.last(), rest.peek()) else {
+                continue;
+            };
+            if (t - before.t).min(after.t - t) > finest {
+                let point = self.add(brep.curve(edge).point(t));
+                divided.push(Node { t, point });
             }
         }
+        divided.extend(rest);
+        self.nodes[edge.index()] = divided;
     }
 }
 

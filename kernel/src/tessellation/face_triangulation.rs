@@ -116,6 +116,20 @@ fn runs(brep: &Brep, face: FaceId) -> Vec<(EdgeId, Sense)> {
         .collect()
 }
 
+/// The corners of longer edges are inserted in a spread order: along a circle every point in order
+/// would flip all triangles of the ones before.
+const MANY_NODES: usize = 1 << 11;
+
+/// The numbers below `count`, in an order in which each is far from those just before: by their bits
+/// reversed.
+fn spread(count: usize) -> impl Iterator<Item = usize> {
+    let bits = usize::BITS - count.leading_zeros();
+    let reversed = move |k: usize| k.reverse_bits() >> (usize::BITS - bits);
+    (0..1usize << bits)
+        .map(reversed)
+        .filter(move |&k| k < count)
+}
+
 /// An angle this near to a seam is on it.
 const ON_SEAM: f64 = 1.0 / (1u64 << 36) as f64;
 
@@ -186,6 +200,9 @@ impl<'a> Builder<'a> {
     /// Adds the chords of an edge, run in a sense.
     fn add(&mut self, edge: EdgeId, sense: Sense) {
         let nodes = self.lines.nodes(edge).to_vec();
+        if nodes.len() > MANY_NODES {
+            self.add_corners(edge, &nodes);
+        }
         for (first, pair) in nodes.windows(2).enumerate() {
             let chord = Chord { edge, first };
             let [a, b] = self.places(edge, [pair[0], pair[1]]);
@@ -207,6 +224,20 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Adds the corners of an edge in a spread order, each next to one that is known.
+    fn add_corners(&mut self, edge: EdgeId, nodes: &[Node]) {
+        let mut known: Vec<Option<FixedVertexHandle>> = vec![None; nodes.len()];
+        for first in spread(nodes.len() - 1) {
+            let pair = [nodes[first], nodes[first + 1]];
+            // The one before that was inserted last: its number lacks the lowest bit.
+            let mut hint = known[first & first.wrapping_sub(1)];
+            for (at, node) in self.places(edge, pair).into_iter().zip(pair) {
+                hint = self.corner_beside(at, node.point, hint).or(hint);
+            }
+            known[first] = hint;
+        }
+    }
+
     /// Where the ends of a chord lie; on a torus as one sees them from its middle.
     fn places(&self, edge: EdgeId, nodes: [Node; 2]) -> [Point2<f64>; 2] {
         let mut ends = nodes.map(|n| self.fit.chart.map(&self.lines.points[n.point as usize]));
@@ -222,12 +253,26 @@ impl<'a> Builder<'a> {
 
     /// The corner at a place of the chart; none where it is another point's.
     fn corner(&mut self, at: Point2<f64>, point: u32) -> Option<FixedVertexHandle> {
+        self.corner_beside(at, point, None)
+    }
+
+    /// The same, searched from a corner next to it.
+    fn corner_beside(
+        &mut self,
+        at: Point2<f64>,
+        point: u32,
+        hint: Option<FixedVertexHandle>,
+    ) -> Option<FixedVertexHandle> {
         let corner = Corner::new(at, point);
         let name = [corner.at.x, corner.at.y].map(f64::to_bits);
         if let Some(&known) = self.corners.get(&name) {
             return (self.domain.net.vertex(known).data().point == point).then_some(known);
         }
-        let corner = self.domain.net.insert(corner).ok()?;
+        let corner = match hint {
+            Some(hint) => self.domain.net.insert_with_hint(corner, hint),
+            None => self.domain.net.insert(corner),
+        };
+        let corner = corner.ok()?;
         self.corners.insert(name, corner);
         Some(corner)
     }
@@ -506,4 +551,22 @@ fn beside(torus: &Torus, mut at: Point2<f64>, from: &Point2<f64>) -> Point2<f64>
         }
     }
     at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spread;
+
+    #[test]
+    fn a_spread_order_has_every_number_once_and_its_neighbour_before_it() {
+        for count in [1, 2, 3, 10, 64, 1000] {
+            let order: Vec<usize> = spread(count).collect();
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            assert_eq!(sorted, (0..count).collect::<Vec<_>>());
+            for (k, number) in order.iter().enumerate().skip(1) {
+                assert!(order[..k].contains(&(number & (number - 1))));
+            }
+        }
+    }
 }

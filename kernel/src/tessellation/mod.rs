@@ -93,6 +93,10 @@ pub enum TessellationError {
 /// How many points a face may have.
 const LIMIT: usize = 1 << 20;
 
+/// How many nodes the edges of a face may get where their chords cross: with more they are too close to
+/// one another.
+const DIVISIONS: usize = 1 << 16;
+
 /// How often the edges are divided further.
 const ROUNDS: usize = 40;
 
@@ -108,6 +112,12 @@ pub fn tessellate(
         .face_ids()
         .map(|face| Chart::new(brep, face, &lines, accuracy, resolution))
         .collect();
+    let faces = brep.topology.face_ids();
+    let nodes: Vec<usize> = faces.map(|face| lines.nodes_of(brep, face)).collect();
+    if let Some(face) = nodes.iter().position(|&count| count > LIMIT) {
+        let face = FaceId(face as u32);
+        return Err(TessellationError::TooMany { face, limit: LIMIT });
+    }
     let mut domains: Vec<Option<FaceTriangulation>> = charts.iter().map(|_| None).collect();
     for round in 0.. {
         let mut divisions: Vec<Division> = Vec::new();
@@ -120,8 +130,8 @@ pub fn tessellate(
             if round == ROUNDS {
                 return Err(TessellationError::Crossing { face });
             }
-            if lines.nodes_of(brep, face) > LIMIT {
-                return Err(TessellationError::TooMany { face, limit: LIMIT });
+            if lines.nodes_of(brep, face) > nodes[face.index()] + DIVISIONS {
+                return Err(TessellationError::Crossing { face });
             }
             settled = false;
             match FaceTriangulation::new(brep, face, chart, accuracy, &mut lines) {

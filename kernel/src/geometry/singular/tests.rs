@@ -49,7 +49,7 @@ fn kinds(traced: &Traced) -> (usize, Vec<(usize, usize)>) {
 /// With X = 1 - cos x and T = sin y the curve T = X runs from (0, 0) through (±π/2, π/2) to (0, π).
 /// There X is x²/2 to the least order, so that (T - X)² + c Tᵃ Xᵇ (sin x)ᵈ is e² + c' x^(2a + 2b + d)
 /// at both ends.
-fn beside(c: f64, [a, b, d]: [i32; 3]) -> impl Fn(f64, f64) -> f64 {
+fn perturbed(c: f64, [a, b, d]: [i32; 3]) -> impl Fn(f64, f64) -> f64 {
     move |x, y| {
         let (t, v) = (y.sin(), 1.0 - x.cos());
         (t - v).powi(2) + c * t.powi(a) * v.powi(b) * x.sin().powi(d)
@@ -60,23 +60,23 @@ fn beside(c: f64, [a, b, d]: [i32; 3]) -> impl Fn(f64, f64) -> f64 {
 fn branches_touch_or_end_in_a_cusp_to_any_order() {
     // x⁵ (A4): where x is negative two arcs run from one cusp to the other.
     assert_eq!(
-        kinds(&traced(beside(0.5, [1, 1, 1]))),
+        kinds(&traced(perturbed(0.5, [1, 1, 1]))),
         (1, vec![(1, 1), (1, 1)])
     );
     assert_eq!(
-        kinds(&traced(beside(-0.5, [1, 1, 1]))),
+        kinds(&traced(perturbed(-0.5, [1, 1, 1]))),
         (1, vec![(1, 1), (1, 1)])
     );
     // x⁶ (A5): with c = -4 it is T - X = ±2 √T X, which for the upper sign turns back at T = 1, and
     // for the lower one runs on over x = π, where T is (√6 - 2)². What lies above on one side of
     // x = 0 lies below on the other, so that all of it is one branch.
     assert_eq!(
-        kinds(&traced(beside(-4.0, [1, 2, 0]))),
+        kinds(&traced(perturbed(-4.0, [1, 2, 0]))),
         (1, vec![(2, 0), (2, 0)])
     );
     // Where the sum is definite the points stand alone.
     assert_eq!(
-        kinds(&traced(beside(0.2, [1, 2, 0]))),
+        kinds(&traced(perturbed(0.2, [1, 2, 0]))),
         (0, vec![(0, 0), (0, 0)])
     );
 }

@@ -473,10 +473,10 @@ mod tests {
 
     #[test]
     fn a_reason_has_no_numbers() {
-        let text = "what meets near (1.250000, -0.5, 2) is known to 1.2e-9 only: surfaces";
+        let text = "the intersection near (1.250000, -0.5, 2) is known to 1.2e-9 only: surfaces";
         assert_eq!(
             reason(text),
-            "what meets near a point is known to # only: surfaces"
+            "the intersection near a point is known to # only: surfaces"
         );
         assert_eq!(reason("3."), "#.");
         assert_eq!(reason("no number"), "no number");

@@ -1,10 +1,11 @@
 //! What passes through a point and along a curve, proven without rounding: for exact evaluation.
 //!
-//! Extended precision (237 bits) proposes the vertices and the carriers through each, the curves and the
-//! carriers that contain them. Here each vertex becomes the exact zero of three polynomials. Every other
-//! polynomial that should vanish there is proven to vanish: the implicit forms of its carriers, and the
-//! determinants of gradients that seem to depend on one another. A carrier contains a curve if it
-//! passes through more points of it than it could otherwise (Bézout).
+//! Extended precision (237 bits) proposes the vertices and the carriers through each, the curves
+//! and the carriers that contain them. Here each vertex becomes the exact zero of three
+//! polynomials. Every other polynomial that should vanish there is proven to vanish: the implicit
+//! forms of its carriers, and the determinants of gradients that seem to depend on one another. A
+//! carrier contains a curve if it passes through more points of it than it could otherwise
+//! (Bézout).
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;

@@ -67,7 +67,8 @@ fn a_rational_point_of_planes() {
 
 #[test]
 fn an_irrational_point() {
-    // x = y on the unit cylinder at z = 0, and on the unit sphere, and on a torus of 1 + 1 about y - x.
+    // x = y on the unit cylinder at z = 0, and on the unit sphere, and on a torus of 1 + 1 about y
+    // - x.
     let base = [
         surface(CYLINDER, origin(), [0, 0, 1], ratio(1, 1)),
         surface(PLANE, origin(), [1, -1, 0], ratio(0, 1)),

@@ -73,7 +73,7 @@ pub enum MeshError {
         place: [f64; 3],
     },
     /// The format cannot contain so many triangles.
-    #[error("{triangles} triangles are more than the format holds")]
+    #[error("{triangles} triangles are more than the format can represent")]
     TooMany {
         /// The number of triangles.
         triangles: usize,

@@ -282,7 +282,7 @@ fn code(text: &str) -> impl Iterator<Item = (usize, String)> {
     })
 }
 
-/// Whether a line holds a literal like 1e-9 or 0.00001.
+/// Whether a line contains a literal like 1e-9 or 0.00001.
 fn has_small_float(line: &str) -> bool {
     let inside = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
     let mut rest = line;

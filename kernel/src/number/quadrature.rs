@@ -123,7 +123,7 @@ impl<N: Float, const D: usize> PartialEq for Part<N, D> {
 impl<N: Float, const D: usize> Eq for Part<N, D> {}
 
 /// The greatest number of parts. Each factor of two towards a singular point takes one or two. Only
-/// rounding asks for more, and halving does not reduce it.
+/// rounding requires more, and halving does not reduce it.
 const MOST: usize = 192;
 
 /// The integral over [a, b]. The part with the greatest estimated error is halved until all agree

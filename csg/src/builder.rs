@@ -1,7 +1,7 @@
-//! Building a tree from parts that may be moved, mirrored and used many times.
+//! Builds a tree from parts that may be moved, mirrored and used many times.
 //!
-//! Parts are simplified as they are made; motions are pushed down to the leaves, and parts used
-//! many times are copied, when the tree is finished. Nothing here recurses.
+//! Parts are simplified as they are created. When the tree is finished, motions are pushed down to
+//! the leaves, and parts used several times are copied. Nothing here recurses.
 
 mod expansion;
 
@@ -22,16 +22,16 @@ pub const MAX_LEAVES: u64 = 1_000_000;
 /// The largest length in bits of a number in a leaf's motion.
 pub const MAX_MOTION_BITS: usize = 1 << 15;
 
-/// A tree beyond a stated limit.
+/// A tree exceeds a stated limit, or is built from another builder's solids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum TreeError {
-    /// Parts used many times are copied, and there are too many copies.
+    /// Parts used several times are copied, and there are too many copies.
     #[error("{leaves} primitives, with every use of a part counted; the limit is {MAX_LEAVES}")]
     TooManyLeaves {
-        /// How many leaves the tree would have.
+        /// The number of leaves of the tree.
         leaves: u64,
     },
-    /// Rotations inside rotations have made the exact numbers too long.
+    /// Nested rotations have made the exact numbers too long.
     #[error(
         "rotations so deeply nested that their exact numbers take {bits} bits; the limit is {MAX_MOTION_BITS}"
     )]
@@ -39,7 +39,7 @@ pub enum TreeError {
         /// The length of the longest number.
         bits: usize,
     },
-    /// A solid was made by another builder than the one it was used with.
+    /// The solid was created by another builder.
     #[error("a solid of another builder was used")]
     ForeignSolid,
 }
@@ -50,7 +50,7 @@ pub enum TreeError {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SolidId(Option<Slot>);
 
-/// Where a solid is: in which builder, and at which place.
+/// The location of a solid: its builder and its index there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Slot {
     builder: u64,
@@ -58,16 +58,16 @@ struct Slot {
 }
 
 impl SolidId {
-    /// The part without any points.
+    /// The empty part.
     pub const EMPTY: Self = Self(None);
 
-    /// Whether the part has no points by its construction.
+    /// Whether the part is empty by construction.
     pub fn is_empty(self) -> bool {
         self.0.is_none()
     }
 }
 
-/// What a part is made of. Children come before their parents.
+/// The composition of a part. Children precede their parents.
 #[derive(Debug)]
 pub(crate) enum BuilderNode {
     Leaf(Primitive),
@@ -78,12 +78,12 @@ pub(crate) enum BuilderNode {
     Moved {
         child: usize,
         placement: Placement,
-        /// The last entry of [`Builder::entry`] that made the placement.
+        /// The last entry of [`Builder::entry`] that contributed to the placement.
         entry: usize,
     },
 }
 
-/// How a solid was placed, as the caller requested.
+/// The placement of a solid, as the caller requested it.
 #[derive(Debug, Clone)]
 pub(crate) enum Placing {
     Steps(Vec<TransformStep>),
@@ -91,15 +91,15 @@ pub(crate) enum Placing {
     Scale(Rational),
 }
 
-/// A placing, and the one before it of the same part.
+/// A placement, and the previous one of the same part.
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub(crate) placing: Placing,
     pub(crate) before: Option<usize>,
 }
 
-/// `p -> M S k p`, with `M` a motion, `S` the mirror `y -> -y` or the identity, and `k` a factor
-/// greater than zero, or none for one.
+/// `p -> M S k p`, with `M` a motion, `S` the mirror `y -> -y` or the identity, and `k` a positive
+/// factor; `None` stands for one.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Placement {
     motion: Motion,
@@ -153,10 +153,10 @@ impl Placement {
 /// ```
 #[derive(Debug)]
 pub struct Builder {
-    /// What its solids are recognised by.
+    /// Identifies its solids.
     identity: u64,
     drafts: Vec<BuilderNode>,
-    /// The number of leaves of each draft, with every use counted.
+    /// The number of leaves of each draft, counting every use.
     leaves: Vec<u64>,
     /// Whether each draft contains a solid of another builder.
     foreign: Vec<bool>,
@@ -201,7 +201,7 @@ impl Builder {
         SolidId(Some(Slot { builder, index }))
     }
 
-    /// The place of a solid; a solid of another builder gets one that is never finished.
+    /// The index of a solid. A solid of another builder gets an index that is never finished.
     fn place_of(&mut self, part: SolidId) -> Option<usize> {
         let slot = part.0?;
         if slot.builder == self.identity {
@@ -216,16 +216,16 @@ impl Builder {
         Some(self.drafts.len() - 1)
     }
 
-    /// Whether a solid is of another builder, or contains one.
+    /// Whether a solid belongs to another builder, or contains such a solid.
     pub(crate) fn is_foreign(&self, part: SolidId) -> bool {
         let is = |slot: Slot| slot.builder != self.identity || self.foreign[slot.index];
         part.0.is_some_and(is)
     }
 
-    /// Copies a solid of another builder, with all that it is made of.
+    /// Copies a solid of another builder, with all its components.
     ///
     /// # Errors
-    /// The solid is not one of `other`.
+    /// The solid does not belong to `other`.
     pub fn import(&mut self, other: &Self, part: SolidId) -> Result<SolidId, TreeError> {
         let Some(slot) = part.0 else {
             return Ok(SolidId::EMPTY);
@@ -265,8 +265,8 @@ impl Builder {
         self.add(BuilderNode::Leaf(primitive), 1)
     }
 
-    /// An operation on parts. Of no parts at all, and where the outcome is empty by its
-    /// construction, the empty part.
+    /// An operation on parts. It gives the empty part if there are no parts, or if the result is
+    /// empty by construction.
     pub fn operation(&mut self, op: Operation, parts: &[SolidId]) -> SolidId {
         let emptied = match op {
             Operation::Union => false,
@@ -303,7 +303,7 @@ impl Builder {
         self.place(part, placement, Placing::Steps(steps))
     }
 
-    /// The image of a part in the mirror `y -> -y`.
+    /// The mirror image of a part under `y -> -y`.
     pub fn mirrored_y(&mut self, part: SolidId) -> SolidId {
         let placement = Placement {
             mirrored: true,
@@ -312,7 +312,7 @@ impl Builder {
         self.place(part, placement, Placing::MirrorY)
     }
 
-    /// A part, about the origin `factor` times as large; `factor` must be greater than zero.
+    /// A part scaled about the origin by `factor`, which must be greater than zero.
     pub fn scaled(&mut self, part: SolidId, factor: Rational) -> SolidId {
         if factor.is_one() {
             return part;
@@ -328,9 +328,10 @@ impl Builder {
         let Some(child) = self.place_of(part) else {
             return SolidId::EMPTY;
         };
-        // Placements in a row become one, so that the cost of a use is that of its leaves.
+        // Consecutive placements are merged, so that the cost of a use is that of its leaves.
         let (child, placement, before) = match &self.drafts[child] {
-            // Beyond the limit for good: finishing it is an error, wherever it is put.
+            // The limit is exceeded for good: finishing the part is an error, wherever it is
+            // placed.
             BuilderNode::Moved { placement, .. } if placement.bits() > MAX_MOTION_BITS => {
                 return self.solid(child);
             }
@@ -351,12 +352,12 @@ impl Builder {
         self.add(draft, leaves)
     }
 
-    /// How many leaves a part has, with every use counted.
+    /// The number of leaves of a part, counting every use.
     pub(crate) fn leaves(&self, part: SolidId) -> u64 {
         self.draft_of(part).map_or(0, |draft| self.leaves[draft])
     }
 
-    /// What a part is made of; `None` for the empty part, and for one of another builder.
+    /// The index of a part's draft; `None` for the empty part and for a part of another builder.
     pub(crate) fn draft_of(&self, part: SolidId) -> Option<usize> {
         let slot = part.0.filter(|slot| slot.builder == self.identity);
         slot.map(|slot| slot.index)
@@ -373,7 +374,7 @@ impl Builder {
     /// The tree of one part.
     ///
     /// # Errors
-    /// The tree is beyond a limit, or the part is of another builder.
+    /// The tree exceeds a limit, or the part belongs to another builder.
     pub fn finish(&self, part: SolidId) -> Result<Tree, TreeError> {
         if self.is_foreign(part) {
             return Err(TreeError::ForeignSolid);

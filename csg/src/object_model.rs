@@ -1,9 +1,9 @@
 //! The topological object model (`premio.object/1`): five levels and two relations.
 //!
-//! World, objects, faces, each with its surface and its boundaries, and arcs; the edge relation
-//! (faces that share an arc) and the vertex relation (arcs that meet at a vertex); next to them the
-//! touches, where the boundary meets itself in a point and is no manifold. Every entity is named by
-//! its place in its list.
+//! The levels are: world; objects; faces; the surface and the boundaries of each face; arcs. The
+//! relations are the edge relation (faces that share an arc) and the vertex relation (arcs that end
+//! at a vertex). In addition it lists the touches, the non-manifold points in which the boundary
+//! touches itself. Every entity is identified by its index in its list.
 
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{
@@ -17,7 +17,7 @@ use serde::Serialize;
 /// The name of the format.
 pub const SCHEMA: &str = "premio.object/1";
 
-/// The first level: all there is.
+/// The first level: everything.
 #[derive(Clone, Debug, Serialize)]
 pub struct ObjectModel {
     /// [`SCHEMA`].
@@ -28,20 +28,20 @@ pub struct ObjectModel {
     pub shells: Vec<ModelShell>,
     /// The third level: maximal pieces of one surface.
     pub faces: Vec<ModelFace>,
-    /// The fourth level, next to each face's surface: closed runs of arcs.
+    /// The fourth level, together with each face's surface: closed sequences of arcs.
     pub boundaries: Vec<ModelBoundary>,
     /// The fifth level: pieces of curves.
     pub arcs: Vec<ModelArc>,
     /// Points where arcs end.
     pub vertices: Vec<Vertex>,
-    /// Who meets whom.
+    /// The incidences.
     pub relations: Relations,
 }
 
 /// A connected solid.
 #[derive(Clone, Debug, Serialize)]
 pub struct Object {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: LumpId,
     /// Its outer shell, then its voids.
     pub shells: Vec<ShellId>,
@@ -50,7 +50,7 @@ pub struct Object {
 /// A connected closed surface.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelShell {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: ShellId,
     /// The object it bounds.
     pub object: LumpId,
@@ -65,25 +65,25 @@ pub struct ModelShell {
 /// A maximal piece of one surface.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelFace {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: FaceId,
     /// Its shell.
     pub shell: ShellId,
     /// Its surface.
     #[serde(serialize_with = "json::surface")]
     pub surface: Surface,
-    /// Whether the solid lies on the inside of the surface: below a plane, within a round one.
+    /// Whether the solid lies on the inner side of the surface: below a plane, inside a curved one.
     pub inside: bool,
-    /// Its Euler characteristic: 1 for a disc, less 1 for each hole and 2 for each handle.
+    /// Its Euler characteristic: 1 for a disc, minus 1 for each hole and 2 for each handle.
     pub euler: i32,
-    /// Its boundaries; none where the face is a whole closed surface.
+    /// Its boundaries; none if the face is a whole closed surface.
     pub boundaries: Vec<LoopId>,
 }
 
-/// A closed run of arcs around a face, which lies to its left as seen from outside the solid.
+/// A closed sequence of arcs around a face, which lies to its left as seen from outside the solid.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelBoundary {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: LoopId,
     /// The face it bounds.
     pub face: FaceId,
@@ -96,43 +96,43 @@ pub struct ModelBoundary {
 pub struct ArcUse {
     /// The arc.
     pub arc: EdgeId,
-    /// Whether it is run along its own direction.
+    /// Whether it runs in the arc's direction.
     pub forward: bool,
 }
 
 /// A piece of a curve.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelArc {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: EdgeId,
     /// Its curve.
     #[serde(serialize_with = "json::curve")]
     pub curve: Curve,
     /// The range of the curve's parameter, increasing.
     pub range: [f64; 2],
-    /// Its first and its last vertex; null where it is closed without a vertex.
+    /// Its first and last vertex; null if it is closed without a vertex.
     pub ends: Option<[VertexId; 2]>,
-    /// Whether the normal does not jump across it.
+    /// Whether the normal is continuous across it.
     pub smooth: bool,
 }
 
 /// A point where arcs end.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Vertex {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: VertexId,
-    /// Where it is.
+    /// The location.
     pub point: [f64; 3],
 }
 
-/// Who meets whom.
+/// The incidences.
 #[derive(Clone, Debug, Serialize)]
 pub struct Relations {
     /// The faces that share each arc, in order around it.
     pub edge: Vec<EdgeRelation>,
     /// The arcs that end at each vertex.
     pub vertex: Vec<VertexRelation>,
-    /// What meets in each point at which the boundary touches itself.
+    /// The entities that meet at each point in which the boundary touches itself.
     pub touch: Vec<TouchRelation>,
 }
 
@@ -150,23 +150,23 @@ pub struct EdgeRelation {
 pub struct VertexRelation {
     /// The vertex.
     pub vertex: VertexId,
-    /// The arcs; twice where both ends are here.
+    /// The arcs; an arc with both ends here occurs twice.
     pub arcs: Vec<EdgeId>,
 }
 
-/// A point at which the boundary touches itself: two or more of a fan of faces around a vertex, the
-/// inside of an arc and the inside of a face.
+/// A point at which the boundary touches itself. At least two of these meet there: a fan of faces
+/// around a vertex, the interior of an arc, the interior of a face.
 #[derive(Clone, Debug, Serialize)]
 pub struct TouchRelation {
-    /// Where it is.
+    /// The location.
     pub point: [f64; 3],
-    /// The vertex there; null where no arc ends.
+    /// The vertex there; null if no arc ends there.
     pub vertex: Option<VertexId>,
-    /// How many fans of faces meet in the vertex.
+    /// The number of fans of faces at the vertex.
     pub fans: usize,
     /// The arcs that run through the point.
     pub arcs: Vec<EdgeId>,
-    /// The faces that hold the point inside.
+    /// The faces that contain the point in their interior.
     pub faces: Vec<FaceId>,
 }
 

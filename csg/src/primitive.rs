@@ -49,7 +49,7 @@ pub enum Primitive {
     },
 }
 
-/// One of a primitive's lengths, to say which one is wrong.
+/// One of a primitive's lengths, to identify an invalid one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
     /// The edge along x.
@@ -88,7 +88,7 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// Why a primitive with these lengths is no solid.
+/// Why a primitive with these lengths is not a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum PrimitiveError {
     /// A length must be greater than zero.
@@ -100,13 +100,13 @@ pub enum PrimitiveError {
     /// A frustum needs at least one radius greater than zero.
     #[error("the base radius and the top radius must not both be zero")]
     NoRadius,
-    /// The tube of a torus must leave a hole.
+    /// The tube of a torus must be smaller than its spine circle.
     #[error("the minor radius must be less than the major radius")]
     NotARing,
 }
 
 impl PrimitiveError {
-    /// The length to point at.
+    /// The invalid length.
     pub fn dimension(self) -> Dimension {
         match self {
             Self::NotPositive(dimension) | Self::Negative(dimension) => dimension,
@@ -194,7 +194,7 @@ impl Primitive {
         }
     }
 
-    /// This primitive, all lengths `factor` times as large; `factor` must be greater than zero.
+    /// This primitive with all lengths multiplied by `factor`, which must be greater than zero.
     pub fn scaled(&self, factor: &Rational) -> Self {
         let by = |length: &Rational| length * factor;
         match self {
@@ -221,9 +221,10 @@ impl Primitive {
         }
     }
 
-    /// The rigid motion that gives the image of this primitive in the mirror `y -> -y`.
+    /// The rigid motion that maps this primitive to its mirror image under `y -> -y`.
     ///
-    /// Every primitive is symmetric about a plane of constant y: its mirror image is itself, shifted.
+    /// Every primitive is symmetric about a plane of constant y, so its mirror image is a
+    /// translated copy.
     pub fn mirror_y(&self) -> Motion {
         match self {
             Self::Block { size } | Self::Wedge { size } => {

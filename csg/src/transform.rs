@@ -1,27 +1,27 @@
-//! Rigid motions in the steps that a description gives them by, so that they can be written again
-//! as they were.
+//! Rigid motions as the sequence of steps by which a description gives them, so that they can be
+//! written as they were read.
 
 use premio_kernel::motion::{Motion, MotionError, RationalMatrix};
 use premio_kernel::number::rational::Rational;
 
-/// A step of a motion, in the frame around what is moved.
+/// A step of a motion, in the frame of the surroundings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TransformStep {
-    /// A shift along x, y and z.
+    /// A translation along x, y and z.
     Shift([Rational; 3]),
-    /// A turn about an axis through the origin.
+    /// A rotation about an axis through the origin.
     Turn {
-        /// The axis; its length does not count.
+        /// The axis; its length is ignored.
         axis: [Rational; 3],
         /// The angle in degrees, right-handed.
         degrees: Rational,
     },
-    /// The turn of a quaternion `w + x i + y j + z k` of any length.
+    /// The rotation of a quaternion `w + x i + y j + z k` of any length.
     Quaternion([Rational; 4]),
 }
 
 impl TransformStep {
-    /// A turn about a coordinate axis, by its number from 0.
+    /// A rotation about a coordinate axis, given by its index.
     pub fn about(axis: usize, degrees: Rational) -> Self {
         Self::Turn {
             axis: along(axis, Rational::ONE),
@@ -40,7 +40,7 @@ impl TransformStep {
         }
     }
 
-    /// Whether it is a shift, or turns coordinate axes into others.
+    /// Whether it is a translation, or maps coordinate axes to coordinate axes.
     pub(crate) fn is_simple(&self) -> bool {
         match self {
             Self::Shift(_) => true,
@@ -52,11 +52,11 @@ impl TransformStep {
         }
     }
 
-    /// This step seen in the mirror `y -> -y`.
+    /// The mirror image of this step under `y -> -y`.
     pub(crate) fn mirrored_y(&self) -> Self {
         match self {
             Self::Shift([x, y, z]) => Self::Shift([x.clone(), -y, z.clone()]),
-            // In a mirror an axis is turned round, but for what stands across the mirror.
+            // A mirror reverses an axis, except its component perpendicular to the mirror.
             Self::Turn {
                 axis: [x, y, z],
                 degrees,
@@ -68,7 +68,7 @@ impl TransformStep {
         }
     }
 
-    /// This step where all lengths are `factor` times as large.
+    /// This step with all lengths multiplied by `factor`.
     pub(crate) fn scaled(&self, factor: &Rational) -> Self {
         match self {
             Self::Shift(offset) => Self::Shift(offset.each_ref().map(|x| x * factor)),
@@ -77,14 +77,14 @@ impl TransformStep {
     }
 }
 
-/// A vector along a coordinate axis, by its number from 0.
+/// A vector along a coordinate axis, given by its index.
 pub(crate) fn along(axis: usize, length: Rational) -> [Rational; 3] {
     let mut vector: [Rational; 3] = Default::default();
     vector[axis] = length;
     vector
 }
 
-/// Steps in the order in which they are made, and the motion that they come to.
+/// A sequence of steps, and the motion that they compose to.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Transform {
     steps: Vec<TransformStep>,
@@ -92,22 +92,22 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// No step yet.
+    /// No steps.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One shift.
+    /// A single translation.
     pub fn shift(offset: [Rational; 3]) -> Self {
         let motion = Motion::translation(offset.clone());
         let steps = vec![TransformStep::Shift(offset)];
         Self { steps, motion }
     }
 
-    /// The quarter turns about coordinate axes that a matrix of zeros and ones, some of them
-    /// negative, comes to; `None` for another matrix and for a mirror.
+    /// The quarter turns about coordinate axes that compose to a matrix of zeros, ones and minus
+    /// ones; `None` for another matrix and for a mirror.
     pub fn quarter_turns(matrix: &RationalMatrix) -> Option<Self> {
-        // Every such matrix is a turn about x, then one about y, then one about z.
+        // Every such matrix is a rotation about x, then one about y, then one about z.
         let quarters = || [0, 90, 180, 270];
         let angles = quarters().into_iter().flat_map(|x| {
             let rest = quarters().into_iter();
@@ -118,7 +118,7 @@ impl Transform {
             .find(|moves| moves.motion.rotation_matrix() == *matrix)
     }
 
-    /// Turns about x, y and z in this order, by whole degrees.
+    /// Rotations about x, y and z in this order, by whole degrees.
     fn about_axes(degrees: [i32; 3]) -> Self {
         let mut moves = Self::new();
         for (axis, degrees) in degrees.into_iter().enumerate() {
@@ -130,7 +130,7 @@ impl Transform {
         moves
     }
 
-    /// The same motion in fewer steps, where shifts and quarter turns follow one another.
+    /// The same motion in fewer steps: consecutive translations and quarter turns are merged.
     pub(crate) fn tidied(steps: Vec<TransformStep>) -> Vec<TransformStep> {
         let mut tidy = Vec::with_capacity(steps.len());
         for run in steps.chunk_by(|a, b| a.is_simple() == b.is_simple()) {
@@ -140,7 +140,7 @@ impl Transform {
         tidy
     }
 
-    /// Quarter turns and shifts as quarter turns and one shift.
+    /// Quarter turns and translations merged to quarter turns and one translation.
     fn in_one_turn(run: &[TransformStep]) -> Option<Vec<TransformStep>> {
         let mut all = Self::new();
         for step in run {
@@ -154,21 +154,21 @@ impl Transform {
         Some(fewer)
     }
 
-    /// Adds a step after the others; refuses a turn about nothing.
+    /// Appends a step. Refuses a rotation about a zero axis.
     pub fn push(&mut self, step: TransformStep) -> Result<(), MotionError> {
         self.motion = self.motion.then(&step.motion()?);
         self.steps.push(step);
         Ok(())
     }
 
-    /// These steps first, then the others.
+    /// The composition: these steps first, then the others.
     pub fn then(mut self, later: Self) -> Self {
         self.motion = self.motion.then(&later.motion);
         self.steps.extend(later.steps);
         self
     }
 
-    /// These steps seen in the mirror `y -> -y`.
+    /// The mirror image of these steps under `y -> -y`.
     pub(crate) fn mirrored_y(&self) -> Self {
         Self {
             steps: self.steps.iter().map(TransformStep::mirrored_y).collect(),
@@ -176,12 +176,12 @@ impl Transform {
         }
     }
 
-    /// What the steps come to.
+    /// The composition of the steps.
     pub fn motion(&self) -> &Motion {
         &self.motion
     }
 
-    /// The steps, in the order in which they are made.
+    /// The steps, in order.
     pub fn steps(&self) -> &[TransformStep] {
         &self.steps
     }
@@ -252,7 +252,7 @@ mod tests {
             shift(-1, -2, -3),
         ];
         assert_eq!(Transform::tidied([there.clone(), back].concat()), []);
-        // What becomes no shorter stays as it was written.
+        // A sequence that cannot be shortened stays as it was written.
         let [before, turn, _] = there.clone();
         let two = vec![before, turn];
         assert_eq!(Transform::tidied(two.clone()), two);

@@ -7,7 +7,7 @@ use premio_kernel::number::rational::to_f64;
 
 use crate::primitive::Primitive;
 
-/// The place of a node in its tree.
+/// The index of a node in its tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub(crate) usize);
 
@@ -21,35 +21,35 @@ impl NodeId {
 /// A regularised set operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Operation {
-    /// What is in any child.
+    /// The points in any child.
     Union,
-    /// What is in every child.
+    /// The points in every child.
     Intersection,
-    /// What is in the first child and in no later one.
+    /// The points in the first child and in no later one.
     Difference,
 }
 
-/// A primitive at its place.
+/// A primitive in its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlacedPrimitive {
     /// The solid in its own frame.
     pub primitive: Primitive,
-    /// Where it is put.
+    /// Its placement.
     pub motion: Motion,
 }
 
-/// How a tree departs from one of the same operations.
+/// The differences between two trees of the same operations.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Departure {
-    /// How many primitives are others, or elsewhere.
+    /// The number of primitives that differ, or are placed elsewhere.
     pub leaves: usize,
-    /// How far points of theirs are away, at the most.
+    /// The largest distance by which points of these are displaced.
     pub furthest: f64,
 }
 
 impl PlacedPrimitive {
-    /// How far points of a primitive are from those of another of its kind, at the most; `None` of
-    /// another kind.
+    /// The largest distance between corresponding points of two primitives of one kind; `None` if
+    /// the kinds differ.
     fn distance(&self, other: &Self) -> Option<f64> {
         let (ours, theirs) = (self.primitive.lengths(), other.primitive.lengths());
         let kinds = [self, other].map(|placed| std::mem::discriminant(&placed.primitive));
@@ -77,11 +77,11 @@ impl PlacedPrimitive {
 )]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TreeNode {
-    /// A primitive at its place.
+    /// A primitive in its position.
     Leaf(PlacedPrimitive),
     /// An operation on two children or more.
     Operation {
-        /// What is done with the children.
+        /// The operation.
         op: Operation,
         /// The children, in the order written.
         children: Vec<NodeId>,
@@ -91,9 +91,9 @@ pub enum TreeNode {
 /// A solid as a tree of operations on placed primitives; made by a
 /// [`Builder`](crate::builder::Builder).
 ///
-/// The nodes lie in one arena, a parent before its children, so that trees of any depth can be
-/// walked, and dropped, without recursion. No child is empty, and no operation stands directly
-/// below one that it could be merged into.
+/// The nodes lie in one arena, a parent before its children, so trees of any depth can be traversed
+/// and dropped without recursion. No child is empty, and no operation is directly below one into
+/// which it could be merged.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tree {
     pub(crate) nodes: Vec<TreeNode>,
@@ -125,7 +125,7 @@ impl Tree {
         })
     }
 
-    /// How another tree of the same operations departs from this one; `None` of another shape.
+    /// The differences of another tree of the same operations; `None` if its structure differs.
     pub fn departure(&self, other: &Self) -> Option<Departure> {
         let mut departure = Departure::default();
         if self.nodes.len() != other.nodes.len() {
@@ -145,8 +145,8 @@ impl Tree {
         Some(departure)
     }
 
-    /// The same tree with other primitives at the same places, where `other` gives any; none where it
-    /// gives none.
+    /// The same tree with primitives replaced where `other` gives a replacement; `None` if it gives
+    /// none.
     pub(crate) fn with_primitives(
         &self,
         other: impl Fn(&PlacedPrimitive) -> Option<Primitive>,

@@ -1,9 +1,9 @@
-//! The boundary as other programs read it.
+//! Export of the boundary to other programs.
 //!
-//! Other kernels keep what ours does not need: seams along closed surfaces, edges that two faces
-//! share and no more, a vertex on every edge, splines for the curves in which a torus or two quadrics
-//! meet. [`two_manifold`] makes that of a boundary. [`step`] writes it as ISO 10303, with splines within
-//! a stated distance of their curves. [`mesh`] writes triangles.
+//! Other kernels need things that this one does not: seams along closed surfaces, edges shared by
+//! at most two faces, a vertex on every edge, and splines for the intersection curves of a torus or
+//! of two quadrics. [`two_manifold`] converts a boundary to that form. [`step`] writes it as ISO
+//! 10303, with splines within a stated distance of their curves. [`mesh`] writes triangles.
 
 pub mod mesh;
 mod parameters;

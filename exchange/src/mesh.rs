@@ -1,9 +1,9 @@
 //! Triangles for other programs: STL, OBJ, glTF and 3MF.
 //!
-//! The kernel's mesh follows the boundary. `split_non_manifold` gives every side of a triangle exactly
-//! two triangles. `remove_slivers` removes triangles that rounding leaves without an area. The rest is
-//! written by the crates that implement the formats: binary STL, OBJ (here, since no crate writes its
-//! f64 values), binary glTF and 3MF.
+//! The kernel's mesh approximates the boundary. `split_non_manifold` makes every side belong to
+//! exactly two triangles. `remove_slivers` removes triangles whose area rounding has made zero. The
+//! formats are written by the crates that implement them: binary STL, binary glTF and 3MF. OBJ is
+//! written here, because no crate writes its f64 values.
 
 mod f32_points;
 pub mod glb;
@@ -18,10 +18,10 @@ use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::tessellation::{Accuracy, TessellationError, tessellate};
 
-/// Triangles are within this part of the part's size of the boundary, where nothing is said.
+/// The default deviation of triangles from the boundary, relative to the part's size.
 pub const DEVIATION: f64 = 1.0 / 2000.0;
 
-/// How many degrees normals turn along a triangle's side, where nothing is said.
+/// The default angle, in degrees, by which normals turn along a triangle's side.
 pub const ANGLE: f64 = 15.0;
 
 /// A triangle.
@@ -31,17 +31,17 @@ pub struct Facet {
     pub corners: [u32; 3],
     /// The outward normals of the face's surface at the corners.
     pub normals: [Vector3<f64>; 3],
-    /// The face it follows.
+    /// The face that it approximates.
     pub face: FaceId,
-    /// The number of the solid that it is of.
+    /// The index of its solid.
     pub solid: usize,
 }
 
-/// The triangles of a part: every side of one is a side of exactly one other, run the other way, and
-/// none is without an area.
+/// The triangles of a part. Every side is a side of exactly one other triangle in the opposite
+/// direction, and no triangle has zero area.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facets {
-    /// The corners. Where solids or pieces of one touch, each has its own.
+    /// The corners. Where solids, or pieces of one, touch, each has its own.
     pub points: Vec<Point3<f64>>,
     /// The triangles, solid by solid, face by face.
     pub facets: Vec<Facet>,
@@ -51,37 +51,37 @@ pub struct Facets {
     pub deviation: f64,
 }
 
-/// Why a part is not written as triangles.
+/// Why a part cannot be written as triangles.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
     /// There is no solid.
     #[error("the part is empty: there is no solid to write")]
     Empty,
-    /// The boundary is not followed.
+    /// The boundary cannot be tessellated.
     #[error(transparent)]
     Tessellation(#[from] TessellationError),
-    /// More than two triangles share a side, and it is not told which belong together.
-    #[error("triangles touch at ({:.9}, {:.9}, {:.9}), and it is not told which belong together", place[0], place[1], place[2])]
+    /// More than two triangles share a side, and their pairing is ambiguous.
+    #[error("triangles touch at ({:.9}, {:.9}, {:.9}), and their pairing is ambiguous", place[0], place[1], place[2])]
     Touching {
         /// An end of the side.
         place: [f64; 3],
     },
-    /// Numbers of the format cannot tell the points apart.
+    /// The format's numbers cannot distinguish the points.
     #[error("the format's numbers are too coarse for triangles at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
     Coarse {
         /// A point there.
         place: [f64; 3],
     },
-    /// The format cannot hold so much.
-    #[error("{triangles} triangles are more than the format holds")]
+    /// The format cannot contain so many triangles.
+    #[error("{triangles} triangles are more than the format can represent")]
     TooMany {
-        /// How many there are.
+        /// The number of triangles.
         triangles: usize,
     },
 }
 
 impl Facets {
-    /// The triangles of a boundary; `resolution` is the part's resolution.
+    /// The triangles of a boundary; `resolution` is the part's.
     pub fn new(brep: &Brep, accuracy: &Accuracy, resolution: f64) -> Result<Self, MeshError> {
         if brep.topology.solids.is_empty() {
             return Err(MeshError::Empty);
@@ -95,7 +95,7 @@ impl Facets {
         Ok(facets)
     }
 
-    /// That the format's numbers are too coarse at a corner.
+    /// The error that the format's numbers are too coarse at a corner.
     fn coarse(&self, corner: u32) -> MeshError {
         let place = self.points[corner as usize].into();
         MeshError::Coarse { place }

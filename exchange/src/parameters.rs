@@ -7,15 +7,15 @@ use premio_kernel::number::analytic::Analytic;
 use premio_kernel::number::jet::Jet;
 use std::f64::consts::TAU;
 
-/// A surface with the window in which the parameters of a face of it lie: an angle from its start to
-/// a turn beyond it.
+/// A surface with the parameter window of a face on it. The window of an angle covers one period
+/// from its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterWindow {
     /// The surface.
     pub surface: Surface,
-    /// Where the window of each parameter starts that is an angle with a period.
+    /// The start of each parameter's window, if the parameter is an angle with a period.
     pub starts: [f64; 2],
-    /// How far the face reaches from the origin of the surface's frame.
+    /// The distance of the face from the origin of the surface's frame.
     pub reach: f64,
 }
 
@@ -32,8 +32,8 @@ fn angle(y: Jet<f64>, x: Jet<f64>) -> Jet<f64> {
 }
 
 impl ParameterWindow {
-    /// The parameters of a point that moves on the surface, with two derivatives; not yet brought into
-    /// the window. None on the axis, where there is no angle.
+    /// The parameters of a point that moves on the surface, with two derivatives. They are not
+    /// shifted into the window. `None` on the axis, where the angle is undefined.
     pub fn along(&self, p: [Jet<f64>; 3]) -> Option<[Jet<f64>; 2]> {
         let [x, y, z] = self.surface.frame().local(p);
         if matches!(self.surface, Surface::Plane(_)) {
@@ -49,7 +49,7 @@ impl ParameterWindow {
         (about.d.is_finite() && about.dd.is_finite()).then_some([about, along])
     }
 
-    /// The parameters of a point, in the window; on the axis the angle is not a number.
+    /// The parameters of a point, in the window; on the axis the angle is NaN.
     pub fn parameters_at(&self, p: &Point3<f64>) -> Point2<f64> {
         let q = self.surface.frame().coordinates(p);
         let [u, v] = self.surface.parameters(p);
@@ -62,7 +62,7 @@ impl ParameterWindow {
         Point2::new(u, self.within(1, v))
     }
 
-    /// A parameter brought into the window.
+    /// A parameter shifted into the window.
     fn within(&self, i: usize, x: f64) -> f64 {
         match self.surface.periods()[i] {
             Some(_) => self.starts[i] + turn(x - self.starts[i]),
@@ -70,8 +70,7 @@ impl ParameterWindow {
         }
     }
 
-    /// By how much parameters in order along a curve have to be shifted so that their middle lies in
-    /// the window.
+    /// The shift of consecutive parameters along a curve that moves their middle into the window.
     pub fn shift(&self, i: usize, middle: f64) -> f64 {
         self.within(i, middle) - middle
     }
@@ -81,7 +80,7 @@ impl ParameterWindow {
         self.surface.point(uv[0], uv[1])
     }
 
-    /// The value that differs from `x` by whole periods and is nearest to `other`.
+    /// The value that differs from `x` by whole periods and is closest to `other`.
     pub fn nearest_equivalent(&self, i: usize, x: f64, other: f64) -> f64 {
         match self.surface.periods()[i] {
             Some(_) => x + TAU * ((other - x) / TAU).round(),
@@ -90,10 +89,10 @@ impl ParameterWindow {
     }
 }
 
-/// What is closer to the axis than this part of the face's reach is on it.
+/// The distance from the axis, relative to the face's reach, within which a point is on the axis.
 const AXIS: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// The same surface with its angle counted from another ruling or meridian.
+/// The same surface with its angle measured from another ruling or meridian.
 pub fn turned(surface: &Surface, by: f64) -> Surface {
     let (sin, cos) = by.sin_cos();
     let f = surface.frame();

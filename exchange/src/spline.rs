@@ -1,9 +1,10 @@
-//! Splines that follow a curve within a stated distance, in space and in the parameters of surfaces.
+//! Splines that approximate a curve within a stated distance, in space and in the parameters of
+//! surfaces.
 //!
 //! Notation: s is the length along the curve, T its unit tangent, K its curvature vector. At each
-//! knot a spline has the curve's point, T and K, so that it is C² and its pieces are the quintic
-//! Hermite ones; with knots at the arc lengths its error goes with the sixth power of their distance
-//! (Farin, Curves and Surfaces for CAGD, 2002, chapters 7 and 8).
+//! knot the spline interpolates the curve's point, T and K, so it is C² and its pieces are quintic
+//! Hermite. With knots at arc lengths its error is proportional to the sixth power of the knot
+//! distance (Farin, Curves and Surfaces for CAGD, 2002, chapters 7 and 8).
 
 use crate::parameters::ParameterWindow;
 use nalgebra::{Point3, Vector3};
@@ -34,10 +35,10 @@ pub struct BezierSegments {
     pub on: Vec<Spline<2>>,
 }
 
-/// Why a curve is not followed.
+/// Why a curve cannot be approximated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SplineError {
-    /// It would take too many pieces.
+    /// It needs too many pieces.
     #[error(
         "a curve next to ({:?}, {:?}, {:?}) takes more than {limit} pieces of a spline",
         place[0],
@@ -45,29 +46,30 @@ pub enum SplineError {
         place[2]
     )]
     TooMany {
-        /// Where.
+        /// The location.
         place: [f64; 3],
-        /// How many there may be.
+        /// The largest number of pieces.
         limit: usize,
     },
-    /// It jumps: no spline of finite pieces passes from one of its points to the next.
+    /// The curve jumps, so no spline with finite pieces connects its points.
     #[error("a curve jumps next to ({:?}, {:?}, {:?})", place[0], place[1], place[2])]
     Jump {
-        /// Where.
+        /// The location.
         place: [f64; 3],
     },
 }
 
-/// How many pieces a spline may have.
+/// The largest number of pieces of a spline.
 const LIMIT: usize = 1 << 14;
 
-/// At how many places, less one, a piece is held against the curve and the surfaces.
+/// The number of samples, less one, at which a piece is compared with the curve and the surfaces.
 const PLACES: u32 = 8;
 
-/// It is held so near its ends, too, where an angle may turn by much next to an axis.
+/// Additional samples close to the ends of a piece, where an angle may change rapidly close to an
+/// axis.
 const GRADED: [f64; 3] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 20.0];
 
-/// A point where the curve is known.
+/// A sample of the curve.
 #[derive(Clone, Debug)]
 struct Node {
     t: f64,
@@ -75,7 +77,7 @@ struct Node {
     on: Vec<[Jet<f64>; 2]>,
 }
 
-/// A quintic piece by what it is at both ends, which are `length` apart.
+/// A quintic piece from the data at its ends, which are `length` apart.
 struct Piece<'a, const D: usize> {
     ends: [&'a [Jet<f64>; D]; 2],
     length: f64,
@@ -97,7 +99,7 @@ impl<const D: usize> Piece<'_, D> {
         ]
     }
 
-    /// The point at a part of its length, by de Casteljau.
+    /// The point at a fraction of its length, by de Casteljau's algorithm.
     fn at(&self, part: f64) -> [f64; D] {
         let mut points = self.bezier();
         for n in (0..DEGREE).rev() {
@@ -128,7 +130,7 @@ impl<const D: usize> Spline<D> {
         points.extend(pieces.first().map(|b| [b[0], b[1]]).into_iter().flatten());
         for (k, b) in pieces.iter().enumerate() {
             points.extend([b[2], b[3]]);
-            // The blossom at the knots before, three times at, and after the joint.
+            // The blossom at the knot before, three times at the joint, and the knot after.
             if let Some([before, at, after]) = knots.get(k..k + 3) {
                 let on = (after - at) / (at - before);
                 points.push(std::array::from_fn(|i| b[4][i] + on * (b[4][i] - b[3][i])));
@@ -139,7 +141,7 @@ impl<const D: usize> Spline<D> {
         Self { knots, points }
     }
 
-    /// How often each knot counts.
+    /// The multiplicity of each knot.
     pub fn multiplicities(&self) -> impl Iterator<Item = usize> {
         let last = self.knots.len() - 1;
         (0..=last).map(move |k| match k == 0 || k == last {
@@ -149,26 +151,26 @@ impl<const D: usize> Spline<D> {
     }
 }
 
-/// What the parameter of a spline is.
+/// The parameterisation of a spline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pace {
     /// The length along the curve, from the start.
     Length,
-    /// The curve's own parameter, for a curve that is written as itself.
+    /// The curve's own parameter, for a curve that is written exactly.
     Parameter,
 }
 
-/// A curve to be followed.
+/// A curve to be approximated.
 pub(crate) struct Follow<'a> {
-    /// What the splines' parameter is.
+    /// The splines' parameterisation.
     pub pace: Pace,
     /// The curve.
     pub curve: &'a Curve,
-    /// From where to where.
+    /// The parameters at both ends.
     pub range: [f64; 2],
-    /// The surfaces on which it runs.
+    /// The surfaces that contain it.
     pub windows: &'a [ParameterWindow],
-    /// How far off the splines may be, from the curve and from each surface.
+    /// The largest distance of the splines from the curve and from each surface.
     pub accuracy: f64,
 }
 
@@ -181,7 +183,7 @@ impl Follow<'_> {
         for pair in breaks.windows(2) {
             let end = self.node(pair[1], nodes.last());
             let mut waiting = vec![end];
-            // Depth first: what waits are the ends of pieces, the next on top.
+            // Depth first: `waiting` has the ends of pieces, the next one on top.
             while let (Some(start), Some(end)) = (nodes.last(), waiting.pop()) {
                 if self.follows(start, &end) {
                     nodes.push(end);
@@ -224,7 +226,7 @@ impl Follow<'_> {
         })
     }
 
-    /// Brings the parameters into their windows.
+    /// Shifts the parameters into their windows.
     fn align(&self, nodes: &mut [Node]) {
         for (k, window) in self.windows.iter().enumerate() {
             for i in 0..2 {
@@ -237,7 +239,7 @@ impl Follow<'_> {
         }
     }
 
-    /// The same node with its parameters those next to another's.
+    /// The node with parameters shifted to be closest to another's.
     fn nearest_equivalent(&self, mut node: Node, other: &Node) -> Node {
         for (k, window) in self.windows.iter().enumerate() {
             for i in 0..2 {
@@ -258,7 +260,7 @@ impl Follow<'_> {
         }
     }
 
-    /// The point, T and K. Where the curve stands still they are those of its chord.
+    /// The point, T and K. Where the curve's speed vanishes they are those of its chord.
     fn space(&self, t: f64) -> [Jet<f64>; 3] {
         if self.pace == Pace::Parameter {
             return self.curve.jet(t);
@@ -279,7 +281,7 @@ impl Follow<'_> {
         })
     }
 
-    /// A parameter next to `t`, toward the middle of the range.
+    /// A parameter close to `t`, towards the middle of the range.
     fn inner(&self, t: f64) -> f64 {
         let [lo, hi] = self.range;
         let toward = match t < 0.5 * (lo + hi) {
@@ -289,7 +291,8 @@ impl Follow<'_> {
         t + toward * INNER * (hi - lo)
     }
 
-    /// The parameters on a surface by the length; on its axis from next to it, by Taylor's sum.
+    /// The parameters on a surface as functions of the length. On the surface's axis they are
+    /// extrapolated by a Taylor series.
     fn on(&self, window: &ParameterWindow, t: f64, space: [Jet<f64>; 3]) -> [Jet<f64>; 2] {
         let nearest_equivalent = self.space(self.inner(t));
         let step = (0..3)
@@ -316,7 +319,7 @@ impl Follow<'_> {
         })
     }
 
-    /// The length of the curve between two parameters, by Gauss's rule of five points.
+    /// The length of the curve between two parameters, by five-point Gauss quadrature.
     fn length(&self, a: f64, b: f64) -> f64 {
         if self.pace == Pace::Parameter {
             return b - a;
@@ -327,7 +330,7 @@ impl Follow<'_> {
         half * (sum + CENTRE * at(0.0))
     }
 
-    /// Whether the splines between two nodes are as near as they have to be.
+    /// Whether the splines between two nodes are within the accuracy.
     fn follows(&self, a: &Node, b: &Node) -> bool {
         let length = self.length(a.t, b.t);
         let space = Piece {
@@ -351,7 +354,7 @@ impl Follow<'_> {
         })
     }
 
-    /// The nearest point of the curve between two parameters, from a guess at a part of the way.
+    /// The closest point of the curve between two parameters, starting at a fraction of that range.
     fn nearest(&self, p: &Point3<f64>, [a, b]: [f64; 2], part: f64) -> Point3<f64> {
         let mut t = a + part * (b - a);
         for _ in 0..4 {
@@ -366,18 +369,19 @@ impl Follow<'_> {
     }
 }
 
-/// How far inside the range the curve is asked next to its ends, as a part of the range.
+/// The distance from its ends, relative to the range, at which the curve is evaluated in their
+/// place.
 const INNER: f64 = 1.0 / (1 << 16) as f64;
 
-/// A curve that moves by less than this part of what it moves next to it stands still.
+/// The ratio of a curve's speed to that close by below which the speed counts as zero.
 const STILL: f64 = 1.0 / 16.0;
 
-/// The places and weights of Gauss's rule but for the middle.
+/// The nodes and weights of Gauss's rule, without the middle one.
 const GAUSS: [[f64; 2]; 2] = [
     [0.538_469_310_105_683_1, 0.478_628_670_499_366_47],
     [0.906_179_845_938_664, 0.236_926_885_056_189_08],
 ];
-/// The weight of its middle.
+/// The weight of the middle node.
 const CENTRE: f64 = 128.0 / 225.0;
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! STEP: ISO 10303, as AP242 or AP214, advanced boundary representations.
 //!
-//! Planes, cylinders, cones, spheres and tori are themselves, and so are lines, circles, ellipses,
-//! parabolas and hyperbolas; every other curve is a spline within a stated distance of the curve, with
-//! one in the parameters of each face next to it. The whole is one product, a solid for each solid,
-//! voids as voids. Of ISO 10303-42 no more is used than every application protocol with boundary
-//! representations has.
+//! Planes, cylinders, cones, spheres and tori are written exactly, and so are lines, circles,
+//! ellipses, parabolas and hyperbolas. Every other curve is a spline within a stated distance of
+//! it, with one in the parameters of each adjacent face. The file has one product, with one solid
+//! for each solid and voids as voids. It uses only entities of ISO 10303-42 that every application
+//! protocol with boundary representations has.
 
 mod clearance;
 mod part21;
@@ -29,56 +29,58 @@ pub enum Protocol {
     Ap214,
 }
 
-/// What a file is to say.
+/// The options of a file.
 #[derive(Clone, Debug)]
 pub struct StepOptions {
-    /// What the product is called.
+    /// The name of the product.
     pub name: String,
     /// The protocol.
     pub protocol: Protocol,
-    /// What the part's unit is.
+    /// The part's unit.
     pub unit: Unit,
-    /// How far splines may be from the curves they follow, in the part's unit.
+    /// The largest distance of splines from their curves, in the part's unit.
     pub accuracy: f64,
     /// The part's resolution.
     pub resolution: f64,
 }
 
-/// Why a boundary is not written.
+/// Why a boundary cannot be written.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// There is no solid.
     #[error("the part is empty: there is no solid to write")]
     Empty,
-    /// A face closes around its surface and was not cut.
+    /// A face that closes around its surface could not be cut.
     #[error(transparent)]
     Seam(#[from] SeamError),
-    /// A curve was not followed.
+    /// A curve could not be approximated.
     #[error(transparent)]
     Spline(#[from] SplineError),
-    /// Something is as thin as points and edges of other kernels are wide, which are valid nowhere then.
+    /// Something is as thin as the tolerance of points and edges in other kernels, where it would
+    /// be invalid.
     #[error(
-        "{what} {size:.3e} at ({:.9}, {:.9}, {:.9}): other kernels take what is not more than \
-         {least:.0e} apart for one",
+        "{what} {size:.3e} at ({:.9}, {:.9}, {:.9}): other kernels merge what is not more than \
+         {least:.0e} apart",
         place[0], place[1], place[2]
     )]
     Thin {
-        /// What it is.
+        /// The kind of entity.
         what: Thin,
         /// A point of it.
         place: [f64; 3],
-        /// How long or wide it is, in the part's unit.
+        /// Its length or width, in the part's unit.
         size: f64,
-        /// What it had to be more than.
+        /// The lower limit.
         least: f64,
     },
 }
 
-/// Splines are within this part of the part's size of the curves they follow, where nothing is said.
+/// The default distance of splines from their curves, relative to the part's size.
 pub const ACCURACY: f64 = 1.0 / 1_000_000.0;
 
-/// Splines are this many times closer to their curves than is requested: what their distance makes of
-/// a volume goes with the area next to it, which of a slender part is much.
+/// The factor by which splines are closer to their curves than requested. The error that their
+/// distance causes in the volume is proportional to the adjacent area, which is large for a slender
+/// part.
 const NEARER: f64 = 64.0;
 
 /// The text of a file.

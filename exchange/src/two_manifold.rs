@@ -1,11 +1,11 @@
-//! A boundary as other kernels keep it: every edge has two faces and ends in vertices, and no face
-//! closes around its surface.
+//! Converts a boundary to the form of other kernels: every edge has two faces and ends in vertices,
+//! and no face closes around its surface.
 //!
-//! `pairs` splits an edge of four faces or more into pairs of faces that enclose material between
-//! them, and a vertex into its fans, so that solids which touch there stay as many. `tracks` and
-//! `seams` cut a face that closes around its surface along a seam: a ruling, a meridian or a circle of
-//! a torus. `loops` links the edges and the two sides of each seam to loops. `short` merges what is
-//! smaller than the distance at which other kernels merge points.
+//! `pairs` splits an edge of four or more faces into pairs of faces that enclose material between
+//! them, and a vertex into its fans, so that solids that touch there remain separate. `tracks` and
+//! `seams` cut a face that closes around its surface along a seam: a ruling, a meridian or a circle
+//! of a torus. `loops` links the edges and the two sides of each seam to loops. `short` merges what
+//! is smaller than the distance at which other kernels merge points.
 
 mod gaps;
 mod loops;
@@ -24,7 +24,7 @@ use std::borrow::Cow;
 /// An edge between two sides of faces.
 #[derive(Clone, Debug)]
 pub struct SeamedEdge<'a> {
-    /// The edge of the boundary that it is, or is a piece of; none for a seam.
+    /// The edge of the boundary that contains it; none for a seam.
     pub source: Option<EdgeId>,
     /// Its curve.
     pub curve: Cow<'a, Curve>,
@@ -37,14 +37,14 @@ pub struct SeamedEdge<'a> {
 /// A face that does not close around its surface.
 #[derive(Clone, Debug)]
 pub struct SeamedFace {
-    /// The face of the boundary that it is, or is a piece of.
+    /// The face of the boundary that contains it.
     pub source: FaceId,
-    /// The surface, turned so that angles are counted from the seam, with the window of the face.
+    /// The surface, rotated so that angles are measured from the seam, with the window of the face.
     pub window: ParameterWindow,
     /// Whether the outward normal is the surface's own.
     pub sense: Sense,
-    /// The loops, the outer one first: edges with the sense in which they are run, the face to the
-    /// left as seen from outside.
+    /// The loops, the outer one first: edges with their sense in the loop. The face is to the left
+    /// as seen from outside.
     pub loops: Vec<Vec<(usize, Sense)>>,
 }
 
@@ -64,8 +64,8 @@ pub struct TwoManifold<'a> {
 /// Why a boundary cannot be given seams.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SeamError {
-    /// Material ends in a wall of no thickness: a face is cracked along an edge, and no loop of other
-    /// kernels runs twice through one place.
+    /// Material ends in a wall of zero thickness: a face has a crack along an edge, and no loop of
+    /// other kernels passes twice through one place.
     #[error(
         "a wall without thickness at ({:.9}, {:.9}, {:.9}): no other kernel has such a face",
         place[0],
@@ -76,7 +76,7 @@ pub enum SeamError {
         /// A point of the edge.
         place: [f64; 3],
     },
-    /// Every seam that was tried runs along an edge, or through a vertex.
+    /// Every candidate seam runs along an edge or through a vertex.
     #[error(
         "no seam could be laid through face {} at ({:.9}, {:.9}, {:.9})",
         face.0, place[0], place[1], place[2]
@@ -87,8 +87,8 @@ pub enum SeamError {
         /// A point of its boundary.
         place: [f64; 3],
     },
-    /// The pieces of a face do not tell which loop lies within which.
-    #[error("the loops of face {} do not tell which encloses which", face.0)]
+    /// The pieces of a face do not determine which loop encloses which.
+    #[error("the loops of face {} do not determine which encloses which", face.0)]
     Loops {
         /// The face.
         face: FaceId,
@@ -96,7 +96,7 @@ pub enum SeamError {
 }
 
 impl<'a> TwoManifold<'a> {
-    /// The boundary with seams; `resolution` is the part's resolution.
+    /// The boundary with seams; `resolution` is the part's.
     pub fn new(brep: &'a Brep, resolution: f64) -> Result<Self, SeamError> {
         let pairs = pairs::Pairs::new(brep);
         if let Some(edge) = pairs.crack(brep) {

@@ -1,4 +1,4 @@
-//! What is written as triangles, read back.
+//! Triangle files, read back.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use approx::assert_relative_eq;
@@ -32,7 +32,7 @@ fn facets(part: &Evaluation, deviation: f64) -> Result<Facets, MeshError> {
     Facets::new(&part.brep, &accuracy, part.resolution)
 }
 
-/// Every side is a side of one triangle, and the other way round of one other.
+/// Every side is a side of one triangle in each direction.
 fn is_closed(facets: &Facets) -> bool {
     let mut sides = HashSet::new();
     let all = facets.facets.iter().flat_map(|f| {
@@ -47,17 +47,18 @@ fn volume(corners: impl Iterator<Item = [Point3<f64>; 3]>) -> f64 {
     six.sum::<f64>() / 6.0
 }
 
-/// Parts with how many points and triangles they have: all faces are planes, so it is Euler's count.
+/// Parts with their numbers of points and triangles. All faces are planes, so Euler's formula gives
+/// the numbers.
 const PLANE: &[(&str, &str, usize, usize)] = &[
     ("block", "A = BLO(X=1, Y=2, Z=3)", 8, 12),
-    // Each block has the common edge for itself, with a point in its middle.
+    // Each block has its own copy of the common edge, with a point in the middle.
     (
         "two blocks along an edge",
         "A = BLO(X=1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=1, MOVY=1)",
         18,
         28,
     ),
-    // Each has the common corner for itself.
+    // Each block has its own copy of the common corner.
     (
         "two blocks at a corner",
         "A = BLO(X=1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=1, MOVY=1, MOVZ=1)",
@@ -80,11 +81,12 @@ fn what_touches_has_points_of_its_own() {
     }
 }
 
-/// At the tip between two faces that come together in a point each has a triangle with the same corners.
+/// Two faces that meet in a tip each have a triangle with the same corners there.
 #[test]
 fn sides_are_of_two_triangles_where_faces_come_together() {
     let parts = [
-        // The halves of a ring's section at a Villarceau plane meet in the points where its circles cross.
+        // The halves of a ring's section with a Villarceau plane meet in the points where its
+        // circles cross.
         "A = TOR(RMAJ=3, RMIN=1) DIF BLO(X=10, Y=10, Z=5) AT (MOVX=-5, MOVY=-5, ROTX=19.47122063449069)",
         "A = TOR(RMAJ=3, RMIN=1) DIF SPH(R=1) AT (MOVX=3)",
         "A = CYL(R=1, H=4) UN BLO(X=2, Y=2, Z=4) AT (MOVX=1, MOVY=-1)",
@@ -95,8 +97,8 @@ fn sides_are_of_two_triangles_where_faces_come_together() {
     }
 }
 
-/// A ring so coarse that a side leads from a point of its seam to one across the tube, and another from
-/// there to the same point of the seam, round the other way.
+/// A ring so coarse that one side leads from a point of its seam to a point across the tube, and
+/// another from there to the same point of the seam in the other direction.
 #[test]
 fn a_coarse_ring_is_closed() {
     let ring = "A = TOR(RMAJ=2, RMIN=1)";
@@ -160,7 +162,7 @@ fn stl_is_read_back() {
     assert_relative_eq!(volume(corners), part.mass().volume, max_relative = 0.01);
 }
 
-/// In metres, y up, where it was; the edges are lines.
+/// In metres, y up, at the original position; the edges are lines.
 #[test]
 fn gltf_is_read_back() {
     let part = part("A = BLO(X=10, Y=20, Z=40) AT (MOVX=1000, MOVY=2000, MOVZ=4000)");
@@ -189,7 +191,7 @@ fn gltf_is_read_back() {
         (box_of.min, box_of.max),
         ([-5.0, -10.0, -20.0], [5.0, 10.0, 20.0])
     );
-    // Each face has its four corners for itself.
+    // Each face has its own four corners.
     let positions = primitives[0].get(&gltf::Semantic::Positions).unwrap();
     assert_eq!(positions.count(), 24);
     let last = gltf
@@ -199,7 +201,7 @@ fn gltf_is_read_back() {
     assert_eq!(last.max(), Some(bin.len()));
 }
 
-/// Names are distinguished from what follows, and a coordinate is its shortest decimal.
+/// Names are separated from what follows, and a coordinate is written as its shortest decimal.
 #[test]
 fn an_obj_has_an_object_for_each_solid() {
     let text = "A = BLO(X=0.1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=2)";
@@ -211,7 +213,8 @@ fn an_obj_has_an_object_for_each_solid() {
     assert_eq!(written.lines().filter(|l| l.starts_with("f ")).count(), 24);
 }
 
-/// What single precision cannot hold is refused; a format with a place of its own holds it.
+/// A part that single precision cannot represent is refused; a format with an offset can represent
+/// it.
 #[test]
 fn single_precision_is_refused_far_from_the_origin() {
     let far = part("A = CYL(R=1, H=1) AT (MOVX=100000000)");
@@ -224,8 +227,9 @@ fn single_precision_is_refused_far_from_the_origin() {
     assert!(glb::write(&facets, "far", Unit::Metre).is_ok());
 }
 
-/// The lune between two balls is at most 3e-8 thick, less than the spacing of f32 at their radius: its two
-/// sides would coincide. Blocks that touch along an edge are written, each with its own edge.
+/// The lune between two balls is at most 3e-8 thick, less than the spacing of f32 at their radius,
+/// so its two sides would coincide. Blocks that touch along an edge are written, each with its own
+/// edge.
 #[test]
 fn a_sliver_below_single_precision_is_refused() {
     let lune = part("A = SPH(R=2) DIF SPH(R=2) AT (MOVX=0.00000003)");

@@ -1,4 +1,4 @@
-//! What seams make of a boundary, on parts of every kind.
+//! Boundaries with seams, for parts of every kind.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::Vector3;
@@ -10,7 +10,7 @@ use premio_kernel::brep::topology::Sense;
 use premio_kernel::unit::Unit;
 use std::collections::HashMap;
 
-/// Parts, with how many faces they have in the end, edges and vertices.
+/// Parts, with their numbers of faces, edges and vertices in the result.
 const PARTS: &[(&str, &str, [usize; 3])] = &[
     // A meridian from pole to pole.
     ("ball", "A = SPH(R=2)", [1, 1, 2]),
@@ -32,19 +32,19 @@ const PARTS: &[(&str, &str, [usize; 3])] = &[
         "A = TOR(RMAJ=3, RMIN=1) INT BLO(X=8, Y=8, Z=4) AT (MOVZ=-2)",
         [3, 3, 2],
     ),
-    // The block's edges, and nothing of the hole but its circles and a ruling.
+    // The block's edges, the circles of the hole, and a ruling of it.
     (
         "plate",
         "A = BLO(X=4, Y=4, Z=1) DIF CYL(R=1, H=3) AT (MOVX=2, MOVY=2, MOVZ=-1)",
         [7, 15, 10],
     ),
-    // Two blocks that share an edge: each has one of its own.
+    // Two blocks that share an edge: each gets its own copy.
     (
         "two",
         "A = BLO(X=1, Y=1, Z=1) UN BLO(X=1, Y=1, Z=1) AT (MOVX=1, MOVY=1)",
         [12, 24, 16],
     ),
-    // A ball on a table: the point of contact is nothing.
+    // A ball on a table: the point of contact adds nothing.
     (
         "touch",
         "A = SPH(R=1) AT (MOVZ=1) UN BLO(X=4, Y=4, Z=1) AT (MOVX=-2, MOVY=-2, MOVZ=-1)",
@@ -56,8 +56,8 @@ const PARTS: &[(&str, &str, [usize; 3])] = &[
         "A = BLO(X=4, Y=4, Z=4) DIF SPH(R=1) AT (MOVX=2, MOVY=2, MOVZ=2)",
         [7, 13, 10],
     ),
-    // The ring touches itself along the circle of the ball, and is not cut there again: two copies of
-    // that circle, a seam along the ring, and a meridian of either half of the ball.
+    // The ring touches itself along the circle of the ball, and is not cut there again: two copies
+    // of that circle, a seam along the ring, and a meridian of either half of the ball.
     (
         "inscribed",
         "A = TOR(RMAJ=3, RMIN=1) DIF SPH(R=1) AT (MOVX=3)",
@@ -76,7 +76,7 @@ fn part(text: &str) -> Evaluation {
     evaluate(&part.tree, &EvaluationOptions::default()).unwrap()
 }
 
-/// How many vertices edges end in.
+/// The number of distinct vertices at edge ends.
 fn vertices(seamed: &TwoManifold<'_>) -> usize {
     let mut used: Vec<usize> = seamed.edges.iter().flat_map(|e| e.ends).collect();
     used.sort_unstable();
@@ -84,7 +84,7 @@ fn vertices(seamed: &TwoManifold<'_>) -> usize {
     used.len()
 }
 
-/// Every edge has two sides, run in opposite senses; loops close, and edges end in their vertices.
+/// Every edge has two sides in opposite senses; loops close, and edges end in their vertices.
 fn is_sound(name: &str, seamed: &TwoManifold<'_>) {
     let mut sides: HashMap<usize, Vec<Sense>> = HashMap::new();
     for face in &seamed.faces {
@@ -114,7 +114,7 @@ fn is_sound(name: &str, seamed: &TwoManifold<'_>) {
         let middle = edge.curve.point(0.5 * (edge.range[0] + edge.range[1]));
         let length = (middle - from).norm() + (to - middle).norm();
         assert!(length > 1e-9, "{name}: edge {k} is {length:e} long");
-        // A seam may run once around between two vertices in one place.
+        // A seam may run once around between two coincident vertices.
         if edge.ends[0] != edge.ends[1] && edge.source.is_some() {
             assert!((to - from).norm() > 1e-9, "{name}: edge {k} closes");
         }
@@ -136,8 +136,9 @@ fn seams_are_as_few_as_can_be() {
     }
 }
 
-/// Seams of two faces meet the edge between them in one place, which may be where its range starts
-/// and ends: rounding puts them on both sides of that, and no edge of no length may come of it.
+/// Seams of two faces may meet the edge between them at the same point, which may be the start and
+/// end of its range. Rounding moves them to both sides of it, and must not create an edge of length
+/// zero.
 #[test]
 fn seams_that_meet_where_a_closed_edge_starts_leave_no_short_edge() {
     let solids = [
@@ -159,7 +160,7 @@ fn seams_that_meet_where_a_closed_edge_starts_leave_no_short_edge() {
     }
 }
 
-/// Where it is a manifold, the characteristic of the whole stays the boundary's.
+/// If it is a manifold, the Euler characteristic of the whole is unchanged.
 #[test]
 fn seams_keep_the_characteristic() {
     for (name, text, _) in PARTS {
@@ -175,7 +176,7 @@ fn seams_keep_the_characteristic() {
     }
 }
 
-/// The edge of a pocket lies in the roof's plane: between the two is a wall without thickness.
+/// The edge of a pocket lies in the plane of the roof, with a wall of zero thickness in between.
 #[test]
 fn a_wall_without_thickness_is_refused() {
     let known = part("A = WED(X=4, Y=4, Z=4) DIF BLO(X=1, Y=2, Z=1) AT (MOVX=1, MOVY=1, MOVZ=1)");
@@ -189,8 +190,8 @@ fn a_wall_without_thickness_is_refused() {
     );
 }
 
-/// A turned ball's meridian is a circle as it stands: no parameter curve is made up for it, though the
-/// longitude of its ends is chance.
+/// The meridian of a rotated ball is an exact circle. No parameter curve is needed for it, although
+/// the longitude of its ends is arbitrary.
 #[test]
 fn a_seam_has_no_splines() {
     let known = part("A = SPH(R=2) AT (MOVX=0.3, ROTX=17, ROTZ=31)");
@@ -208,8 +209,8 @@ fn a_seam_has_no_splines() {
     );
 }
 
-/// The parameter of a circle at a vertex is what a reader finds it to be: where an arc starts at zero,
-/// that may be a whole turn.
+/// Readers compute the parameter of a circle at a vertex. For an arc that starts at zero the result
+/// may be a whole turn.
 #[test]
 fn arcs_start_far_from_where_their_parameter_does() {
     let known = part(

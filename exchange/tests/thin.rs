@@ -1,4 +1,4 @@
-//! What is too thin for a STEP file.
+//! Parts that are too thin for a STEP file.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use approx::assert_relative_eq;
@@ -36,7 +36,7 @@ fn assert_refused(text: &str, thin: Thin, thickness: f64, limit: f64) {
     assert!(written(text, Unit::Metre).is_ok());
 }
 
-/// The faces of the same part without what is thin, which the file has.
+/// The number of faces of the same part without the thin entities, which the file must have.
 #[track_caller]
 fn assert_closed(text: &str, faces: usize) {
     let count = |unit| {
@@ -64,7 +64,7 @@ fn a_narrow_ring_is_closed() {
     assert_closed("PART = CYL(R=2, H=2) UN CYL(R=1, H=2.00000005)", 4);
 }
 
-/// The end of a slot is 1e-4 beyond the middle of the bore that rounds it: it is 2.7e-9 wide.
+/// The end of a slot is 1e-4 beyond the centre of the bore that rounds it, so it is 2.7e-9 wide.
 #[test]
 fn a_rounded_slot_is_closed() {
     let text = "PART = BLO(X=80, Y=14, Z=9) AT (MOVY=-7) \
@@ -73,7 +73,7 @@ fn a_rounded_slot_is_closed() {
     assert!(written(text, Unit::Millimetre).is_ok());
 }
 
-/// The wall between a bore and a side of the block is 5e-10 thick where they are nearest.
+/// The wall between a bore and a side of the block is 5e-10 thick at its thinnest point.
 #[test]
 fn a_bore_next_to_a_side_is_refused() {
     let text =
@@ -81,7 +81,7 @@ fn a_bore_next_to_a_side_is_refused() {
     assert_refused(text, Thin::Gap, 5e-10, 1e-9);
 }
 
-/// Half the area of a sphere on either side, and its section times the way between.
+/// Half the sphere's area on either side, and its section times the displacement.
 #[test]
 fn a_thin_wall_is_refused() {
     let text = "PART = SPH(R=2) DIF SPH(R=2) AT (MOVX=0.00000003)";
@@ -94,8 +94,9 @@ fn what_is_thicker_is_written() {
     assert!(written(text, Unit::Millimetre).is_ok());
 }
 
-/// A ring's inside touches a rod but for 1e-9: their curve turns within 3e-9, where f64 determines no angle
-/// about the axis, and jumps by 1e-7. A spline through such points had coordinates that are no numbers.
+/// The inside of a ring comes within 1e-9 of a rod. Their curve turns within 3e-9, where f64 does
+/// not determine the angle about the axis, which jumps by 1e-7. A spline through such points had
+/// NaN coordinates.
 #[test]
 fn a_curve_that_jumps_in_a_near_contact_is_refused() {
     let text = "PART = (TOR(RMAJ=2.5, RMIN=1.5) AT (MOVX=-0.0000000005, MOVY=0.000000001, MOVZ=-0.0000000005)

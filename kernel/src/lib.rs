@@ -1,5 +1,5 @@
-//! Exact geometry: numbers and signs, surfaces, curves and their intersections, and the boundary
-//! representation built from them.
+//! Exact geometry: numbers and predicates, surfaces, curves and their intersections, and the
+//! boundary representation built from them.
 
 pub mod brep;
 pub mod geometry;

@@ -1,7 +1,7 @@
 //! Exact rigid motions.
 //!
-//! A rotation is made from a rational quaternion, so its matrix is exactly orthogonal:
-//! motions compose and undo exactly, and what coincides before a common motion coincides after it.
+//! A rotation is built from a rational quaternion, so its matrix is exactly orthogonal. Motions
+//! compose and invert exactly, and things that coincide before a common motion coincide after it.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub type RationalMatrix = [[Rational; 3]; 3];
 
 /// A rigid motion `p -> R p + t`, with `R` exactly orthogonal and of determinant +1.
 ///
-/// The rotation is absent for a pure translation, which is then cheap to make and to apply.
+/// A pure translation stores no rotation, so it is cheap to build and to apply.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Motion {
     rotation: Option<Arc<RationalMatrix>>,
@@ -26,11 +26,11 @@ pub struct Motion {
 /// Why a motion could not be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MotionError {
-    /// An axis of length zero has no direction.
+    /// The axis has length zero and therefore no direction.
     #[error("an axis of length zero")]
     ZeroAxis,
-    /// A number lies beyond the range of f64 values, in which the half angle's tangent is taken.
-    #[error("an axis beyond the range of doubles")]
+    /// A number exceeds the range of f64, in which the tangent of the half angle is computed.
+    #[error("an axis beyond the range of f64")]
     OutOfRange,
 }
 
@@ -41,7 +41,7 @@ impl Default for Motion {
 }
 
 impl Motion {
-    /// The motion that moves nothing.
+    /// The identity motion.
     pub fn identity() -> Self {
         Self::translation([Rational::ZERO, Rational::ZERO, Rational::ZERO])
     }
@@ -56,9 +56,9 @@ impl Motion {
 
     /// A rotation about an axis through the origin, by an angle in degrees, right-handed.
     ///
-    /// Multiples of 90 degrees about a coordinate axis are exact. Any other angle is the nearest
-    /// with a rational quaternion `(1, s a)`, `a` the axis as given and `s = tan(angle / 2) / |a|`
-    /// rounded to a double: the axis itself is kept exactly.
+    /// Multiples of 90 degrees about a coordinate axis are exact. Any other angle is replaced by
+    /// the nearest one with a rational quaternion `(1, s a)`, where `a` is the axis as given and `s
+    /// = tan(angle / 2) / |a|` is rounded to an f64. The axis itself is kept exactly.
     pub fn rotation(axis: [Rational; 3], degrees: &Rational) -> Result<Self, MotionError> {
         let axis = unit_if_rational(axis)?;
         let angle = reduce_degrees(degrees);
@@ -67,8 +67,8 @@ impl Motion {
         Ok(Self::from_quaternion([w, &s * x, &s * y, s * z]).unwrap_or_default())
     }
 
-    /// The rotation of a quaternion `w + x i + y j + z k`, which need not have length one;
-    /// `None` for zero.
+    /// The rotation of a quaternion `w + x i + y j + z k`, which need not have unit length; `None`
+    /// if it is zero.
     pub fn from_quaternion([w, x, y, z]: [Rational; 4]) -> Option<Self> {
         let [ww, xx, yy, zz] = [&w * &w, &x * &x, &y * &y, &z * &z];
         let norm = &ww + &xx + &yy + &zz;
@@ -115,7 +115,7 @@ impl Motion {
         }
     }
 
-    /// This motion first, then the other.
+    /// The composition: this motion first, then the other.
     pub fn then(&self, other: &Self) -> Self {
         let translation = other.apply_point(&self.translation);
         let rotation = match (&self.rotation, &other.rotation) {
@@ -130,7 +130,7 @@ impl Motion {
         }
     }
 
-    /// The motion that undoes this one.
+    /// The inverse motion.
     pub fn inverse(&self) -> Self {
         let rotation = self
             .rotation
@@ -147,7 +147,7 @@ impl Motion {
         }
     }
 
-    /// This motion seen in a mirror: `S M S`, with `S` the reflection `y -> -y`.
+    /// The mirror image of this motion: `S M S`, with `S` the reflection `y -> -y`.
     pub fn mirrored_y(&self) -> Self {
         let rotation = self.rotation.as_ref().map(|matrix| {
             let mut matrix = RationalMatrix::clone(matrix);
@@ -163,7 +163,8 @@ impl Motion {
         }
     }
 
-    /// This motion where all lengths are `factor` times as large: the same turn, another shift.
+    /// This motion with all lengths multiplied by `factor`: the rotation is unchanged, the
+    /// translation is scaled.
     pub fn scaled(&self, factor: &Rational) -> Self {
         Self {
             rotation: self.rotation.clone(),
@@ -178,7 +179,7 @@ impl Motion {
         [x + a, y + b, z + c]
     }
 
-    /// The image of a direction, which is turned but not shifted.
+    /// The image of a direction: it is rotated, not translated.
     pub fn apply_vector(&self, vector: &[Rational; 3]) -> [Rational; 3] {
         match &self.rotation {
             None => vector.clone(),
@@ -186,12 +187,12 @@ impl Motion {
         }
     }
 
-    /// Whether nothing is turned.
+    /// Whether the rotation is the identity.
     pub fn is_translation(&self) -> bool {
         self.rotation.is_none()
     }
 
-    /// Whether nothing is moved.
+    /// Whether this is the identity.
     pub fn is_identity(&self) -> bool {
         self.is_translation() && self.translation.iter().all(Rational::is_zero)
     }
@@ -209,12 +210,12 @@ impl Motion {
         &self.translation
     }
 
-    /// The rotation matrix in f64, each entry the nearest.
+    /// The rotation matrix with entries rounded to the nearest f64.
     pub fn rotation_f64(&self) -> Matrix3<f64> {
         self.rounded_rotation()
     }
 
-    /// The rotation, rounded once to numbers of some precision.
+    /// The rotation, rounded once to the precision of `N`.
     pub fn rounded_rotation<N: Float>(&self) -> Matrix3<N> {
         match &self.rotation {
             Some(matrix) => Matrix3::from_fn(|i, j| N::nearest(&matrix[i][j])),
@@ -222,12 +223,12 @@ impl Motion {
         }
     }
 
-    /// The translation in f64, each entry the nearest.
+    /// The translation, rounded to the nearest f64.
     pub fn translation_f64(&self) -> Vector3<f64> {
         Vector3::from_fn(|i, _| to_f64(&self.translation[i]))
     }
 
-    /// The length in bits of the longest number in this motion, which grows as motions compose.
+    /// The length in bits of the longest number in this motion. It grows as motions are composed.
     pub fn bits(&self) -> usize {
         let rotation = self.rotation.iter().flat_map(|m| m.iter().flatten());
         let longest = rotation.chain(&self.translation).map(bits).max();
@@ -235,7 +236,7 @@ impl Motion {
     }
 }
 
-/// An axis as given, or of length one where its length is rational.
+/// An axis as given, or normalised to unit length if its length is rational.
 struct Axis {
     direction: [Rational; 3],
     /// The length of `direction`, rounded.
@@ -263,14 +264,14 @@ fn unit_if_rational(axis: [Rational; 3]) -> Result<Axis, MotionError> {
     })
 }
 
-/// The angle less a whole number of turns, in [-180, 180].
+/// The angle modulo 360 degrees, in [-180, 180].
 fn reduce_degrees(degrees: &Rational) -> Rational {
     let turn = Rational::from(360);
     let turns = (degrees / &turn).round();
     degrees - turn * Rational::from(turns)
 }
 
-/// The real part of the quaternion, and the factor of the axis.
+/// The real part of the quaternion, and the factor that multiplies the axis.
 fn half_angle(angle: &Rational, length: f64) -> Result<(Rational, Rational), MotionError> {
     let right = Rational::from(90);
     let straight = Rational::from(180);
@@ -293,7 +294,7 @@ fn half_angle(angle: &Rational, length: f64) -> Result<(Rational, Rational), Mot
     Ok((Rational::ONE, factor * angle.sign()))
 }
 
-/// The scalar product; zeros and ones, of which matrices are full, cost nothing.
+/// The dot product. Products with 0 and 1, which are common in matrices, are skipped.
 fn dot(a: &[Rational; 3], b: &[Rational; 3]) -> Rational {
     let mut sum = Rational::ZERO;
     for (x, y) in a.iter().zip(b) {

@@ -1,35 +1,36 @@
-//! Random numbers: the same ones for a seed, everywhere and always.
+//! Random numbers, reproducible from a seed on every platform.
 
-/// Steele, Lea and Flood's generator (SplitMix64, OOPSLA 2014): a counter, and a function of it.
+/// The generator SplitMix64 (Steele, Lea and Flood, OOPSLA 2014): a counter, and a function of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Random(u64);
 
 /// The step of the generator's counter: 2^64 over the golden ratio.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The generator's output at a counter: Stafford's variant 13 of a mixing function, one to one.
+/// The generator's output at a counter: variant 13 of Stafford's mixing function, a bijection.
 fn mix(counter: u64) -> u64 {
     let z = (counter ^ (counter >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
 }
 
-/// A number that depends on a seed and two whole numbers alone, such as the place of a pixel.
+/// A number that depends only on a seed and two integers, such as the coordinates of a pixel.
 pub fn hash(seed: u64, a: u64, b: u64) -> u64 {
     let one = |hash: u64, more: u64| mix((hash ^ more).wrapping_add(STEP));
     one(one(one(0, seed), a), b)
 }
 
-/// The largest mean for which numbers of events are drawn exactly.
+/// The largest mean for which Poisson numbers are drawn exactly.
 const EXACT: f64 = 64.0;
 
 impl Random {
-    /// The numbers of a seed.
+    /// The sequence of a seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// The numbers of a seed at a place: the same ones in whatever order the places are asked.
+    /// The sequence of a seed at a place. It does not depend on the order in which places are
+    /// visited.
     pub fn at(seed: u64, a: u64, b: u64) -> Self {
         Self(hash(seed, a, b))
     }
@@ -40,22 +41,21 @@ impl Random {
         mix(self.0)
     }
 
-    /// A number from 0 to less than 1, in steps of 2^-53.
+    /// A number in [0, 1), uniformly distributed, in steps of 2^-53.
     pub fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number of the normal distribution of mean 0 and variance 1 (Box and Muller, 1958).
+    /// A normally distributed number of mean 0 and variance 1 (Box and Muller, 1958).
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         radius * (std::f64::consts::TAU * self.uniform()).cos()
     }
 
-    /// A number of events where `mean` are expected (Poisson's distribution), such as electrons in a
-    /// pixel.
+    /// A Poisson-distributed number of events with the given mean, such as electrons in a pixel.
     ///
-    /// Up to a mean of 64 exactly, by inversion; above by the normal distribution of the same mean and
-    /// variance, rounded. None where the mean is not positive.
+    /// Up to a mean of 64 it is exact, by inversion. Above, it is a rounded normal number of the
+    /// same mean and variance. It is 0 if the mean is not positive.
     pub fn poisson(&mut self, mean: f64) -> u64 {
         if mean > EXACT {
             return (mean + mean.sqrt() * self.normal()).round() as u64;
@@ -67,7 +67,7 @@ impl Random {
         let mut events = 0;
         let mut probability = (-mean).exp();
         let mut below = probability;
-        // The sum may stay below what is drawn by its rounding: then no more is added to it.
+        // Rounding may keep the sum below the number drawn; stop when terms no longer add to it.
         while uniform >= below {
             events += 1;
             probability *= mean / events as f64;

@@ -1,4 +1,4 @@
-//! What a length of 1 is, which matters to files only.
+//! The unit of lengths, which matters to files only.
 
 /// A unit of lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Its symbol.
+    /// The symbol.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Metre => "m",
@@ -28,7 +28,7 @@ impl Unit {
         }
     }
 
-    /// How long it is, in millimetres.
+    /// The length in millimetres.
     pub fn millimetres(self) -> f64 {
         match self {
             Self::Metre => 1000.0,

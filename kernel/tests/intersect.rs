@@ -1,4 +1,4 @@
-//! All fifteen pairs: every branch lies on both surfaces, and none is missing.
+//! All fifteen pairs of surfaces: every branch lies on both, and none is missing.
 
 use approx::assert_abs_diff_eq;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
@@ -27,7 +27,7 @@ impl Random {
     fn unit(&mut self) -> f64 {
         self.below(1 << 30) as f64 / (1u64 << 30) as f64
     }
-    /// On a half-unit grid, or anywhere.
+    /// A length on a half-unit grid, or anywhere.
     fn length(&mut self, grid: bool, lo: f64, hi: f64) -> f64 {
         let x = lo + (hi - lo) * self.unit();
         if grid { (2.0 * x).round() / 2.0 } else { x }
@@ -89,7 +89,7 @@ impl Random {
     }
 }
 
-/// Points where `b` changes sign along parameter lines of `a`.
+/// Points at which `b` changes sign along parameter lines of `a`.
 fn crossings(a: &Surface, b: &Surface, rng: &mut Random) -> Vec<Point3<f64>> {
     let mut found = Vec::new();
     for k in 0..24 {
@@ -126,8 +126,8 @@ fn crossings(a: &Surface, b: &Surface, rng: &mut Random) -> Vec<Point3<f64>> {
     found
 }
 
-/// Grid pairs that are refused today: contact of a higher order at a point. One that starts to
-/// work fails the run until it is taken off.
+/// The seeds of grid pairs that are refused today, for a contact of higher order at a point. The
+/// test fails if one of them is no longer refused.
 const REFUSED: &[u64] = &[];
 
 fn check(seed: u64, grid: bool) {
@@ -219,23 +219,24 @@ fn pairs_on_a_grid_meet_in_all_their_curves() {
     }
 }
 
-/// How far the parts of the named pairs reach.
+/// The size of the named pairs' extent.
 const REACH: f64 = 10.0;
 
 fn predicates() -> Predicates {
     Predicates::new(1e-11 * REACH)
 }
 
-/// Two surfaces that meet around the origin.
+/// The intersection of two surfaces around the origin.
 fn met(a: &Surface, b: &Surface) -> SurfaceIntersection {
     let extent = RegionOfInterest {
         centre: Point3::origin(),
         radius: REACH,
     };
-    intersect(Carrier::given(a), Carrier::given(b), &extent, &predicates()).expect("they meet")
+    intersect(Carrier::given(a), Carrier::given(b), &extent, &predicates()).expect("they intersect")
 }
 
-/// The torus touches the cone's other nappe, close to the apex: no point of the cone.
+/// The torus is tangent to the cone's other nappe, close to the apex, which is no point of the
+/// cone.
 #[test]
 fn no_node_lies_on_the_other_nappe() {
     let along = |z: f64, x: f64, y: f64, height: f64| Frame {
@@ -265,7 +266,7 @@ fn no_node_lies_on_the_other_nappe() {
     }
 }
 
-/// The torus (4, 1) about z at the origin, and another surface.
+/// The intersection of the torus (4, 1) about z at the origin with another surface.
 fn on_a_ring(other: &Surface) -> SurfaceIntersection {
     met(&torus(Point3::origin(), Vector3::z(), 4.0, 1.0), other)
 }
@@ -286,8 +287,8 @@ fn circles(meeting: &SurfaceIntersection) -> Vec<[f64; 4]> {
     found
 }
 
-/// On the sphere about (5, 0, 0) with the radius √10 the power of the ring's centre is 15, as that
-/// of its tube: ρ cos θ = 4/5 ρ, so that they meet in two circles of the tube.
+/// For the sphere about (5, 0, 0) with the radius √10, the power of the ring's centre is 15, like
+/// that of its tube: ρ cos θ = 4/5 ρ, so they intersect in two circles of the tube.
 #[test]
 fn a_sphere_across_the_spine_meets_a_torus_in_circles_of_the_tube() {
     let sphere = Surface::Sphere(Sphere {
@@ -303,8 +304,8 @@ fn a_sphere_across_the_spine_meets_a_torus_in_circles_of_the_tube() {
     }
 }
 
-/// The cone of 45 degrees about the spine's tangent at (4, 0, 0), its apex one tube's radius from
-/// there, holds the circle of the tube.
+/// The cone of 45 degrees about the spine's tangent at (4, 0, 0), with its apex at the distance of
+/// one tube radius, contains the circle of the tube.
 #[test]
 fn a_cone_about_a_tangent_of_the_spine_meets_a_torus_in_a_circle_of_the_tube() {
     let half = 0.5f64.sqrt();
@@ -326,8 +327,8 @@ fn torus(origin: Point3<f64>, axis: Vector3<f64>, major: f64, minor: f64) -> Sur
     })
 }
 
-/// The radii of the circles along which two tori touch, and the points where other curves pass them,
-/// or they each other.
+/// The radii of the circles along which two tori are tangent, and the number of points where other
+/// curves cross them or they cross each other.
 fn contact_circles(a: &Surface, b: &Surface) -> (Vec<f64>, usize) {
     let meeting = met(a, b);
     let radius = |branch: &Branch| match (&branch.curve, branch.tangent) {
@@ -338,9 +339,9 @@ fn contact_circles(a: &Surface, b: &Surface) -> (Vec<f64>, usize) {
     (radii, meeting.nodes.len())
 }
 
-/// A ring touches the tube of another torus all round, from outside with its inner rim or from
-/// inside with its outer one: where R - r, or R + r, is the tube's radius, the centre on the spine
-/// and the axis along it.
+/// A ring is tangent to the tube of another torus all round: from outside with its inner rim or
+/// from inside with its outer one. Then R - r, or R + r, is the tube's radius, the centre is on the
+/// spine and the axis along it.
 #[test]
 fn a_ring_touches_a_tube_all_round() {
     let tube = torus(Point3::origin(), Vector3::z(), 2.0, 0.5);
@@ -356,7 +357,7 @@ fn a_ring_touches_a_tube_all_round() {
     }
 }
 
-/// Two links whose tubes fill each other's hole: each rim is the other's tube, and the two circles
+/// Two links whose tubes fill each other's hole. Each rim is the other's tube, and the two circles
 /// cross in the point between the centres.
 #[test]
 fn links_that_fill_each_other_touch_along_two_circles() {

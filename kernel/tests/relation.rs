@@ -1,4 +1,4 @@
-//! Relations between surfaces: what f64 values cannot tell, more bits do.
+//! Relations between surfaces that f64 cannot decide, and more bits can.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
@@ -27,7 +27,7 @@ fn tiny(k: usize) -> Rational {
 #[test]
 fn the_edge_of_the_band_is_told_by_more_bits() {
     let (resolution, radius) = (exact(0.5f64.powi(30)), exact(1.25));
-    // A normal of length 7/3: no component of the unit normal is a double.
+    // A normal of length 7/3; no component of the unit normal is an f64.
     let third = |n: i32| Rational::from_parts(n.into(), 3u8.into());
     let (normal, length) = ([2, 3, 6].map(third), third(7));
     let plane = Coefficients {
@@ -79,7 +79,7 @@ fn rounded(c: &Coefficients<Rational>) -> Frame {
     Frame::about(Point3::new(x, y, z), axis)
 }
 
-/// A surface of some kind from numbers, with the exact numbers it was rounded from.
+/// A surface of some kind, and the exact numbers from which it was rounded.
 fn surface(kind: usize, c: &Coefficients<Rational>) -> Surface {
     let frame = rounded(c);
     let (size, tube) = (to_f64(&c.size), to_f64(&c.tube));

@@ -1,4 +1,4 @@
-//! How long boundaries take: blocks with through holes, and OpenSCAD's example019.
+//! Benchmarks of boundaries: blocks with through holes, and OpenSCAD's example019.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench fails by it")]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -29,7 +29,7 @@ fn boundaries(c: &mut Criterion) {
             b.iter(|| evaluate(&plate, &how).unwrap());
         });
     }
-    // The file belongs to others and is read from the folder that PREMIO_CORPUS names.
+    // The file is not ours and is read from the folder that PREMIO_CORPUS names.
     if let Some(folder) = std::env::var_os("PREMIO_CORPUS").map(PathBuf::from) {
         let text = std::fs::read(folder.join("openscad/example019.csg")).unwrap();
         let (example, how) = tree(&text, Format::Csg);

@@ -1,5 +1,5 @@
-//! How long predictions take: a cube with three cuts at 640 × 480, against a full render of it by our
-//! own rays, and a part of a hundred faces.
+//! Benchmarks of predictions: a cube with three cuts at 640 × 480, compared with a full render by
+//! ray casting, and a part with a hundred faces.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench fails by it")]
 
 use criterion::{Criterion, criterion_group, criterion_main};

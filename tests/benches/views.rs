@@ -1,4 +1,4 @@
-//! How long views take: a cube with three cuts, blocks with through holes, and a pipe with branches
+//! Benchmarks of views: a cube with three cuts, blocks with through holes, and a pipe with branches
 //! along its own axis.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench fails by it")]
 

@@ -1,5 +1,5 @@
-//! The most memory that the boundary and a view of a block with 32 by 32 through holes ask for:
-//! `cargo run --release -p premio-tests --example memory`. Reads VmHWM, so on Linux only.
+//! The peak memory of the boundary and a view of a block with 32 by 32 through holes: `cargo run
+//! --release -p premio-tests --example memory`. It reads VmHWM, so it runs on Linux only.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a report")]
 
 use nalgebra::{Point3, Vector3};
@@ -8,7 +8,7 @@ use premio_csg::reader::{Format, ReadOptions, read};
 use premio_tests::parts::plate;
 use premio_visibility::{ViewCamera, contours};
 
-/// The most that this process has had in memory so far, in MiB.
+/// The peak memory of this process so far, in MiB.
 fn peak() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|l| l.starts_with("VmHWM:")).unwrap();

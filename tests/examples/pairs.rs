@@ -1,4 +1,4 @@
-//! Misses coincidences of pairs of solids by powers of two, and prints what is wrong then.
+//! Misses coincidences of pairs of solids by powers of two, and prints the resulting faults.
 //!
 //! `cargo run --release -p premio-tests --example pairs -- --from 10 --to 60`
 

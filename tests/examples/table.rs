@@ -1,11 +1,11 @@
-//! The book's table of speed, made of what criterion measured:
-//! `cargo bench -p premio-tests && cargo run --release -p premio-tests --example table`.
+//! The book's table of running times, from criterion's measurements: `cargo bench -p premio-tests
+//! && cargo run --release -p premio-tests --example table`.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a report")]
 
 use serde_json::Value;
 use std::path::Path;
 
-/// What a row says, and where criterion keeps its estimates.
+/// The label of each row, and the location of criterion's estimates.
 const ROWS: &[(&str, &str)] = &[
     ("block with 16 through holes: boundary", "boundary/holes/16"),
     ("block with 64 through holes: boundary", "boundary/holes/64"),

@@ -1,5 +1,5 @@
-//! Examines the random trees of `premio fuzz` with what takes longer, too: counting all pieces, and
-//! casting rays on meshes. Prints the failing ones with their trees, and a summary.
+//! Examines the random trees of `premio fuzz` including the slower checks: recounting all pieces,
+//! and casting rays on meshes. Prints the failing ones with their trees, and a summary.
 //!
 //! `cargo run --release -p premio-tests --example trees -- --from 0 --count 10000 --views`
 
@@ -48,7 +48,7 @@ struct Arguments {
     one: bool,
 }
 
-/// What took longer is named in the summary.
+/// Trees that take longer are named in the summary.
 const SLOW: Duration = Duration::from_secs(5);
 
 #[derive(Debug, Default)]
@@ -125,12 +125,12 @@ fn work(arguments: &Arguments, next: &AtomicU64, summary: &Mutex<Summary>) {
     }
 }
 
-/// What comes before the first colon.
+/// The text before the first colon.
 fn kind(text: &str) -> &str {
     text.split(':').next().unwrap_or_default()
 }
 
-/// A smaller tree that is wrong in the same way as far as the first thing goes.
+/// A smaller tree with the same first fault.
 fn shrunk(model: &PartModel, wrong: &[String], arguments: &Arguments) -> PartModel {
     let first = wrong.first().map(|text| kind(text));
     shrink(model, TRIES, |smaller| {
@@ -139,10 +139,10 @@ fn shrunk(model: &PartModel, wrong: &[String], arguments: &Arguments) -> PartMod
     })
 }
 
-/// How many smaller trees are tried.
+/// The number of smaller trees that are tried.
 const TRIES: usize = 1000;
 
-/// Examines one tree in a process of its own, which may hang, overflow its stack or eat memory.
+/// Examines one tree in its own process, which may hang, overflow its stack or exhaust memory.
 fn in_a_process(model: &PartModel, arguments: &Arguments) -> Vec<String> {
     let mut command = Command::new(std::env::current_exe().unwrap_or_default());
     command.args(["--one", "--rays", &arguments.rays.to_string()]);
@@ -184,7 +184,7 @@ fn run(mut command: Command, tree: &str, limit: Duration) -> io::Result<Vec<Stri
     Ok(text.lines().map(str::to_owned).collect())
 }
 
-/// The child's part.
+/// The work of the child process.
 fn one(arguments: &Arguments) -> ExitCode {
     let mut tree = String::new();
     if io::stdin().read_to_string(&mut tree).is_err() {
@@ -195,7 +195,7 @@ fn one(arguments: &Arguments) -> ExitCode {
         views: if arguments.views { &VIEWS } else { &[] },
     };
     for text in examine(&tree, depth) {
-        // One line each; a pipe holds that much.
+        // One line for each; a pipe can buffer that much.
         say(&text
             .replace('\n', " ")
             .chars()
@@ -206,6 +206,6 @@ fn one(arguments: &Arguments) -> ExitCode {
 }
 
 fn say(text: &str) {
-    // Nobody may be reading any more.
+    // The reader may have gone.
     let _ = writeln!(io::stdout().lock(), "{text}");
 }

@@ -84,7 +84,7 @@ def descriptions(folder: Path):
     for path in sorted(Path(corpus).glob("faults/**/*.padl")):
         yield str(path.relative_to(corpus)), path
     for case in json.loads((Path(corpus) / "cases.json").read_text()):
-        # Relative to the folder in which all runs: some outputs tell the path.
+        # Relative to the working folder of all runs, because some outputs contain the path.
         path = Path(f"{case['id']}.json")
         (folder / path).write_text(json.dumps(case["tree"]))
         yield case["id"], path
@@ -150,7 +150,7 @@ def digest(premio: str, run: Run, folder: Path) -> str:
     arguments = list(run.arguments)
     with tempfile.TemporaryDirectory(dir=folder) as place:
         if run.output:
-            # Some formats tell their file's name.
+            # Some formats contain their file's name.
             option = [] if arguments[-1] == "--overlay" else ["-o"]
             arguments += [*option, str(Path(place) / f"out.{run.output}")]
         try:

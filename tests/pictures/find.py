@@ -121,7 +121,7 @@ PARTS = [
         "lego_square",
         LEGO,
         [24, 24, 4.8],
-        # A bright one, two that are darker, and one as dark as the plate they stand on, told by eye.
+        # A bright one, two darker ones, and one as dark as the plate below, estimated by eye.
         shades={(0.1, 0.1): 0.3, (32.1, 0.1): 0.2, (16.1, 32.1): 0.12, (0.1, 16.1): 0.03},
     ),
 ]

@@ -1,13 +1,13 @@
-"""Predictions held against pictures by POV-Ray: the same parts, lights and cameras, in a picture that
-the program had no part in.
+"""Predictions compared with pictures by POV-Ray of the same parts, lights and cameras.
 
-POV-Ray traces lines of sight through the tree of primitives itself: it shares neither the boundary,
-nor what is visible, nor shadows, nor shading with the program. What both are told to do is diffuse
-reflection of point lights that fade with the square of the distance, and cast shadows. The lens, the point spread and the noise are put on in `sensor.py`.
+POV-Ray traces lines of sight through the tree of primitives. It shares neither the boundary nor
+visibility, shadows and shading with the program. Both are set to diffuse reflection of point lights
+whose irradiance falls with the square of the distance, and to cast shadows. The lens, the point
+spread and the noise are added in `sensor.py`.
 
-First the level of every pixel without noise is held against `premio render` for one setup of each
-part, so that what differs later is not the scene. With --render the program's own pictures take the
-place of POV-Ray's.
+First the level of every pixel without noise is compared with `premio render` for one setup of each
+part, so that later differences are not due to the scene. With --render the program's own pictures
+replace POV-Ray's.
 """
 
 import argparse
@@ -133,7 +133,7 @@ def main() -> int:
     parser.add_argument("--render", action="store_true", help="pictures by the program itself")
     parser.add_argument("--setups", type=int, default=12, help="of each part")
     parser.add_argument("--fine", type=int, default=4, help="lines of sight on a side of a pixel")
-    parser.add_argument("--only", default="", help="parts whose name holds this")
+    parser.add_argument("--only", default="", help="parts whose name contains this")
     parser.add_argument("--keep", type=Path, help="where to leave setups, pictures, differences")
     given = parser.parse_args()
     failed = False

@@ -44,7 +44,7 @@ class Scene:
     k: list[list[float]]
     # From the part towards the light, infinitely far.
     light: list[float]
-    # The levels of the surroundings: beside the part, and on a white surface without the light.
+    # The levels of the surroundings: next to the part, and on a white surface without the light.
     beside: float
     around: float
     # R_d times pi.

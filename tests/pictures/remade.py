@@ -1,22 +1,24 @@
 """The paper's table, remade: how much of the search for correspondences is pruned.
 
-The paper (SPARCstation 2, 1992) tells of two parts, Cube3Cut and Fork, how many correspondences it
-finds, and how many paths its search opens and prunes. Its parts are known by name and by figure only:
-the dimensions of ours are ours. Its pictures are not known either: ours are by POV-Ray, with the lens,
-the point spread and the noise of `sensor.py`, from cameras and with lights as in `povray.py`.
+For two parts, Cube3Cut and Fork, the paper (SPARCstation 2, 1992) reports the number of
+correspondences found, and the numbers of paths that its search opens and prunes. Its parts are
+known by name and by figure only, so the dimensions here are our own. Its pictures are not known
+either. The pictures here are by POV-Ray, with the lens, the point spread and the noise of
+`sensor.py`, and with cameras and lights as in `povray.py`.
 
-Nor is the search the same thing. The paper's has no pose to start from: its paths assign lines of the
-whole picture. Ours assigns at a pose: chains of lines propose thousands of them, the likeliest are drawn
-to edges, and at each that is left the correspondences of what is visible there are searched; paths are
-those of the best pose. So poses that are proposed stand beside the paths, and are a part of the work.
+The search differs, too. The paper's search has no initial pose: its paths assign lines of the whole
+picture. Ours assigns at a pose. Chains of lines propose thousands of poses, and the likeliest are
+snapped to edges. At each remaining pose the correspondences of the features visible there are
+searched. The paths reported are those of the best pose. The number of proposed poses is reported in
+addition, because they are a part of the work.
 
-A pose is right within 2 % of the part's size (the diagonal of its box) and 2 degrees, or one that
-the part's symmetries make alike is; whether it is also accepted (found) is told apart. Correspondences
-are features that are not missed; the right ones are those at a right pose whose edge runs within 2
-pixels of the contour, and their recall is their share of the features that are visible there, on the
-average over all pictures, and none where the pose is wrong. Some are in no picture, since both their
-faces are as dark: so the share of visible edges is told that `premio compare` finds with the same
-detector at the true pose.
+A pose is right if it is within 2 % of the part's size (the diagonal of its box) and 2 degrees of
+the true pose, or of one that the part's symmetries make equal to it. Whether it is also accepted
+(found) is reported separately. Correspondences are features that are not missed. The right ones are
+those at a right pose whose edge is within 2 pixels of the contour. Their recall is their share of
+the features visible there, averaged over all pictures, and zero where the pose is wrong. Some
+features are in no picture, because both their faces are equally dark. Therefore the share of
+visible edges that `premio compare` finds with the same detector at the true pose is reported, too.
 """
 
 import argparse
@@ -212,7 +214,7 @@ def main() -> int:
     parser.add_argument("premio")
     parser.add_argument("--setups", type=int, default=12, help="pictures of each part")
     parser.add_argument("--fine", type=int, default=4, help="lines of sight on a side of a pixel")
-    parser.add_argument("--only", default="", help="parts whose name holds this")
+    parser.add_argument("--only", default="", help="parts whose name contains this")
     parser.add_argument("--keep", type=Path, help="where to leave models, pictures, the camera")
     given = parser.parse_args()
     rows, there, notes = [], [], []

@@ -44,8 +44,8 @@ class Light:
 
 @dataclass
 class Paint:
-    """Brightnesses, where 1 is white under all lights: what a surface makes of the light that falls on
-    it, what it shows without, and what is seen beside the part."""
+    """Brightnesses, where 1 is white under all lights: of a surface per incident light, of a surface
+    without light, and of the background."""
 
     diffuse: float
     ambient: float

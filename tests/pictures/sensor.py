@@ -1,4 +1,4 @@
-"""What a sensor makes of a picture of POV-Ray: pixels, lens, point spread, noise and grey levels."""
+"""A sensor model applied to a picture of POV-Ray: pixels, lens, point spread, noise and grey levels."""
 
 import subprocess
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy
 from scene import Camera
 
-# How many standard deviations of the point spread count.
+# The number of standard deviations at which the point spread is truncated.
 WIDE = 3
 
 
@@ -43,7 +43,7 @@ def portable(path: Path) -> numpy.ndarray:
 
 
 def vignetted(levels: numpy.ndarray, view: Camera) -> numpy.ndarray:
-    """The lens collects less of what is aside, by the fourth power of the cosine."""
+    """The irradiance of the lens off its axis falls with the fourth power of the cosine."""
     fx, fy, cx, cy = view.k[0, 0], view.k[1, 1], view.k[0, 2], view.k[1, 2]
     x = (numpy.arange(view.width) - cx) / fx
     y = (numpy.arange(view.height) - cy) / fy

@@ -1,5 +1,5 @@
-"""What is exported and read back: every named case, parts whose files were wrong once (`found`), and the
-corpus if PREMIO_CORPUS names its folder.
+"""The parts that are exported and read back: every named case, parts whose files were once wrong
+(`found`), and the corpus if PREMIO_CORPUS names its folder.
 """
 
 import json
@@ -9,7 +9,7 @@ from pathlib import Path
 
 CASES = Path(__file__).parent.parent / "cases"
 FOUND = Path(__file__).parent / "found"
-# The program's status for what is refused, and for what is no description.
+# The program's exit status for a refused part, and for an invalid description.
 REFUSED, UNREAD = 3, 2
 
 
@@ -21,7 +21,7 @@ def descriptions(folder):
         yield path.stem, str(path)
     corpus = os.environ.get("PREMIO_CORPUS")
     if not corpus:
-        print("PREMIO_CORPUS is not set: the corpus is passed over")
+        print("PREMIO_CORPUS is not set: the corpus is skipped")
         return
     for path in sorted(Path(corpus).glob("openscad/*.csg")):
         yield path.name, str(path)
@@ -32,7 +32,7 @@ def descriptions(folder):
 
 
 def measures(premio, description):
-    """What the program tells of a description; none where it has no solid to write."""
+    """What the program reports of a description; None if it has no solid to write."""
     known = subprocess.run([premio, "info", description, "--json"], capture_output=True, text=True)
     if known.returncode in (REFUSED, UNREAD):
         return None
@@ -41,8 +41,8 @@ def measures(premio, description):
 
 
 def is_wrong(name, found, known):
-    """Tells what was found against a name. What is known may be so or not: what another program makes
-    of a file can depend on the machine's arithmetic, and is only told where it does not fail."""
+    """Reports the faults found for a name. A known fault may or may not occur, because the result of
+    another program can depend on the machine's arithmetic; its absence is only reported."""
     if name not in known:
         if found:
             print(f"{name}: {'; '.join(found)}")

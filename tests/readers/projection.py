@@ -1,9 +1,9 @@
-"""STEP files projected by OpenCASCADE's exact hidden-line algorithm: what it leaves visible is as
-long as the visible contours of the program, from three sides, on the named cases and random trees.
+"""STEP files projected by OpenCASCADE's exact hidden-line algorithm. Its visible lines must be as
+long as the visible contours of the program, from three sides, for named cases and random trees.
 
-A known difference is listed with its reason; some are there on one machine and not on another.
-Passed over are parts with edges of four faces, which are two edges in one place in the file, and
-with boundaries without an angle, which it tells from edges by a rule of its own.
+Known differences are listed with their reasons; some occur on one machine and not on another. Two
+kinds of parts are skipped: those with edges of four faces, which are two coincident edges in the
+file, and those with smooth edges, which OpenCASCADE distinguishes by a rule of its own.
 """
 
 import json
@@ -23,9 +23,9 @@ from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 from OCP.Message import Message, Message_Gravity
 from step import shape_in
 
-# Its own visible pieces are too many where rays through the tree find them hidden.
-FALSE = "pieces behind a face are left visible; rays in the tree tell them hidden"
-CLOSE = "edges nearer to one another than its tolerance"
+# OpenCASCADE leaves pieces visible that ray casting on the tree finds hidden.
+FALSE = "pieces behind a face are left visible; ray casting on the tree finds them hidden"
+CLOSE = "edges closer to each other than its tolerance"
 KNOWN = {
     "apex-and-edge-touching": FALSE,
     "coaxial-tori-overlapping": FALSE,
@@ -39,7 +39,7 @@ KNOWN = {
 }
 # Directions to the eye; z is up.
 VIEWS = [(0.3, -0.8, 0.52), (0.71, 0.2, 0.67), (-0.5, 0.6, -0.62)]
-# Lengths may differ by this part; so many points are taken of a piece.
+# The allowed relative difference of lengths; the number of points taken of a piece.
 LENGTH, POINTS = 2e-3, 400
 # Random trees: profiles, and seeds of each.
 PROFILES, SEEDS = "grid,tangent,near", 15

@@ -1,5 +1,5 @@
-"""Sheets of four views read back by ezdxf, which audits them without error or repair: every stroke on a
-layer with its weight, within the paper, and the part in its true size.
+"""Sheets of four views read back by ezdxf. Its audit must find no error and make no repair. Every
+stroke must be on a layer with its weight, and within the paper, and the part must be at true size.
 """
 
 import subprocess
@@ -11,14 +11,14 @@ import ezdxf
 from descriptions import CASES, measures
 from ezdxf import bbox
 
-# Refused: the view of what doubles do not tell apart, and what no scale brings onto paper.
+# Refused: a view of surfaces that f64 does not separate, or of a part that no scale fits on paper.
 REFUSED = 3
-# What is drawn as polylines, and the sampling of curves for boxes, may be off by this part of the size.
+# The allowed error of polylines and of sampled bounding boxes, relative to the size.
 SIZE = 1e-3
 
 
 def faults(premio, description, known, folder):
-    """What is wrong with a description's sheet; none where the program refuses its view."""
+    """The faults of a description's sheet; None if the program refuses its view."""
     path = Path(folder) / "sheet.dxf"
     command = [premio, "contours", description, "--views", "front,top,right,iso", "--hidden"]
     told = subprocess.run(
@@ -42,7 +42,7 @@ def faults(premio, description, known, folder):
     box = bbox.extents(drawn, fast=False)
     if not (paper.inside(box.extmin) and paper.inside(box.extmax)):
         found.append("strokes outside the frame")
-    # The view from above stands below all others but the isometric one, which is beside it.
+    # The view from above is placed below all others except the isometric one, which is next to it.
     sides = [hi - lo for lo, hi in zip(known["bounds"]["min"], known["bounds"]["max"], strict=True)]
     least = [sides[0] + sides[1], sides[1] + sides[2]]
     room = SIZE * sum(sides)

@@ -47,7 +47,7 @@ def count(shape, kind):
 
 
 def quiet():
-    """Lets the reader tell of failures only."""
+    """Restricts the reader's messages to failures."""
     for printer in Message.DefaultMessenger_s().Printers():
         printer.SetTraceLevel(Message_Gravity.Message_Fail)
 

@@ -1,9 +1,10 @@
-//! Rays cast on triangles of the boundary: what lies before a contour, by a way that knows neither
-//! the tree nor a formula of a surface.
+//! Casts rays on triangles of the boundary to count the faces in front of a contour. The method
+//! uses neither the tree nor a formula of a surface.
 //!
-//! A mesh is only near to the boundary. A sample counts where the rays around it agree on what lies
-//! well before it; what lies just before it leaves room in the answer; and where another contour
-//! passes it in the image, the exact rays on the tree (`premio_verify::checks`) answer, not this.
+//! A mesh only approximates the boundary. A sample counts if the rays around it agree on the faces
+//! well in front of it. Faces just in front of it make the answer a range. Where another contour
+//! passes the sample in the image, the exact rays on the tree (`premio_verify::checks`) decide in
+//! place of this method.
 
 use glam::{Vec3A, vec3a};
 use nalgebra::{Point3, Vector3};
@@ -23,69 +24,69 @@ use premio_visibility::contours::{Contour, ContourPiece};
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-/// How far the triangles may be off, as a part of the part's size.
+/// The deviation of the triangles, relative to the part's size.
 const DEVIATION: f64 = 1.0 / 2000.0;
 
 /// The greatest angle between neighbouring normals, in radians.
 const ANGLE: f64 = 0.3;
 
-/// How far next to a sample the rays run, in deviations.
-const ASIDE: f64 = 3.0;
+/// The lateral distance of the rays from a sample, in deviations.
+const LATERAL: f64 = 3.0;
 
-/// What a box in single precision is grown by, as a part of the size: more than its rounding.
+/// The enlargement of a box in single precision, relative to the size: more than its rounding.
 const GROWN: f32 = 1.0 / (1 << 18) as f32;
 
-/// Where in a piece samples are taken, as parts of its range.
+/// The fractions of a piece's range at which samples are taken.
 const SAMPLES: [f64; 2] = [0.37, 0.71];
 
-/// How many points of a piece are asked whether they pass near to a sample.
+/// The number of points of a piece that are tested for passing close to a sample.
 const POINTS: u32 = 256;
 
-/// A boundary's triangles, to be met by rays.
+/// A boundary's triangles, prepared for ray casting.
 pub struct Cast {
     mesh: Mesh,
     boxes: Bvh2,
-    /// Which faces are plane.
+    /// Whether each face is planar.
     flat: Vec<bool>,
     centre: Point3<f64>,
     size: f64,
 }
 
-/// A triangle that faces the eye, met by a ray.
+/// The hit of a ray on a triangle that faces the eye.
 #[derive(Clone, Copy, Debug)]
 struct Hit {
-    /// How far along the ray.
+    /// The distance along the ray.
     at: f64,
-    /// The face it follows.
+    /// The face that it approximates.
     face: FaceId,
-    /// Whether that is plane: such a face does not come back over its own edge.
+    /// Whether that face is planar: a planar face does not curve back over its own edge.
     flat: bool,
 }
 
-/// What a triangle that a ray meets says of the sample.
+/// The meaning of a hit for a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Means {
     /// The sample's own face, next to it.
     Itself,
-    /// A face that may or may not lie before the sample.
+    /// A face that may or may not be in front of the sample.
     Unsure,
-    /// A face before the sample.
+    /// A face in front of the sample.
     Layer,
 }
 
-/// What the samples of a view said.
+/// The result for the samples of a view.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counted {
-    /// How many agree.
+    /// The number of samples that agree.
     pub agreed: usize,
-    /// How many lie too near to something for a mesh.
+    /// The number of samples too close to something for a mesh.
     pub unclear: usize,
-    /// What is wrong, in words.
+    /// Descriptions of what is wrong.
     pub wrong: Vec<String>,
 }
 
 impl Cast {
-    /// The triangles of a boundary; none of an empty one.
+    /// The triangles of a boundary; none if it is empty.
     pub fn new(evaluation: &Evaluation) -> Result<Self, TessellationError> {
         let size = evaluation.bounds.diagonal();
         let accuracy = Accuracy {
@@ -118,7 +119,8 @@ impl Cast {
         })
     }
 
-    /// What is wrong with the mesh: it is watertight, and encloses the volume but for its distance.
+    /// The faults of the mesh: it must be watertight, and its volume must be that of the boundary
+    /// up to the deviation.
     pub fn faults(&self, evaluation: &Evaluation) -> Option<String> {
         let exact = evaluation.mass();
         let volume = self.mesh.volume();
@@ -135,7 +137,7 @@ impl Cast {
         })
     }
 
-    /// Counts what lies before the pieces of a view.
+    /// Counts the faces in front of the pieces of a view.
     pub fn count(&self, seen: &Contours) -> Counted {
         let projection = Projection::new(&seen.camera, self.size);
         let mut counted = Counted::default();
@@ -163,17 +165,17 @@ impl Cast {
     }
 
     fn lateral(&self) -> f64 {
-        ASIDE * DEVIATION * self.size
+        LATERAL * DEVIATION * self.size
     }
 
-    /// Within this distance before a sample lies what its own faces may still be: where a ray next to
-    /// a limb meets a surface as curved as the part.
+    /// The distance in front of a sample within which a hit may be on the sample's own faces: where
+    /// a ray close to a limb hits a surface as curved as the part.
     fn just_before(&self) -> f64 {
         (4.0 * self.size * self.lateral()).sqrt()
     }
 
-    /// How many faces lie before a sample, at least and at most; none where the rays around it do
-    /// not agree.
+    /// The least and the greatest number of faces in front of a sample; `None` if the rays around
+    /// it disagree.
     fn before(
         &self,
         projection: &Projection,
@@ -199,7 +201,7 @@ impl Cast {
         agreed.then_some([layers, layers + unsure])
     }
 
-    /// What it means for a contour's sample that a ray next to it meets a triangle.
+    /// The meaning of a hit close to a contour's sample.
     fn means(&self, contour: &Contour, hit: &Hit) -> Means {
         let own = contour.faces.contains(&hit.face);
         if own && (hit.flat || hit.at <= 4.0 * self.lateral()) {
@@ -211,7 +213,8 @@ impl Cast {
         }
     }
 
-    /// Whether a contour passes a sample nearer than the mesh can tell, or its piece ends there.
+    /// Whether a contour passes a sample closer than the mesh resolves, or the sample's piece ends
+    /// there.
     fn is_passed(
         &self,
         projection: &Projection,
@@ -236,7 +239,7 @@ impl Cast {
         })
     }
 
-    /// The triangles facing the eye that a ray meets.
+    /// The triangles facing the eye that a ray hits.
     fn hits(&self, start: &Point3<f64>, towards: &Vector3<f64>, reach: f64) -> Vec<Hit> {
         let mut hits = Vec::new();
         let ray = Ray::new_inf(single((start - self.centre) / self.size), single(*towards));
@@ -244,7 +247,7 @@ impl Cast {
             let index = self.boxes.primitive_indices[place] as usize;
             let triangle = &self.mesh.triangles[index];
             let corners = triangle.corners.map(|c| self.mesh.points[c as usize]);
-            if let Some(at) = met(start, towards, &corners)
+            if let Some(at) = hit_distance(start, towards, &corners)
                 && at > 0.0
                 && at < reach
             {
@@ -274,13 +277,18 @@ fn single(v: Vector3<f64>) -> Vec3A {
     vec3a(v.x as f32, v.y as f32, v.z as f32)
 }
 
-/// How far along a ray a triangle is met from the side that it is run counterclockwise on (Möller
-/// and Trumbore 1997).
-fn met(start: &Point3<f64>, towards: &Vector3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> Option<f64> {
+/// The distance along a ray at which it hits a triangle from the side on which the triangle is
+/// counterclockwise (Möller and Trumbore 1997).
+fn hit_distance(
+    start: &Point3<f64>,
+    towards: &Vector3<f64>,
+    [a, b, c]: &[Point3<f64>; 3],
+) -> Option<f64> {
     let (u, v) = (b - a, c - a);
     let across = towards.cross(&v);
     let determinant = u.dot(&across);
-    // Seen from the start of a ray towards the eye, a triangle that faces the eye is met from behind.
+    // As seen from the start of a ray towards the eye, a triangle that faces the eye is hit from
+    // behind.
     if determinant >= 0.0 {
         return None;
     }

@@ -1,6 +1,6 @@
-//! What is asked of every tree: it is evaluated without a refusal, a panic or a close call, the
-//! boundary keeps its rules, the volume is the rays', no piece of a view is wrong, and no contour is
-//! missing.
+//! The examination of every tree. It is evaluated without a refusal, a panic or a close call; the
+//! boundary keeps its rules; the volume agrees with ray casting; no piece of a view is wrong; and
+//! no contour is missing.
 
 use crate::cast::Cast;
 use nalgebra::Point3;
@@ -20,21 +20,21 @@ use std::time::Duration;
 
 pub use premio_verify::trial::VIEWS;
 
-/// The place in a piece that is asked first for what lies before it, as a part of its range.
+/// The fraction of a piece's range at which the faces in front of it are counted first.
 const COUNTED_AT: f64 = 0.47;
 
-/// How far next to a contour its sides are looked at, in multiples of the resolution.
-const ASIDE: f64 = 64.0;
+/// The distance from a contour at which its sides are examined, in multiples of the resolution.
+const LATERAL: f64 = 64.0;
 
-/// How many points of a piece are asked whether they pass near to a line of sight, and how often the
-/// way between them is halved, or nearly.
+/// The number of points of a piece that are tested for passing close to a line of sight, and the
+/// number of bisections between them.
 const POINTS: u32 = 256;
 const HALVINGS: usize = 80;
 
-/// How far a point of a face may be off, in multiples of the resolution.
+/// The error of a point on a face, in multiples of the resolution.
 const ON: f64 = 4.0;
 
-/// What to look at.
+/// The extent of an examination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Depth {
     /// How many rays measure the volume.
@@ -43,25 +43,26 @@ pub struct Depth {
     pub views: &'static [&'static str],
 }
 
-/// The outcome of some work; none where it takes longer than `limit`, and then goes on unheeded.
+/// The result of some work; `None` if it takes longer than `limit`. The work then continues
+/// unobserved.
 pub fn within<T: Send + 'static>(
     limit: Duration,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Option<T> {
     let (sender, receiver) = mpsc::channel();
-    // Nobody listens any more where the time has run out.
+    // The receiver is gone if the time has run out.
     std::thread::spawn(move || sender.send(work()).is_ok());
     receiver.recv_timeout(limit).ok()
 }
 
-/// The same as [`examine`], given up after some time.
+/// [`examine`], with a time limit.
 pub fn examine_within(json: &str, depth: Depth, limit: Duration) -> Vec<String> {
     let text = json.to_owned();
     within(limit, move || examine(&text, depth))
         .unwrap_or_else(|| vec![format!("time: more than {limit:?}")])
 }
 
-/// What is wrong with a tree, one kind each; nothing where all is well.
+/// The faults of a tree, one of each kind; empty if there are none.
 pub fn examine(json: &str, depth: Depth) -> Vec<String> {
     let work = AssertUnwindSafe(|| examine_unguarded(json, depth));
     catch_unwind(work).unwrap_or_else(|panic| vec![format!("panic: {}", message(&*panic))])
@@ -117,7 +118,7 @@ fn examine_unguarded(json: &str, depth: Depth) -> Vec<String> {
     wrong
 }
 
-/// Where rays on triangles of the boundary see something else before a piece than it says.
+/// The pieces in front of which rays on triangles of the boundary count other faces than given.
 fn before(cast: &Cast, evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> Option<String> {
     let seen = contours(&evaluation.brep, camera, evaluation.resolution).ok()?;
     let counted = cast.count(&seen);
@@ -129,7 +130,7 @@ fn before(cast: &Cast, evaluation: &Evaluation, name: &str, camera: &ViewCamera)
     ))
 }
 
-/// Where the invisibility that is carried along contours is not what is counted piece by piece.
+/// The pieces whose propagated invisibility differs from the recounted one.
 pub fn differences(evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> Option<String> {
     let of = |method| contours_with(&evaluation.brep, camera, evaluation.resolution, method).ok();
     let (carried, counted) = (of(Method::Propagated)?, of(Method::Recounted)?);
@@ -143,8 +144,8 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> 
     let both = carried.contours.iter().zip(&counted.contours);
     let differ = |contour: &Contour, a: &ContourPiece, b: &ContourPiece| {
         let apart = a.qi.abs_diff(b.qi) as usize;
-        let told = || apart > lies_on(evaluation, contour, a);
-        a.t != b.t || told() && apart > passing(evaluation, &carried, contour, a, camera)
+        let is_decided = || apart > lies_on(evaluation, contour, a);
+        a.t != b.t || is_decided() && apart > passing(evaluation, &carried, contour, a, camera)
     };
     both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(move |pair| (a, pair)))
         .find(|(contour, (a, b))| differ(contour, a, b))
@@ -157,8 +158,8 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> 
         })
 }
 
-/// How many contours pass the line of sight of a piece's middle, where it is counted, nearer than
-/// what is looked at next to it: on which side of it they do is not seen.
+/// The number of contours that pass the line of sight of the point at which a piece is counted,
+/// within the distance examined around it. The side on which they pass is not resolved.
 fn passing(
     evaluation: &Evaluation,
     seen: &Contours,
@@ -171,7 +172,7 @@ fn passing(
     let size = evaluation.bounds.diagonal();
     let (v, _) = Projection::new(camera, size).towards_eye(&p);
     let away = |q: Point3<f64>| (q - p).cross(&v).norm();
-    // A part of the contour itself is another one where it is well closer to the eye.
+    // Another part of the contour itself counts if it is clearly closer to the eye.
     let before = |other: &Contour, q: Point3<f64>| {
         let own = other.id == contour.id;
         (q - p).dot(&v) > if own { size / f64::from(POINTS) } else { 0.0 }
@@ -179,10 +180,10 @@ fn passing(
     let passes = |other: &Contour, near: &ContourPiece| {
         let [lo, hi] = near.t;
         let at = |k: f64| other.curve3.point(lo + (hi - lo) * (k / f64::from(POINTS)));
-        let asked = (0..=POINTS)
+        let samples = (0..=POINTS)
             .map(f64::from)
             .filter(|&k| before(other, at(k)));
-        let Some(k) = asked.min_by(|&k, &l| away(at(k)).total_cmp(&away(at(l)))) else {
+        let Some(k) = samples.min_by(|&k, &l| away(at(k)).total_cmp(&away(at(l)))) else {
             return false;
         };
         let (mut from, mut to) = (k - 1.0, k + 1.0);
@@ -193,14 +194,14 @@ fn passing(
                 false => from = m,
             }
         }
-        away(at(0.5 * (from + to))) <= ASIDE * evaluation.resolution
+        away(at(0.5 * (from + to))) <= LATERAL * evaluation.resolution
     };
     let of = |other: &&Contour| other.pieces.iter().any(|near| passes(other, near));
     seen.contours.iter().filter(of).count()
 }
 
-/// On how many faces that are not its own a piece lies within the resolution, next to its middle,
-/// where it is counted: whether these lie before it is not to be told.
+/// The number of other faces on which a piece lies within the resolution, at the point at which it
+/// is counted. Whether these are in front of the piece is ambiguous.
 fn lies_on(evaluation: &Evaluation, contour: &Contour, piece: &ContourPiece) -> usize {
     let (brep, resolution) = (&evaluation.brep, evaluation.resolution);
     let [lo, hi] = piece.t;

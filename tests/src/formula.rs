@@ -165,13 +165,13 @@ fn arguments(text: &str) -> Result<(Vec<String>, &str), String> {
     Err(format!("a bracket is open: {text}"))
 }
 
-/// The integral of a function that is smooth but for its ends (Takahasi and Mori 1974): the
+/// The integral of a function that is smooth except at its ends (Takahasi and Mori 1974). The
 /// substitution x = tanh(pi/2 sinh t) makes the trapezoidal rule exact to nearly all digits.
 pub fn integrate(f: &impl Fn(f64) -> Result<f64, String>, from: f64, to: f64) -> Option<f64> {
     let half = 0.5 * (to - from);
     let term = |t: f64| -> f64 {
         let s = FRAC_PI_2 * t.sinh();
-        // How far from the nearer end, as a part of half the interval.
+        // The distance from the closer end, relative to half the interval.
         let gap = 1.0 / (s.abs().exp() * s.cosh());
         let x = if s < 0.0 {
             from + half * gap
@@ -181,7 +181,7 @@ pub fn integrate(f: &impl Fn(f64) -> Result<f64, String>, from: f64, to: f64) ->
         let weight = FRAC_PI_2 * t.cosh() / s.cosh().powi(2);
         match f(x) {
             Ok(y) if y.is_finite() => weight * y,
-            // Rounding may lead past an end, where the weight is nothing.
+            // Rounding may lead past an end, where the weight is zero.
             _ if weight < 1e-9 => 0.0,
             _ => f64::NAN,
         }
@@ -193,7 +193,7 @@ pub fn integrate(f: &impl Fn(f64) -> Result<f64, String>, from: f64, to: f64) ->
         let n = (reach / step) as i32;
         let sum: f64 = (-n..=n).map(|k| term(f64::from(k) * step)).sum();
         let value = sum * step * half;
-        // What is left is the integrand's rounding.
+        // The remaining difference is the integrand's rounding.
         if (value - previous).abs() <= 1e-12 * value.abs() + 1e-14 {
             return Some(value);
         }

@@ -1,4 +1,5 @@
-//! The laws of sets, as laws of boundaries: both sides have the same combinatorics, volume and area.
+//! The laws of set algebra for boundaries: both sides must have the same combinatorics, volume and
+//! area.
 
 use crate::random::tree;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
@@ -9,10 +10,10 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// How far volumes and areas may be apart, as a part of those of the greatest part.
+/// The allowed difference of volumes and areas, relative to those of the greatest part.
 const APART: f64 = 1e-9;
 
-/// What the two sides of a law are compared by.
+/// The properties by which the two sides of a law are compared.
 #[derive(Clone, Debug)]
 pub struct Side {
     /// The combinatorics.
@@ -23,7 +24,7 @@ pub struct Side {
     pub close: bool,
 }
 
-/// A law: its name, both sides, and how much greater the second is in length.
+/// A law: its name, both sides, and the ratio of their units.
 pub struct Law {
     /// What it says.
     pub name: &'static str,
@@ -33,12 +34,12 @@ pub struct Law {
     pub scale: f64,
 }
 
-/// Any number of trees joined.
+/// An operation on any number of trees.
 pub fn join(op: &str, children: &[&Value]) -> Value {
     json!({"op": op, "children": children})
 }
 
-/// The laws of three trees.
+/// The laws for three trees.
 pub fn laws(a: &Value, b: &Value, c: &Value) -> Vec<Law> {
     let (or, and, less) = (
         |x: &Value, y: &Value| join("union", &[x, y]),
@@ -92,7 +93,7 @@ pub fn laws(a: &Value, b: &Value, c: &Value) -> Vec<Law> {
     ]
 }
 
-/// What moving, turning and scaling a tree leaves alone.
+/// The invariance under motions and scaling.
 pub fn motions(a: &Value) -> Vec<Law> {
     let moved = |steps: Value| json!({"op": "union", "children": [a], "transform": steps});
     vec![
@@ -117,7 +118,7 @@ pub fn motions(a: &Value) -> Vec<Law> {
     ]
 }
 
-/// A tree with all its lengths so many times as long.
+/// A tree with all its lengths multiplied by a factor.
 fn scaled(tree: &Value, by: f64) -> Value {
     let lengths = ["size", "r", "R", "r1", "r2", "h", "translate"];
     let times = |value: &Value| match value {
@@ -138,13 +139,13 @@ fn scaled(tree: &Value, by: f64) -> Value {
             };
             Value::Object(members.iter().map(one).collect())
         }
-        // An axis and an angle keep theirs.
+        // An axis and an angle are not scaled.
         Value::Array(all) => all.iter().map(|v| scaled(v, by)).collect(),
         other => other.clone(),
     }
 }
 
-/// The boundary of a tree, as the laws see it.
+/// The boundary of a tree, as compared by the laws.
 pub fn side(tree: &Value) -> Result<Side, String> {
     let text = tree.to_string();
     let read = read(
@@ -166,7 +167,7 @@ pub fn side(tree: &Value) -> Result<Side, String> {
     })
 }
 
-/// How a law is broken by its sides; nothing where it holds, or a decision on one side was close.
+/// How the sides of a law differ; `None` if they agree, or if a decision on one side was close.
 fn broken(law: &Law, sides: [&Result<Side, String>; 2]) -> Option<String> {
     let [a, b] = match sides {
         [Ok(a), Ok(b)] => [a, b],
@@ -190,7 +191,7 @@ fn broken(law: &Law, sides: [&Result<Side, String>; 2]) -> Option<String> {
     })
 }
 
-/// The laws that three random trees break.
+/// The laws that three random trees violate.
 pub fn broken_by(seed: u64) -> Vec<String> {
     let [a, b, c] = [0, 1, 2].map(|k| tree(3 * seed + k));
     let laws: Vec<Law> = laws(&a, &b, &c).into_iter().chain(motions(&a)).collect();
@@ -225,7 +226,7 @@ mod tests {
         let apart = of(&towers([2.0, 2.0, 1.0], [5.0, 5.0, 1.0]));
         assert!(apart.is_ok());
         assert_eq!(apart, of(&towers([6.0, 2.0, 1.0], [1.0, 5.0, 1.0])));
-        // As many faces, edges and vertices, but one tower hangs below.
+        // As many faces, edges and vertices, but one tower is below.
         let below = of(&towers([2.0, 2.0, 1.0], [5.0, 5.0, -1.0]));
         assert_ne!(apart, below);
     }

@@ -1,4 +1,4 @@
-//! What the tests across crates share: random trees, and what is asked of each.
+//! Common code of the tests across crates: random trees, and the examination of each.
 
 pub mod cast;
 pub mod examine;

@@ -1,4 +1,4 @@
-//! Trees and views in the mirror y = 0: what is seen of the one is the mirror image of the other.
+//! Trees and views mirrored at y = 0: the view of one is the mirror image of the view of the other.
 
 use crate::random::tree;
 use nalgebra::{Point3, Vector3};
@@ -9,14 +9,14 @@ use premio_visibility::{Contours, ViewCamera, contours};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How many chords a piece is measured by.
+/// The number of chords by which a piece is measured.
 const CHORDS: usize = 256;
 
-/// How far measures by chords may be off, as a part of the part's size.
+/// The error of measures by chords, relative to the part's size.
 const OFF: f64 = 1e-3;
 
-/// The tree in the mirror. Every primitive is its own mirror image, blocks and wedges after they were
-/// moved along y; a turn's axis is a pseudovector.
+/// The mirrored tree. Every primitive is its own mirror image, except that blocks and wedges are
+/// moved along y. The axis of a rotation is a pseudovector.
 pub fn mirrored(tree: &Value) -> Value {
     let Value::Object(members) = tree else {
         return tree.clone();
@@ -52,19 +52,19 @@ fn mirrored_step(step: &Value) -> Value {
     }
 }
 
-/// What is seen of one kind with one quantitative invisibility.
+/// The visible length of one kind of contour with one quantitative invisibility.
 #[derive(Clone, Copy, Debug, Default)]
 struct Share {
     length: f64,
-    /// The integral of the place over the length.
+    /// The integral of the position over the length.
     moment: Vector3<f64>,
 }
 
-/// The shares by kind, whether it is smooth, and quantitative invisibility.
+/// The shares by kind, smoothness, and quantitative invisibility.
 type Shares = BTreeMap<(bool, bool, u32), Share>;
 
-/// Pieces are not counted: where contours fall on one another in the image they may be cut though
-/// nothing changes. What is seen end-on has no length, and lies on whatever passes there.
+/// Pieces are not counted: where contours coincide in the image they may be split although nothing
+/// changes. A contour seen end-on has no length, and lies on whatever passes there.
 fn shares(seen: &Contours) -> Shares {
     let mut shares = Shares::new();
     let is_seen = |c: &&Contour| !matches!(c.curve2, ImageCurve::Point { .. });
@@ -100,8 +100,8 @@ fn evaluated(tree: &Value) -> Result<Evaluation, String> {
     evaluate(&tree, &EvaluationOptions::default()).map_err(|error| error.to_string())
 }
 
-/// The cameras of a part and those of its mirror image: from an odd place near by and far off, and
-/// along x and z.
+/// The cameras of a part and those of its mirror image: from an odd position close by and far away,
+/// and along x and z.
 fn cameras(part: &Evaluation) -> Vec<[ViewCamera; 2]> {
     let [min, max] = [part.bounds.min, part.bounds.max].map(Point3::from);
     let (centre, size) = (nalgebra::center(&min, &max), part.bounds.diagonal());
@@ -127,7 +127,7 @@ fn cameras(part: &Evaluation) -> Vec<[ViewCamera; 2]> {
     both.collect()
 }
 
-/// Where two views are not mirror images of each other.
+/// The difference if two views are not mirror images of each other.
 fn difference(a: &Shares, b: &Shares, size: f64) -> Option<String> {
     let known: BTreeSet<_> = a.keys().chain(b.keys()).collect();
     known.into_iter().find_map(|known| {
@@ -139,8 +139,8 @@ fn difference(a: &Shares, b: &Shares, size: f64) -> Option<String> {
     })
 }
 
-/// The views of a random tree that its mirror image does not show in the mirror, or why there are
-/// none.
+/// The views of a random tree that differ from those of its mirror image, or the reason why there
+/// are none.
 pub fn broken_by(seed: u64) -> Vec<String> {
     let tree = tree(seed);
     let [part, image] = match [evaluated(&tree), evaluated(&mirrored(&tree))] {

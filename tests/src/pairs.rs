@@ -1,4 +1,4 @@
-//! Pairs of solids that coincide in some way, and lie next to that as far as a gap says.
+//! Pairs of solids that coincide in some way, or miss the coincidence by a gap.
 
 use clap::ValueEnum;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
@@ -8,7 +8,7 @@ use premio_kernel::brep::topology::EntityCounts;
 use premio_kernel::number::predicates::CoincidencePolicy;
 use premio_verify::checks::Checker;
 
-/// Two solids in PADL, with `D` by how much they miss the coincidence.
+/// Two solids in PADL; `D` is the gap by which they miss the coincidence.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair {
     /// What coincides.
@@ -17,7 +17,7 @@ pub struct Pair {
     pub a: &'static str,
     /// The second.
     pub b: &'static str,
-    /// The least power of two that is less than all else of the pair.
+    /// The smallest power of two that is less than all other lengths of the pair.
     pub small: i32,
 }
 
@@ -31,7 +31,7 @@ const fn pair(name: &'static str, a: &'static str, b: &'static str) -> Pair {
 }
 
 impl Pair {
-    /// The same, where something else is as small as a thousandth.
+    /// The same, for a pair with another length as small as a thousandth.
     const fn fine(self) -> Self {
         Self { small: 20, ..self }
     }
@@ -100,18 +100,18 @@ pub const PAIRS: &[Pair] = &[
     pair("tori through one another's centre circles", "TOR(RMAJ=2,RMIN=1)", "TOR(RMAJ=2,RMIN=1) AT (MOVZ=D)"),
 ];
 
-/// How a pair is put.
+/// The pose of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Pose {
-    /// As it is.
+    /// Unchanged.
     Straight,
-    /// Turned by right angles, so that each axis becomes another.
+    /// Rotated by right angles, so that each axis becomes another.
     Swapped,
-    /// Turned by 17 degrees about an odd axis, and moved.
+    /// Rotated by 17 degrees about an odd axis, and moved.
     Turned,
-    /// Turned by next to nothing, so that nothing is quite along an axis.
+    /// Rotated by a tiny angle, so that nothing is exactly along an axis.
     Tilted,
-    /// Turned, and moved to where coordinates have three digits less.
+    /// Rotated, and moved to where coordinates have three digits less.
     Far,
 }
 
@@ -137,21 +137,22 @@ impl Pose {
     }
 }
 
-/// A power of two as PADL writes it, in as many decimals as it has bits.
+/// A power of two in PADL, with as many decimals as it has bits.
 pub fn gap(sign: &str, power: i32) -> String {
     let text = format!("{sign}{:.60}", 2f64.powi(-power));
     text.trim_end_matches('0').to_owned()
 }
 
-/// How far volumes may be off by rounding; what coincides by the resolution moves as far as it was
-/// apart.
+/// The allowed rounding error of volumes. What coincides by the resolution moves by the distance
+/// that it had.
 const OFF: f64 = 1e-9;
 
-/// How many rays measure each volume.
+/// The number of rays that measure each volume.
 const RAYS: usize = 1000;
 
-/// What is wrong with a pair that misses its coincidence by `gap`: refusals, defects, volumes that are
-/// not those of rays, and where the volumes of A, B, A or B, A and B, A less B and B less A do not add up.
+/// The faults of a pair that misses its coincidence by `gap`: refusals, defects, volumes that
+/// disagree with ray casting, and volumes of A, B, A ∪ B, A ∩ B, A \ B and B \ A that do not add
+/// up.
 pub fn faults(pair: &Pair, gap: &str, pose: Pose) -> Vec<String> {
     let mut faults = Vec::new();
     let mut slack = OFF;
@@ -186,8 +187,8 @@ pub fn faults(pair: &Pair, gap: &str, pose: Pose) -> Vec<String> {
     faults
 }
 
-/// Where the exact boundary of a pair that misses its coincidence by a power of two has not the same
-/// number of entities as by the first of the powers: on one side of a coincidence all are alike.
+/// The powers of two at which the exact boundary of a pair has another number of entities than at
+/// the first of them. On one side of a coincidence all boundaries are alike.
 pub fn changes(pair: &Pair, sign: &str, powers: &[i32], pose: Pose) -> Vec<String> {
     let mut changes = Vec::new();
     for solid in pair.operations() {

@@ -1,4 +1,4 @@
-//! Parts by the number, for tests and benches.
+//! Families of parts for tests and benches.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ fn cylinder(r: f64, h: f64, transform: &Value) -> Value {
     json!({"prim": "cylinder", "r": r, "h": h, "transform": transform})
 }
 
-/// A block with n by n through holes, one unit apart.
+/// A block with n by n through holes at a distance of one unit.
 pub fn plate(n: usize, thickness: f64) -> Value {
     let side = n as f64;
     let mut all = vec![json!({"prim": "block", "size": [side, side, thickness]})];

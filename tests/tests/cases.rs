@@ -1,7 +1,8 @@
-//! The named cases: a folder for each, with a description, why it is hard, and what a hand derived.
+//! The named cases: a folder for each, with a description, the reason why it is hard, and values
+//! derived by hand.
 //!
-//! `answer.toml` holds formulas, not numbers of ours; see `premio_tests::formula`. A case may ask
-//! the same description at several values of its parameters.
+//! `answer.toml` contains formulas, not computed numbers; see `premio_tests::formula`. A case may
+//! use the same description with several values of its parameters.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
@@ -17,39 +18,39 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Models that are wrong today. One that starts to pass must be taken off.
+/// Models that fail today. A model that starts to pass must be removed from the list.
 const KNOWN_FAILURES: &[&str] = &[];
 
-/// Volumes and areas are right to this part of themselves.
+/// The relative precision of volumes and areas.
 const PRECISION: f64 = 1e-9;
 
-/// Nothing here may take longer.
+/// The time limit of a model.
 const LIMIT: Duration = Duration::from_secs(60);
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Case {
-    /// Why it is hard, in a line.
+    /// The reason why it is hard, in a line.
     why: String,
-    /// Where it comes from.
+    /// Its origin.
     source: String,
-    /// Definitions that the formulas use.
+    /// Definitions used by the formulas.
     #[serde(default)]
     given: Vec<String>,
-    /// What is asked of the description.
+    /// The expected answers.
     model: Vec<Answer>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Answer {
-    /// Values of the description's parameters, in place of its own.
+    /// Values of the description's parameters that replace its own.
     #[serde(default)]
     set: BTreeMap<String, String>,
-    /// What the reader's refusal says, where it refuses.
+    /// The expected text of the reader's refusal, if it refuses.
     refused: Option<String>,
     volume: Option<String>,
-    /// The volume by rays and five times its standard error, where no closed form is known.
+    /// The volume by ray casting and five times its standard error, if no closed form is known.
     measured: Option<[f64; 2]>,
     area: Option<String>,
     /// The corners of the box.
@@ -60,18 +61,18 @@ struct Answer {
     edges: Option<usize>,
     loops: Option<usize>,
     vertices: Option<usize>,
-    /// The edges that bound more than two face corners.
+    /// The number of edges that bound more than two face corners.
     #[serde(default)]
     edges_of_many_faces: usize,
-    /// The points at which the boundary touches itself.
+    /// The number of points at which the boundary touches itself.
     #[serde(default)]
     touches: usize,
-    /// Of each shell, in ascending order.
+    /// The genus of each shell, in ascending order.
     genus: Option<Vec<i32>>,
-    /// Whether a decision is closer than a hundred to one.
+    /// Whether a decision is within a factor of 100 of the resolution.
     #[serde(default)]
     close_calls: bool,
-    /// Whether the views of `premio check` are put to its checks.
+    /// Whether the views of `premio check` are checked.
     #[serde(default)]
     views: bool,
 }
@@ -84,7 +85,7 @@ fn folders() -> Vec<PathBuf> {
     all
 }
 
-/// The description with other values of its parameters: `NAME = value` stands on a line of its own.
+/// The description with other values of its parameters. `NAME = value` is on a line of its own.
 fn with_values(text: &str, set: &BTreeMap<String, String>) -> String {
     let mut used = BTreeSet::new();
     let lines = text.lines().map(|line| {
@@ -102,7 +103,7 @@ fn with_values(text: &str, set: &BTreeMap<String, String>) -> String {
     text
 }
 
-/// What is wrong with a model; nothing where all is well.
+/// The faults of a model; empty if there are none.
 fn examine(case: &Case, answer: &Answer, text: &str) -> Vec<String> {
     let text = with_values(text, &answer.set);
     let options = ReadOptions::default();
@@ -135,7 +136,7 @@ fn compare(case: &Case, answer: &Answer, description: &Description) -> Vec<Strin
     wrong
 }
 
-/// What rays tell otherwise than the views of `premio check`.
+/// The checks of the views of `premio check` that disagree with rays.
 fn unlike_rays(tree: &Tree, evaluation: &Evaluation) -> Vec<String> {
     let checker = Checker::new(tree, evaluation);
     let seen = views::around(&evaluation.bounds);

@@ -1,10 +1,10 @@
-//! Nothing that decides compares f64 values by operators of its own: `kernel::number::predicates` is asked.
+//! Code that decides never compares f64 values by operators: it uses `kernel::number::predicates`.
 //!
-//! The sources are parsed, but types are not known here. An order (`<`, `>=`) is of f64 values unless a
-//! side shows that it is of whole numbers; an equality is, where a side shows it. So these are not
-//! seen: an equality of two plain names, or of arrays and structures of f64 values; an order of two
-//! f64 values one of which is named like a whole number; and what stands in a macro whose body is
-//! neither a list of expressions nor that of `matches!`.
+//! The sources are parsed, but types are not known here. An order (`<`, `>=`) counts as one of f64
+//! values unless a side shows that it is of integers; an equality counts if a side shows it. The
+//! following are therefore missed: an equality of two simple names, or of arrays and structures of
+//! f64 values; an order of two f64 values one of which is named like an integer; and comparisons in
+//! a macro whose body is neither a list of expressions nor that of `matches!`.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use std::fs;
@@ -15,14 +15,14 @@ use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 use syn::{BinOp, Expr, Lit, Token};
 
-/// The sources in which what is computed becomes a boundary and a view.
+/// The sources of the stages from numbers to boundaries and views.
 const SOURCES: &[&str] = &["kernel/src", "csg/src", "visibility/src"];
 
-/// What of them may compare f64 values, and why.
+/// The files in which f64 values may be compared, with the reasons.
 const EXCEPTIONS: &[(&str, &str)] = &[
     (
         "kernel/src/number",
-        "the place that is asked, and arithmetic",
+        "the predicates themselves, and arithmetic",
     ),
     (
         "kernel/src/geometry",
@@ -30,40 +30,40 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ),
     (
         "kernel/src/random.rs",
-        "random numbers, on which no result rests",
+        "random numbers, on which no result depends",
     ),
     (
         "kernel/src/proof",
-        "what proves asks whole numbers, and bounds of their size",
+        "proofs compare integers, and bounds of their size",
     ),
     (
         "kernel/src/tessellation",
-        "nothing is made of a mesh but a picture and a check",
+        "meshes serve for display and for checks only",
     ),
     (
         "csg/src/ray_casting",
-        "a measurement that no result rests on",
+        "a measurement on which no result depends",
     ),
-    ("csg/src/reader", "whether a text says what it may"),
-    ("csg/src/writer", "how a text is written"),
-    ("csg/src/primitive.rs", "whether lengths are what they may"),
-    ("drawing/src", "it draws what is decided"),
+    ("csg/src/reader", "the validity of a text"),
+    ("csg/src/writer", "the notation of numbers"),
+    ("csg/src/primitive.rs", "the validity of lengths"),
+    ("drawing/src", "drawing after all decisions"),
 ];
 
-/// Calls that give whole numbers.
+/// Calls that return integers.
 const WHOLE_CALLS: &[&str] = &["len", "count", "index", "degree", "bits"];
 
-/// What is called so is a whole number everywhere.
+/// Names that always denote integers.
 const WHOLE_NAMES: &[&str] = &[
     "i", "j", "k", "bits", "data", "depth", "entities", "junction", "leaves", "qi",
 ];
 
-/// Types that are told by their constructors, and are no f64 values.
+/// Types that their constructors identify, and that are not f64.
 const WHOLE_TYPES: &[&str] = &[
     "usize", "isize", "u64", "i64", "u32", "i32", "u8", "Rational",
 ];
 
-/// Constants that are f64 values, or wider.
+/// Constants of type f64 or wider.
 const CONSTANTS: &[&str] = &[
     "ZERO",
     "HALF",
@@ -78,7 +78,7 @@ const CONSTANTS: &[&str] = &[
     "NAN",
 ];
 
-/// Calls that give f64 values.
+/// Calls that return f64 values.
 const CALLS: &[&str] = &[
     "dot",
     "length",
@@ -94,7 +94,7 @@ const CALLS: &[&str] = &[
     "rounded",
 ];
 
-/// Calls that compare; of a range, `contains` does as well.
+/// Calls that compare; `contains` of a range does as well.
 const COMPARING: &[&str] = &[
     "partial_cmp",
     "lt",
@@ -109,7 +109,7 @@ const COMPARING: &[&str] = &[
     "is_sign_negative",
 ];
 
-/// Without brackets, references and signs.
+/// The expression without parentheses, references and signs.
 fn bare(e: &Expr) -> &Expr {
     match e {
         Expr::Paren(e) => bare(&e.expr),
@@ -129,7 +129,7 @@ fn is_one_of(list: &[&str], name: impl ToString) -> bool {
     list.contains(&name.to_string().as_str())
 }
 
-/// Whether an expression shows that it is of whole numbers, or of others that are exact.
+/// Whether an expression is evidently of integers, or of other exact values.
 fn is_whole(e: &Expr) -> bool {
     match bare(e) {
         Expr::Lit(e) => matches!(e.lit, Lit::Int(_)),
@@ -154,7 +154,7 @@ fn is_whole(e: &Expr) -> bool {
     }
 }
 
-/// Whether an expression shows that it is a double, or wider.
+/// Whether an expression is evidently an f64 or wider.
 fn is_double(e: &Expr) -> bool {
     match bare(e) {
         Expr::Lit(e) => matches!(e.lit, Lit::Float(_)),
@@ -178,7 +178,7 @@ fn is_double(e: &Expr) -> bool {
 }
 
 /// Whether it is computed, which ids and enums are not.
-fn is_reckoned(e: &Expr) -> bool {
+fn is_computed(e: &Expr) -> bool {
     match bare(e) {
         Expr::Binary(e) => matches!(
             e.op,
@@ -188,20 +188,20 @@ fn is_reckoned(e: &Expr) -> bool {
     }
 }
 
-/// Whether an operator compares what may be f64 values.
+/// Whether an operator compares values that may be f64.
 fn compares(op: &BinOp, sides: [&Expr; 2]) -> bool {
     let is_shown = sides.iter().any(|side| is_double(side));
     let is_open = !sides.iter().any(|side| is_whole(side));
     match op {
         BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) => is_shown || is_open,
         BinOp::Eq(_) | BinOp::Ne(_) => {
-            is_shown || is_open && sides.iter().any(|side| is_reckoned(side))
+            is_shown || is_open && sides.iter().any(|side| is_computed(side))
         }
         _ => false,
     }
 }
 
-/// Whether it is a range that may be of f64 values.
+/// Whether it is a range of values that may be f64.
 fn is_open_range(e: &Expr) -> bool {
     let Expr::Range(range) = bare(e) else {
         return false;
@@ -210,7 +210,7 @@ fn is_open_range(e: &Expr) -> bool {
     !ends.any(|end| is_whole(end))
 }
 
-/// The expressions in a macro's body, as far as it is a list of them, or that of `matches!`.
+/// The expressions in a macro's body, if it is a list of them or the body of `matches!`.
 fn expressions(tokens: proc_macro2::TokenStream) -> Vec<Expr> {
     let list = Punctuated::<Expr, Token![,]>::parse_terminated;
     if let Ok(all) = list.parse2(tokens.clone()) {
@@ -233,7 +233,7 @@ fn expressions(tokens: proc_macro2::TokenStream) -> Vec<Expr> {
     matching.parse2(tokens).unwrap_or_default()
 }
 
-/// The comparisons that may be of f64 values, by their lines.
+/// The comparisons that may be of f64 values, with their lines.
 #[derive(Default)]
 struct Comparisons(Vec<(usize, String)>);
 
@@ -268,7 +268,7 @@ impl<'a> Visit<'a> for Comparisons {
         visit::visit_expr_method_call(self, e);
     }
 
-    /// `f64::lt`, handed on.
+    /// `f64::lt`, passed as a function.
     fn visit_expr_path(&mut self, e: &'a syn::ExprPath) {
         if let [_, .., name] = &names(&e.path)[..]
             && is_one_of(COMPARING, name)
@@ -311,7 +311,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The source files of those who decide.
+/// The source files of code that decides.
 fn deciding() -> Vec<PathBuf> {
     let excepted: Vec<PathBuf> = EXCEPTIONS.iter().map(|(p, _)| root().join(p)).collect();
     let mut found = Vec::new();

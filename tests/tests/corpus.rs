@@ -15,10 +15,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Cases that are wrong today. One that starts to pass must be taken off.
+/// Cases that fail today. A case that starts to pass must be removed from the list.
 const KNOWN_FAILURES: &[&str] = &[];
 
-/// Cases that the reader refuses, with a piece of what it expects.
+/// Cases that the reader refuses, with a part of what it expects.
 const REFUSED: &[(&str, &str)] = &[("oscad-4001", "minor radius")];
 
 fn corpus() -> Option<PathBuf> {
@@ -40,10 +40,10 @@ struct Case {
     rays_std_error: f64,
 }
 
-/// Nothing here may take longer.
+/// The time limit of a case.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// A description, and its volume with how far it may be off.
+/// A description, and its volume with the allowed error.
 #[derive(Clone, Debug)]
 struct Task {
     name: String,
@@ -54,7 +54,7 @@ struct Task {
 }
 
 impl Task {
-    /// What is wrong with the description, if anything.
+    /// The fault of the description, if any.
     fn outcome(&self) -> Result<(), String> {
         let task = self.clone();
         let outcome = within(LIMIT, move || task.work());
@@ -75,8 +75,8 @@ impl Task {
         wrong(&description, &evaluation, self.expected)
     }
 
-    /// What is wrong with how many decisions were made in which way, and whether the boundary is that
-    /// of the resolution and f64 values.
+    /// The fault in the counts of decisions by kind, and whether the boundary equals that of the
+    /// resolution and f64.
     fn unlike(
         &self,
         how: EvaluationOptions,
@@ -167,7 +167,8 @@ fn cases() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
-/// Name, volume, and how far it may be off: half a unit of the last digit given, or as noted there.
+/// The name, the volume, and its allowed error: half a unit of the last digit given, or as noted
+/// there.
 const OPENSCAD: &[(&str, f64, f64)] = &[
     ("CSG.csg", 7829.922474671492, 1e-8),
     // The table has 18730.1607954, measured; a ball less three crossed bores has the closed form
@@ -195,7 +196,7 @@ fn openscad(folder: &Path, name: &str, smooth: bool, expected: Option<(f64, f64)
     }
 }
 
-/// All files that are read.
+/// All files that are tested.
 fn openscads(folder: &Path) -> Vec<Task> {
     let known = OPENSCAD
         .iter()
@@ -231,10 +232,10 @@ fn openscad_files_that_are_refused() {
     }
 }
 
-/// Two cylinders each, apart by less than the resolution: noise.
+/// Pairs of cylinders whose distance is below the resolution: noise.
 const MEANT: &[&str] = &["occ-31835a", "occ-31835b"];
 
-/// What is wrong with the corpus evaluated in another way: `meant` are those whose boundary is another
+/// The faults of the corpus evaluated in another way. `meant` are the cases whose boundary differs
 /// then.
 fn unlike(
     folder: &Path,
@@ -265,7 +266,7 @@ fn the_same_with_no_decision_in_doubles() {
         ..EvaluationOptions::default()
     };
     let complaints = unlike(&folder, many, &[], |known| {
-        (known.filtered > 0).then_some("decisions in doubles")
+        (known.filtered > 0).then_some("decisions in f64")
     });
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
@@ -278,7 +279,7 @@ fn the_same_exactly_but_for_noise() {
         ..EvaluationOptions::default()
     };
     let complaints = unlike(&folder, exact, MEANT, |known| {
-        (known.filtered > 0 || known.coincident > 0).then_some("zeros assumed, or in doubles")
+        (known.filtered > 0 || known.coincident > 0).then_some("zeros assumed, or decisions in f64")
     });
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }

@@ -1,6 +1,6 @@
-//! The named cases, exactly: every zero is proven, and the boundary is the one that the resolution
-//! tells, but where a description means more than it says. And by the resolution with no decision in
-//! f64 values: the boundary is the same.
+//! The named cases in exact evaluation: every zero is proven, and the boundary is the one by the
+//! resolution, except where a description is not exactly as it is meant. In addition, evaluation by
+//! the resolution without any decision in f64 gives the same boundary.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationError, EvaluationOptions, evaluate};
@@ -14,7 +14,7 @@ use serde_json::json;
 use std::fs;
 use std::path::Path;
 
-/// Cases that coincide as they are meant, but not as they are written.
+/// Cases that coincide as meant, but not as written.
 const MEANT: &[(&str, &str)] = &[
     (
         "ball-notched-by-cone-along-tangent",
@@ -38,7 +38,7 @@ const MEANT: &[(&str, &str)] = &[
     ),
 ];
 
-/// Cases that are not as they are meant by so little that 237 bits do not tell how they meet.
+/// Cases that miss their coincidence by so little that 237 bits do not determine the intersection.
 const REFUSED: &[(&str, &str)] = &[
     (
         "cone-lying-on-a-cylinder",
@@ -50,7 +50,7 @@ const REFUSED: &[(&str, &str)] = &[
     ),
 ];
 
-/// Cases that take 237 bits longer than a test may: seconds to minutes.
+/// Cases that take too long for a test in 237 bits: seconds to minutes.
 const LONG: &[&str] = &[
     "cone-apex-1e-7-beside-a-cone",
     "cone-resting-on-top-of-torus",
@@ -61,7 +61,7 @@ const LONG: &[&str] = &[
     "torus-touched-by-cylinder-in-a-cusp",
 ];
 
-fn asked(tree: &Tree, zeros: CoincidencePolicy) -> Result<Evaluation, EvaluationError> {
+fn try_evaluated(tree: &Tree, zeros: CoincidencePolicy) -> Result<Evaluation, EvaluationError> {
     let options = EvaluationOptions {
         zeros,
         ..EvaluationOptions::default()
@@ -70,16 +70,16 @@ fn asked(tree: &Tree, zeros: CoincidencePolicy) -> Result<Evaluation, Evaluation
 }
 
 fn evaluated(tree: &Tree, zeros: CoincidencePolicy) -> Evaluation {
-    asked(tree, zeros).unwrap()
+    try_evaluated(tree, zeros).unwrap()
 }
 
-/// What is not as it should be where no decision is made in f64.
+/// The fault if a case is evaluated without any decision in f64.
 fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
     let many = EvaluationOptions {
         digits: Arithmetic::Extended,
         ..EvaluationOptions::default()
     };
-    let plain = evaluated(tree, CoincidencePolicy::ByResolution);
+    let by_resolution = evaluated(tree, CoincidencePolicy::ByResolution);
     let again = match evaluate(tree, &many) {
         Ok(again) => again,
         Err(error) => return Some(format!("{name}: {error}")),
@@ -87,14 +87,14 @@ fn filtered_wrongly(name: &str, tree: &Tree) -> Option<String> {
     if again.decisions.filtered > 0 {
         return Some(format!("{name}: {:?}", again.decisions));
     }
-    let differ = Signature::new(&plain.brep) != Signature::new(&again.brep);
-    let [told, again] = [plain, again].map(|e| e.brep.topology.census());
-    differ.then(|| format!("{name}: {again:?} for {told:?}"))
+    let differ = Signature::new(&by_resolution.brep) != Signature::new(&again.brep);
+    let [expected, again] = [by_resolution, again].map(|e| e.brep.topology.census());
+    differ.then(|| format!("{name}: {again:?} for {expected:?}"))
 }
 
-/// A cone less a ball that passes through its apex, and is tangent to it there: over the cone's
-/// rulings the curve is cut at the apex, where its equation has a double zero, and starts anywhere
-/// else. f64 values left a vertex at that start, in the middle of an edge.
+/// A cone minus a ball that passes through its apex and is tangent to it there. Over the cone's
+/// rulings the curve is split at the apex, where its equation has a double zero, and its parameter
+/// may start anywhere else. In f64 a vertex remained at that start, in the middle of an edge.
 #[test]
 fn a_curve_through_an_apex_has_no_other_start() {
     let description = json!({"op":"union","children":[
@@ -123,10 +123,10 @@ fn a_curve_through_an_apex_has_no_other_start() {
     assert_eq!((topology.edges.len(), topology.vertices), (14, 9));
 }
 
-/// What is not as it should be about the exact boundary of a case.
+/// The faults of the exact boundary of a case.
 fn faults(name: &str, tree: &Tree) -> Vec<String> {
     if REFUSED.iter().any(|(case, _)| *case == name) {
-        return match asked(tree, CoincidencePolicy::Exact) {
+        return match try_evaluated(tree, CoincidencePolicy::Exact) {
             Err(EvaluationError::IllConditioned { .. } | EvaluationError::InvalidBoundary(_)) => {
                 Vec::new()
             }
@@ -142,14 +142,14 @@ fn faults(name: &str, tree: &Tree) -> Vec<String> {
         faults.push(format!("{name}: {assumed} zeros are assumed"));
     }
     if known.filtered > 0 {
-        let doubles = known.filtered;
-        faults.push(format!("{name}: {doubles} decisions in doubles"));
+        let in_f64 = known.filtered;
+        faults.push(format!("{name}: {in_f64} decisions in f64"));
     }
-    let plain = evaluated(tree, CoincidencePolicy::ByResolution);
-    let [told, proven] = [&plain, &exact].map(|e| e.brep.topology.census());
+    let by_resolution = evaluated(tree, CoincidencePolicy::ByResolution);
+    let [expected, proven] = [&by_resolution, &exact].map(|e| e.brep.topology.census());
     let meant = MEANT.iter().any(|(case, _)| *case == name);
-    if (told == proven) == meant {
-        faults.push(format!("{name}: {proven:?} for {told:?}"));
+    if (expected == proven) == meant {
+        faults.push(format!("{name}: {proven:?} for {expected:?}"));
     }
     faults
 }
@@ -186,7 +186,7 @@ fn named_cases_with_no_decision_in_doubles() {
     named_cases_by(|name, tree| filtered_wrongly(name, tree).into_iter().collect());
 }
 
-/// A thousand of these, and of the other profiles, is what `premio fuzz --unfiltered` is for.
+/// Larger samples, of all profiles, are tested by `premio fuzz --unfiltered`.
 #[test]
 fn random_trees_with_no_decision_in_doubles() {
     let fault = |seed: u64| {
@@ -207,7 +207,8 @@ fn random_trees_with_no_decision_in_doubles() {
 
 #[test]
 fn a_tangent_ball_is_proven_to_touch() {
-    // The ball's radius is that of 3, 4 and 5, so that it touches the wedge's slope exactly.
+    // The ball's radius is that of the triangle 3, 4, 5, so that it touches the wedge's slope
+    // exactly.
     let touching = |gap: &str| {
         let text = format!(
             "P = WED(X=4, Y=4, Z=3) UN SPH(R=1) AT (MOVX=2+0.6, MOVY=2, MOVZ=1.5+0.8+{gap})"
@@ -231,8 +232,8 @@ fn a_tangent_ball_is_proven_to_touch() {
     }
 }
 
-/// What lies closer than 237 bits tell, and is not zero, is refused: of a relation, of planes through
-/// a point, of surfaces that hold a curve.
+/// A distance below what 237 bits resolve that is not zero is refused: in a relation, in planes
+/// through a point, in surfaces that contain a curve.
 #[test]
 fn what_is_nearly_zero_is_refused() {
     let pairs = [
@@ -241,7 +242,7 @@ fn what_is_nearly_zero_is_refused() {
         "CYL(R=3,H=4) UN SPH(R=5+D) UN CON(R=6,H=8)",
     ];
     for pair in pairs {
-        for (gap, told) in [
+        for (gap, is_decided) in [
             ("0", true),
             ("1e-40", true),
             ("1e-60", false),
@@ -260,17 +261,22 @@ fn what_is_nearly_zero_is_refused() {
                 ..EvaluationOptions::default()
             };
             match evaluate(&part.tree, &options) {
-                Ok(known) => assert!(told && known.decisions.coincident == 0, "{pair} {gap}"),
-                Err(EvaluationError::UnprovenCoincidence { .. }) => assert!(!told, "{pair} {gap}"),
+                Ok(known) => assert!(
+                    is_decided && known.decisions.coincident == 0,
+                    "{pair} {gap}"
+                ),
+                Err(EvaluationError::UnprovenCoincidence { .. }) => {
+                    assert!(!is_decided, "{pair} {gap}")
+                }
                 Err(error) => panic!("{pair} {gap}: {error}"),
             }
         }
     }
 }
 
-/// Two cones of 45 degrees, the apex of one on a ruling of the other, the axes parallel but for a
-/// turn of 1.3e-10: next to k = 0 nothing may divide by it. The second lies in the first but for
-/// slivers of the power 3/2 of the turn, and half of its base stands out, by 2/3 of the turn.
+/// Two cones of 45 degrees, the apex of one on a ruling of the other, with axes parallel except for
+/// an angle of 1.3e-10. Close to k = 0 nothing may divide by k. The second lies in the first except
+/// for slivers of the power 3/2 of the angle, and half of its base protrudes, by 2/3 of the angle.
 #[test]
 fn cones_of_one_angle_lie_nearly_along_a_ruling() {
     let text = "PART = CON(R=2, H=2) AT (ROTX=0.0000000074505806, MOVX=1.5, MOVY=1.5, MOVZ=0.5)
@@ -290,10 +296,10 @@ fn cones_of_one_angle_lie_nearly_along_a_ruling() {
     assert_eq!(known.brep.topology.solids.len(), 1);
 }
 
-/// A cone whose apex is where a ring touches a ball, but for the decimals of its angle: slivers of
-/// 1e-16 are all that is left there of either. Their edges end within the resolution of a vertex,
-/// farther apart than rounding, and what looked from far passed between them: the sliver was the whole
-/// ring but for itself. By the resolution of f64 values there is nothing of it.
+/// A cone whose apex is where a ring touches a ball, except for the decimals of its angle: only
+/// slivers of 1e-16 remain of either there. Their edges end within the resolution of a vertex, but
+/// farther from each other than rounding. A path from far away passed between them, and the sliver
+/// became the whole ring minus itself. With the resolution of f64 the sliver vanishes.
 #[test]
 fn a_sliver_at_an_apex_is_not_the_whole_ring() {
     let text = "PART = ((SPH(R=2) AT (MOVZ=-2, ROTZ=90, ROTX=180)
@@ -319,9 +325,9 @@ fn a_sliver_at_an_apex_is_not_the_whole_ring() {
     assert!(off < 1e-9, "{measures:?}");
 }
 
-/// A ring lies on a floor turned by 1e-3 degrees against it, so that they meet in a curve next to a
-/// circle, and but for rounding touches a wall. The box reaches to the ring's highest point: how far
-/// its middle is up, and the radii of its circles as seen from there.
+/// A ring lies on a floor at an angle of 1e-3 degrees, so that they intersect in a curve close to a
+/// circle, and touches a wall except for rounding. The box reaches to the ring's highest point,
+/// which follows from the height of its centre and the radii of its circles as seen from there.
 #[test]
 fn a_ring_that_nearly_touches_a_floor_and_a_wall_has_its_box() {
     let text = "PART = (BLO(X=2.5, Y=4, Z=4)

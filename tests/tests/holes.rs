@@ -1,12 +1,12 @@
-//! Holes in the side of a cone, next to its apex: most of such a loop lies above the hole, and little
-//! of it below, where the face goes on to the apex.
+//! Holes in the side of a cone, close to its apex. Most of such a loop lies above the hole, and
+//! little of it below, where the face continues to the apex.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 
-/// A cone with its base about the origin, turned about y, and a cylinder of this radius out of its side.
-/// The apex stands apart from the cylinder's axis by the sine of the turn.
+/// A cone with its base about the origin, rotated about y, and a cylinder of the given radius out
+/// of its side. The distance of the apex from the cylinder's axis is the sine of the angle.
 fn pierced(turn: f64, radius: f64) -> String {
     format!("P = CON(R=1, H=1) AT (ROTY={turn}) UN CYL(R={radius}, H=1)")
 }

@@ -1,10 +1,10 @@
-//! The laws of sets hold for boundaries, and motions change nothing of theirs but the place.
+//! The laws of set algebra hold for boundaries, and motions change only their position.
 
 use premio_tests::identities::broken_by;
 use premio_tests::mirror;
 use rayon::prelude::*;
 
-/// Three random trees each that once broke a law, with what is hard about them.
+/// Seeds of three random trees each that once violated a law, with what is hard about them.
 const MENDED: [(u64, &str); 6] = [
     (
         104,

@@ -1,11 +1,11 @@
-//! What must never be: dependencies that run backwards, tolerances outside their place, tests that
-//! are switched off, files that outgrow their subject.
+//! Structural rules: no dependencies that run backwards, no tolerances outside their place, no
+//! disabled tests, no overlong files.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Each package with the packages of ours that it may depend on.
+/// Each package, with the workspace packages on which it may depend.
 const LAYERS: &[(&str, &str, &[&str])] = &[
     ("text", "premio-text", &[]),
     ("memory", "premio-memory", &[]),
@@ -98,7 +98,8 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
     ),
 ];
 
-/// The stages inside crates, in order: a module depends on those before it in the same line or an earlier one.
+/// The stages inside crates, in order. A module may depend on those before it in the same line or
+/// in an earlier one.
 const STAGES: &[(&str, &[&[&str]])] = &[
     (
         "kernel",
@@ -141,7 +142,7 @@ const STAGES: &[(&str, &[&[&str]])] = &[
     ),
 ];
 
-/// A file with more lines is asked to split.
+/// The number of lines above which a file should be split.
 const LONG: usize = 600;
 
 fn root() -> PathBuf {
@@ -195,7 +196,7 @@ fn data_flows_down_the_stages() {
     }
 }
 
-/// The packages of ours that a manifest depends on, tests included.
+/// The workspace packages on which a manifest depends, including those of tests.
 fn dependencies(manifest: &str) -> Vec<String> {
     let mut inside = false;
     let mut found = Vec::new();
@@ -233,7 +234,7 @@ fn sources() -> Vec<PathBuf> {
     found
 }
 
-/// Where small literals may stand, and why.
+/// The places where small literals are allowed, with the reasons.
 const EXCEPTIONS: &[(&str, &str)] = &[
     (
         "csg/src/reader/scad",
@@ -259,7 +260,7 @@ fn is_for_tests(path: &Path) -> bool {
         || path.ends_with("tests.rs")
 }
 
-/// The lines of a file before its tests, without comments and the insides of strings.
+/// The lines of a file before its tests, without comments and the contents of strings.
 fn code(text: &str) -> impl Iterator<Item = (usize, String)> {
     let lines = text
         .lines()
@@ -281,7 +282,7 @@ fn code(text: &str) -> impl Iterator<Item = (usize, String)> {
     })
 }
 
-/// Whether a line holds a literal like 1e-9 or 0.00001.
+/// Whether a line contains a literal like 1e-9 or 0.00001.
 fn has_small_float(line: &str) -> bool {
     let inside = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
     let mut rest = line;
@@ -338,7 +339,7 @@ fn long_files_are_named() {
     for path in sources() {
         let lines = fs::read_to_string(&path).unwrap().lines().count();
         if lines > LONG {
-            // A warning: the length of a file is a hint, not a fault.
+            // A warning only: the length of a file is a hint, not a fault.
             let text = format!("warning: {} has {lines} lines\n", path.display());
             std::io::Write::write_all(&mut std::io::stderr(), text.as_bytes()).unwrap();
         }

@@ -1,4 +1,4 @@
-//! What is bounded, and what is the same on every run.
+//! Resource limits, and reproducibility.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::Vector3;
@@ -30,15 +30,14 @@ fn more_places_than_the_limit_are_refused_by_name() {
     };
     for most in [0, 10, 30, 50] {
         let refused = within(most).unwrap_err();
-        let is_named =
-            matches!(&refused, EvaluationError::EntityLimit { most: told } if *told == most);
+        let is_named = matches!(&refused, EvaluationError::EntityLimit { most: reported } if *reported == most);
         assert!(is_named, "{refused}");
         assert!(refused.to_string().contains(&most.to_string()));
     }
     assert_eq!(within(1000).unwrap().brep.topology.faces.len(), 12);
 }
 
-/// Were each held against each, they would be four hundred million pairs.
+/// If each were paired with each, there would be four hundred million pairs.
 #[test]
 fn equal_primitives_are_held_against_others_once() {
     let many = vec!["CYL(R=1, H=2)"; 20_000].join("\n UN ");
@@ -48,7 +47,7 @@ fn equal_primitives_are_held_against_others_once() {
     assert_eq!(known.brep.topology.faces.len(), 8);
 }
 
-/// The object model and a view of it, as they are written.
+/// The object model and a view of it, as written.
 fn written(seed: u64) -> [String; 2] {
     let text = random::tree(seed).to_string();
     let known = evaluated(&text, Format::Json, &EvaluationOptions::default()).unwrap();
@@ -63,7 +62,7 @@ fn written(seed: u64) -> [String; 2] {
     ]
 }
 
-/// Hashing is seeded anew in every thread.
+/// Hashing has a new seed in every thread.
 #[test]
 fn what_is_written_is_the_same_in_every_thread_and_run() {
     let all = || (0..12).map(written).collect::<Vec<_>>();

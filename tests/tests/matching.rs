@@ -1,4 +1,4 @@
-//! Parts found in pictures that the program renders: poses planted, parts that are not there, clutter.
+//! Matching in rendered pictures: known poses, absent parts, clutter.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
@@ -36,10 +36,11 @@ fn camera() -> Pinhole {
     Pinhole::new(&Matrix3::new(FOCAL, 0.0, cx, 0.0, FOCAL, cy, 0.0, 0.0, 1.0)).unwrap()
 }
 
-/// A camera at `eye` that looks at the part's middle with z upwards, both in the part's radius about it.
-fn pose(subject: &PreparedPart<'_>, eye: [f64; 3], beside: [f64; 3]) -> Isometry3<f64> {
+/// A camera at `eye` that looks at the part's centre with z upwards; both are in units of the
+/// part's radius, relative to the centre.
+fn pose(subject: &PreparedPart<'_>, eye: [f64; 3], target: [f64; 3]) -> Isometry3<f64> {
     let at = |d: [f64; 3]| subject.centre + Vector3::from(d) * subject.radius;
-    let (eye, target) = (at(eye), at(beside));
+    let (eye, target) = (at(eye), at(target));
     let z = (target - eye).normalize();
     let x = z.cross(&Vector3::z()).normalize();
     let r = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
@@ -87,7 +88,7 @@ fn sought<'a>(evaluation: &'a Evaluation, learned: &DetectabilityPrior) -> Sough
     SoughtPart::new(&evaluation.brep, evaluation.resolution, learned)
 }
 
-/// Asks something of a part that is looked for in a picture.
+/// Evaluates a function of a part that is searched for in a picture.
 fn looked<T>(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -108,8 +109,8 @@ fn look(part: &SoughtPart<'_>, grey: &Grey, options: &SearchOptions) -> SearchRe
     looked(part, &picture, options, |look| look.find())
 }
 
-/// How far a pose is off another, of those that the part's symmetries make alike: of the middle, in the
-/// part's radius, and in radians.
+/// The error of a pose, minimised over the part's symmetries: of the centre, in units of the part's
+/// radius, and in radians.
 fn off(part: &SoughtPart<'_>, found: &Isometry3<f64>, truth: &Isometry3<f64>) -> [f64; 2] {
     let each = part.turns().map(|s| {
         let pose = found * s;
@@ -139,7 +140,8 @@ fn a_part_is_found_where_it_is() {
     }
 }
 
-/// Pixels tell angles: a part a thousand million times as large, or as small, is as far away.
+/// Pixels determine angles only: a part a thousand million times as large, or as small, is as far
+/// away in proportion.
 #[test]
 fn a_part_of_any_size_is_found() {
     let poses = [1.0, 1e9, 1e-9].map(|unit| {
@@ -147,7 +149,7 @@ fn a_part_of_any_size_is_found() {
         let evaluation = part(&block);
         let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
         let part = sought(&evaluation, &DetectabilityPrior::nothing());
-        // One picture for all: that of the block of the first size.
+        // One picture for all sizes: that of the block of the first size.
         let first = self::part(&json!({"prim": "block", "size": [3.0, 2.0, 4.0]}));
         let one = PreparedPart::new(&first.brep, first.resolution).unwrap();
         let grey = picture(&one, &pose(&one, EYES[0], [0.0; 3]), 5);
@@ -164,10 +166,10 @@ fn a_part_of_any_size_is_found() {
     assert!(poses.iter().all(|r| same(*r, poses[0])), "{poses:?}");
 }
 
-/// A cube with a pocket in its bottom, seen from above: which side is the bottom is not told, so that
-/// more than one pose is, the right one among them.
+/// A cube with a pocket in its bottom, seen from above. The side with the pocket is undetermined,
+/// so several poses are reported, among them the right one.
 #[test]
-fn poses_that_look_alike_are_told() {
+fn poses_that_look_alike_are_reported() {
     let block = |size: [f64; 3], at: [f64; 3]| json!({"prim": "block", "size": size, "transform": [{"translate": at}]});
     let cube = block([2.0; 3], [0.0; 3]);
     let pocket = block([1.0, 1.0, 0.5], [0.5, 0.5, 0.0]);
@@ -187,7 +189,7 @@ fn poses_that_look_alike_are_told() {
     assert_eq!(all.iter().filter(right).count(), 1);
 }
 
-/// Seen along an axis a cube is a square, as many things are: too little to be told.
+/// Seen along an axis a cube is a square, as many things are, so the evidence is insufficient.
 #[test]
 fn a_face_alone_is_not_taken_for_a_block() {
     let evaluation = part(&json!({"prim": "block", "size": [2.0, 2.0, 2.0]}));
@@ -199,8 +201,8 @@ fn a_face_alone_is_not_taken_for_a_block() {
     assert!(finding.little.is_some_and(|few| few.found() <= 4));
 }
 
-/// A plate with a raised middle, nearly from the front: two rectangles in one another, which a deep block
-/// fits as well that is turned so that its side is as wide as the rim.
+/// A plate with a raised middle, nearly from the front: two nested rectangles. They also fit a deep
+/// block that is rotated so that its side is as wide as the rim.
 #[test]
 fn a_frame_is_not_taken_for_a_block() {
     let frame = part(&json!({"op": "union", "children": [
@@ -226,7 +228,7 @@ fn a_frame_is_not_taken_for_a_block() {
     }
 }
 
-/// A drawn chessboard, and pictures side by side: squares could be the sides of cubes.
+/// A drawn chessboard, and tiles next to each other: squares could be the sides of cubes.
 #[test]
 fn what_is_drawn_is_not_taken_for_a_cube() {
     let board = |x: usize, y: usize| ((x / 120 + (y + 9) / 83) % 2) as f32 * 255.0;
@@ -257,8 +259,8 @@ fn what_is_drawn_is_not_taken_for_a_cube() {
     }
 }
 
-/// A cube is found in its pictures, and the cube with a tube next to it is not, wherever the tube may be
-/// hidden, or out of the picture.
+/// A cube is found in its pictures. The cube with a tube next to it is not, wherever the tube might
+/// be hidden or outside the picture.
 #[test]
 fn a_piece_of_a_part_is_not_the_part() {
     let cube = json!({"prim": "block", "size": [1.0, 1.0, 1.0]});
@@ -269,18 +271,19 @@ fn a_piece_of_a_part_is_not_the_part() {
     let subject = PreparedPart::new(&cube.brep, cube.resolution).unwrap();
     let [cube, both] = [&cube, &both].map(|e| sought(e, &DetectabilityPrior::nothing()));
     for (seed, eye) in (1..).zip(EYES) {
-        for beside in [[0.0; 3], [0.9, 0.2, 0.0]] {
-            let truth = pose(&subject, eye, beside);
+        for target in [[0.0; 3], [0.9, 0.2, 0.0]] {
+            let truth = pose(&subject, eye, target);
             let grey = picture(&subject, &truth, seed);
             let [alone, more] = [&cube, &both].map(|p| look(p, &grey, &SearchOptions::default()));
             let [alone, more] = [alone, more].map(|f| f.best().map(|m| m.is_accepted()));
-            assert_eq!(alone, Some(true), "{eye:?} {beside:?}");
-            assert_ne!(more, Some(true), "{eye:?} {beside:?}");
+            assert_eq!(alone, Some(true), "{eye:?} {target:?}");
+            assert_ne!(more, Some(true), "{eye:?} {target:?}");
         }
     }
 }
 
-/// A shaft with a collar: no straight edge; ellipses propose its poses, and limbs tell them.
+/// A shaft with a collar has no straight edge: ellipses propose its poses, and limbs determine
+/// them.
 #[test]
 fn a_round_part_is_found_but_for_its_turn() {
     let evaluation = part(&json!({"op": "union", "children": [
@@ -298,7 +301,7 @@ fn a_round_part_is_found_but_for_its_turn() {
         let moved = (best.pose * part.centre - truth * part.centre).norm() / part.radius;
         let tilted = (best.pose * Vector3::z()).angle(&(truth * Vector3::z()));
         assert!(moved < 0.03 && tilted < 0.03, "{eye:?}: {moved} {tilted}");
-        // No vertices: less is told of it than of a block.
+        // There are no vertices, so the evidence is weaker than for a block.
         assert!(best.ratio > 0.0, "{eye:?}: ratio {}", best.ratio);
     }
 }
@@ -338,8 +341,8 @@ fn what_is_found_does_not_depend_on_threads() {
             .build()
             .unwrap();
         let finding = pool.install(|| look(&part, &grey, &SearchOptions::default()));
-        let told = |m: &PartMatch| (m.pose, m.ratio, m.effort);
-        finding.matches.iter().map(told).collect::<Vec<_>>()
+        let summary = |m: &PartMatch| (m.pose, m.ratio, m.effort);
+        finding.matches.iter().map(summary).collect::<Vec<_>>()
     };
     assert_eq!(with(1), with(3));
 }
@@ -377,7 +380,7 @@ fn an_empty_picture_holds_nothing() {
     }
 }
 
-/// Thousands of segments: the work is bounded, and what is left out is told.
+/// Thousands of segments: the work is bounded, and the omitted part is reported.
 #[test]
 fn clutter_bounds_the_work() {
     let evaluation = part(&cube_with_cuts());

@@ -1,4 +1,5 @@
-//! What public names must be: one type for a name, the constructors' usual names, the field's words.
+//! Rules for public names: unique type names, the usual names of constructors, and the field's
+//! terms.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use std::collections::BTreeMap;
@@ -24,7 +25,7 @@ const CRATES: &[&str] = &[
     "cli",
 ];
 
-/// Words that no public name has, with the field's term.
+/// Words that no public name may contain, with the field's term.
 const RETIRED: &[(&str, &str)] = &[
     ("aside", "lateral"),
     ("asked", "queried, requested"),

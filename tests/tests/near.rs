@@ -1,5 +1,5 @@
-//! Pairs that touch exactly, and the same a little apart or into one another: what is nearer than a
-//! close call is listed on either side, and nothing else is.
+//! Pairs that touch exactly, and the same with a small gap or overlap. Distances below the
+//! close-call limit are listed on either side, and nothing else is.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use approx::assert_relative_eq;
@@ -8,7 +8,8 @@ use premio_csg::reader::{Format, ReadOptions, read};
 use premio_kernel::number::predicates::CloseCall;
 use premio_tests::random::tree;
 
-/// A pair in PADL, `D` apart, and the number of its solids where it is apart, touches, overlaps.
+/// A pair in PADL at the distance `D`, and its number of solids when separate, touching and
+/// overlapping.
 type Family = (&'static str, &'static str, [usize; 3]);
 
 #[rustfmt::skip]
@@ -38,7 +39,7 @@ const FAMILIES: &[Family] = &[
     ("ball on block, turned", "(BLO(X=4,Y=4,Z=2) UN (SPH(R=1) AT (MOVX=2,MOVY=2,MOVZ=3+D))) AT (ROTX=17,ROTZ=31)", [2, 2, 1]),
 ];
 
-/// The pair, apart by the given text.
+/// The pair with the given gap.
 fn part(pair: &str, gap: &str) -> Evaluation {
     let text = format!("D = {gap}\nP = {pair}\n");
     let tree = read(
@@ -78,7 +79,7 @@ fn near_misses_are_close_calls_on_either_side() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Random trees in which nothing of the boundary is near, with what seems to be.
+/// Random trees in which nothing of the boundary is close, with what seems to be.
 const CLEAR: [(u64, &str); 21] = [
     (22960, "a curve that leaves a plane with the fourth power"),
     (26981, "a curve next to the ruling along which it touches"),
@@ -148,8 +149,8 @@ fn what_cannot_change_the_boundary_is_no_close_call() {
     }
 }
 
-/// Two tori touch at a point from above and below. A sphere passes by it 1.3e-4 away: its edge on
-/// one torus runs above the other by the gap between them there.
+/// Two tori touch at a point from above and below. A sphere passes at a distance of 1.3e-4, so its
+/// edge on one torus is above the other by the gap between them there.
 #[test]
 fn a_gap_that_narrows_towards_a_touch_is_a_close_call() {
     let calls = calls(21819);
@@ -173,27 +174,27 @@ fn a_near_miss_counts_where_both_have_faces() {
         (on_top.clone(), true),
         // Above the plane of the face, but not above the face.
         (ball("4.8", "4.8", "1.5", "3.5"), false),
-        // Covered, taken away, all that is left, cut out.
+        // Covered, subtracted, intersected, cut out.
         (format!("({on_top}) UN {cover}"), false),
         (format!("({on_top}) DIF {cover}"), false),
         (format!("({on_top}) INT {cover}"), true),
         (format!("({on_top}) DIF {slot}"), false),
-        // Above the plane 2e-5 beyond the edge, which is 2e-10 further away.
+        // Above the plane 2e-5 beyond the edge, which is 2e-10 farther away.
         (ball("4.00002", "2", "1", "3"), true),
-        // The same beyond a corner, and far enough away.
+        // The same beyond a corner, and at a sufficient distance.
         (ball("4.00002", "4.00002", "1", "3"), true),
         (ball("4.001", "2", "1", "3"), false),
     ];
-    for (pair, told) in parts {
+    for (pair, is_close) in parts {
         for gap in ["0.000000001", "-0.000000001"] {
             let calls = part(&pair, gap).decisions.close_calls;
-            assert_eq!(calls.is_empty(), !told, "{pair} at {gap}: {calls:?}");
+            assert_eq!(calls.is_empty(), !is_close, "{pair} at {gap}: {calls:?}");
         }
     }
 }
 
-/// The reach of close calls, a billionth of the size, is the length of an edge here: what runs just as
-/// far from a surface all along was halved without end.
+/// The close-call distance, a billionth of the size, is the length of an edge here. A curve at just
+/// that distance from a surface over its whole length was halved without end.
 #[test]
 fn what_runs_along_a_surface_at_the_reach_comes_to_an_end() {
     let far = part(

@@ -1,9 +1,9 @@
-//! Coincidences, and the same missed by powers of two either way: what the operations give has the
-//! volumes that add up.
+//! Coincidences, and the same missed by powers of two in either direction: the volumes of the
+//! operations must add up.
 
 use premio_tests::pairs::{PAIRS, Pose, changes, faults, gap};
 
-/// By which powers of two a coincidence is missed; more by the example of this name.
+/// The powers of two by which a coincidence is missed; the example of this name tests more.
 const POWERS: [i32; 6] = [10, 18, 22, 26, 36, 50];
 
 fn holds(pose: Pose) {
@@ -45,13 +45,14 @@ fn coincidences_far_from_the_origin() {
     holds(Pose::Far);
 }
 
-/// By which powers of two a coincidence is missed under exact evaluation.
+/// The powers of two by which a coincidence is missed in exact evaluation.
 const EXACT_POWERS: [i32; 2] = [10, 60];
 
-/// Pairs that take 237 bits a minute once they are turned: the example of the same name asks them.
+/// Pairs that take a minute in 237 bits once they are rotated; the example of the same name tests
+/// them.
 const LONG_TURNED: [&str; 2] = ["torus on a torus, cut open", "torus in a bore, cut across"];
 
-/// On one side of a coincidence the exact boundaries are alike, however near they are to it.
+/// On one side of a coincidence the exact boundaries are alike, however close they are to it.
 fn alike(sign: &str, pose: Pose) {
     let is_asked = |name| pose == Pose::Straight || !LONG_TURNED.contains(&name);
     let changed: Vec<String> = PAIRS

@@ -1,4 +1,5 @@
-//! Predicted images against rays: what regions show, what pixels tell, and what a detector finds.
+//! Predicted images compared with ray casting: the contents of regions, grey levels, and
+//! detections.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
@@ -30,8 +31,8 @@ fn part(json: &Value) -> Evaluation {
     evaluate(&tree.tree, &EvaluationOptions::default()).unwrap()
 }
 
-/// A small picture of a part from one direction, lit from another, both in the part's size about its
-/// middle.
+/// A small picture of a part from one direction, lit from another; both are in units of the part's
+/// size, relative to its centre.
 fn setup(subject: &PreparedPart<'_>, eye: [f64; 3], light: [f64; 3], more: &str) -> Setup {
     let at = |d: [f64; 3]| {
         let [x, y, z] = [0, 1, 2].map(|i| subject.centre[i] + subject.radius * d[i]);
@@ -75,8 +76,8 @@ const PLACES: [([f64; 3], [f64; 3]); 3] = [
     ([0.7, -3.3, 1.2], [-2.9, -2.0, 2.6]),
 ];
 
-/// What a region shows is what a ray through any of its points meets, and the lights that reach it are
-/// those that rays find, but next to arcs.
+/// A region's content must be what a ray through any of its points hits, and its lights those that
+/// rays find, except close to arcs.
 fn regions_show_what_rays_meet(
     draft: &PredictedImage<'_>,
     context: &str,
@@ -84,9 +85,9 @@ fn regions_show_what_rays_meet(
 ) -> usize {
     let [width, height] = draft.conditions.sensor.resolution;
     let near = draft.ink.bitmap().grown(1);
-    let mut asked = 0;
+    let mut tested = 0;
     for k in 0..600usize {
-        // Points without a common pattern.
+        // Points without a regular pattern.
         let x = (k as f64 * 0.754_877_666).fract() * (width as f64 - 1.0);
         let y = (k as f64 * 0.569_840_291).fract() * (height as f64 - 1.0);
         if near.contains(x.round() as usize, y.round() as usize) {
@@ -95,15 +96,15 @@ fn regions_show_what_rays_meet(
         let Some(shown) = draft.regions.all[draft.regions.at([x, y]) as usize].seen else {
             continue;
         };
-        let met = draft.shading.cast([x, y]);
-        // A light that a region is said to see may be behind the face at this point.
-        let same = shown.face == met.face && met.lit & !shown.lit == 0;
+        let hit = draft.shading.cast([x, y]);
+        // A light that illuminates a region may be behind the face at this point.
+        let same = shown.face == hit.face && hit.lit & !shown.lit == 0;
         if !same {
-            wrong.push(format!("{context}: at ({x}, {y}) {shown:?}, met {met:?}"));
+            wrong.push(format!("{context}: at ({x}, {y}) {shown:?}, hit {hit:?}"));
         }
-        asked += 1;
+        tested += 1;
     }
-    asked
+    tested
 }
 
 #[test]
@@ -121,10 +122,10 @@ fn regions_of_parts_show_what_rays_meet() {
         let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
         for (k, (eye, light)) in PLACES.into_iter().enumerate() {
             let setup = setup(&subject, eye, light, "");
-            let asked = with_draft(&subject, &setup, |draft| {
+            let tested = with_draft(&subject, &setup, |draft| {
                 regions_show_what_rays_meet(draft, &format!("{name} {k}"), &mut wrong)
             });
-            assert!(asked.unwrap() > 100, "{name} {k}");
+            assert!(tested.unwrap() > 100, "{name} {k}");
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -152,11 +153,11 @@ fn regions_of_named_cases_show_what_rays_meet() {
         let (eye, light) = PLACES[i % PLACES.len()];
         let setup = setup(&subject, eye, light, "");
         let mut wrong = Vec::new();
-        let asked = with_draft(&subject, &setup, |draft| {
+        let tested = with_draft(&subject, &setup, |draft| {
             regions_show_what_rays_meet(draft, context, &mut wrong);
             prediction(draft, &setup);
         });
-        match asked {
+        match tested {
             Ok(()) | Err(StageError::OutOfSight(_) | StageError::View(_)) => wrong,
             Err(error) => panic!("{context}: {error}"),
         }
@@ -166,7 +167,8 @@ fn regions_of_named_cases_show_what_rays_meet() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Views along axes, lights along axes, at the camera and anywhere, about random trees on a grid.
+/// Views along axes, with lights along axes, at the camera and elsewhere, of random trees on a
+/// grid.
 #[test]
 fn regions_of_random_trees_show_what_rays_meet() {
     let places = [
@@ -176,7 +178,7 @@ fn regions_of_random_trees_show_what_rays_meet() {
         ([-1.9, 2.4, 1.7], [1.1, 2.9, 4.0]),
     ];
     let mut wrong = Vec::new();
-    let (mut views, mut untold, mut all) = (0, 0.0, 0.0);
+    let (mut views, mut undetermined, mut all) = (0, 0.0, 0.0);
     for seed in 0..24u64 {
         let text = random::tree(seed).to_string();
         let tree = read(
@@ -196,28 +198,28 @@ fn regions_of_random_trees_show_what_rays_meet() {
         let setup = setup(&subject, eye, light, "");
         let seen = with_draft(&subject, &setup, |draft| {
             regions_show_what_rays_meet(draft, &format!("seed {seed}"), &mut wrong);
-            let area = |told: bool| {
+            let area = |determined: bool| {
                 let those = draft
                     .regions
                     .all
                     .iter()
-                    .filter(|r| r.seen.is_some() || !told);
+                    .filter(|r| r.seen.is_some() || !determined);
                 those.map(|r| r.area).sum::<f64>()
             };
             (area(false) - area(true), area(false))
         });
         if let Ok((none, area)) = seen {
-            (views, untold, all) = (views + 1, untold + none, all + area);
+            (views, undetermined, all) = (views + 1, undetermined + none, all + area);
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(views > 15, "{views}");
-    // What nothing is told of is asked pixel by pixel: right, and slow.
-    assert!(untold < 0.05 * all, "{untold} of {all} pixels");
+    // Undetermined pixels are decided by rays, which is correct but slow.
+    assert!(undetermined < 0.05 * all, "{undetermined} of {all} pixels");
 }
 
-/// Where a ball's limb runs into the rim of a flat cut there is a sliver between them, thinner than
-/// polylines are fine, across which background and cut are parted.
+/// Where a ball's limb approaches the rim of a flat cut, a sliver lies between them, thinner than
+/// the polylines' accuracy. It separates the background from the cut.
 #[test]
 fn a_sliver_between_a_limb_and_an_edge_parts_what_is_beside_it() {
     let ball = json!({"op": "difference", "children": [
@@ -227,16 +229,16 @@ fn a_sliver_between_a_limb_and_an_edge_parts_what_is_beside_it() {
     let part = part(&ball);
     let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
     for k in 0..24 {
-        // The limb touches the rim where it is seen from next to the plane of the tangent cone.
+        // The limb touches the rim if the eye is close to the plane of the tangent cone.
         let tilt = 0.2 + 0.04 * f64::from(k);
         let eye = [3.0 * tilt.cos(), 0.7, 3.0 * tilt.sin()];
         let setup = setup(&subject, eye, [1.1, 2.9, 4.0], "");
         with_draft(&subject, &setup, |draft| {
             let (last, regions) = draft.regions.all.split_last().unwrap();
-            let untold = regions.iter().filter(|r| r.area > 1.0 && r.seen.is_none());
-            let untold: Vec<_> = untold.map(|r| r.area).collect();
-            assert!(untold.is_empty(), "tilt {tilt}: {untold:?} px");
-            // A few rows of 160 pixels, where limb and rim run into each other at both ends.
+            let undetermined = regions.iter().filter(|r| r.area > 1.0 && r.seen.is_none());
+            let undetermined: Vec<_> = undetermined.map(|r| r.area).collect();
+            assert!(undetermined.is_empty(), "tilt {tilt}: {undetermined:?} px");
+            // A few rows of 160 pixels, where limb and rim approach each other at both ends.
             assert!(last.area < 6.0 * 160.0, "tilt {tilt}: {} px", last.area);
         })
         .unwrap();
@@ -273,7 +275,8 @@ fn predicted_pixels_are_those_of_rays() {
                 }
             }
             let mean = sum / count as f64;
-            // A pixel of 64 samples tells the share of its regions to some percent of their contrast.
+            // A pixel of 64 samples gives the shares of its regions to some percent of their
+            // contrast.
             assert!(mean < 0.25, "{name}: {mean} levels off, at most {most}");
             assert!(most < 12.0, "{name}: {mean} levels off, at most {most}");
         })
@@ -317,7 +320,7 @@ fn features_are_found_as_predicted() {
     );
 }
 
-/// A post on a table, lit along (1, 0, -1): its shadow is as long as it is high.
+/// A post on a table, lit along (1, 0, -1): its shadow is as long as the post is high.
 #[test]
 fn a_shadow_lies_where_it_is_cast() {
     let json = json!({"op": "union", "children": [
@@ -356,7 +359,7 @@ fn a_shadow_lies_where_it_is_cast() {
                 )
             })
             .fold(f64::INFINITY, f64::min);
-        // Ends are drawn out by 1/32 pixel.
+        // Ends are extended by 1/32 pixel.
         assert!(nearest < 0.05, "{nearest} px off");
         let dark = draft.regions.all.iter().filter(|r| {
             r.seen.is_some_and(|s| {
@@ -366,7 +369,8 @@ fn a_shadow_lies_where_it_is_cast() {
                 })
             })
         });
-        // Two by one in the plane z = 0, less what the post hides of it: nothing, from there.
+        // Two by one in the plane z = 0, minus what the post hides of it, which is nothing from
+        // there.
         let area: f64 = dark.map(|r| r.area).sum();
         let corners = [
             project(0.0, 0.0),
@@ -389,7 +393,7 @@ fn a_shadow_lies_where_it_is_cast() {
     .unwrap();
 }
 
-/// On a ball a light is mirrored half-way between the directions to it and to the camera.
+/// On a ball a light is reflected half-way between the directions to it and to the camera.
 #[test]
 fn a_light_beside_the_camera_casts_no_shadow_that_is_seen() {
     let part = part(&ring());
@@ -443,7 +447,8 @@ fn a_highlight_lies_where_the_light_is_mirrored() {
             .projection
             .project(&[cos, sin, 0.0].into());
         let off = (sum[0] / count - at.x).hypot(sum[1] / count - at.y);
-        // The outline is no circle: its middle is the brightest point to a part of its width.
+        // The outline is not a circle; its centre is the brightest point to a fraction of its
+        // width.
         let width = (glow.line.points[0][0] - at.x).hypot(glow.line.points[0][1] - at.y);
         assert!(off < 0.2 * width, "{off} px off, {width} px wide");
     })
@@ -451,30 +456,31 @@ fn a_highlight_lies_where_the_light_is_mirrored() {
 }
 
 #[test]
-fn what_cannot_be_is_told() {
+fn impossible_setups_are_refused() {
     let part = part(&cube_with_cuts());
     let subject = PreparedPart::new(&part.brep, part.resolution).unwrap();
-    let told = |text: &str| {
+    let message = |text: &str| {
         let setup = Setup::from_toml(text).unwrap();
         with_draft(&subject, &setup, |_| ())
             .unwrap_err()
             .to_string()
     };
     let camera = "[camera]\neye = [9, 7, 8]\n";
-    let inside = told(&format!("{camera}[[light]]\nposition = [2, 2, 1.5]\n"));
+    let inside = message(&format!("{camera}[[light]]\nposition = [2, 2, 1.5]\n"));
     assert!(
         inside.contains("light[0]") && inside.contains("inside"),
         "{inside}"
     );
-    let eye = told("[camera]\neye = [2, 2, 1.5]\n[[light]]\nposition = [9, 9, 9]\n");
+    let eye = message("[camera]\neye = [2, 2, 1.5]\n[[light]]\nposition = [9, 9, 9]\n");
     assert!(eye.contains("camera") && eye.contains("inside"), "{eye}");
-    let away =
-        told("[camera]\neye = [9, 7, 8]\ntarget = [18, 14, 16]\n[[light]]\nposition = [9, 9, 9]\n");
+    let away = message(
+        "[camera]\neye = [9, 7, 8]\ntarget = [18, 14, 16]\n[[light]]\nposition = [9, 9, 9]\n",
+    );
     assert!(away.contains("behind the camera"), "{away}");
     let lateral =
-        told("[camera]\neye = [9, 7, 8]\ntarget = [9, 0, 8]\n[[light]]\nposition = [9, 9, 9]\n");
+        message("[camera]\neye = [9, 7, 8]\ntarget = [9, 0, 8]\n[[light]]\nposition = [9, 9, 9]\n");
     assert!(lateral.contains("falls on"), "{lateral}");
-    let face = told(&format!(
+    let face = message(&format!(
         "{camera}[[light]]\nposition = [9, 9, 9]\n[[surface]]\nfaces = [0, 99]\nmaterial = \"steel\"\n"
     ));
     assert!(face.contains("face 99"), "{face}");

@@ -1,4 +1,4 @@
-//! Random trees: none may be wrong in any way that can be distinguished from outside.
+//! Random trees: none may be wrong in any way that is detectable from outside.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_tests::examine::{Depth, VIEWS, examine_within};
@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// Trees that were once wrong, each in a way of its own, with what is hard about them.
+/// Trees that were once wrong, each in its own way, with what is hard about them.
 const MENDED: [(u64, &str); 40] = [
     (586, "a slit along a parallel of a torus"),
     (

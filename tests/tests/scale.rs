@@ -1,5 +1,5 @@
-//! A part and its camera a power of two larger or smaller: nothing is rounded otherwise, so every
-//! number is that power of two times what it was, and every answer the same.
+//! A part and its camera scaled by a power of two. Rounding is unchanged, so every number is scaled
+//! by that power and every decision is the same.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
@@ -13,10 +13,10 @@ const PARTS: [&str; 2] = [
     "CON(R=S, H=2*S) UN SPH(R=S) AT (MOVX=S, MOVZ=S) DIF CYL(R=S/2, H=4*S) AT (ROTX=30, MOVX=S/4, MOVZ=-S)",
 ];
 
-/// The volume in terms of the unit's, and the invisibility of every piece in two views.
-type Told = (f64, Vec<u32>);
+/// The volume in units of the scaled unit, and the invisibility of every piece in two views.
+type Observed = (f64, Vec<u32>);
 
-fn told(part: &str, exponent: i32) -> Told {
+fn observed(part: &str, exponent: i32) -> Observed {
     let size = 2.0_f64.powi(exponent);
     let power = 1_u128 << exponent.unsigned_abs();
     let scale = match exponent < 0 {
@@ -46,18 +46,18 @@ fn told(part: &str, exponent: i32) -> Told {
     (known.mass().volume / size.powi(3), pieces.collect())
 }
 
-fn alike((volume, pieces): &Told, (other, others): &Told) -> bool {
+fn alike((volume, pieces): &Observed, (other, others): &Observed) -> bool {
     (volume - other).abs() <= volume / f64::from(1 << 30) && pieces == others
 }
 
 #[test]
 fn views_do_not_depend_on_the_unit() {
     for part in PARTS {
-        let plain = told(part, 0);
-        assert!(plain.1.iter().any(|&qi| qi > 0), "{part}");
+        let unscaled = observed(part, 0);
+        assert!(unscaled.1.iter().any(|&qi| qi > 0), "{part}");
         for exponent in [-100, -41, -20, 20, 41, 100] {
-            let scaled = told(part, exponent);
-            assert!(alike(&plain, &scaled), "{part} by 2^{exponent}");
+            let scaled = observed(part, exponent);
+            assert!(alike(&unscaled, &scaled), "{part} by 2^{exponent}");
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Views along the axes, whose line lengths are added up by hand from the dimensions: a line that is
-//! lost makes a sum too small, one that is drawn twice or hidden under a visible one too large.
+//! Views along the axes, with line lengths computed by hand from the dimensions. A missing line
+//! makes the sum too small; a line drawn twice, or hidden under a visible one, makes it too large.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
@@ -34,7 +34,7 @@ fn drawn(part: &str, view: StandardView, smooth: bool) -> Drawing {
     Drawing::new(&seen(part, view), &options)
 }
 
-/// The lengths of the strokes that suit: visible, and hidden.
+/// The lengths of the selected strokes: visible, and hidden.
 fn lengths(drawing: &Drawing, suits: impl Fn(Layer) -> bool) -> [f64; 2] {
     [true, false].map(|visible| {
         let mine = drawing.strokes.iter();
@@ -82,7 +82,7 @@ fn smooth_edges_are_drawn_where_they_are_not_the_outline() {
     assert!((visible - 156.0).abs() < 1e-9, "{visible}");
 }
 
-/// A box of 20 by 30 by 40 with a radius of 5 at every edge: nothing is drawn of it but limbs.
+/// A box of 20 by 30 by 40 with a radius of 5 at every edge: only limbs are drawn.
 #[test]
 fn a_rounded_box_has_its_outline() {
     let mut part =
@@ -118,7 +118,7 @@ fn a_rounded_box_has_its_outline() {
     assert_lengths(&part, StandardView::Top, [2.0 * (10.0 + 20.0) + round, 0.0]);
 }
 
-/// The dome's edge on the cylinder is its outline from above, and nothing from the front.
+/// The dome's edge on the cylinder is its outline from above, and is not drawn from the front.
 #[test]
 fn a_dome_has_an_outline() {
     let part = "CYL(R=10,H=10) UN SPH(R=10) AT (MOVZ=10)";
@@ -152,8 +152,8 @@ fn a_groove_is_drawn_once() {
     assert_lengths(part, StandardView::Top, [20.0 * PI, 16.0 * PI]);
 }
 
-/// A cylinder of radius 4 through one of 10, across: the mouths are x² - z² = 84, and those behind
-/// fall on those before.
+/// A cylinder of radius 4 across one of radius 10: the mouths are x² - z² = 84, and those behind
+/// coincide with those in front.
 #[test]
 fn curves_without_a_closed_form_are_drawn_once() {
     let part = "CYL(R=10,H=60) DIF CYL(R=4,H=40) AT (ROTY=90,MOVX=-20,MOVZ=30)";
@@ -167,7 +167,7 @@ fn curves_without_a_closed_form_are_drawn_once() {
         .sum();
     let drawing = drawn(part, StandardView::Front, false);
     let [visible, hidden] = lengths(&drawing, |_| true);
-    // What is drawn by polylines is as long as they are.
+    // Curves drawn by polylines have the length of these.
     let expected = 2.0 * 20.0 + 2.0 * (60.0 - 8.0) + 2.0 * mouth;
     assert!(
         (visible - expected).abs() < 1e-3,
@@ -176,8 +176,8 @@ fn curves_without_a_closed_form_are_drawn_once() {
     assert!((hidden - 40.0).abs() < 1e-6, "{hidden}");
 }
 
-/// An edge seen end-on is a point behind the face in which it ends towards the eye, however sharp it
-/// is, and no stroke.
+/// An edge seen end-on is a point behind the face in which it ends towards the eye, however sharp
+/// it is, and gives no stroke.
 #[test]
 fn edges_seen_end_on_are_hidden_points() {
     for part in [

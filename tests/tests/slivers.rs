@@ -1,12 +1,13 @@
-//! The volumes of slivers in f64, against closed forms: they are known as far as what is thin is
-//! told by the rounding of coordinates.
+//! The volumes of slivers in f64, against closed forms. They are accurate as far as the rounding of
+//! coordinates permits for the thickness.
 
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use std::error::Error;
 use std::f64::consts::PI;
 
-/// A sliver in PADL, whose thickness is `D`, its size, and its volume by that.
+/// A sliver in PADL with the thickness `D`, its size, and its volume as a function of the
+/// thickness.
 type Sliver = (&'static str, f64, fn(f64) -> f64);
 
 #[rustfmt::skip]
@@ -26,9 +27,9 @@ const SLIVERS: [Sliver; 13] = [
     ("(TOR(RMAJ=3,RMIN=1+D)) DIF (TOR(RMAJ=3,RMIN=1))", 8.0, |d| 6.0 * PI * PI * (2.0 + d) * d),
 ];
 
-/// The area of the segment of a circle, by its height.
+/// The area of the segment of a circle, from its height.
 fn segment(radius: f64, height: f64) -> f64 {
-    // Of θ − sin θ with the angle θ over it, in powers: nothing cancels.
+    // A power series of θ − sin θ in the angle θ, so that nothing cancels.
     let half = (height / (2.0 * radius)).sqrt().asin();
     let angle = 4.0 * half;
     let mut term = angle.powi(3) / 6.0;

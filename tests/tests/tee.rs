@@ -1,4 +1,4 @@
-//! A pipe with k branches seen along its own axis, where many contours fall on one another.
+//! A pipe with k branches seen along its own axis, where many contours coincide.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
 
 use nalgebra::{Point3, Vector3};
@@ -23,7 +23,7 @@ fn branch(i: usize, r: f64, to: f64) -> Value {
         "transform": [{"rotate": [[0.0, 1.0, 0.0], 90.0]}, {"translate": [0.0, 0.0, z]}]})
 }
 
-/// The union of pipes, each hollow by itself.
+/// The union of pipes, each of which is hollow.
 fn crossing(k: usize) -> Value {
     let hollow =
         |outer: Value, inner: Value| json!({"op": "difference", "children": [outer, inner]});
@@ -82,7 +82,7 @@ fn cameras() -> Vec<(&'static str, ViewCamera)> {
     ]
 }
 
-/// The least of several runs, in seconds.
+/// The shortest of several runs, in seconds.
 fn time(part: &Evaluation, camera: &ViewCamera) -> f64 {
     let run = || {
         let started = Instant::now();

@@ -1,4 +1,5 @@
-//! Triangles follow the boundary of every named case, and rays on them see what is hidden.
+//! Triangles approximate the boundary of every named case, and rays on them agree on what is
+//! hidden.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
@@ -17,7 +18,7 @@ fn part(text: &str, format: Format) -> Option<Evaluation> {
     evaluate(&description.tree, &EvaluationOptions::default()).ok()
 }
 
-/// What is wrong with the mesh of a part at an accuracy, given as a part of its size.
+/// The fault of the mesh of a part at an accuracy, given relative to the part's size.
 fn fault(part: &Evaluation, deviation: f64) -> Option<String> {
     let size = part.bounds.diagonal();
     let deviation = deviation * size;
@@ -31,7 +32,7 @@ fn fault(part: &Evaluation, deviation: f64) -> Option<String> {
     };
     let exact = part.mass();
     let off = (mesh.volume() - exact.volume).abs();
-    // Triangles that are off everywhere, by as much as they may be.
+    // The volume error of triangles that deviate everywhere by the allowed amount.
     if off.is_nan() || off > exact.area * deviation {
         return Some(format!("volume {off:e} off"));
     }
@@ -48,7 +49,7 @@ fn fault(part: &Evaluation, deviation: f64) -> Option<String> {
     if !mesh.is_watertight() {
         return Some("not watertight".to_owned());
     }
-    // Where no edge has four faces, no side has four triangles.
+    // If no edge has four faces, no side has four triangles.
     let mut sides = HashSet::new();
     let mut ends = mesh.triangles.iter().flat_map(|t| {
         let [a, b, c] = t.corners;
@@ -120,7 +121,7 @@ fn rays_on_triangles_find_pieces_that_are_wrong() {
             let mut seen = contours(&part.brep, &view.camera, part.resolution).unwrap();
             let before = cast.count(&seen);
             assert!(before.wrong.is_empty(), "{seed} {}: {before:?}", view.name);
-            // Nearly all samples are far enough from all else.
+            // Nearly all samples are far enough from everything else.
             assert!(before.agreed >= 2 * before.unclear, "{seed}: {before:?}");
             for contour in &mut seen.contours {
                 for piece in &mut contour.pieces {

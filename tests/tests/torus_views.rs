@@ -1,6 +1,6 @@
-//! Views of a torus against the torus's own equations: every limb that the closed form finds is
-//! there, no piece passes a cusp, and the invisibility of every piece is what the roots of the
-//! quartic on its line of sight say.
+//! Views of a torus against the torus's own equations. Every limb of the closed form is present, no
+//! piece passes a cusp, and the invisibility of every piece agrees with the roots of the quartic on
+//! its line of sight.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
 
 use nalgebra::{Point3, Vector3};
@@ -21,7 +21,7 @@ struct Torus {
     minor: f64,
 }
 
-/// Where in a piece samples are taken.
+/// The number of samples of a piece.
 const SAMPLES: usize = 5;
 
 fn torus(t: Torus) -> Evaluation {
@@ -72,9 +72,9 @@ impl Torus {
         Point3::new(rho * theta.cos(), rho * theta.sin(), self.minor * phi.sin())
     }
 
-    /// Where the line p + s v is in the torus, for s over `range`.
+    /// The intervals in which the line p + s v is in the torus, for s in `range`.
     fn inside(&self, p: &Point3<f64>, v: &Vector3<f64>, range: [f64; 2]) -> Vec<[f64; 2]> {
-        // About the point nearest to the centre, lengths in units of the reach.
+        // About the point closest to the centre, with lengths in units of the reach.
         let middle = -p.coords.dot(v);
         let unit = self.major + self.minor;
         let q = (p.coords + v * middle) / unit;
@@ -130,8 +130,8 @@ fn real_roots(k: &[f64], [lo, hi]: [f64; 2]) -> Vec<f64> {
     roots
 }
 
-/// How many stretches of the torus lie before a point of a limb; none where the answer changes
-/// next to the point.
+/// The number of intervals of the torus in front of a point of a limb; `None` if it changes close
+/// to the point.
 fn invisibility(t: &Torus, projection: &Projection, p: &Point3<f64>) -> Option<u32> {
     let lateral = 1e-7 * (t.major + t.minor);
     let depth = 4.0 * (lateral * (t.major + t.minor)).sqrt();
@@ -148,11 +148,11 @@ fn invisibility(t: &Torus, projection: &Projection, p: &Point3<f64>) -> Option<u
         .iter()
         .map(|o| count(*o))
         .collect();
-    // The own fold adds nothing beyond the depth, unless it is a hollow one.
+    // The point's own fold adds nothing beyond the depth, unless it is concave.
     all.iter().all(|c| *c == all[0]).then_some(all[0])
 }
 
-/// The limb's points by the closed form (two angles of the tube for each about the axis).
+/// The limb's points by the closed form: two angles about the tube for each angle about the axis.
 fn limb_points(t: &Torus, sight: &ViewRay) -> Vec<Point3<f64>> {
     let mut found = Vec::new();
     for k in 0..360 {
@@ -240,7 +240,8 @@ impl Tally {
                     if t.value(&p).abs() > 1e-9 || t.normal(&p).dot(&v).abs() > 1e-7 {
                         wrong.push(format!("{name}: {p} is on no limb"));
                     }
-                    // The fold's side: how the torus leaves its tangent along the line of sight.
+                    // The side of the fold: how the torus leaves its tangent along the line of
+                    // sight.
                     let (n, step) = (t.normal(&p), 1e-3 * t.minor);
                     let level = |s: f64| t.value(&(p + v * s));
                     let bend = level(step) + level(-step) - 2.0 * t.value(&p);
@@ -332,10 +333,11 @@ fn a_thin_torus() {
     );
 }
 
-/// A torus of radii 1 and 1/2, seen across its axis, less a cylinder that reaches to 1 + d along x:
-/// of the tube's circle about (1, 0, 0) there is the arc beyond, of pi - 2 asin(2 d). Its ends are
-/// next to where it crosses the torus's top and bottom circles, limbs too: the product of all that
-/// vanishes on limbs is within the resolution between them, for d below 1e-5.
+/// A torus of radii 1 and 1/2, seen perpendicular to its axis, minus a cylinder that reaches to 1 +
+/// d along x. Of the tube's circle about (1, 0, 0) the arc beyond it remains, of pi - 2 asin(2 d).
+/// The ends of this arc are close to its crossings with the torus's top and bottom circles, which
+/// are limbs, too. For d below 1e-5 the product of the functions that vanish on the limbs is within
+/// the resolution between them.
 #[test]
 fn limbs_are_cut_next_to_their_nodes() {
     let shifts = [1e-3, 1e-5, 1e-7, 1e-9];
@@ -366,9 +368,9 @@ fn limbs_are_cut_next_to_their_nodes() {
     }
 }
 
-/// A ring of radii 3/4 and 1/4 about the x axis and a block whose face x = 0 fills a quarter of its
-/// hole: at (0, 1, 1)/√8 on the inner equator the curvatures along the tube and around the axis are
-/// 4 and -2, so that the line of sight (-1, 1, -1) is asymptotic there. The limb has a cusp just
+/// A ring of radii 3/4 and 1/4 about the x axis, and a block whose face x = 0 fills a quarter of
+/// its hole. At (0, 1, 1)/√8 on the inner equator the curvatures along the tube and around the axis
+/// are 4 and -2, so the line of sight (-1, 1, -1) is asymptotic there. The limb has a cusp exactly
 /// where it ends on the edge, and no curvature determines which half of the edge is hidden.
 #[test]
 fn a_cusp_on_an_edge_is_no_fold() {
@@ -386,8 +388,8 @@ fn a_cusp_on_an_edge_is_no_fold() {
     let camera = ViewCamera::orthographic(eye, centre, Vector3::z()).unwrap();
     for method in [Method::Propagated, Method::Recounted] {
         let seen = contours_with(&part.brep, &camera, part.resolution, method).unwrap();
-        // The edge on the equator, which the face and the tube bound: of its half towards (0, 0, 1/2)
-        // both are seen, and nothing of the ring is on the line of sight.
+        // The edge on the equator, which the face and the tube bound. Both are visible at its half
+        // towards (0, 0, 1/2), and nothing of the ring is on the line of sight.
         let on_equator = |p: &Point3<f64>| p.x.abs() < 1e-9 && (p.y.hypot(p.z) - 0.5).abs() < 1e-9;
         let mut pieces = seen.contours.iter().flat_map(|c| {
             let middle = |t: [f64; 2]| c.curve3.point(0.5 * (t[0] + t[1]));

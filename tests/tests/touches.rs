@@ -1,4 +1,5 @@
-//! Where a boundary touches itself: a ball is put against a known point of each primitive.
+//! Points where a boundary touches itself: a ball is placed against a known point of each
+//! primitive.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
@@ -8,18 +9,18 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
-/// What the ball is put against.
+/// The entity that the ball touches.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// The inside of a face.
+    /// The interior of a face.
     Face,
-    /// The inside of an edge.
+    /// The interior of an edge.
     Edge,
     /// The apex of a cone, or a corner of a block.
     Corner,
 }
 
-/// A primitive with a point of its boundary and a direction out of it, in its own frame.
+/// A primitive with a point of its boundary and a direction outwards, in its own frame.
 fn spot(kind: usize, place: Place, u: f64, v: f64) -> Option<(Value, [f64; 3], [f64; 3])> {
     let (sin, cos) = (TAU * u).sin_cos();
     let (s, c) = (TAU * v).sin_cos();
@@ -73,7 +74,7 @@ fn spot(kind: usize, place: Place, u: f64, v: f64) -> Option<(Value, [f64; 3], [
             [2.0 * cos * c, 2.0 * sin * c, 2.0 * s],
             [cos * c, sin * c, s],
         ),
-        // Beyond the hole a ball of this size would reach the other side.
+        // On the side of the hole a ball of this size would reach the opposite side.
         (4, Place::Face) if c > 0.0 => (
             json!({"prim": "torus", "R": 3, "r": 1}),
             [(3.0 + c) * cos, (3.0 + c) * sin, s],
@@ -87,7 +88,7 @@ fn places() -> impl Strategy<Value = Place> {
     prop_oneof![Just(Place::Face), Just(Place::Edge), Just(Place::Corner)]
 }
 
-/// The primitive and a ball whose surface is `gap` away from its point, turned together.
+/// The primitive and a ball at the distance `gap` from its point, rotated together.
 fn part(solid: &Value, at: [f64; 3], out: [f64; 3], gap: f64, turn: f64) -> Evaluation {
     let r = 0.75;
     let centre: [f64; 3] = std::array::from_fn(|i| at[i] + out[i] * (r + gap));
@@ -122,7 +123,7 @@ proptest! {
         let expected = match place {
             Place::Face => (0, 0, 2),
             Place::Edge => (0, 1, 1),
-            // The apex of a cone is inside its face.
+            // The apex of a cone is in the interior of its face.
             Place::Corner if kind == 2 => (0, 0, 2),
             Place::Corner => (1, 0, 1),
         };
@@ -130,7 +131,7 @@ proptest! {
         let from = |p: &Point3<f64>| (p - Point3::origin()).norm();
         let far = Vector3::from(at).norm() - from(&touching.brep.geometry.touches[0]);
         prop_assert!(far.abs() < touching.resolution, "{far:e}");
-        // A little off they are apart, or one.
+        // With a small gap or overlap they are separate or one.
         for (gap, solids) in [(1e-3, 2), (-1e-3, 1)] {
             let moved = part(&solid, at, out, gap, turn);
             prop_assert_eq!(moved.brep.topology.solids.len(), solids);
@@ -140,8 +141,8 @@ proptest! {
     }
 }
 
-/// Two tori touch at (3, 0, 0). The bottom of a cylinder that ends next to it passes by in a plane
-/// five resolutions above: its plane meets both tori in one point, which is none of the boundary.
+/// Two tori touch at (3, 0, 0). The bottom of a cylinder ends close to that point, in a plane five
+/// resolutions above. Its plane intersects both tori in one point, which is not on the boundary.
 #[test]
 fn what_lies_next_to_a_touch_is_no_other() {
     let torus =

@@ -1,4 +1,4 @@
-//! Which solid a void is in, and which points the solids hold.
+//! The solid to which a void belongs, and the points that solids contain.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use nalgebra::Point3;
@@ -18,7 +18,7 @@ fn evaluated(text: &str) -> Evaluation {
     evaluate(&part.tree, &EvaluationOptions::default()).unwrap()
 }
 
-/// The radius of a shell that is one sphere.
+/// The radius of a shell that consists of one sphere.
 fn radius(known: &Evaluation, shell: usize) -> f64 {
     let [face] = *known.brep.topology.shells[shell].faces else {
         panic!("a sphere is one face");
@@ -29,7 +29,7 @@ fn radius(known: &Evaluation, shell: usize) -> f64 {
     sphere.radius
 }
 
-/// A ball has no edge that tells how far a ray from its hollow must go.
+/// A ball has no edge that limits the length of a ray from its hollow.
 #[test]
 fn a_hollow_ball_beside_a_ball() {
     for balls in [
@@ -55,7 +55,8 @@ fn points_of_a_hollow_ball_and_a_ball() {
     assert_eq!(places, expected.map(Some));
 }
 
-/// The frame's box holds the hollow of the block in its hole, the frame does not, and it is less.
+/// The box of the frame contains the hollow of the block in its hole, but the frame does not, and
+/// its volume is smaller.
 #[test]
 fn a_hollow_block_in_a_frame_in_a_hollow_block() {
     let known = evaluated(

@@ -1,6 +1,6 @@
-//! What one tree is put to: it is evaluated, the boundary keeps its rules, the volume is the rays',
-//! nothing is outside the box, the volumes of unions and intersections add up, and, if requested, no
-//! piece of a view is wrong and no contour missing.
+//! The trial of one tree. It is evaluated; the boundary must keep its rules, its volume must agree
+//! with ray casting, nothing may be outside the box, and the volumes of unions and intersections
+//! must add up. If requested, views are recounted and searched for missing contours.
 
 use crate::checks::{Check, CheckReport, CheckSubject, Checker, Finding, ViewChecks, views};
 use crate::generator::model::{ModelNodeKind, ModelOperation, PartModel};
@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The views that are counted again: a perspective, a general orthographic one, and those along the
-/// axes, where limbs lie on edges and on one another.
+/// The views that are recounted: a perspective, a general orthographic one, and those along the
+/// axes, where limbs coincide with edges and with one another.
 pub const VIEWS: [&str; 5] = [
     "perspective 3",
     "orthographic 1",
@@ -23,14 +23,14 @@ pub const VIEWS: [&str; 5] = [
     "along z",
 ];
 
-/// What to ask of a tree, and how.
+/// The configuration of a trial.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct TrialConfig {
-    /// The resolution, in the model's unit; by default 1e-11 of its size.
+    /// The resolution, in the model's unit; the default is 1e-11 of its size.
     pub resolution: Option<f64>,
     /// Whether close calls are refused.
     pub strict: bool,
-    /// Whether views are counted again.
+    /// Whether views are recounted.
     pub views: bool,
     /// Whether sheets of views are read back.
     #[serde(default)]
@@ -41,31 +41,31 @@ pub struct TrialConfig {
     /// Whether the tree is evaluated once more with no decision made in f64.
     #[serde(default)]
     pub unfiltered: bool,
-    /// How many rays measure the volume.
+    /// The number of rays that measure the volume.
     pub rays: u32,
 }
 
-/// What can be wrong with an answer.
+/// What can be wrong with a result.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FailureKind {
     /// The boundary breaks a rule.
     Topology,
-    /// The volume is not the rays'.
+    /// The volume disagrees with ray casting.
     Volume,
-    /// Rays meet material outside the box.
+    /// Rays hit material outside the box.
     Bounds,
-    /// The volumes of A or B, A and B, A less B, A, and B do not add up.
+    /// The volumes of A ∪ B, A ∩ B, A \ B, A and B do not add up.
     Sums,
-    /// With no decision made in f64 the boundary is another, or there is none.
+    /// With no decision made in f64 the boundary differs, or there is none.
     Filter,
-    /// A piece of a view has another number of faces before it.
+    /// A piece of a view has a wrong number of faces in front of it.
     View,
     /// A contour of a view is missing.
     Contours,
     /// The boundary of the part's shadow in a view is not drawn.
     Outline,
-    /// A sheet, read back, is not what the contours are.
+    /// A sheet, read back, disagrees with the contours.
     Sheet,
     /// The STEP file breaks a rule.
     Step,
@@ -73,11 +73,11 @@ pub enum FailureKind {
     Mesh,
     /// The evaluation, or a check, panicked.
     Panic,
-    /// The process ended without an answer: its stack or its memory ran over, or it was aborted.
+    /// The process ended without a result: its stack or memory overflowed, or it was aborted.
     Crash,
-    /// No answer within the limit of time.
+    /// There was no result within the time limit.
     Time,
-    /// What the generator made is not read.
+    /// The generated description cannot be read.
     Input,
 }
 
@@ -104,12 +104,12 @@ impl FailureKind {
     }
 }
 
-/// Something wrong, with the figures.
+/// A fault, with the measured values.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fault {
-    /// Of what kind.
+    /// The kind.
     pub kind: FailureKind,
-    /// What is wrong.
+    /// The description of the fault.
     pub text: String,
 }
 
@@ -120,38 +120,38 @@ pub struct TrialMeasures {
     pub volume: f64,
     /// The area, in square units.
     pub area: f64,
-    /// The least and the greatest coordinates; none of an empty solid.
+    /// The least and the greatest coordinates; none for an empty solid.
     pub bounds: Option<[[f64; 3]; 2]>,
-    /// How many solids there are that do not hang together.
+    /// The number of connected solids.
     pub solids: usize,
 }
 
-/// How a trial ended.
+/// The end of a trial.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// All that was asked holds.
+    /// All checks passed.
     Right(TrialMeasures),
-    /// There is no answer, for this reason.
+    /// There is no result, for this reason.
     Refused(String),
-    /// An answer, or none, that is wrong in these ways.
+    /// The result, or its absence, is wrong in these ways.
     Wrong(Vec<Fault>),
 }
 
 /// The outcome of a trial.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct TrialOutcome {
-    /// How it ended.
+    /// The verdict.
     pub verdict: Verdict,
-    /// How many decisions were close.
+    /// The number of close decisions.
     pub close_calls: usize,
-    /// The checks that do not tell.
+    /// The undetermined checks.
     #[serde(default, rename = "untold")]
     pub undetermined: Vec<String>,
 }
 
 impl TrialOutcome {
-    /// One thing wrong.
+    /// An outcome with one fault.
     pub fn wrong(kind: FailureKind, text: impl Into<String>) -> Self {
         let text = text.into();
         Self {
@@ -162,7 +162,7 @@ impl TrialOutcome {
     }
 }
 
-/// A refusal's text without places and other numbers: what kind of refusal it is.
+/// The text of a refusal without locations and other numbers, which identifies its kind.
 pub fn reason(text: &str) -> String {
     let mut kind = String::new();
     let mut rest = text;
@@ -173,7 +173,7 @@ pub fn reason(text: &str) -> String {
         let end = rest[at..]
             .find(|c| !number(c))
             .map_or(rest.len(), |n| at + n);
-        // A full stop that ends a sentence is not the number's.
+        // A full stop at the end of a sentence is not part of the number.
         let end = at + rest[at..end].trim_end_matches(['.', '-', '+', 'e']).len();
         kind += &rest[..start];
         kind.push('#');
@@ -183,13 +183,13 @@ pub fn reason(text: &str) -> String {
     kind.replace("(#, #, #)", "a point")
 }
 
-/// The same as [`examine`], with a panic as something wrong.
+/// [`examine`], with a panic reported as a fault.
 pub fn guarded(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     catch_unwind(AssertUnwindSafe(|| examine(model, terms)))
         .unwrap_or_else(|panic| TrialOutcome::wrong(FailureKind::Panic, message(&*panic)))
 }
 
-/// What a panic said.
+/// The message of a panic.
 pub fn message(panic: &(dyn Any + Send)) -> &str {
     match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
         (Some(text), _) => text,
@@ -198,7 +198,7 @@ pub fn message(panic: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// Puts a tree to the trial.
+/// Runs the trial of a tree.
 pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     let description = match read(&write(model, Format::Json), Format::Json) {
         Ok(description) => description,
@@ -216,14 +216,14 @@ pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     }
     let checker = Checker::new(&description.tree, &evaluation);
     let mut report = checker.solid(terms.rays as usize);
-    let asked = ViewChecks {
+    let checks_wanted = ViewChecks {
         contours: terms.views,
         drawing: terms.sheets,
     };
-    if report.passes() && (asked.contours || asked.drawing) {
+    if report.passes() && (checks_wanted.contours || checks_wanted.drawing) {
         let all = views::around(&evaluation.bounds);
         for view in all.iter().filter(|v| VIEWS.contains(&v.name.as_str())) {
-            let checks = checker.view_with(&view.name, &view.camera, asked);
+            let checks = checker.view_with(&view.name, &view.camera, checks_wanted);
             report.checks.extend(checks);
         }
     }
@@ -299,7 +299,7 @@ fn measures(evaluation: &Evaluation) -> TrialMeasures {
     }
 }
 
-/// Where the boundary is another with no decision made in f64.
+/// The fault if the boundary differs when no decision is made in f64.
 fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &TrialConfig) -> Option<Fault> {
     let unfiltered = EvaluationOptions {
         digits: Arithmetic::Extended,
@@ -315,18 +315,18 @@ fn filtered_wrongly(tree: &Tree, known: &Evaluation, terms: &TrialConfig) -> Opt
     };
     let differ = Signature::new(&known.brep) != Signature::new(&again.brep);
     let counts = || [known, &again].map(|part| part.brep.topology.census());
-    differ.then(|| fault(format!("doubles and more digits: {:?}", counts())))
+    differ.then(|| fault(format!("f64 and extended precision differ: {:?}", counts())))
 }
 
-/// Trees with more primitives are not taken apart to see whether volumes add up.
+/// The number of primitives above which a tree's sums of volumes are not checked.
 const FEW: usize = 12;
 
-/// How far the sums of volumes may be off, as a part of the cube of the size, besides what the
-/// resolution makes of the surface: volumes are good to about ten digits.
+/// The allowed error of sums of volumes, relative to the cube of the size, in addition to the
+/// effect of the resolution over the surface. Volumes are accurate to about ten digits.
 const OFF: f64 = 1.0 / (1u64 << 31) as f64;
 
-/// Where the volumes of the root's first child A, of what is done to it B, and of their union,
-/// intersection and difference do not add up.
+/// The fault if the volumes of the root's first child A, of its other children B, and of their
+/// union, intersection and difference do not add up.
 fn sums(model: &PartModel, evaluation: &Evaluation, terms: &TrialConfig) -> Option<Fault> {
     if model.leaves().count() > FEW {
         return None;
@@ -358,7 +358,7 @@ fn sums(model: &PartModel, evaluation: &Evaluation, terms: &TrialConfig) -> Opti
     })
 }
 
-/// The root's first child, and its other children as one: joined, or what they have in common.
+/// The root's first child, and the combination of its other children: their union or intersection.
 fn sides(model: &PartModel, op: ModelOperation) -> Option<[PartModel; 2]> {
     let mut children = model.children();
     if children.len() < 2 {
@@ -374,14 +374,14 @@ fn sides(model: &PartModel, op: ModelOperation) -> Option<[PartModel; 2]> {
     Some([children.pop()?, b])
 }
 
-/// The volume of a tree; none where it is refused, which is for a trial of its own.
+/// The volume of a tree; `None` if it is refused, which is the subject of its own trial.
 fn volume(model: &PartModel, terms: &TrialConfig) -> Option<f64> {
     let tree = read(&write(model, Format::Json), Format::Json).ok()?.tree;
     let part = evaluate(&tree, &options(terms)).ok()?;
     Some(part.mass().volume)
 }
 
-/// The diagonal of a box that holds these models, or more.
+/// The diagonal of a box that contains these models.
 fn size(models: &[&PartModel]) -> f64 {
     let boxes = models.iter().filter_map(|model| {
         let text = write(model, Format::Json);
@@ -473,10 +473,10 @@ mod tests {
 
     #[test]
     fn a_reason_has_no_numbers() {
-        let text = "what meets near (1.250000, -0.5, 2) is known to 1.2e-9 only: surfaces";
+        let text = "the intersection near (1.250000, -0.5, 2) is known to 1.2e-9 only: surfaces";
         assert_eq!(
             reason(text),
-            "what meets near a point is known to # only: surfaces"
+            "the intersection near a point is known to # only: surfaces"
         );
         assert_eq!(reason("3."), "#.");
         assert_eq!(reason("no number"), "no number");

@@ -1,5 +1,5 @@
-//! Expanding a builder's solids to a tree: motions are pushed down to the leaves, and solids used several
-//! times are copied.
+//! Expands a builder's solids to a tree: motions are pushed down to the leaves, and solids used
+//! several times are copied.
 
 use super::*;
 
@@ -8,11 +8,11 @@ struct Task {
     draft: usize,
     placement: Rc<Placement>,
     parent: Option<NodeId>,
-    /// Whether this is the first child of a difference, from which the others are taken.
+    /// Whether this is the first child of a difference.
     minuend: bool,
 }
 
-/// An expansion that is under way.
+/// An expansion in progress.
 pub(super) struct Expansion<'a> {
     builder: &'a Builder,
     pub(super) tree: Tree,
@@ -105,9 +105,8 @@ impl<'a> Expansion<'a> {
         }
     }
 
-    /// Whether the children of an operation may stand in its place below its parent:
-    /// (A + B) + C = A + B + C, the same for intersection, (A - B) - C = A - B - C,
-    /// A - (B + C) = A - B - C.
+    /// Whether the children of an operation may replace it below its parent: (A + B) + C = A + B +
+    /// C, the same for intersection, (A - B) - C = A - B - C, A - (B + C) = A - B - C.
     fn merges(&self, op: Operation, parent: NodeId, minuend: bool) -> bool {
         let TreeNode::Operation { op: above, .. } = &self.tree.nodes[parent.0] else {
             return false;

@@ -8,7 +8,7 @@ fn ball(b: &mut Builder) -> SolidId {
     b.primitive(Primitive::sphere(Rational::ONE).unwrap())
 }
 
-/// The tree in brackets, each leaf by the x of its place.
+/// The tree as brackets, each leaf shown by the x of its position.
 fn text(tree: &Tree) -> String {
     let show = |id: NodeId, below: &[String]| match &tree[id] {
         TreeNode::Leaf(placed) => placed.motion.offset()[0].to_string(),
@@ -143,7 +143,7 @@ fn solids_of_another_builder_are_refused() {
         let written = crate::writer::write(&ours, part, crate::reader::Format::Padl);
         assert_eq!(written, Err(crate::writer::WriteError::ForeignSolid));
     }
-    // What does not count is not looked at, and what was made before stays as it is.
+    // Operands that do not matter are not examined, and earlier parts do not change.
     let none = ours.operation(Operation::Intersection, &[SolidId::EMPTY, foreign]);
     assert!(ours.finish(none).unwrap().is_empty());
     assert_eq!(text(&ours.finish(known).unwrap()), "0");

@@ -1,7 +1,8 @@
-//! The curves in which carriers meet, and the points in which they are cut.
+//! The arrangement: the curves in which carriers intersect, and the points at which they are split.
 //!
-//! Everything that coincides within the resolution is made one here, before any topology: equal
-//! surfaces become one carrier, equal points one vertex that is known by all carriers through it.
+//! Everything that coincides within the resolution is merged here, before any topology. Equal
+//! surfaces become one carrier. Equal points become one vertex, which records all carriers through
+//! it.
 
 use super::EvaluationError;
 use super::distinct_surfaces::{Merged, Source, merge};
@@ -22,16 +23,16 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::collections::{BTreeMap, HashSet};
 
-/// Where a curve is cut.
+/// A point at which a curve is split.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut<N: Float = f64> {
     /// The parameter.
     pub t: N,
-    /// The vertex there.
+    /// The vertex at that point.
     pub vertex: usize,
 }
 
-/// A curve in which carriers meet.
+/// An intersection curve of carriers.
 #[derive(Clone, Debug)]
 pub(super) struct IntersectionCurve<N: Float = f64> {
     /// The curve.
@@ -40,20 +41,21 @@ pub(super) struct IntersectionCurve<N: Float = f64> {
     pub range: [N; 2],
     /// Whether the range is a whole period.
     pub closed: bool,
-    /// All carriers that hold it, in order.
+    /// All carriers that contain it, in increasing order.
     pub carriers: Vec<usize>,
-    /// The pairs of carriers that are tangent all along it.
+    /// The pairs of carriers that are tangent along all of it.
     pub tangent: Vec<[usize; 2]>,
-    /// Its box.
+    /// Its bounding box.
     pub bounds: Aabb,
     /// Its smooth pieces with their boxes, in order.
     pub parts: Vec<([N; 2], Aabb)>,
-    /// Where it is cut, in order.
+    /// The points at which it is split, in order.
     pub cuts: Vec<Cut<N>>,
 }
 
 impl<N: Float> IntersectionCurve<N> {
-    /// Puts the cuts in order, each once: a closed curve's first may stand at its end, too.
+    /// Sorts the cuts and removes duplicates. The first cut of a closed curve may occur at its end,
+    /// too.
     fn order_cuts(&mut self) {
         let one =
             |a: &Cut<N>, b: &Cut<N>, turn: N| a.vertex == b.vertex && is_one_pass(a.t - turn, b.t);
@@ -69,7 +71,7 @@ impl<N: Float> IntersectionCurve<N> {
     }
 }
 
-/// The solids' boxes, searched for what lies near.
+/// A tree of the solids' boxes, for neighbourhood queries.
 pub(super) type SolidTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
 
 /// All carriers, curves and corners.
@@ -85,11 +87,11 @@ pub(super) struct Arrangement<N: Float = f64> {
     pub corners: Vec<VertexCandidate<N>>,
     /// The close calls of which it is not yet known whether they concern the boundary.
     pub calls: Vec<Unlisted>,
-    /// The solids' boxes.
+    /// The tree of the solids' boxes.
     pub tree: SolidTree,
 }
 
-/// The arrangement of no more than `most` curves and cuts, and where its carriers come from.
+/// Builds the arrangement, with at most `most` curves and cuts, and the sources of its carriers.
 pub(super) fn arrange<'t, N: Float>(
     tree: &'t Tree,
     solids: &HalfSpaceModel<N>,
@@ -102,7 +104,8 @@ pub(super) fn arrange<'t, N: Float>(
         sources,
         sides,
     } = merge(tree, solids, extent, predicates);
-    // Faces that nearly meet are asked, too: a close call is listed on either side of the resolution.
+    // Faces that nearly intersect are included: a close call is listed on either side of the
+    // resolution.
     let reach = predicates.reach();
     let tree = tree_of(solids, 0..solids.all.len(), reach);
     let mut found = Arrangement {
@@ -127,7 +130,7 @@ pub(super) fn arrange<'t, N: Float>(
         bounded(entities, most)?;
     }
     found.calls.append(&mut later.calls);
-    // The best known first: the others are put where they are.
+    // The most accurate come first; the others are moved to them.
     later.wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
     for w in &later.wide {
         found.place_wide(w, predicates, &mut corners);
@@ -141,7 +144,7 @@ pub(super) fn arrange<'t, N: Float>(
     Ok((found, sources))
 }
 
-/// The boxes of some solids, grown by `reach`.
+/// The tree of the boxes of some solids, enlarged by `reach`.
 fn tree_of<N: Float>(
     solids: &HalfSpaceModel<N>,
     which: impl Iterator<Item = usize>,
@@ -154,7 +157,7 @@ fn tree_of<N: Float>(
     RTree::bulk_load(boxes.collect())
 }
 
-/// An error where more is kept than the limit.
+/// Returns an error if there are more entities than the limit.
 fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
     match entities > most {
         true => Err(EvaluationError::EntityLimit { most }),
@@ -165,8 +168,8 @@ fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
 type Pairs = BTreeMap<(usize, usize), Vec<Aabb>>;
 
 impl<N: Float> Arrangement<N> {
-    /// The pairs of carriers whose faces' boxes meet, with the boxes that they share. Of equal solids
-    /// one is asked.
+    /// The pairs of carriers whose faces' boxes intersect, with the intersections of these boxes.
+    /// Of several equal solids one is used.
     fn pairs(
         &self,
         solids: &HalfSpaceModel<N>,
@@ -196,7 +199,7 @@ impl<N: Float> Arrangement<N> {
         Ok(pairs)
     }
 
-    /// Adds the pairs of two solids, and gives their number.
+    /// Adds the pairs of two solids, and returns their number.
     fn add_pairs_of(
         &self,
         solids: &HalfSpaceModel<N>,
@@ -235,7 +238,7 @@ impl<N: Float> Arrangement<N> {
         let exact = [a, b].map(|c| move || sources[c].exact());
         let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
         let own = predicates.another();
-        let met = intersect(carrier(a, 0), carrier(b, 1), extent, &own)?;
+        let found = intersect(carrier(a, 0), carrier(b, 1), extent, &own)?;
         for call in predicates.take(own) {
             match call.local {
                 true => self.calls.push((call, Between::Carriers([a, b]))),
@@ -243,10 +246,10 @@ impl<N: Float> Arrangement<N> {
             }
         }
         let mut kept: Vec<Vec<usize>> = Vec::new();
-        for branch in &met.branches {
+        for branch in &found.branches {
             kept.push(self.add_branch(a, b, branch, supports, predicates));
         }
-        for node in &met.nodes {
+        for node in &found.nodes {
             if node.on.is_empty() && !supports.iter().any(|s| s.contains(&node.point)) {
                 continue;
             }
@@ -265,7 +268,7 @@ impl<N: Float> Arrangement<N> {
         Ok(())
     }
 
-    /// Adds a branch as far as both faces' boxes hold it: the indices it was given.
+    /// Adds a branch, clipped to both faces' boxes, and returns its indices.
     fn add_branch(
         &mut self,
         a: usize,
@@ -304,7 +307,7 @@ impl<N: Float> Arrangement<N> {
     }
 }
 
-/// What two boxes share.
+/// The intersection of two boxes.
 pub(super) fn common(a: &Aabb, b: &Aabb) -> Option<Aabb> {
     let min: [f64; 3] = std::array::from_fn(|i| a.min[i].max(b.min[i]));
     let max: [f64; 3] = std::array::from_fn(|i| a.max[i].min(b.max[i]));
@@ -313,7 +316,7 @@ pub(super) fn common(a: &Aabb, b: &Aabb) -> Option<Aabb> {
         .then_some(Aabb { min, max })
 }
 
-/// The parts of a line within the boxes, overlapping ones joined.
+/// The parts of a line inside the boxes; overlapping parts are joined.
 fn clipped<N: Float>(line: &Line<N>, range: [N; 2], boxes: &[Aabb]) -> Vec<[N; 2]> {
     let mut parts: Vec<[N; 2]> = boxes.iter().filter_map(|b| b.along(line, range)).collect();
     parts.sort_by(|a, b| a[0].total_cmp(&b[0]));

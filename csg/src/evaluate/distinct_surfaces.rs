@@ -11,7 +11,7 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use premio_kernel::number::rational::Rational;
 
-/// The half space that a carrier was met as first: its exact coefficients are the carrier's.
+/// The half space for which a carrier was first created; its exact coefficients are the carrier's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'t> {
     placed: &'t PlacedPrimitive,
@@ -29,13 +29,13 @@ impl Source<'_> {
 pub(super) struct Merged<'t, N: Float = f64> {
     /// The distinct surfaces.
     pub carriers: Vec<Surface<N>>,
-    /// Where each comes from.
+    /// The source of each carrier.
     pub sources: Vec<Source<'t>>,
     /// For each half space of each solid: its carrier, and the sense relative to it.
     pub sides: Vec<Vec<(usize, Sense)>>,
 }
 
-/// The distinct surfaces, and each half space's carrier.
+/// Merges equal surfaces, and assigns a carrier to each half space.
 pub(super) fn merge<'t, N: Float>(
     tree: &'t Tree,
     solids: &HalfSpaceModel<N>,
@@ -43,8 +43,8 @@ pub(super) fn merge<'t, N: Float>(
     predicates: &Predicates,
 ) -> Merged<'t, N> {
     let placed: Vec<&PlacedPrimitive> = tree.leaves().map(|leaf| leaf.1).collect();
-    // Equal surfaces have nearly the same point next to the extent's centre: sorted by it, only
-    // neighbours are compared.
+    // Equal surfaces have nearly the same point closest to the extent's centre. The surfaces are
+    // sorted by that point, and only neighbours are compared.
     let foot = |s: &Surface<N>| {
         let f = s.frame();
         let away = extent.centre - f.origin;
@@ -69,7 +69,7 @@ pub(super) fn merge<'t, N: Float>(
         .collect();
     let mut carriers: Vec<Surface<N>> = Vec::new();
     let mut sources: Vec<Source<'t>> = Vec::new();
-    // The carriers that may still be met, by the place of their foot.
+    // The carriers that may still equal a later surface, by the coordinate of that point.
     let mut recent: Vec<(N, usize)> = Vec::new();
     for (x, i, k, side) in list {
         recent.retain(|(y, _)| (x - *y).is_at_most(window));
@@ -79,8 +79,8 @@ pub(super) fn merge<'t, N: Float>(
         };
         let exact = || source.exact();
         let known = recent.iter().find_map(|&(_, c)| {
-            let met = || sources[c].exact();
-            let a = Carrier::rounded(&carriers[c], &met);
+            let exact_known = || sources[c].exact();
+            let a = Carrier::rounded(&carriers[c], &exact_known);
             let b = Carrier::rounded(&side.surface, &exact);
             coincidence(a, b, extent, predicates).map(|sense| (c, sense))
         });

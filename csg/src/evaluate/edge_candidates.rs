@@ -1,5 +1,5 @@
-//! The pieces of curves between consecutive vertices, each once, however many pairs of carriers
-//! gave its curve.
+//! Edge candidates: the pieces of curves between consecutive vertices. Each occurs once, however
+//! many pairs of carriers gave its curve.
 
 use super::arrangement::{Arrangement, IntersectionCurve};
 use super::vertices::VertexCandidate;
@@ -14,19 +14,20 @@ use std::collections::HashMap;
 /// A piece of a curve between two corners, or a closed curve without any.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeCandidate<N: Float = f64> {
-    /// The index of the curve's meeting.
+    /// The index of the curve in the arrangement.
     pub meeting: usize,
     /// The range of the parameter, increasing.
     pub range: [N; 2],
     /// The corners at both ends.
     pub ends: Option<[usize; 2]>,
-    /// All carriers that hold it, in order.
+    /// All carriers that contain it, in increasing order.
     pub carriers: Vec<usize>,
-    /// The pairs of carriers that are tangent all along it.
+    /// The pairs of carriers that are tangent along all of it.
     pub tangent: Vec<[usize; 2]>,
 }
 
-/// What two copies of a piece have in common: the home of a closed curve, the corners at both ends.
+/// A key shared by copies of a piece: the canonical index of a closed curve, or the corners at both
+/// ends.
 type Name = (Option<usize>, Option<[usize; 2]>);
 
 pub(super) fn pieces<N: Float>(
@@ -35,8 +36,8 @@ pub(super) fn pieces<N: Float>(
 ) -> Vec<EdgeCandidate<N>> {
     let homes = homes(arrangement, predicates);
     let mut all: Vec<EdgeCandidate<N>> = Vec::new();
-    // Two pieces that run over the same points share their ends, and a home or, where the curves
-    // are one within the resolution only, two carriers.
+    // Two pieces over the same points share their ends. They also share a canonical curve or, if
+    // the curves coincide only within the resolution, two carriers.
     let mut known: HashMap<Name, Vec<usize>> = HashMap::new();
     for (index, m) in arrangement.meetings.iter().enumerate() {
         for (range, ends) in spans(m) {
@@ -77,13 +78,13 @@ pub(super) fn pieces<N: Float>(
     all
 }
 
-/// For each meeting the first one on the same curve. Of the copies found from several pairs of
-/// carriers each is clipped to faces of its own pair, and knows only the carriers near these.
+/// For each curve the first one that coincides with it. Copies come from several pairs of carriers.
+/// Each copy is clipped to the faces of its own pair, and records only the carriers close to these.
 fn homes<N: Float>(arrangement: &Arrangement<N>, predicates: &Predicates) -> Vec<usize> {
     let mut homes: Vec<usize> = (0..arrangement.meetings.len()).collect();
     let mut by_pair: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
     for (i, m) in arrangement.meetings.iter().enumerate() {
-        // What is shorter than the resolution lies in everything near it, and has no pieces.
+        // A curve shorter than the resolution lies in everything close to it, and has no pieces.
         if m.carriers.len() < 3 || spans(m).is_empty() {
             continue;
         }
@@ -110,8 +111,8 @@ fn first_home(homes: &[usize], mut i: usize) -> usize {
     i
 }
 
-/// Whether two meetings that have two carriers in common run over one curve: two points of the
-/// longer one tell, of which one at most is where they cross.
+/// Whether two intersection curves with two common carriers coincide. Two points of the longer one
+/// are tested; at most one of them can be a crossing of the two.
 fn same_curve<N: Float>(
     a: &IntersectionCurve<N>,
     b: &IntersectionCurve<N>,
@@ -132,19 +133,21 @@ fn same_curve<N: Float>(
     })
 }
 
-/// Whether points of curves that may be one are: there, or far apart.
+/// Whether points of curves that may coincide are the same; otherwise they are far from each other.
 fn is_same_place<N: Float>(p: &Point3<N>, q: &Point3<N>, predicates: &Predicates) -> bool {
     let reach = N::from_f64(SAME) * predicates.resolution::<N>();
     (p - q).length().is_within(reach)
 }
 
-/// Curves and pieces that may be one lie within this many times the resolution, or far apart.
+/// The distance, in multiples of the resolution, within which curves and pieces that may coincide
+/// do so.
 const SAME: f64 = 64.0;
 
 impl<N: Float> Arrangement<N> {
-    /// The carriers that hold a span of a meeting: the meeting's, and what both corners lie on and
-    /// the span does not leave by more than the resolution, next to a contact. A corner knows only
-    /// the carriers of curves that come near the faces that cut it, so the other's are asked, too.
+    /// The carriers that contain a span of a curve: the curve's own, and close to a contact those
+    /// that contain both corners and are within the resolution of the span. A corner records only
+    /// the carriers of curves close to the faces that split it, so those of the other corner are
+    /// tested, too.
     fn holding(
         &self,
         m: &IntersectionCurve<N>,
@@ -175,18 +178,18 @@ impl<N: Float> Arrangement<N> {
 }
 
 impl<N: Float> EdgeCandidate<N> {
-    /// The length over which directions are compared: the extent of its curve.
+    /// The length over which directions are compared: the size of its curve.
     pub(super) fn reach(&self, arrangement: &Arrangement<N>) -> N {
         N::from_f64(arrangement.meetings[self.meeting].bounds.diagonal())
     }
 
-    /// Whether two carriers at least hold another one, too.
+    /// Whether two pieces have at least two common carriers.
     fn shares_two(&self, other: &Self) -> bool {
         let shared = self.carriers.iter().filter(|c| other.carriers.contains(c));
         shared.count() > 1
     }
 
-    /// Takes what a copy of it is known by.
+    /// Adds the carriers and tangencies of a copy.
     fn add(&mut self, copy: &EdgeCandidate<N>) {
         self.tangent.extend(&copy.tangent);
         self.carriers.extend(&copy.carriers);
@@ -194,7 +197,7 @@ impl<N: Float> EdgeCandidate<N> {
         self.carriers.dedup();
     }
 
-    /// Puts a piece on another copy of its curve, so that it can be joined to the pieces there.
+    /// Moves a piece to another copy of its curve, so that it can be joined to the pieces there.
     fn move_to(&mut self, home: usize, arrangement: &Arrangement<N>) {
         let Some([a, b]) = self.ends else { return };
         let own = &arrangement.meetings[self.meeting].curve;
@@ -215,8 +218,8 @@ impl<N: Float> EdgeCandidate<N> {
     }
 }
 
-/// The ranges between consecutive cuts, with the corners at their ends. What lies before the first
-/// and after the last cut of an open curve is outside one of the faces' boxes.
+/// The ranges between consecutive cuts, with the corners at their ends. The parts of an open curve
+/// before the first and after the last cut are outside one of the faces' boxes.
 fn spans<N: Float>(m: &IntersectionCurve<N>) -> Vec<([N; 2], Option<[usize; 2]>)> {
     if m.cuts.is_empty() {
         return if m.closed {
@@ -252,6 +255,6 @@ fn passes<N: Float>(
     predicates: &Predicates,
 ) -> bool {
     let t = curve.in_cycle(curve.parameter(p), range[0]);
-    // Two pieces between the same corners in the same carriers are one or far apart.
+    // Two pieces between the same corners in the same carriers coincide or are far from each other.
     t.lies_in(range) && is_same_place(&curve.point(t), p, predicates)
 }

@@ -1,12 +1,13 @@
-//! Which pieces are edges, and where their faces lie, by the neighbourhood of each piece.
+//! Classifies edge candidates by the neighbourhood of each: which are edges, and where their faces
+//! lie.
 //!
-//! The carriers around a piece stand like the leaves of an open book: each gives two half sheets.
-//! Between two neighbouring half sheets the side of every carrier is known, so the tree decides whether
-//! there is material. A piece is an edge where the pattern is neither constant nor one smooth
-//! sheet; a half sheet where it changes is a face there.
+//! Around a candidate each carrier has two half sheets, like the leaves of an open book. Between
+//! two neighbouring half sheets the side of every carrier is known, so the tree determines whether
+//! there is material. A candidate is an edge unless the pattern is constant or a single smooth
+//! sheet. A half sheet at which the pattern changes is a face there.
 //!
-//! Notation: T is the tangent of the piece, d the direction of a half sheet away from it, l = T × d the
-//! direction counterclockwise, n the carrier's normal.
+//! Notation: T is the tangent of the candidate, d the direction of a half sheet away from it, l = T
+//! × d the counterclockwise direction, n the carrier's normal.
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;
@@ -26,28 +27,29 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use std::collections::HashMap;
 
-/// A primitive near a piece: what is left to know whether it holds a sector.
+/// A primitive close to a piece, with the conditions under which it contains a sector.
 struct Near {
     leaf: NodeId,
-    /// Carriers of the piece (by place) and the side of each on which the primitive lies.
+    /// The carriers of the piece (by index in the piece) whose side is still open, and the side on
+    /// which the primitive lies.
     open: Vec<(usize, Sense)>,
 }
 
-/// What was seen from a point of a piece.
+/// The neighbourhood of a point of a piece.
 struct NeighbourhoodSample<N: Float = f64> {
-    /// The primitives that hold it, by leaf.
+    /// The primitives that contain it, by leaf.
     near: Vec<Near>,
-    /// The distance of the surface that is nearest to changing the answer.
+    /// The smallest distance of a surface that could change the result.
     margin: N,
 }
 
 impl<N: Float> NeighbourhoodSample<N> {
-    /// Whether any surface through the point belongs to a primitive that is there.
+    /// Whether any surface through the point belongs to a primitive that is present there.
     fn may_have_faces(&self) -> bool {
         self.near.iter().any(|n| !n.open.is_empty())
     }
 
-    /// Whether nothing came so near to changing the answer.
+    /// Whether its margin is larger.
     fn is_clearer_than(&self, other: &Self) -> bool {
         self.margin.is_beyond(other.margin)
     }
@@ -60,7 +62,7 @@ struct Classifier<'a, N: Float = f64> {
     predicates: &'a Predicates,
 }
 
-/// Where to look at a piece, as fractions of its range; the later ones are for when a surface
+/// The fractions of a piece's range at which it is sampled. The later ones are used if a surface
 /// passes through the first.
 const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
 
@@ -120,7 +122,8 @@ impl<N: Float> Classifier<'_, N> {
         &self.arrangement.carriers[carrier]
     }
 
-    /// The faces around a piece, none where it is no edge: pairs enclose material, in order.
+    /// The faces around a piece, in order; consecutive pairs enclose material. Empty if it is not
+    /// an edge.
     fn face_uses(&self, piece: &EdgeCandidate<N>) -> Result<Vec<FaceUse>, EvaluationError> {
         let curve = &self.arrangement.meetings[piece.meeting].curve;
         let [lo, hi] = piece.range;
@@ -142,8 +145,8 @@ impl<N: Float> Classifier<'_, N> {
         let Some((t, look)) = best else {
             return Ok(Vec::new());
         };
-        // A surface that stays close along the whole piece without holding it: its plain sign
-        // decides. Where it comes nearest was asked when the curve was cut, and of its corners.
+        // A surface that stays close along the entire piece without containing it is classified by
+        // its sign. Its closest point and the corners were classified when the curve was split.
         let spot = Spot {
             arrangement: self.arrangement,
             predicates: self.predicates,
@@ -154,14 +157,15 @@ impl<N: Float> Classifier<'_, N> {
         self.wings_at(&spot, &look.near)
     }
 
-    /// What is near `p` as far as the piece's own carriers leave it open.
+    /// The primitives close to `p`, up to the sides of the piece's own carriers.
     fn look(&self, p: &Point3<N>, carriers: &[usize]) -> NeighbourhoodSample<N> {
         let mut near = Vec::new();
         let mut margin = N::INFINITY;
         for s in self.arrangement.tree.locate_all_at_point(rounded(p)) {
             let solid = &self.solids.all[s.data];
             let mut open = Vec::new();
-            // By how much the point is inside all other sides, and outside one of them.
+            // The least distance from all other sides, and the greatest signed distance outside
+            // one.
             let (mut inside, mut outside) = (N::INFINITY, N::NEG_INFINITY);
             for (side, &(c, sense)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
                 if let Ok(at) = carriers.binary_search(&c) {
@@ -191,7 +195,8 @@ impl<N: Float> Classifier<'_, N> {
         let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
         let sheets = spot.sheets(has_face)?;
         let n = sheets.len();
-        // The sides before the first sheet: opposite to what lies beyond a carrier's first one.
+        // The sides before the first sheet: opposite to those beyond the first sheet of each
+        // carrier.
         let mut sides = vec![Sense::Along; piece.carriers.len()];
         for s in sheets.iter().rev() {
             sides[s.carrier] = s.beyond.reversed();
@@ -224,7 +229,8 @@ impl<N: Float> Classifier<'_, N> {
         debug_assert!(n >= changes.len());
         let face_use = |&(i, after): &(usize, bool)| {
             let s = &sheets[i];
-            // Material beyond: the outward normal is -l, the face lies to the right of T.
+            // There is material beyond: the outward normal is -l, and the face lies to the right of
+            // T.
             let outward = if (s.beyond == Sense::Along) == after {
                 Sense::Along
             } else {
@@ -240,10 +246,10 @@ impl<N: Float> Classifier<'_, N> {
         Ok(changes.iter().map(face_use).collect())
     }
 
-    /// Whether the two faces of an edge continue one another smoothly.
+    /// Whether the two faces of an edge join smoothly.
     fn is_smooth(&self, piece: &EdgeCandidate<N>, face_uses: &[FaceUse]) -> bool {
         let [a, b] = *face_uses else { return false };
-        let told = piece
+        let tangent = piece
             .tangent
             .iter()
             .any(|t| *t == [a.surface, b.surface] || *t == [b.surface, a.surface]);
@@ -251,7 +257,7 @@ impl<N: Float> Classifier<'_, N> {
         let p = curve.point(N::HALF * (piece.range[0] + piece.range[1]));
         let normal = |w: &FaceUse| self.surface(w.surface).normal(&p) * w.outward.sign::<N>();
         let (m, n) = (normal(&a), normal(&b));
-        let tangent = told
+        let tangent = tangent
             || self
                 .predicates
                 .within(m.cross(&n).length() * piece.reach(self.arrangement));
@@ -276,8 +282,8 @@ impl<N: Float> Classifier<'_, N> {
         Ok(whole)
     }
 
-    /// Whether material changes across a closed surface, at the point of it that is farthest from
-    /// anything else: without an edge it does everywhere or nowhere.
+    /// Whether material changes across a closed surface. It is tested at the sample point that is
+    /// farthest from all other surfaces: without an edge it changes everywhere or nowhere.
     fn whole(
         &self,
         carrier: usize,
@@ -285,7 +291,7 @@ impl<N: Float> Classifier<'_, N> {
     ) -> Result<Option<Sense>, EvaluationError> {
         let mut best: Option<(Point3<N>, NeighbourhoodSample<N>)> = None;
         for i in 1..40 {
-            // Steps of the golden section spread over the surface.
+            // Golden-section steps, which spread over the surface.
             let u = N::whole(i) * N::from_f64(2.399_963_229_728_653);
             let v = N::from_f64(1.3) * (N::whole(i) * N::from_f64(0.7)).sin();
             let p = surface.point(u, v);
@@ -322,17 +328,17 @@ impl<N: Float> Classifier<'_, N> {
     }
 }
 
-/// An edge: pieces of one curve, one after the other.
+/// An edge made of consecutive pieces of one curve.
 struct Joined<N: Float = f64> {
-    /// All of it.
+    /// The entire edge as one piece.
     piece: EdgeCandidate<N>,
     /// The faces around it.
     face_uses: Vec<FaceUse>,
-    /// The corners inside it.
+    /// The corners in its interior.
     passes: Vec<usize>,
 }
 
-/// Joins the pieces of one curve at corners where nothing else ends and the faces stay the same.
+/// Joins the pieces of one curve at corners where nothing else ends and the faces do not change.
 fn join<N: Float>(
     edges: Vec<(EdgeCandidate<N>, Vec<FaceUse>)>,
     arrangement: &Arrangement<N>,
@@ -343,7 +349,7 @@ fn join<N: Float>(
             at.entry(*v).or_default().push(i);
         }
     }
-    // The next piece along the curve, where the corner between is none.
+    // The next piece along the curve, if the corner in between is no vertex.
     let mut next: Vec<Option<usize>> = vec![None; edges.len()];
     let mut has_previous = vec![false; edges.len()];
     for (i, (piece, face_uses)) in edges.iter().enumerate() {
@@ -404,13 +410,13 @@ fn join<N: Float>(
     joined
 }
 
-/// Where a piece ends that begins where the one before it does, counted on over the turns: a sum of
-/// lengths would leave a gap of its rounding in a closed curve.
+/// The end of a piece that starts where the previous one ends, counted on over the periods. A sum
+/// of lengths would leave a gap in a closed curve, by rounding.
 fn run_on<N: Float>(cycle: Option<N>, before: N, [from, to]: [N; 2]) -> N {
     cycle.map_or(to, |p| to + p * ((before - from) / p).round())
 }
 
-/// Whether two parameters are the same point of a curve.
+/// Whether two parameters denote the same point of a curve.
 fn meets_at<N: Float>(cycle: Option<N>, a: N, b: N) -> bool {
     let scale = N::ONE / N::whole(1 << 24);
     let away = match cycle {
@@ -423,7 +429,7 @@ fn meets_at<N: Float>(cycle: Option<N>, a: N, b: N) -> bool {
     away.is_at_most(scale * (N::ONE + a.abs()))
 }
 
-/// Whether two pieces have the same faces around them, wherever the count starts.
+/// Whether two pieces have the same faces around them, up to a cyclic shift.
 fn same_wings(a: &[FaceUse], b: &[FaceUse]) -> bool {
     a.len() == b.len() && (0..a.len()).any(|k| (0..a.len()).all(|i| a[i] == b[(i + k) % b.len()]))
 }

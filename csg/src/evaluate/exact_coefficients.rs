@@ -5,8 +5,8 @@ use crate::tree::PlacedPrimitive;
 use premio_kernel::geometry::surface_pair::Coefficients;
 use premio_kernel::number::rational::Rational;
 
-/// The exact coefficients of a primitive's half space, by its place among the primitive's
-/// half spaces.
+/// The exact coefficients of a primitive's half space, by its index among the primitive's half
+/// spaces.
 pub(super) fn coefficients(placed: &PlacedPrimitive, side: usize) -> Coefficients<Rational> {
     let own = in_own_frame(&placed.primitive, side);
     Coefficients {
@@ -53,7 +53,7 @@ fn plane() -> Coefficients<Rational> {
     about_z(&Rational::ZERO)
 }
 
-/// What stands about the z axis, at the origin.
+/// The coefficients of a surface of revolution about the z axis at the origin.
 fn about_z(size: &Rational) -> Coefficients<Rational> {
     Coefficients {
         point: [Rational::ZERO, Rational::ZERO, Rational::ZERO],
@@ -84,7 +84,7 @@ fn block_side(size: &[Rational; 3], axis: usize, high: bool) -> Coefficients<Rat
     c
 }
 
-/// The nappe of a frustum's wall: the apex lies where the radius runs out, above or below.
+/// The nappe of a frustum's wall. Its apex, where the radius becomes zero, lies above or below.
 fn cone(base: &Rational, top: &Rational, height: &Rational) -> Coefficients<Rational> {
     let slope = base - top;
     let apex = height * base / &slope;

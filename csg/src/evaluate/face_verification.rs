@@ -1,9 +1,9 @@
-//! Every face checked against the tree, at a point inside the face.
+//! Verifies every face against the tree, at a point inside the face.
 //!
-//! A boundary is evaluated from intersections: curves are cut, and the tree decides around each piece
-//! where material is. A wrong decision there may still give a closed boundary, but of another solid. At
-//! a point inside a face, away from all intersections, the tree must have material just below and none
-//! just above.
+//! A boundary is computed from intersections: curves are split, and the tree decides where there is
+//! material around each piece. A wrong decision may still give a closed boundary, but of another
+//! solid. At a point inside a face, away from all intersections, the tree must have material just
+//! below and none just above.
 
 use super::relevance::CloseCallFilter;
 use crate::tree::NodeId;
@@ -16,32 +16,34 @@ use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
 
-/// How far above and below a face the tree is asked, in bands.
+/// The distance above and below a face at which the tree is evaluated, in multiples of the
+/// resolution.
 const STEP: f64 = 16.0;
 
-/// A point of a face, and its outward normal.
+/// A point of a face, with the face's surface and outward normal.
 struct FaceVerifier<'a, N: Float> {
     surface: &'a Surface<N>,
     point: Point3<N>,
     normal: Vector3<N>,
 }
 
-/// What a surface does next to a face.
+/// The relation of a surface to a face at a point.
 enum Adjacency {
-    /// It is the face's own, or off it: below and above the face, whether the half space holds.
-    Plain([bool; 2]),
-    /// It meets the face there, or lies nearly on it.
+    /// It is the face's own surface, or away from it: whether the half space contains the points
+    /// below and above the face.
+    Clear([bool; 2]),
+    /// It intersects the face there, or nearly coincides with it.
     Unclear,
 }
 
 impl<N: Float> CloseCallFilter<'_, N> {
-    /// A point of a face of which the tree says something else; none where the tree agrees with all
-    /// faces, as far as it tells.
+    /// A point of a face that the tree contradicts; `None` if the tree agrees with all faces for
+    /// which it is conclusive.
     pub(super) fn contradiction(&self, brep: &Brep<N>) -> Option<[f64; 3]> {
         let mut faces = brep.topology.face_ids();
         faces.find_map(|face| {
             let witness = self.witness(brep, face)?;
-            let [below, above] = self.told(&witness)?;
+            let [below, above] = self.material_around(&witness)?;
             let agrees = below && !above;
             (!agrees).then(|| rounded(&witness.point))
         })
@@ -60,9 +62,9 @@ impl<N: Float> CloseCallFilter<'_, N> {
         })
     }
 
-    /// Whether there is material below a point of a face, and above it; none where something else is
-    /// next to the point.
-    fn told(&self, at: &FaceVerifier<'_, N>) -> Option<[bool; 2]> {
+    /// Whether there is material below a point of a face, and above it; `None` if another surface
+    /// is close to the point.
+    fn material_around(&self, at: &FaceVerifier<'_, N>) -> Option<[bool; 2]> {
         let mut held: [Vec<NodeId>; 2] = Default::default();
         let near = self
             .arrangement
@@ -73,8 +75,8 @@ impl<N: Float> CloseCallFilter<'_, N> {
             let mut inside = [true; 2];
             for (side, (carrier, _)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
                 let is_own = self.arrangement.carriers[*carrier] == *at.surface;
-                match self.beside(&side.surface, is_own, at) {
-                    Adjacency::Plain(holds) => {
+                match self.adjacency(&side.surface, is_own, at) {
+                    Adjacency::Clear(holds) => {
                         inside = [inside[0] && holds[0], inside[1] && holds[1]];
                     }
                     Adjacency::Unclear => return None,
@@ -92,15 +94,15 @@ impl<N: Float> CloseCallFilter<'_, N> {
         }))
     }
 
-    fn beside(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Adjacency {
+    fn adjacency(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Adjacency {
         let step = N::from_f64(STEP) * self.predicates.resolution::<N>();
         let places = [-step, step].map(|away| surface.distance(&(at.point + at.normal * away)));
         let holds = places.map(N::is_below_zero);
         let is_near = places.iter().any(|d| d.is_within(N::HALF * step));
-        // Another one may touch the face there alone.
+        // Another surface may be tangent to the face at this point only.
         match is_near || (holds[0] != holds[1] && !is_own) {
             true => Adjacency::Unclear,
-            false => Adjacency::Plain(holds),
+            false => Adjacency::Clear(holds),
         }
     }
 }
@@ -162,8 +164,8 @@ mod tests {
         for part in PARTS {
             for op in OPERATIONS {
                 for other in OPERATIONS {
-                    let told = is_contradicted(&tree(part, op), &tree(part, other));
-                    assert_eq!(told, op != other, "{part:?}: {op} for {other}");
+                    let is_found = is_contradicted(&tree(part, op), &tree(part, other));
+                    assert_eq!(is_found, op != other, "{part:?}: {op} for {other}");
                 }
             }
         }

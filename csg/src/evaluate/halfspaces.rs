@@ -1,4 +1,4 @@
-//! Every primitive as an intersection of half spaces, their surfaces merged to carriers.
+//! Represents every primitive as an intersection of half spaces.
 
 use crate::primitive::Primitive;
 use crate::tree::{NodeId, PlacedPrimitive, Tree};
@@ -11,32 +11,32 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
 use premio_kernel::number::rational::Rational;
 
-/// A half space: one side of a surface, and the box of the face it gives its primitive.
+/// A half space: one side of a surface, and the bounding box of the primitive's face on it.
 #[derive(Clone, Debug)]
 pub(super) struct HalfSpace<N: Float> {
     /// The surface, with the half space on its negative side.
     pub surface: Surface<N>,
-    /// The box of the face.
+    /// The bounding box of the face.
     pub bounds: Aabb,
 }
 
-/// A primitive at its place.
+/// A primitive in its final position.
 #[derive(Clone, Debug)]
 pub(super) struct Solid<N: Float> {
     /// Its leaf in the tree.
     pub leaf: NodeId,
     /// Its half spaces.
     pub sides: Vec<HalfSpace<N>>,
-    /// Its box.
+    /// Its bounding box.
     pub bounds: Aabb,
 }
 
 /// All primitives of a tree.
 #[derive(Debug)]
 pub(super) struct HalfSpaceModel<N: Float> {
-    /// In the order of the leaves.
+    /// The primitives, in the order of the leaves.
     pub all: Vec<Solid<N>>,
-    /// The box of all.
+    /// The bounding box of all.
     pub bounds: Aabb,
 }
 
@@ -47,7 +47,7 @@ struct Pose<'a, N: Float> {
 }
 
 impl<N: Float> Pose<'_, N> {
-    /// The place of an exact point of the primitive's frame, rounded once.
+    /// The position of an exact point of the primitive's frame, rounded once.
     fn point(&self, p: [Rational; 3]) -> Point3<N> {
         let q = self.placed.motion.apply_point(&p);
         Point3::from(q.each_ref().map(N::nearest))
@@ -74,7 +74,7 @@ impl<N: Float> Pose<'_, N> {
         })
     }
 
-    /// The box of a box of the primitive's frame, as far as it is known: to rounding.
+    /// The enclosing box of a box in the primitive's frame, to rounding.
     fn boxed(&self, lo: [N; 3], hi: [N; 3]) -> Aabb {
         let mid = Vector3::from_fn(|i, _| N::HALF * (lo[i] + hi[i]));
         let half = Vector3::from_fn(|i, _| N::HALF * (hi[i] - lo[i]));
@@ -96,7 +96,7 @@ fn up(z: &Rational) -> [Rational; 3] {
 }
 
 impl<N: Float> HalfSpaceModel<N> {
-    /// The primitives of a tree, not yet merged.
+    /// The primitives of a tree, with unmerged surfaces.
     pub fn new(tree: &Tree) -> Self {
         let all: Vec<Solid<N>> = tree
             .leaves()
@@ -176,7 +176,7 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
         }
     }
     let bounds = match &placed.primitive {
-        // A cone's walls have the box of the whole.
+        // The wall of a cone has the box of the whole primitive.
         Primitive::Block { .. } | Primitive::Wedge { .. } => {
             sides.iter().fold(Aabb::EMPTY, |b, s| b.hull(&s.bounds))
         }
@@ -236,7 +236,7 @@ fn add_frustum<N: Float>(
     add: &mut Add<'_, N>,
 ) {
     let (b, t, h) = (N::nearest(base), N::nearest(top), N::nearest(height));
-    // The apex lies where the radius runs out, above or below.
+    // The apex, where the radius becomes zero, lies above or below.
     let apex = height.clone() * base.clone() / (base.clone() - top.clone());
     let slope = N::nearest(&(base.clone() - top.clone()));
     let length = slope.hypot(h);

@@ -1,10 +1,11 @@
 //! What passes through a point and along a curve, proven without rounding: for exact evaluation.
 //!
-//! Extended precision (237 bits) proposes the vertices and the carriers through each, the curves and the
-//! carriers that contain them. Here each vertex becomes the exact zero of three polynomials. Every other
-//! polynomial that should vanish there is proven to vanish: the implicit forms of its carriers, and the
-//! determinants of gradients that seem to depend on one another. A carrier contains a curve if it
-//! passes through more points of it than it could otherwise (Bézout).
+//! Extended precision (237 bits) proposes the vertices and the carriers through each, the curves
+//! and the carriers that contain them. Here each vertex becomes the exact zero of three
+//! polynomials. Every other polynomial that should vanish there is proven to vanish: the implicit
+//! forms of its carriers, and the determinants of gradients that seem to depend on one another. A
+//! carrier contains a curve if it passes through more points of it than it could otherwise
+//! (Bézout).
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;
@@ -20,7 +21,7 @@ use premio_kernel::number::rational::Rational;
 use premio_kernel::proof::{AlgebraicPoint, Polynomial, ZeroTest, deflated};
 use std::cell::OnceCell;
 
-/// The carriers without rounding.
+/// The polynomials of the carriers.
 struct Forms<'a, N: Float> {
     carriers: &'a [Surface<N>],
     sources: &'a [Source<'a>],
@@ -43,7 +44,7 @@ impl<'a, N: Float> Forms<'a, N> {
     }
 }
 
-/// Proves what lies on what in an arrangement, and counts it.
+/// Proves the incidences of an arrangement, and counts the proofs.
 pub(super) fn prove<N: Float>(
     arrangement: &Arrangement<N>,
     pieces: &[EdgeCandidate<N>],
@@ -68,17 +69,17 @@ pub(super) fn prove<N: Float>(
     Ok(())
 }
 
-/// What is to vanish at a point next to a place.
+/// The polynomials that must vanish at a point close to a given place.
 struct Incidence<'f> {
-    /// The levels of the carriers.
+    /// The implicit forms of the carriers.
     levels: Vec<&'f Polynomial>,
-    /// What says that normals depend on one another.
+    /// The determinants that express linear dependence of normals.
     dependences: Vec<Polynomial>,
 }
 
 impl<'f> Incidence<'f> {
-    /// Carriers that seem to pass through a point: there, where their normals seem to depend on one
-    /// another, they are to do so, and an apex is to be one.
+    /// The incidences of carriers that seem to pass through a point. Where their normals seem
+    /// linearly dependent, this is to be proven, too; and an apex must be one.
     fn new<N: Float>(
         forms: &'f Forms<'_, N>,
         carriers: &[usize],
@@ -118,13 +119,13 @@ impl<'f> Incidence<'f> {
         }
     }
 
-    /// Whether it is three surfaces across one another: nothing is to be proven.
+    /// Whether it is a transversal intersection of three surfaces, which needs no proof.
     fn is_simple(&self) -> bool {
         self.levels.len() <= 3 && self.dependences.is_empty()
     }
 
-    /// Proves all of it at the point next to a place, no farther than `reach`; with `cut` the point
-    /// of that.
+    /// Proves all incidences at the point close to a place, within `reach`. With `cut`, the point
+    /// is on that plane.
     fn settle<N: Float>(
         &self,
         question: &'static str,
@@ -165,26 +166,27 @@ impl<'f> Incidence<'f> {
     }
 }
 
-/// How often a point is looked for, with more said of it each time.
+/// The number of attempts to find a point; each adds polynomials by deflation.
 const DEFLATIONS: usize = 3;
 
-/// Whether an angle is nothing as far as 237 bits tell of points where surfaces touch: by the root of
-/// the resolution.
+/// Whether an angle is zero to the precision with which 237 bits give points of tangency: the
+/// square root of the resolution.
 fn is_flat<N: Float>(angle: N) -> bool {
     angle.is_within(N::from_f64(FINEST_RESOLUTION.sqrt()))
 }
 
-/// The same of the way to a point.
+/// Whether a vector to a point is zero, to the same precision.
 fn is_there<N: Float>(way: &Vector3<N>, predicates: &Predicates) -> bool {
     predicates.within(way.length() * N::from_f64(FINEST_RESOLUTION.sqrt()))
 }
 
-/// The carriers of a piece of a curve are to hold it.
+/// The carriers that must contain a piece of a curve.
 struct Holding<'f, N: Float> {
     forms: &'f Forms<'f, N>,
     curve: &'f Curve<N>,
     piece: &'f EdgeCandidate<N>,
-    /// As many points of a curve do not lie on a surface that does not hold it.
+    /// The number of points: more than a curve can have in common with a surface that does not
+    /// contain it.
     points: u32,
 }
 
@@ -193,8 +195,8 @@ impl<'f, N: Float> Holding<'f, N> {
         let degrees = piece.carriers.iter().map(|&c| forms.level(c).degree());
         let mut degrees: Vec<u32> = degrees.collect();
         degrees.sort_unstable();
-        // The curve is a part of what two of them have in common, and touching surfaces have
-        // gradients whose cross product vanishes.
+        // The curve is a component of the intersection of two carriers. If these are tangent, the
+        // cross product of their gradients vanishes.
         let least: u32 = degrees.iter().take(2).product();
         let most = degrees.last().copied().unwrap_or(1);
         let most = match piece.tangent.is_empty() {
@@ -214,8 +216,8 @@ impl<'f, N: Float> Holding<'f, N> {
         let curve = self.curve;
         let step = (hi - lo) / N::whole(self.points + 1);
         for k in 1..=self.points {
-            // Not at even parts, where a symmetric curve may be singular.
-            let t = lo + step * (N::whole(k) + N::from_f64(ASIDE));
+            // The points are not at even fractions, where a symmetric curve may be singular.
+            let t = lo + step * (N::whole(k) + N::from_f64(POSITION));
             let place = curve.point(t);
             let next = curve.point(t + step);
             let incidence = Incidence::new(self.forms, &self.piece.carriers, &place, predicates);
@@ -231,8 +233,8 @@ impl<'f, N: Float> Holding<'f, N> {
     }
 }
 
-/// A plane across a curve, next to a point of it, in few digits: it lies nearer than a part of
-/// `step`.
+/// A plane across a curve, close to a point of it, with few digits. Its distance from the point is
+/// a small fraction of `step`.
 fn across<N: Float>(place: &Point3<N>, tangent: &Vector3<N>, step: N) -> Option<Polynomial> {
     let digits = N::from_f64(DIGITS) - N::from_f64(step.rounded().log2()).floor();
     let one = N::TWO.powi(digits.rounded() as i32);
@@ -246,7 +248,7 @@ fn across<N: Float>(place: &Point3<N>, tangent: &Vector3<N>, step: N) -> Option<
     (plane.degree() == 1).then_some(plane)
 }
 
-/// How far from even parts of a curve its points are taken.
-const ASIDE: f64 = -0.381_966;
-/// The bits to which a plane across a curve is rounded, in terms of the way to the next.
+/// The offset of a curve's sample points from even fractions.
+const POSITION: f64 = -0.381_966;
+/// The precision of a plane across a curve, in bits, relative to the distance between points.
 const DIGITS: f64 = 8.0;

@@ -1,17 +1,17 @@
-//! Whether a choice of sides is material: the tree as a function of the primitives that contain a
-//! point. Only those need be named; the point is outside of all others.
+//! Decides whether a choice of sides is material. The tree is a function of the primitives that
+//! contain a point. Only those are named; the point is outside all others.
 
 use crate::tree::{NodeId, Operation, Tree, TreeNode};
 use std::collections::{BTreeMap, BinaryHeap};
 
-/// The tree, turned over so that a few leaves can be followed upwards.
+/// The tree with links to the parents, so that a few leaves can be followed upwards.
 pub(super) struct Membership<'a> {
     tree: &'a Tree,
-    /// Each node's parent, and its place among the parent's children.
+    /// Each node's parent, and its index among the parent's children.
     parents: Vec<Option<(NodeId, usize)>>,
 }
 
-/// What was found of a node so far.
+/// What is known of a node so far.
 struct Count {
     node: NodeId,
     first: bool,
@@ -19,7 +19,7 @@ struct Count {
 }
 
 impl Count {
-    /// One child holds the point: the first, or another.
+    /// One child contains the point: the first, or another.
     fn new(node: NodeId, first: bool) -> Self {
         let others = usize::from(!first);
         Self {
@@ -35,17 +35,17 @@ impl Count {
     }
 }
 
-/// What a point may be in of the children of an operation: some it is in, some it may be in.
+/// The children of an operation that contain a point, and those that may contain it.
 #[derive(Default)]
 struct Choice {
     first: Option<Hold>,
-    /// How many of the others it is in.
+    /// The number of other children that contain the point.
     held: usize,
-    /// How many of the others it may be in.
+    /// The number of other children that may contain the point.
     open: usize,
 }
 
-/// Whether a point is in something for sure.
+/// Whether a set certainly contains a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Hold {
     Held,
@@ -53,7 +53,7 @@ enum Hold {
 }
 
 impl<'a> Membership<'a> {
-    /// The tree turned over.
+    /// Builds the links to the parents.
     pub fn new(tree: &'a Tree) -> Self {
         let mut parents = vec![None; tree.nodes().len()];
         for (i, node) in tree.nodes().iter().enumerate() {
@@ -66,10 +66,11 @@ impl<'a> Membership<'a> {
         Self { tree, parents }
     }
 
-    /// Whether a point in exactly the given primitives (by leaf) is in the solid. A parent stands
-    /// before its children, so the greatest index is always ready to be decided.
+    /// Whether a point in exactly the given primitives (by leaf) is in the solid. Parents precede
+    /// their children, so the greatest index can always be decided.
     pub fn contains(&self, leaves: &[NodeId]) -> bool {
-        // The operations above what holds the point, and whether that is their first child.
+        // The operations above the primitives that contain the point, and whether the child below
+        // is their first.
         let mut waiting: BinaryHeap<(NodeId, bool)> = BinaryHeap::new();
         for leaf in leaves {
             match self.parents[leaf.index()] {
@@ -83,7 +84,7 @@ impl<'a> Membership<'a> {
                 count.add(Count::new(same, first));
                 waiting.pop();
             }
-            // On from there alone, as long as nothing else is to be decided first.
+            // Continue upwards from there as long as no other node must be decided first.
             let mut ready = Some(count);
             while let Some(count) = ready.take().filter(|count| self.decide(count)) {
                 let Some((parent, place)) = self.parents[count.node.index()] else {
@@ -119,9 +120,9 @@ impl<'a> Membership<'a> {
         }
     }
 
-    /// Of the primitives that a point may be in or not, `open`, those on which it depends whether
-    /// the point is material; it is in those named `held`, and in no others. Every primitive stands
-    /// in the tree once, so that all choices are free.
+    /// The primitives of `open` on which membership of the point depends. The point may be inside
+    /// or outside each of `open`; it is inside those in `held` and outside all others. Every
+    /// primitive occurs once in the tree, so all choices are independent.
     pub fn deciding(&self, held: &[NodeId], open: &[NodeId]) -> Vec<NodeId> {
         let choices = self.choices(held, open);
         let decides = |leaf: &NodeId| {
@@ -138,7 +139,7 @@ impl<'a> Membership<'a> {
         open.iter().copied().filter(decides).collect()
     }
 
-    /// What the operations above some primitives may hold.
+    /// The choices of the operations above some primitives.
     fn choices(&self, held: &[NodeId], open: &[NodeId]) -> BTreeMap<NodeId, Choice> {
         let mut done = BTreeMap::new();
         let mut waiting: BTreeMap<NodeId, Choice> = BTreeMap::new();
@@ -165,7 +166,7 @@ impl<'a> Membership<'a> {
         }
     }
 
-    /// Whether a point is in an operation's result; none where it cannot be.
+    /// Whether a point is in an operation's result; `None` if it certainly is not.
     fn hold(&self, node: NodeId, choice: &Choice) -> Option<Hold> {
         let TreeNode::Operation { op, children } = &self.tree[node] else {
             return None;
@@ -186,8 +187,8 @@ impl<'a> Membership<'a> {
         possible.then_some(if sure { Hold::Held } else { Hold::Open })
     }
 
-    /// Whether the others can be chosen so that an operation's result is what an open child is, or
-    /// the opposite.
+    /// Whether the others can be chosen such that an operation's result equals an open child or its
+    /// complement.
     fn follows(&self, node: NodeId, place: usize, choice: &Choice) -> bool {
         let TreeNode::Operation { op, children } = &self.tree[node] else {
             return false;
@@ -209,7 +210,7 @@ mod tests {
     use super::*;
     use crate::reader::{Format, ReadOptions, read};
 
-    /// Of the primitives of a part that are open, by their places in the text, those that decide.
+    /// The deciding primitives among the open ones of a part, by their positions in the text.
     fn deciding(part: &str, held: &[usize], open: &[usize]) -> Vec<usize> {
         let text = format!("A = SPH(R=1)\nP = {part}\n");
         let tree = read(
@@ -226,7 +227,7 @@ mod tests {
         found.into_iter().map(place).collect()
     }
 
-    /// The same from the root down.
+    /// The same from the root downwards.
     fn is_in(tree: &Tree, node: NodeId, held: &[NodeId]) -> bool {
         match &tree[node] {
             TreeNode::Leaf(_) => held.contains(&node),
@@ -268,8 +269,12 @@ mod tests {
                     .filter(|(i, _)| choice & (1 << i) != 0)
                     .map(|(_, leaf)| *leaf)
                     .collect();
-                let told = membership.contains(&held);
-                assert_eq!(told, is_in(&tree, NodeId(0), &held), "{part} {choice:b}");
+                let contained = membership.contains(&held);
+                assert_eq!(
+                    contained,
+                    is_in(&tree, NodeId(0), &held),
+                    "{part} {choice:b}"
+                );
             }
         }
     }
@@ -283,7 +288,7 @@ mod tests {
         assert_eq!(deciding("A DIF A", &[], &[0, 1]), [0, 1]);
         assert!(deciding("A DIF A", &[1], &[0]).is_empty());
         assert!(deciding("A DIF A", &[], &[1]).is_empty());
-        // Taken away from what is added to.
+        // A difference from what is added to.
         assert!(deciding("(A DIF A) UN A", &[2], &[0, 1]).is_empty());
         assert_eq!(deciding("(A DIF A) UN A", &[1], &[0, 2]), [2]);
         assert_eq!(deciding("(A DIF A) UN A", &[0], &[1, 2]), [1, 2]);

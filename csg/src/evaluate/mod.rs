@@ -60,34 +60,34 @@ use std::sync::OnceLock;
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EvaluationOptions {
-    /// The resolution, a distance in the part's unit; by default 1e-11 of the part's size, wider
-    /// for a description with fewer digits.
+    /// The resolution, a distance in the part's unit. The default is 1e-11 of the part's size, or
+    /// more for a description with fewer digits.
     pub resolution: Option<f64>,
-    /// The relative noise of the description's coordinates, where it has any.
+    /// The relative noise of the description's coordinates, if known.
     pub noise: Option<f64>,
-    /// What coincides.
+    /// The coincidence policy.
     pub zeros: CoincidencePolicy,
-    /// In what numbers that is decided.
+    /// The arithmetic of the decisions.
     pub digits: Arithmetic,
-    /// The most curves and points of curves that are kept, some two thousand bytes each; by default
-    /// [`MAX_ENTITIES`].
+    /// The maximum number of curves and points of curves, of some two thousand bytes each. The
+    /// default is [`MAX_ENTITIES`].
     pub entity_limit: Option<usize>,
 }
 
-/// In what numbers a tree is evaluated.
+/// The arithmetic in which a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
-    /// In f64, and in 237 bits where these do not tell.
+    /// f64, and 237 bits where f64 is inconclusive.
     #[default]
     Filtered,
-    /// In 237 bits: no decision is made in f64.
+    /// 237 bits; no decision is made in f64.
     Extended,
 }
 
 /// The default limit on curves and points of curves between the surfaces of a part.
 pub const MAX_ENTITIES: usize = 1 << 23;
 
-/// The boundary of a tree, and how it was decided.
+/// The boundary of a tree, with the statistics of its decisions.
 #[derive(Debug)]
 pub struct Evaluation {
     /// The boundary.
@@ -96,40 +96,40 @@ pub struct Evaluation {
     pub decisions: DecisionStats,
     /// The resolution used, in the part's unit.
     pub resolution: f64,
-    /// A box that holds the part.
+    /// A box that contains the part.
     pub bounds: Aabb,
-    /// What it was told by.
-    told: Told,
-    /// The resolution by which f64 values tell the same boundary, where they do.
-    plain: Option<f64>,
-    /// Once it was requested: with more digits it takes longer than the boundary.
+    /// The integrals from which the mass properties are computed.
+    integrals: Integrals,
+    /// The resolution at which f64 gives the same boundary, if it does.
+    view_resolution: Option<f64>,
+    /// Computed on the first request: in extended precision it takes longer than the boundary.
     mass: OnceLock<Mass>,
 }
 
-/// The numbers that told a boundary.
+/// The numbers from which a boundary was computed.
 #[derive(Debug)]
-enum Told {
+enum Integrals {
     /// f64 values.
     Doubles(FaceIntegrals),
-    /// More digits: the boundary before it was rounded.
+    /// Extended precision: the boundary before it was rounded.
     Wide(Box<(Brep<F237>, FaceIntegrals<F237>)>),
 }
 
 impl Evaluation {
-    /// The resolution for views of the boundary, which are computed in f64; none where f64 values do
-    /// not tell the boundary: rounded to them, surfaces may lie on one another that do not.
+    /// The resolution for views of the boundary, which are computed in f64. `None` if f64 does not
+    /// give this boundary: surfaces rounded to f64 may coincide although the exact ones do not.
     pub fn view_resolution(&self) -> Option<f64> {
-        self.plain
+        self.view_resolution
     }
 
-    /// What f64 values tell of the boundary, however finely it was evaluated.
+    /// The resolution that f64 supports for the boundary, however finely it was evaluated.
     pub fn f64_resolution(&self) -> f64 {
-        let known = self.plain.unwrap_or(self.resolution);
+        let known = self.view_resolution.unwrap_or(self.resolution);
         known.max(ROUNDING * self.bounds.diagonal())
     }
 
-    /// How far apart what coincides by the resolution was seen to be at most; nought where nothing
-    /// of it was a close call.
+    /// The greatest distance between entities that coincide by the resolution; zero if none of them
+    /// was a close call.
     pub fn greatest_coincidence(&self) -> f64 {
         let distances = self.decisions.close_calls.iter().map(|c| c.distance.abs());
         let coincident = distances.filter(|d| d.is_within(self.resolution));
@@ -138,30 +138,30 @@ impl Evaluation {
 
     /// The volume, the area and the centroid.
     pub fn mass(&self) -> Mass {
-        *self.mass.get_or_init(|| match &self.told {
-            Told::Doubles(measures) => measures.mass(&self.brep),
-            Told::Wide(wide) => wide.1.mass(&wide.0),
+        *self.mass.get_or_init(|| match &self.integrals {
+            Integrals::Doubles(measures) => measures.mass(&self.brep),
+            Integrals::Wide(wide) => wide.1.mass(&wide.0),
         })
     }
 
-    /// The box of the boundary, to rounding.
+    /// The bounding box of the boundary, to rounding.
     pub fn tight_bounds(&self) -> Aabb {
-        match &self.told {
-            Told::Doubles(_) => bounds(&self.brep),
-            Told::Wide(wide) => bounds(&wide.0),
+        match &self.integrals {
+            Integrals::Doubles(_) => bounds(&self.brep),
+            Integrals::Wide(wide) => bounds(&wide.0),
         }
     }
 
     /// The rules that the boundary breaks.
     pub fn violations(&self) -> Vec<Violation> {
-        match &self.told {
-            Told::Doubles(measures) => check(&self.brep, measures, self.resolution),
-            Told::Wide(wide) => check(&wide.0, &wide.1, F237::from_f64(self.resolution)),
+        match &self.integrals {
+            Integrals::Doubles(measures) => check(&self.brep, measures, self.resolution),
+            Integrals::Wide(wide) => check(&wide.0, &wide.1, F237::from_f64(self.resolution)),
         }
     }
 }
 
-/// The same, in numbers of one precision.
+/// An evaluation in one precision.
 struct Evaluated<N: Float> {
     brep: Brep<N>,
     measures: FaceIntegrals<N>,
@@ -177,8 +177,8 @@ impl From<Evaluated<f64>> for Evaluation {
             decisions: known.decisions,
             resolution: known.resolution,
             bounds: known.bounds,
-            told: Told::Doubles(known.measures),
-            plain: Some(known.resolution),
+            integrals: Integrals::Doubles(known.measures),
+            view_resolution: Some(known.resolution),
             mass: OnceLock::new(),
         }
     }
@@ -187,35 +187,35 @@ impl From<Evaluated<f64>> for Evaluation {
 impl From<Evaluated<F237>> for Evaluation {
     fn from(known: Evaluated<F237>) -> Self {
         let mut decisions = known.decisions;
-        // All of them took more bits than f64 values have.
+        // All of them took more bits than f64 has.
         decisions.refined += std::mem::take(&mut decisions.filtered);
         Self {
             brep: known.brep.to_f64(),
             decisions,
             resolution: known.resolution,
             bounds: known.bounds,
-            told: Told::Wide(Box::new((known.brep, known.measures))),
-            plain: None,
+            integrals: Integrals::Wide(Box::new((known.brep, known.measures))),
+            view_resolution: None,
             mass: OnceLock::new(),
         }
     }
 }
 
-/// Why a tree has no boundary here.
+/// Why no boundary can be computed for a tree.
 #[derive(Debug, thiserror::Error)]
 pub enum EvaluationError {
-    /// Two surfaces meet in a way that is beyond the kernel.
+    /// Two surfaces intersect in a way that the kernel does not support.
     #[error(transparent)]
     Intersection(#[from] IntersectionError),
-    /// The sheets around an edge could not be put in order.
-    #[error("the faces around an edge near ({:.6}, {:.6}, {:.6}) cannot be told apart", place[0], place[1], place[2])]
+    /// The order of the faces around an edge is ambiguous.
+    #[error("the order of the faces around an edge near ({:.6}, {:.6}, {:.6}) is ambiguous", place[0], place[1], place[2])]
     AmbiguousEdgeOrder {
-        /// Near where.
+        /// The approximate location.
         place: [f64; 3],
     },
-    /// Nothing determines whether a closed surface without an edge is a face.
+    /// It cannot be determined whether a closed surface without an edge is a face.
     #[error(
-        "whether the sphere or torus near ({:.6}, {:.6}, {:.6}) is a face cannot be told: all over it other surfaces are within the resolution",
+        "it cannot be determined whether the sphere or torus near ({:.6}, {:.6}, {:.6}) is a face: other surfaces lie within the resolution all over it",
         place[0], place[1], place[2]
     )]
     UndecidedClosedFace {
@@ -225,15 +225,15 @@ pub enum EvaluationError {
     /// The pieces do not form a boundary.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
-    /// Surfaces lie so nearly along one another that f64 values do not determine where they meet.
+    /// Surfaces nearly coincide, so that f64 does not determine their intersection.
     #[error(
-        "what meets near ({:.6}, {:.6}, {:.6}) is known to {distance:.1e} only, and the resolution is {resolution:.1e}: surfaces lie nearly along one another there",
+        "the intersection near ({:.6}, {:.6}, {:.6}) is known to {distance:.1e} only, and the resolution is {resolution:.1e}: surfaces nearly coincide there",
         place[0], place[1], place[2]
     )]
     IllConditioned {
-        /// Near where.
+        /// The approximate location.
         place: [f64; 3],
-        /// How far apart is what should be one, in the part's unit.
+        /// The distance between entities that should coincide, in the part's unit.
         distance: f64,
         /// The resolution.
         resolution: f64,
@@ -244,26 +244,26 @@ pub enum EvaluationError {
         place[0], place[1], place[2]
     )]
     NearCylinder {
-        /// Near where.
+        /// The approximate location.
         place: [f64; 3],
-        /// How far away the apex is, in the part's unit.
+        /// The distance of the apex, in the part's unit.
         away: f64,
     },
-    /// Under exact evaluation: 237 bits take something for zero that is proven not to be.
+    /// In exact evaluation: something that is zero to 237 bits is proven not to be zero.
     #[error(
-        "{question} near ({:.6}, {:.6}, {:.6}): they are apart, by less than 237 bits tell",
+        "{question} near ({:.6}, {:.6}, {:.6}): they do not coincide, but their distance is below what 237 bits resolve",
         place[0], place[1], place[2]
     )]
     UnprovenCoincidence {
-        /// What was asked.
+        /// The question.
         question: &'static str,
-        /// Near where.
+        /// The approximate location.
         place: [f64; 3],
     },
-    /// The description's numbers are too large or too small for f64 values.
+    /// The description's numbers are too large or too small for f64.
     #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
     Size,
-    /// The part lies too far from the origin for f64 values.
+    /// The part is too far from the origin for f64.
     #[error(
         "the part, of size {size:.3e}, lies up to {far:.3e} from the origin: its coordinates are rounded by more than a millionth of its size"
     )]
@@ -273,30 +273,31 @@ pub enum EvaluationError {
         /// The diagonal of its box.
         size: f64,
     },
-    /// The resolution is finer than f64 values are, or wider than the part.
+    /// The resolution is finer than f64 supports, or too coarse for the part.
     #[error(
         "a resolution of {asked:e} is beyond the range from {least:.1e} to {most:.1e} for a part of this size"
     )]
     Resolution {
-        /// What was requested.
+        /// The requested resolution.
         asked: f64,
-        /// The least that f64 values keep apart.
+        /// The finest resolution that f64 supports.
         least: f64,
-        /// The greatest: a hundredth of the part's size.
+        /// The coarsest resolution: a hundredth of the part's size.
         most: f64,
     },
-    /// There are more pairs of faces that may meet, or curves and points in which they do, than are kept.
-    #[error("the faces of the part meet in more than {most} places: the limit")]
+    /// The pairs of faces that may intersect, or their intersection curves and points, exceed the
+    /// limit.
+    #[error("the faces of the part intersect in more than {most} places, the limit")]
     EntityLimit {
         /// The limit.
         most: usize,
     },
-    /// The boundary breaks one of its own rules: something was told wrongly, and it would be wrong.
-    #[error("the boundary that was found is unsound: {0}")]
+    /// The boundary breaks one of its own rules, so a decision was wrong.
+    #[error("the computed boundary is invalid: {0}")]
     InvalidBoundary(Violation),
-    /// The tree itself contradicts a face: something was told wrongly, and it would be wrong.
+    /// The tree contradicts a face, so a decision was wrong.
     #[error(
-        "the boundary that was found has a face near ({:.6}, {:.6}, {:.6}) where the description has none",
+        "the computed boundary has a face near ({:.6}, {:.6}, {:.6}) where the description has none",
         place[0], place[1], place[2]
     )]
     Contradiction {
@@ -306,7 +307,7 @@ pub enum EvaluationError {
 }
 
 impl EvaluationError {
-    /// Whether numbers with more digits may tell what f64 values do not.
+    /// Whether extended precision may succeed where f64 failed.
     fn is_of_doubles(&self) -> bool {
         match self {
             Self::Intersection(_)
@@ -326,14 +327,13 @@ impl EvaluationError {
     }
 }
 
-/// Trees of no more primitives are evaluated with more digits where f64 values do not tell: that takes
-/// some hundred times as long.
+/// The maximum number of primitives of a tree that is evaluated in extended precision if f64 is
+/// inconclusive. That takes some hundred times as long.
 const FEW: usize = 64;
 
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 ///
-/// In f64, and where these do not tell what meets, in numbers of 237 bits by the same
-/// resolution.
+/// It is evaluated in f64, and if f64 is inconclusive, in 237 bits with the same resolution.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     match (options.zeros, options.digits) {
         (CoincidencePolicy::Exact, _) => return Ok(seen(tree, options, finely(tree, options)?)),
@@ -355,7 +355,7 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     }
 }
 
-/// The close call by which nothing is left of a part that has a solid in 237 bits.
+/// The close call because of which a part is empty in f64 but a solid in 237 bits.
 fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<CloseCall> {
     let is_asked = known.brep.topology.faces.is_empty()
         && known.decisions.coincident > 0
@@ -366,8 +366,8 @@ fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<C
     vanished::remainder(&fine.measures.mass(&fine.brep), noise)
 }
 
-/// In 237 bits: by the resolution, and where what coincides by it contradicts itself, by the finest,
-/// unless one is requested.
+/// Evaluates in 237 bits: with the resolution, and if that contradicts itself, with the finest one,
+/// unless a resolution is requested.
 fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, EvaluationError> {
     match (evaluated::<F237>(tree, options), options.resolution) {
         (Err(error), None) => finely(tree, options).map_err(|_| error),
@@ -375,22 +375,24 @@ fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, E
     }
 }
 
-/// What is known in 237 bits. Where f64 values tell a boundary of the same kind, it can be seen in them.
+/// The result of an evaluation in 237 bits. If f64 gives a boundary of the same kind, views can be
+/// computed in f64.
 fn seen(tree: &Tree, options: &EvaluationOptions, known: Evaluated<F237>) -> Evaluation {
     let by_resolution = EvaluationOptions {
         zeros: CoincidencePolicy::ByResolution,
         ..*options
     };
-    let plain = evaluated::<f64>(tree, &by_resolution).ok();
-    let alike = plain.filter(|plain| plain.brep.topology.census() == known.brep.topology.census());
-    let resolution = alike.map(|plain| plain.resolution);
+    let in_f64 = evaluated::<f64>(tree, &by_resolution).ok();
+    let alike =
+        in_f64.filter(|in_f64| in_f64.brep.topology.census() == known.brep.topology.census());
+    let resolution = alike.map(|in_f64| in_f64.resolution);
     Evaluation {
-        plain: resolution,
+        view_resolution: resolution,
         ..Evaluation::from(known)
     }
 }
 
-/// In 237 bits, by the finest resolution.
+/// Evaluates in 237 bits with the finest resolution.
 fn finely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, EvaluationError> {
     let size = halfspaces::HalfSpaceModel::<F237>::new(tree)
         .bounds
@@ -482,7 +484,7 @@ fn evaluated<N: Float>(
     })
 }
 
-/// The resolution that is requested, or the default: wider where the part lies so far from the
+/// The requested resolution, or the default. The default is coarser if the part is so far from the
 /// origin that its coordinates are rounded by more.
 fn resolution_of<N: Float>(
     bounds: &Aabb,
@@ -507,11 +509,11 @@ fn resolution_of<N: Float>(
     Ok(resolution)
 }
 
-/// The greatest resolution, in terms of the part's size.
+/// The coarsest resolution, relative to the part's size.
 const COARSEST: f64 = 0.01;
 
-/// The greatest rounding of coordinates, in terms of the part's size.
+/// The greatest rounding of coordinates, relative to the part's size.
 const FARTHEST: f64 = 1.0 / (1 << 20) as f64;
 
-/// Beyond these lengths squares of f64 values lose their range.
+/// Beyond these lengths squares exceed the range of f64.
 const LARGEST: f64 = 1e100;

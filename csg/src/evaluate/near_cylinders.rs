@@ -1,4 +1,5 @@
-//! Frustums that are nearly cylinders: their apex is far away, or nowhere within the resolution.
+//! Frustums that are nearly cylinders, with an apex that is far away or, within the resolution, at
+//! infinity.
 
 use super::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
@@ -11,8 +12,8 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use premio_kernel::number::rational::{Rational, to_f64};
 
-/// The tree with cylinders for the frustums whose radii are equal within the resolution; none where
-/// there is none.
+/// The tree with cylinders in place of frustums whose radii are equal within the resolution; `None`
+/// if there are no such frustums.
 pub(super) fn without(tree: &Tree, predicates: &Predicates) -> Option<Tree> {
     tree.with_primitives(|placed| straight(placed, predicates))
 }
@@ -31,7 +32,7 @@ fn straight(placed: &PlacedPrimitive, predicates: &Predicates) -> Option<Primiti
     })
 }
 
-/// Refuses cones whose apex is so far away that the rounding of their axes moves their walls by more
+/// Refuses cones with an apex so far away that the rounding of their axes moves their walls by more
 /// than the resolution.
 pub(super) fn check<N: Float>(
     solids: &HalfSpaceModel<N>,
@@ -53,5 +54,5 @@ pub(super) fn check<N: Float>(
     Ok(())
 }
 
-/// How many roundings of the axis move the wall.
+/// The displacement of the wall in roundings of the axis.
 const ROUNDINGS: f64 = 4.0;

@@ -1,10 +1,10 @@
-//! The half sheets of carriers around a piece, in order.
+//! The radial order of the carriers' half sheets around a piece.
 //!
-//! Sheets start in directions that angles tell, and where they touch, bends. Within the resolution
-//! neither may: there carriers lie next to a piece rather than on it, or along one another as far as
-//! the piece reaches. Then the surfaces as they are tell the order, just out of the resolution: two
-//! that are one there need not touch in the piece, and how they bend in it says nothing of where they
-//! part.
+//! Half sheets are sorted by their angles and, where they are tangent, by their bends. Within the
+//! resolution neither may be conclusive: carriers may lie close to the piece rather than on it, or
+//! nearly coincide over the whole piece. Then the surfaces themselves are compared just outside the
+//! resolution. Two that coincide within it need not be tangent in the piece, and their bends there
+//! say nothing about where they separate.
 
 use super::EvaluationError;
 use super::arrangement::Arrangement;
@@ -17,54 +17,54 @@ use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates, Side};
 
-/// A half sheet of a carrier at a point of a piece.
+/// One of the two half sheets of a carrier at a point of a piece.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfSheet<N: Float = f64> {
-    /// The carrier, as its place among the piece's carriers.
+    /// The carrier, by its index among the piece's carriers.
     pub carrier: usize,
-    /// Away from the piece.
+    /// The direction away from the piece.
     direction: Vector3<N>,
     /// Its angle about the tangent.
     angle: N,
-    /// How fast it turns counterclockwise with the distance.
+    /// The rate at which it turns counterclockwise with the distance.
     bend: N,
-    /// The side of the carrier just counterclockwise of the sheet.
+    /// The side of the carrier just counterclockwise of the half sheet.
     pub beyond: Sense,
 }
 
-/// How a carrier leaves a piece.
+/// The direction in which a carrier leaves a piece.
 struct Axis<N: Float = f64> {
     carrier: usize,
-    /// Across the piece.
+    /// The direction across the piece.
     direction: Vector3<N>,
-    /// How it bends up, counterclockwise, in that direction.
+    /// Its curvature in that direction, positive counterclockwise.
     rise: N,
 }
 
 impl<N: Float> Axis<N> {
-    /// Its direction, as near to another one as it can be.
+    /// The direction or its opposite, whichever is closer to another one.
     fn aligned(&self, direction: &Vector3<N>) -> Vector3<N> {
         self.direction * self.direction.dot(direction).signum()
     }
 }
 
-/// Sheets at a smaller angle may cross farther from a piece than the resolution, though both are on
-/// it.
+/// The sine of the angle below which two sheets may cross farther from a piece than the resolution,
+/// although both contain it.
 const SHALLOW: f64 = 1.0 / (1 << 8) as f64;
 
-/// A point of a piece, from which its carriers are seen.
+/// A point of a piece at which its carriers are sorted.
 pub(super) struct Spot<'a, N: Float = f64> {
     pub arrangement: &'a Arrangement<N>,
     pub predicates: &'a Predicates,
     pub piece: &'a EdgeCandidate<N>,
     pub point: Point3<N>,
-    /// Of the piece, a unit vector.
+    /// The unit tangent of the piece.
     pub tangent: Vector3<N>,
 }
 
 impl<N: Float> Spot<'_, N> {
-    /// The half sheets around the piece, counterclockwise about its tangent, of the carriers (by
-    /// their places among the piece's) on which a primitive that is there has a face.
+    /// The half sheets around the piece, counterclockwise about its tangent. Only carriers (by
+    /// index in the piece) on which a primitive present there has a face are included.
     pub(super) fn sheets(
         &self,
         has_face: impl Fn(usize) -> bool,
@@ -78,7 +78,8 @@ impl<N: Float> Spot<'_, N> {
         let e1 = perpendicular(tangent);
         let e2 = tangent.cross(&e1);
         let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
-        // A carrier tangent to an earlier one takes its angle: only the bend tells them apart.
+        // A carrier tangent to an earlier one takes its angle, so that only the bend separates
+        // them.
         let mut axes: Vec<Axis<N>> = Vec::new();
         for (at, &c) in piece.carriers.iter().enumerate() {
             if !has_face(at) {
@@ -132,12 +133,12 @@ impl<N: Float> Spot<'_, N> {
         Ok(sheets)
     }
 
-    /// Puts sheets in order whose angles and bends do not tell it: where they do not start at the
-    /// piece but, within the resolution, next to it, or differ by less than the resolution as far as
-    /// they reach. Their order is that of the surfaces just out of the piece's resolution, where
-    /// other pieces may be.
+    /// Sorts sheets that angles and bends do not separate. Such sheets start close to the piece
+    /// rather than at it, within the resolution, or differ by less than the resolution over their
+    /// length. They are sorted by the order of the surfaces just outside the resolution of the
+    /// piece, where other pieces may be.
     fn settle(&self, sheets: &mut [HalfSheet<N>]) -> Result<(), EvaluationError> {
-        // What lies nearly in one direction is to stand together.
+        // Sheets of nearly the same direction must be adjacent.
         let n = sheets.len();
         let gap = |i: usize| match i {
             0 => sheets[0].angle + N::TAU - sheets[n - 1].angle,
@@ -155,13 +156,13 @@ impl<N: Float> Spot<'_, N> {
             let both = [a, b].map(|s| self.piece.carriers[s.carrier]);
             if a.carrier == b.carrier || !is_shallow {
                 Some(false)
-            } else if is_one && self.is_told_to_touch(both) && !self.predicates.within(gap) {
+            } else if is_one && self.is_tangent_along(both) && !self.predicates.within(gap) {
                 Some(gap.is_above_zero())
             } else {
                 self.lies_beyond([a, b], is_one)
             }
         };
-        // By insertion: an order within the resolution need not be a total one.
+        // Insertion sort: an order within the resolution need not be total.
         for end in 1..n {
             for i in (0..end).rev() {
                 match is_swapped(&sheets[i], &sheets[i + 1]) {
@@ -178,9 +179,9 @@ impl<N: Float> Spot<'_, N> {
         Ok(())
     }
 
-    /// Whether a sheet lies counterclockwise of another that leaves in nearly the same direction, at
-    /// the resolution's distance, or where rounding hides it there and they are one within the
-    /// resolution, farther out.
+    /// Whether a sheet lies counterclockwise of another that leaves in nearly the same direction.
+    /// They are compared at the resolution's distance. If rounding hides the order there and the
+    /// two coincide within the resolution, they are compared farther out.
     fn lies_beyond(&self, [a, b]: [&HalfSheet<N>; 2], is_one: bool) -> Option<bool> {
         let [first, second] = [a, b].map(|s| self.surface(self.piece.carriers[s.carrier]));
         let (reach, out) = (self.piece.reach(self.arrangement), b.beyond.sign::<N>());
@@ -201,8 +202,8 @@ impl<N: Float> Spot<'_, N> {
             .map(N::is_above_zero)
     }
 
-    /// Whether a carrier that leaves a piece in a direction touches an earlier one: all along it, by
-    /// their angle, or as near to it as they are apart.
+    /// Whether a carrier that leaves a piece in a direction is tangent to an earlier one: along the
+    /// entire piece, by their angle, or as far as their distance is within the resolution.
     fn touches(
         &self,
         axis: &Axis<N>,
@@ -210,10 +211,11 @@ impl<N: Float> Spot<'_, N> {
         direction: &Vector3<N>,
         rise: impl Fn(&Vector3<N>) -> N,
     ) -> bool {
-        let told = self.is_told_to_touch([axis.carrier, carrier]);
-        // What meets in the piece alone crosses there, however little, unless it is told to touch.
-        if told || self.piece.carriers.len() == 2 {
-            return told;
+        let tangent = self.is_tangent_along([axis.carrier, carrier]);
+        // Two carriers that intersect in the piece only cross there, at however small an angle,
+        // unless their curve is one of tangency.
+        if tangent || self.piece.carriers.len() == 2 {
+            return tangent;
         }
         let sine = axis.direction.cross(direction).length();
         let bend = (rise(&axis.direction) - axis.rise).abs();
@@ -222,10 +224,10 @@ impl<N: Float> Spot<'_, N> {
             || self.predicates.within(sine * sine / (N::TWO * bend))
     }
 
-    /// Whether two carriers touch all along the piece, by the curve in which they meet.
-    fn is_told_to_touch(&self, [a, b]: [usize; 2]) -> bool {
-        let mut told = self.piece.tangent.iter();
-        told.any(|t| *t == [a, b] || *t == [b, a])
+    /// Whether two carriers are tangent along the entire piece, by their intersection curve.
+    fn is_tangent_along(&self, [a, b]: [usize; 2]) -> bool {
+        let mut tangent = self.piece.tangent.iter();
+        tangent.any(|t| *t == [a, b] || *t == [b, a])
     }
 
     fn surface(&self, carrier: usize) -> &Surface<N> {

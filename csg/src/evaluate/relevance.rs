@@ -1,8 +1,8 @@
-//! Which close calls concern the boundary.
+//! Selects the close calls on which the boundary depends.
 //!
-//! A carrier runs on where its primitive has no face, and a primitive has faces where others cover
-//! them. Next to a point the part depends on the primitives that come near it, and of these on such
-//! alone as the tree leaves a choice: what is decided between other carriers changes nothing there.
+//! A carrier extends beyond the faces of its primitive, and faces of a primitive may be covered by
+//! others. At a point the part depends only on the primitives close to it, and only on those for
+//! which the tree leaves a choice. Decisions between other carriers change nothing there.
 
 use super::arrangement::Arrangement;
 use super::halfspaces::{HalfSpace, HalfSpaceModel};
@@ -15,14 +15,14 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{CloseCall, Compare, Predicates, Side};
 use rstar::AABB;
 
-/// What a close call lies between.
+/// The entities between which a close call lies.
 #[derive(Clone, Debug)]
 pub(super) enum Between {
     /// Two corners.
     Corners([usize; 2]),
-    /// A corner and a point that was made one with it, which these carriers define.
+    /// A corner and a point, defined by these carriers, that was merged with it.
     CornerAndPoint(usize, Vec<usize>),
-    /// A curve, by its meeting, and a carrier.
+    /// A curve, by its index, and a carrier.
     Curve(usize, usize),
     /// Two carriers.
     Carriers([usize; 2]),
@@ -31,7 +31,7 @@ pub(super) enum Between {
 /// A close call, not yet listed.
 pub(super) type Unlisted = (CloseCall, Between);
 
-/// The primitives as a tree joins them, to be requested what matters next to a point.
+/// Determines which primitives matter at a point.
 pub(super) struct CloseCallFilter<'a, N: Float = f64> {
     pub solids: &'a HalfSpaceModel<N>,
     pub arrangement: &'a Arrangement<N>,
@@ -40,8 +40,8 @@ pub(super) struct CloseCallFilter<'a, N: Float = f64> {
 }
 
 impl<N: Float> CloseCallFilter<'_, N> {
-    /// Lists the close calls that concern the boundary: of those met on the way, and between
-    /// corners and surfaces.
+    /// Lists the close calls that concern the boundary: those recorded during the evaluation, and
+    /// those between corners and surfaces.
     pub fn list(&self) {
         for (call, between) in &self.arrangement.calls {
             if self.concerns(call.place, between) {
@@ -49,23 +49,23 @@ impl<N: Float> CloseCallFilter<'_, N> {
             }
         }
         for corner in &self.arrangement.corners {
-            self.list_beside(corner);
+            self.list_passing(corner);
         }
     }
 
-    /// Lists the surfaces that pass by a corner.
-    fn list_beside(&self, corner: &VertexCandidate<N>) {
+    /// Lists the close calls between a corner and the surfaces that pass close to it.
+    fn list_passing(&self, corner: &VertexCandidate<N>) {
         let place = rounded(&corner.point);
-        let mut beside: Vec<(usize, N)> = Vec::new();
+        let mut passing: Vec<(usize, N)> = Vec::new();
         for s in self.arrangement.tree.locate_all_at_point(place) {
             for (side, &(c, _)) in self.sides(s.data) {
                 let distance = side.surface.distance(&corner.point);
                 if self.predicates.is_close(distance) && !corner.is_on(c) {
-                    beside.push((c, distance));
+                    passing.push((c, distance));
                 }
             }
         }
-        if beside.is_empty() {
+        if passing.is_empty() {
             return;
         }
         let carriers = self.carriers(place);
@@ -73,7 +73,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
         if !is_vertex(corner, has) {
             return;
         }
-        for (_, distance) in beside.into_iter().filter(|(c, _)| has(c)) {
+        for (_, distance) in passing.into_iter().filter(|(c, _)| has(c)) {
             self.predicates
                 .classify("point beside surface", distance, place);
         }
@@ -100,11 +100,11 @@ impl<N: Float> CloseCallFilter<'_, N> {
         }
     }
 
-    /// The carriers, in order, of the faces next to a place of the primitives on which it depends
-    /// where the part is there.
+    /// The carriers, in increasing order, of the faces close to a place, limited to primitives on
+    /// which the part depends there.
     fn carriers(&self, place: [f64; 3]) -> Vec<usize> {
         let p = Point3::from(place.map(N::from_f64));
-        // Both of what a close call lies between are within its distance of the place.
+        // Both entities of a close call are within its distance of the place.
         let margin = N::TWO * self.predicates.reach::<N>();
         let [lo, hi] = [-margin, margin].map(|by| rounded(&(p + Vector3::repeat(by))));
         let around = AABB::from_corners(lo, hi);
@@ -139,14 +139,14 @@ impl<N: Float> CloseCallFilter<'_, N> {
     }
 }
 
-/// Whether a corner is one of the carriers that matter alone: two of them have it by themselves, or
-/// three meet in it.
+/// Whether a corner is a vertex of the carriers that matter: a singular point of two of them, or a
+/// point of three.
 fn is_vertex<N: Float>(corner: &VertexCandidate<N>, has: impl Fn(&usize) -> bool) -> bool {
     let through = corner.carriers.iter().filter(|c| has(c)).count();
     through > 2 || corner.nodes.iter().any(|both| both.iter().all(&has))
 }
 
-/// Whether two of the carriers of a curve matter.
+/// Whether at least two of the carriers of a curve matter.
 fn is_edge(carriers: &[usize], has: impl Fn(&usize) -> bool) -> bool {
     carriers.iter().filter(|c| has(c)).count() > 1
 }

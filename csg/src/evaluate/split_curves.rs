@@ -1,5 +1,5 @@
-//! Where curves are cut: by the carriers of all faces that come near, and at points known
-//! beforehand.
+//! Splits curves at their intersections with the carriers of all faces close to them, and at points
+//! known beforehand.
 
 use super::arrangement::{Arrangement, Cut, IntersectionCurve, common};
 use super::halfspaces::HalfSpaceModel;
@@ -17,25 +17,25 @@ use premio_kernel::number::roots::{Root, RootKind};
 use rstar::AABB;
 use std::collections::HashMap;
 
-/// A curve may pass one corner twice, but never within this part of a radian or a unit.
+/// The smallest distance of two passages of a curve through one corner, in radians or units.
 const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
 
-/// Whether two parameters at one corner are one pass of it.
+/// Whether two parameters at one corner belong to the same passage.
 pub(super) fn is_one_pass<N: Float>(t: N, other: N) -> bool {
     (t - other).abs().is_short_of(N::from_f64(CLOSE_PASS))
 }
 
-/// A contact of so high an order that many points are within the resolution.
+/// A contact of such a high order that a long piece is within the resolution.
 pub(super) struct Wide<N: Float = f64> {
     meeting: usize,
     carrier: usize,
-    /// The parameter that fits best.
+    /// The best estimate of the parameter.
     t: N,
-    /// How far from there the points are within the resolution.
+    /// The distance from there up to which the points are within the resolution.
     pub reach: N,
 }
 
-/// What is met on the way and dealt with when all curves are cut.
+/// Items that are handled after all curves have been split.
 #[derive(Default)]
 pub(super) struct Later<N: Float = f64> {
     /// The contacts of high order.
@@ -45,7 +45,7 @@ pub(super) struct Later<N: Float = f64> {
 }
 
 impl<N: Float> Arrangement<N> {
-    /// Cuts a curve by the carriers of all faces that come near it.
+    /// Splits a curve by the carriers of all faces close to it.
     pub(super) fn cut_meeting(
         &mut self,
         index: usize,
@@ -82,7 +82,7 @@ impl<N: Float> Arrangement<N> {
         m.cuts.extend(cuts);
     }
 
-    /// The cuts of a curve by the faces of one carrier; none where the carrier holds the curve.
+    /// The cuts of a curve by the faces of one carrier; `None` if the carrier contains the curve.
     fn cuts_by(
         &self,
         index: usize,
@@ -132,8 +132,8 @@ impl<N: Float> Arrangement<N> {
                 continue;
             }
             let all = [m.carriers[0], m.carriers[1], c];
-            let plain = r.contact == RootKind::Simple;
-            let p = if plain {
+            let is_simple = r.contact == RootKind::Simple;
+            let p = if is_simple {
                 self.polished(p, all, predicates)
             } else {
                 p
@@ -152,7 +152,7 @@ impl<N: Float> Arrangement<N> {
         Some(cuts)
     }
 
-    /// Puts a cut whose place is not well known at a corner that is, where there is one in reach.
+    /// Moves an inaccurate cut to an accurate corner, if there is one within its reach.
     pub(super) fn place_wide(
         &mut self,
         w: &Wide<N>,
@@ -177,7 +177,8 @@ impl<N: Float> Arrangement<N> {
         let (t, vertex) = match best {
             Some(v) => {
                 let p = corners.all[v].point;
-                // A curve may pass its corner twice: only elsewhere its parameter is requested.
+                // A curve may pass its corner twice, so the parameter is recomputed only if the
+                // corner is elsewhere.
                 let t = match predicates.within((p - middle).length()) {
                     true => w.t,
                     false => in_range(&m.curve, m.range, m.curve.parameter(&p)),
@@ -189,9 +190,9 @@ impl<N: Float> Arrangement<N> {
         self.meetings[w.meeting].cuts.push(Cut { t, vertex });
     }
 
-    /// The points of a curve known beforehand to lie on a carrier: where the curve crosses itself,
-    /// and the carrier's apex. The distance is no smooth function along the curve there, so roots
-    /// next to them are less well known than the points.
+    /// The known points of a curve on a carrier: the self-crossings of the curve, and the carrier's
+    /// apex. The distance along the curve is not smooth there, so roots close to them are less
+    /// accurate than the points.
     fn special_points(
         &self,
         index: usize,
@@ -227,8 +228,9 @@ impl<N: Float> Arrangement<N> {
         special
     }
 
-    /// The common point of three surfaces next to `p`, by Newton's steps where they are well
-    /// apart in direction: of surfaces that touch within the resolution steps may lead anywhere.
+    /// The common point of three surfaces close to `p`, by Newton's method if their normals are
+    /// well separated. For surfaces that are tangent within the resolution the steps may lead
+    /// anywhere.
     fn polished(&self, p: Point3<N>, all: [usize; 3], predicates: &Predicates) -> Point3<N> {
         let mut q = p;
         for _ in 0..2 {
@@ -249,8 +251,8 @@ impl<N: Float> Arrangement<N> {
         }
     }
 
-    /// Makes every curve know the corners that its carriers know, and every corner the carriers of the
-    /// curves that pass it: each cut was found by two of them and a third.
+    /// Adds to every curve the corners of its carriers, and to every corner the carriers of the
+    /// curves through it. Each cut was found from two carriers of the curve and a third one.
     pub(super) fn share_corners(&mut self, predicates: &Predicates) {
         let mut by_pair: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
         for (i, m) in self.meetings.iter().enumerate() {
@@ -261,8 +263,8 @@ impl<N: Float> Arrangement<N> {
             }
         }
         for v in 0..self.corners.len() {
-            let mut asked: Vec<usize> = Vec::new();
-            // What a corner learns may lead it to other curves.
+            let mut visited: Vec<usize> = Vec::new();
+            // A new carrier of a corner may add further curves.
             loop {
                 let carriers = &self.corners[v].carriers;
                 let mut ask: Vec<usize> = Vec::new();
@@ -273,16 +275,17 @@ impl<N: Float> Arrangement<N> {
                 }
                 ask.sort_unstable();
                 ask.dedup();
-                ask.retain(|i| !asked.contains(i));
+                ask.retain(|i| !visited.contains(i));
                 if !self.pass_all(&ask, v, predicates) {
                     break;
                 }
-                asked.extend(ask);
+                visited.extend(ask);
             }
         }
     }
 
-    /// Makes curves know a corner that they pass; whether it knows another carrier by them.
+    /// Adds a corner to the curves that pass through it. Returns whether the corner got a new
+    /// carrier.
     fn pass_all(&mut self, meetings: &[usize], v: usize, predicates: &Predicates) -> bool {
         let corner = &mut self.corners[v];
         let known = corner.carriers.len();
@@ -304,23 +307,23 @@ impl<N: Float> Arrangement<N> {
     }
 }
 
-/// The roots of a surface along a curve, and the nearest misses.
-type Met<N> = (Vec<Root<N>>, Vec<(N, N)>);
+/// The roots of a surface along a curve, and the near misses.
+type Intersections<N> = (Vec<Root<N>>, Vec<(N, N)>);
 
 impl<N: Float> IntersectionCurve<N> {
-    /// Where the curve meets a surface, as far as it runs through the boxes of faces of it; none
-    /// where it lies on the surface.
+    /// The intersections of the curve with a surface, inside the boxes of the surface's faces;
+    /// `None` if the curve lies on the surface.
     fn intersection(
         &self,
         surface: &Surface<N>,
         faces: &[(usize, Aabb)],
         predicates: &Predicates,
-    ) -> Option<Met<N>> {
+    ) -> Option<Intersections<N>> {
         let resolution = predicates.resolution();
         if lies_on(&self.curve, self.range, surface, resolution) {
             return None;
         }
-        let mut all = Met::default();
+        let mut all = Intersections::default();
         let near = |b: &Aabb| {
             faces.iter().any(|(_, face)| common(face, b).is_some())
                 && comes_near(surface, b, predicates.reach())
@@ -338,7 +341,7 @@ impl<N: Float> IntersectionCurve<N> {
         Some(all)
     }
 
-    /// How far from a point where the curve touches a surface it leaves that by more than the
+    /// The distance from a point of tangency at which the curve leaves the surface by more than the
     /// resolution, to a factor of two.
     fn touching_length(&self, t: N, surface: &Surface<N>, predicates: &Predicates) -> N {
         let length = self.range[1] - self.range[0];
@@ -352,7 +355,7 @@ impl<N: Float> IntersectionCurve<N> {
         (self.curve.point(t + first) - self.curve.point(t)).length()
     }
 
-    /// Whether a parameter lies in a range, on a closed curve a turn more or less.
+    /// Whether a parameter lies in a range; for a closed curve, modulo the period.
     fn holds_within(&self, lo: N, hi: N, t: N) -> bool {
         let period = if self.closed {
             self.range[1] - self.range[0]
@@ -364,8 +367,9 @@ impl<N: Float> IntersectionCurve<N> {
             .any(|&turn| (t + turn).lies_in([lo, hi]))
     }
 
-    /// Cuts the curve at a corner that it passes through: a closed curve that was opened at it, and
-    /// a quartic that runs into an apex, where it has no direction, at its ends, too.
+    /// Splits the curve at a corner that it passes through. A closed curve that was opened at the
+    /// corner is split at its ends, too, and so is a quartic that ends in an apex, where it has no
+    /// direction.
     fn pass(&mut self, vertex: usize, p: &Point3<N>, predicates: &Predicates) {
         let [lo, hi] = self.range;
         let t = in_range(&self.curve, self.range, self.curve.parameter(p));
@@ -389,7 +393,7 @@ impl<N: Float> IntersectionCurve<N> {
     }
 }
 
-/// A parameter brought into the cycle that starts with a range.
+/// A parameter shifted into the cycle that starts with a range.
 fn in_range<N: Float>(curve: &Curve<N>, range: [N; 2], t: N) -> N {
     curve.in_cycle(t, range[0])
 }

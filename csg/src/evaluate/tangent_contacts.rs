@@ -1,8 +1,8 @@
-//! Where two carriers touch along a curve, and another curve runs next to it.
+//! Contacts: curves along which two carriers are tangent, where another curve runs close by.
 //!
-//! Carriers that touch are within the resolution of one another over a strip. A curve of one of
-//! them and a third carrier that runs inside the strip lies on both. The contact may then lie along
-//! that curve, whose place is known: two curves that bound a strip too narrow to be resolved would
+//! Tangent carriers are within the resolution of each other over a strip. A curve of one of them
+//! and a third carrier inside the strip lies on both. The contact may then be moved to that curve,
+//! whose position is accurate. Two curves that bounded a strip too narrow to be resolved would
 //! leave its faces without an order.
 
 use super::arrangement::{Arrangement, IntersectionCurve};
@@ -14,7 +14,7 @@ use premio_kernel::number::predicates::{Compare, Predicates};
 use premio_kernel::number::roots::probes;
 
 impl<N: Float> Arrangement<N> {
-    /// Puts contacts along curves where other curves run inside their strips.
+    /// Moves contacts to curves that run inside their strips.
     pub(super) fn settle_contacts(&mut self, predicates: &Predicates) {
         let mut settled = vec![false; self.meetings.len()];
         for i in 0..self.meetings.len() {
@@ -22,7 +22,8 @@ impl<N: Float> Arrangement<N> {
             let [both] = contact.tangent[..] else {
                 continue;
             };
-            // What stands for a contact stays; what crosses others is known at the crossings.
+            // A contact that has already been moved stays. One that crosses other curves is
+            // accurate at the crossings.
             if contact.carriers[..] != both || !contact.cuts.is_empty() {
                 continue;
             }
@@ -39,8 +40,8 @@ impl<N: Float> Arrangement<N> {
         self.meetings.retain(|_| settled.next() == Some(false));
     }
 
-    /// How wide the strip is between the contact of two carriers and another curve of one of them,
-    /// where that runs along all of it and is not the same.
+    /// The width of the strip between the contact of two carriers and another curve of one of them,
+    /// if that runs along all of it and is a different curve.
     fn strip(
         &self,
         both: [usize; 2],
@@ -63,7 +64,7 @@ impl<N: Float> Arrangement<N> {
         for part in probes().chain([N::ZERO, N::ONE]) {
             let t = lo + (hi - lo) * part;
             let p = contact.curve.point(t);
-            let lateral = other.beside(&p, predicates.reach())? - p;
+            let lateral = other.closest(&p, predicates.reach())? - p;
             let along = lateral.dot(&contact.curve.tangent(t)).abs();
             let middle = p + lateral * N::HALF;
             let inside = carriers
@@ -80,8 +81,8 @@ impl<N: Float> Arrangement<N> {
 }
 
 impl<N: Float> IntersectionCurve<N> {
-    /// The point next to another one, where that is not beyond the ends.
-    fn beside(&self, p: &Point3<N>, reach: N) -> Option<Point3<N>> {
+    /// The point of the curve closest to `p`, unless that is beyond the ends by more than `reach`.
+    fn closest(&self, p: &Point3<N>, reach: N) -> Option<Point3<N>> {
         let [lo, hi] = self.range;
         let t = self.curve.in_cycle(self.curve.parameter(p), lo);
         let q = self.curve.point(t.clamp(lo, hi));

@@ -1,4 +1,4 @@
-//! Primitives and parts that are no thicker than what coincides: their opposite faces become one, and they
+//! Primitives and parts no thicker than the resolution: their opposite faces coincide, and they
 //! vanish.
 
 use crate::primitive::Primitive;
@@ -23,8 +23,8 @@ pub(super) fn list(tree: &Tree, predicates: &Predicates) {
     }
 }
 
-/// The close call that left nothing of a part: by finer numbers it is a solid, thicker than the `noise`
-/// of the description.
+/// The close call that left a part empty: with a finer resolution it is a solid, thicker than the
+/// `noise` of the description.
 pub(super) fn remainder(fine: &Mass, noise: f64) -> Option<CloseCall> {
     // A plate has two sides.
     let thickness = 2.0 * fine.volume / fine.area;
@@ -36,8 +36,8 @@ pub(super) fn remainder(fine: &Mass, noise: f64) -> Option<CloseCall> {
     })
 }
 
-/// How far faces may be off that are meant to coincide: turns by other than quarters are rounded to the
-/// digits of a double.
+/// The rounding error of faces that are meant to coincide. Rotations by other angles than quarter
+/// turns are rounded to the precision of an f64.
 pub(super) fn rounding(tree: &Tree, bounds: &Aabb) -> f64 {
     let is_exact =
         |entry: &Rational| entry.is_zero() || entry.is_one() || (-entry.clone()).is_one();
@@ -51,14 +51,14 @@ pub(super) fn rounding(tree: &Tree, bounds: &Aabb) -> f64 {
     }
 }
 
-/// The least distance between opposite faces of a primitive, or across it.
+/// The least distance between opposite faces of a primitive, or its least width.
 fn thickness(primitive: &Primitive) -> f64 {
     let least = |lengths: &[f64]| lengths.iter().copied().fold(f64::INFINITY, f64::min);
     match primitive {
         Primitive::Block { size } => least(&size.each_ref().map(to_f64)),
         Primitive::Wedge { size } => {
             let [x, y, z] = size.each_ref().map(to_f64);
-            // From the edge at the right angle to the slope.
+            // From the edge at the right angle to the sloping face.
             least(&[y, x * (z / x.hypot(z))])
         }
         Primitive::Cylinder { radius, height } => least(&[2.0 * to_f64(radius), to_f64(height)]),

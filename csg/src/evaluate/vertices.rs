@@ -1,4 +1,4 @@
-//! The vertices: points where curves are cut, with equal points merged.
+//! Vertex candidates: the points at which curves are split, with coincident points merged.
 
 use super::relevance::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};
@@ -7,15 +7,15 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates, Side};
 use std::collections::HashMap;
 
-/// A point where a curve is cut.
+/// A point at which a curve is split.
 #[derive(Clone, Debug)]
 pub(super) struct VertexCandidate<N: Float = f64> {
-    /// The place.
+    /// The location.
     pub point: Point3<N>,
-    /// The carriers through it, in order.
+    /// The carriers through it, in increasing order.
     pub carriers: Vec<usize>,
-    /// The pairs of carriers that have it by themselves: where they touch, where their curve
-    /// crosses itself, an apex.
+    /// The pairs of carriers for which it is a singular point: a tangency, a self-crossing of their
+    /// curve, or an apex.
     pub nodes: Vec<[usize; 2]>,
 }
 
@@ -26,14 +26,14 @@ impl<N: Float> VertexCandidate<N> {
     }
 }
 
-/// The cell of a grid that holds a point.
+/// The cell of a grid that contains a point.
 type Key = [[u64; 4]; 3];
 
-/// Corners by place, so that equal ones are one.
+/// Merges coincident corners by means of a grid.
 pub(super) struct VertexMerger<N: Float = f64> {
     /// In the order in which they were found.
     pub all: Vec<VertexCandidate<N>>,
-    /// The close calls met.
+    /// The close calls that occurred.
     pub calls: Vec<Unlisted>,
     grid: HashMap<Key, Vec<usize>>,
     cell: N,
@@ -53,7 +53,7 @@ impl<N: Float> VertexMerger<N> {
         [0, 1, 2].map(|i| (p[i] / self.cell).floor().bits())
     }
 
-    /// The corner at `p`, which the given carriers define, or are known to pass through.
+    /// The corner at `p`, which the given carriers define or are known to pass through.
     pub fn at(&mut self, p: &Point3<N>, carriers: &[usize], predicates: &Predicates) -> usize {
         let v = self.found(p, carriers, predicates);
         let corner = &mut self.all[v];
@@ -92,12 +92,12 @@ impl<N: Float> VertexMerger<N> {
         new
     }
 
-    /// The corner nearest to `p` that is nearer than `reach`, with its distance.
+    /// The corner closest to `p` within `reach`, with its distance.
     fn nearest(&self, p: &Point3<N>, reach: N) -> Option<(N, usize)> {
         let lo = self.key(&(p - Vector3::repeat(reach)));
         let hi = self.key(&(p + Vector3::repeat(reach)));
         let mut best: Option<(N, usize)> = None;
-        // A cell is wider than twice the reach: there are two at most along each axis.
+        // A cell is wider than twice the reach, so at most two cells matter along each axis.
         let both = |i: usize| [Some(lo[i]), (hi[i] != lo[i]).then_some(hi[i])];
         for x in both(0).into_iter().flatten() {
             for y in both(1).into_iter().flatten() {

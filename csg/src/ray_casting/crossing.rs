@@ -1,21 +1,22 @@
-//! On which surfaces a line enters and leaves material.
+//! The surfaces on which a line enters and leaves material.
 //!
-//! The surfaces are the primitives' own; those of several primitives that coincide are one, so that
-//! neighbouring lines that cross one face of the part cross one surface.
+//! The surfaces are those of the primitives. Coincident surfaces of several primitives are merged,
+//! so that neighbouring lines that cross the same face of the part cross the same surface.
 
 use super::shape::Shape;
 use super::{Event, Leaf, Ray, RayOracle};
 use nalgebra::Vector3;
 use premio_kernel::number::predicates::ROUNDING;
 
-/// Where a line enters or leaves material; every other one is an entry, the first of all is one.
+/// A point at which a line enters or leaves material. Entries and exits alternate, starting with an
+/// entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceCrossing {
     /// The line's parameter.
     pub at: f64,
-    /// The surface, among those of the tree.
+    /// The index of the surface in the tree's list.
     pub surface: usize,
-    /// Whether the line comes from the inside of a round surface; false of a plane.
+    /// Whether the line comes from the inside of a curved surface; false for a plane.
     pub outwards: bool,
 }
 
@@ -28,7 +29,7 @@ enum Kind {
     Torus,
 }
 
-/// A surface: a point of it, its centre or its apex; its normal or axis, up to the sign; its radii,
+/// A surface: a point on it, its centre or its apex; its normal or axis, up to the sign; its radii,
 /// or the slope of a cone.
 #[derive(Clone, Copy, Debug)]
 struct Carrier {
@@ -38,13 +39,13 @@ struct Carrier {
     sizes: [f64; 2],
 }
 
-/// The surfaces of a tree's primitives, each once.
+/// The surfaces of a tree's primitives, without duplicates.
 #[derive(Debug)]
 pub struct Surfaces<'a> {
     material: &'a RayOracle,
-    /// The tree's list, in the part's frame.
+    /// All surfaces, in the part's frame.
     all: Vec<Carrier>,
-    /// Of each leaf: its surfaces in its own frame, with their place in the tree's list.
+    /// The surfaces of each leaf in its own frame, with their indices in `all`.
     of_leaves: Vec<Vec<(Carrier, usize)>>,
 }
 
@@ -62,7 +63,8 @@ impl Carrier {
         Self::new(Kind::Plane, point, normal.normalize(), [0.0; 2])
     }
 
-    /// In the part's frame, with the point of a plane or a cylinder nearest to `middle`.
+    /// The surface in the part's frame. The point of a plane or a cylinder is the one closest to
+    /// `middle`.
     fn placed(&self, leaf: &Leaf, middle: &Vector3<f64>) -> Self {
         let (point, axis) = (leaf.turn * self.point + leaf.offset, leaf.turn * self.axis);
         let along = axis * axis.dot(&(middle - point));
@@ -78,7 +80,7 @@ impl Carrier {
         }
     }
 
-    /// The normal at a point of it, up to length and sign.
+    /// The normal at a point on it, up to length and sign.
     fn normal(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let away = p - self.point;
         let along = away.dot(&self.axis);
@@ -92,7 +94,7 @@ impl Carrier {
         }
     }
 
-    /// Whether two carriers differ by no more than `near`, a distance in a part of some size.
+    /// Whether two carriers differ by at most `near`, a distance in a part of the given size.
     fn coincides(&self, other: &Self, near: f64, size: f64) -> bool {
         let sizes = self.sizes.iter().zip(other.sizes);
         self.kind == other.kind
@@ -160,17 +162,18 @@ impl<'a> Surfaces<'a> {
         }
     }
 
-    /// How much farther along its direction a line meets a surface than at a crossing if it is moved
-    /// by `step`, to first order; infinite where the line touches the surface.
+    /// The change of the distance along a line to a surface, relative to a crossing, if the line is
+    /// displaced by `step`. It is computed to first order, and infinite where the line is tangent
+    /// to the surface.
     pub fn slope(&self, ray: &Ray, crossing: &SurfaceCrossing, step: &Vector3<f64>) -> f64 {
         let p = ray.origin + ray.direction * crossing.at;
         let normal = self.all[crossing.surface].normal(&p.coords);
         -step.dot(&normal) / ray.direction.dot(&normal)
     }
 
-    /// Where a line enters and leaves material, in order; gaps, then slivers, no longer than `least`
-    /// are closed. None where another surface is met no farther than that from one of them: the
-    /// two touch there, and rounding determines which is met.
+    /// The points at which a line enters and leaves material, in order. Gaps, then slivers, of
+    /// length up to `least` are closed. `None` if another surface is hit within `least` of one of
+    /// them: the two touch there, and rounding determines which is hit.
     pub fn crossings(&self, ray: &Ray, least: f64) -> Option<Vec<SurfaceCrossing>> {
         let mut joined: Vec<[Event; 2]> = Vec::new();
         let material = self.material;
@@ -180,7 +183,7 @@ impl<'a> Surfaces<'a> {
             _ => joined.push(span),
         });
         joined.retain(|[lo, hi]| hi.at - lo.at > least);
-        let met = |event: &Event| {
+        let locate = |event: &Event| {
             let crossing = self.crossing(ray, event)?;
             let first = scratch.events.partition_point(|e| e.at < event.at - least);
             let near = scratch.events[first..].iter();
@@ -192,7 +195,7 @@ impl<'a> Surfaces<'a> {
             });
             alone.then_some(crossing)
         };
-        joined.iter().flatten().map(met).collect()
+        joined.iter().flatten().map(locate).collect()
     }
 
     fn crossing(&self, ray: &Ray, event: &Event) -> Option<SurfaceCrossing> {

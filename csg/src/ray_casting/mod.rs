@@ -1,7 +1,9 @@
-//! The tree as a set of points, asked by rays: the oracle that knows nothing of boundaries.
+//! Ray casting on the tree as a point set: an oracle that is independent of the boundary
+//! representation.
 //!
-//! Every primitive answers a line with closed-form intervals in f64, and the intervals are
-//! combined up the tree. Nothing here is certified: it is what the boundary is checked against.
+//! The intersection of a line with every primitive is a set of intervals in closed form, in f64.
+//! The intervals are combined up the tree. Nothing here is certified; the boundary is checked
+//! against it.
 
 mod crossing;
 mod shape;
@@ -28,7 +30,7 @@ pub struct Ray {
     pub direction: Vector3<f64>,
 }
 
-/// A primitive at its place.
+/// A primitive in its position.
 #[derive(Clone, Debug)]
 struct Leaf {
     node: NodeId,
@@ -37,7 +39,7 @@ struct Leaf {
     offset: Vector3<f64>,
 }
 
-/// How a node follows from its children.
+/// The rule by which a node follows from its children.
 #[derive(Clone, Copy, Debug)]
 enum Rule {
     Leaf,
@@ -53,14 +55,14 @@ struct Above {
     first: bool,
 }
 
-/// How many children of a node hold the point that is looked at.
+/// The number of children of a node that contain the current point.
 #[derive(Clone, Copy, Debug, Default)]
 struct Held {
     first: bool,
     others: usize,
 }
 
-/// Where a line enters or leaves a primitive.
+/// A point at which a line enters or leaves a primitive.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     at: f64,
@@ -70,7 +72,7 @@ struct Event {
 
 type LeafBox = GeomWithData<Rectangle<[f64; 3]>, usize>;
 
-/// A tree prepared to be asked: which points, and which parts of a line, are material?
+/// A tree prepared for queries of which points, and which parts of a line, are material.
 #[derive(Debug)]
 pub struct RayOracle {
     leaves: Vec<Leaf>,
@@ -80,7 +82,7 @@ pub struct RayOracle {
     bounds: Aabb,
 }
 
-/// What one line needs, kept from line to line.
+/// Buffers for one line, reused for the next.
 #[derive(Debug)]
 struct Scratch {
     held: Vec<Held>,
@@ -98,7 +100,7 @@ impl Leaf {
         }
     }
 
-    /// The box in the part's frame.
+    /// The bounding box in the part's frame.
     fn bounds(&self) -> Aabb {
         let (lo, hi) = self.shape.bounds();
         let (lo, hi) = (Vector3::from(lo), Vector3::from(hi));
@@ -138,7 +140,7 @@ impl RayOracle {
         }
     }
 
-    /// A box that holds the material.
+    /// A box that contains the material.
     pub fn bounds(&self) -> &Aabb {
         &self.bounds
     }
@@ -151,7 +153,7 @@ impl RayOracle {
         }
     }
 
-    /// Whether a point is material; on the boundary, as rounding has it.
+    /// Whether a point is material. On the boundary rounding decides.
     pub fn contains(&self, point: &Point3<f64>) -> bool {
         let mut scratch = self.scratch();
         let at: [f64; 3] = (*point).into();
@@ -168,8 +170,8 @@ impl RayOracle {
         inside
     }
 
-    /// The intervals of a line's parameter in which it runs through material, in order. Gaps, then
-    /// slivers, no longer than `least` are closed.
+    /// The intervals of a line's parameter in which it is in material, in order. Gaps, then
+    /// slivers, of length up to `least` are closed.
     pub fn intervals(&self, ray: &Ray, least: f64) -> Vec<[f64; 2]> {
         let mut found = Vec::new();
         self.cross(ray, &mut self.scratch(), |span| found.push(span));
@@ -184,12 +186,12 @@ impl RayOracle {
         joined
     }
 
-    /// Hands the intervals of material along a line to `found`, in order.
+    /// Passes the intervals of material along a line to `found`, in order.
     fn cross(&self, ray: &Ray, scratch: &mut Scratch, mut found: impl FnMut([f64; 2])) {
         self.cross_leaves(ray, scratch, |ends| found(ends.map(|e| e.at)));
     }
 
-    /// The same with the primitives in which the intervals end.
+    /// The same, with the primitives at which the intervals end.
     fn cross_leaves(&self, ray: &Ray, scratch: &mut Scratch, mut found: impl FnMut([Event; 2])) {
         let Scratch {
             held,
@@ -225,7 +227,7 @@ impl RayOracle {
         }
     }
 
-    /// Puts a leaf in or out, and follows what changes up the tree; whether the root changes.
+    /// Enters or leaves a leaf, and updates its ancestors. Returns whether the root changes.
     fn flip(&self, held: &mut [Held], leaf: NodeId, enters: bool) -> bool {
         let (mut node, mut enters) = (leaf.index(), enters);
         while let Some(Above { parent, first }) = self.above[node] {
@@ -279,7 +281,7 @@ fn parents(tree: &Tree) -> Vec<Option<Above>> {
     above
 }
 
-/// The box of the root, from the leaves upwards.
+/// The bounding box of the root, computed from the leaves upwards.
 fn bounds(tree: &Tree, leaves: &[Leaf]) -> Aabb {
     let mut boxes = vec![Aabb::EMPTY; tree.nodes().len()];
     for leaf in leaves {
@@ -310,7 +312,7 @@ fn common(a: Aabb, b: Aabb) -> Aabb {
     both
 }
 
-/// Selects the boxes that a line passes through.
+/// Selects the boxes through which a line passes.
 struct Touches {
     origin: [f64; 3],
     direction: [f64; 3],
@@ -326,7 +328,7 @@ impl Touches {
 
     fn passes(&self, b: &AABB<[f64; 3]>) -> bool {
         let (lower, upper) = (b.lower(), b.upper());
-        // Grown by a little: a box is rounded, and a face in its side must not be missed.
+        // The box is enlarged slightly: it is rounded, and a face in its side must not be missed.
         let size = (0..3).fold(0.0, |s, i| lower[i].abs().max(upper[i].abs()).max(s));
         let slack = size * premio_kernel::number::predicates::ROUNDING;
         let mut range = [f64::NEG_INFINITY, f64::INFINITY];
@@ -344,7 +346,7 @@ impl SelectionFunction<LeafBox> for Touches {
     }
 }
 
-/// Whether an envelope holds nothing; the root of an empty index has such a one.
+/// Whether an envelope is empty, as that of the root of an empty index is.
 trait EmptyBox {
     fn is_empty_box(&self) -> bool;
 }

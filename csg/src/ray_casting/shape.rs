@@ -1,4 +1,4 @@
-//! The primitives in their own frames: which points they hold, and where a line crosses them.
+//! The primitives in their own frames: point membership and intersection with a line.
 
 use crate::primitive::Primitive;
 use nalgebra::Vector3;
@@ -23,7 +23,7 @@ pub(super) enum Shape {
     },
 }
 
-/// Keeps of `range` the part where `a + b t <= 0`; false where nothing is left.
+/// Clips `range` to the part where `a + b t <= 0`; returns false if it is empty.
 pub(super) fn clip(range: &mut [f64; 2], a: f64, b: f64) -> bool {
     if b > 0.0 {
         range[1] = range[1].min(-a / b);
@@ -60,7 +60,7 @@ impl Shape {
         }
     }
 
-    /// The box around it.
+    /// The bounding box.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         match *self {
             Self::Block(size) | Self::Wedge(size) => ([0.0; 3], size),
@@ -75,7 +75,7 @@ impl Shape {
         }
     }
 
-    /// Whether a point of its box is in it: negative where it is.
+    /// A function that is negative inside, for points of the bounding box.
     pub fn level(&self, p: &Vector3<f64>) -> f64 {
         match *self {
             Self::Block(_) => -1.0,
@@ -91,17 +91,17 @@ impl Shape {
         (0..3).all(|i| lo[i] <= p[i] && p[i] <= hi[i]) && self.level(p) <= 0.0
     }
 
-    /// Adds the intervals of t in which `o + t d` is in it, in order.
+    /// Adds the intervals of t in which `o + t d` is inside, in order.
     pub fn spans(&self, o: &Vector3<f64>, d: &Vector3<f64>, spans: &mut Vec<[f64; 2]>) {
         let (lo, hi) = self.bounds();
         let mut range = [f64::NEG_INFINITY, f64::INFINITY];
         let boxed = (0..3)
             .all(|i| clip(&mut range, lo[i] - o[i], -d[i]) && clip(&mut range, o[i] - hi[i], d[i]));
-        // A line of direction zero is inside for ever: no interval.
+        // A line of direction zero is either inside for all t or never: no interval.
         if !boxed || !(range[1] - range[0]).is_finite() {
             return;
         }
-        // From the middle of the box the numbers are of the primitive's own size.
+        // Relative to the middle of the box, numbers have the size of the primitive.
         let middle = 0.5 * (range[0] + range[1]);
         let half = 0.5 * (range[1] - range[0]);
         let c = o + d * middle;
@@ -125,7 +125,8 @@ impl Shape {
         }
     }
 
-    /// Adds the parameters in (-half, half) at which the line crosses the round or slanted surface.
+    /// Adds the parameters in (-half, half) at which the line crosses the curved or slanted
+    /// surface.
     fn crossings(&self, o: &Vector3<f64>, d: &Vector3<f64>, half: f64, cuts: &mut Vec<f64>) {
         let mut add = |t: f64| {
             if t > -half && t < half {
@@ -159,7 +160,7 @@ impl Shape {
     }
 }
 
-/// The real roots of a t² + 2 b t + c in increasing order; NaN where there is none.
+/// The real roots of a t² + 2 b t + c in increasing order; NaN if there are none.
 fn quadratic(a: f64, b: f64, c: f64) -> [f64; 2] {
     let discriminant = b * b - a * c;
     if discriminant < 0.0 {
@@ -189,8 +190,8 @@ fn torus_quartic(o: &Vector3<f64>, d: &Vector3<f64>, major: f64, minor: f64) -> 
     ]
 }
 
-/// The simple roots in (-half, half) of a function with the sign of the quartic `p`: the roots of
-/// each derivative separate those of the one before it, from the linear one up.
+/// The simple roots in (-half, half) of a function with the sign of the quartic `p`. The roots of
+/// each derivative separate those of the previous one, starting with the linear one.
 fn quartic_crossings(p: &[f64; 5], sign: &dyn Fn(f64) -> f64, half: f64) -> Vec<f64> {
     let mut roots: Vec<f64> = Vec::new();
     for degree in 1..=4 {
@@ -216,7 +217,7 @@ fn differentiated(p: &[f64; 5], times: usize) -> Vec<f64> {
     p
 }
 
-/// The place where `f` changes its sign between two points, to the last digit.
+/// The point between two others at which `f` changes sign, to the last digit.
 fn bisect(f: &dyn Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> Option<f64> {
     let rising = f(hi) > 0.0;
     if rising == (f(lo) > 0.0) {

@@ -1,4 +1,4 @@
-//! How many faces turned towards the eye lie before a point of a contour, by rays.
+//! Counts the faces turned towards the eye in front of a contour point, by ray casting.
 
 use super::{Ray, RayOracle};
 use nalgebra::{Point3, Vector3};
@@ -6,52 +6,53 @@ use premio_kernel::geometry::frame::Frame;
 use premio_kernel::number::predicates::ROUNDING;
 use std::f64::consts::TAU;
 
-/// How many neighbours must agree.
+/// The number of neighbouring lines of sight that must agree.
 const NEIGHBOURS: usize = 24;
 
-/// A face that lies close is looked at again with lines of sight that run this much closer, and is
-/// the point's own where it has come nearer by the other factor (by the root of the first on a
-/// limb, with room for a mixture of both).
+/// The factor by which neighbouring lines of sight are moved closer to re-examine a face close to
+/// the point. The face is the point's own if its distance decreases by the factor `DRAWN`. On a
+/// limb the distance decreases with the square root of the first factor; the second leaves room for
+/// a mixture of both cases.
 const CLOSER: f64 = 1.0 / 16.0;
 const DRAWN: f64 = 0.5;
 
-/// What has come nearer by less than this, more than a surface at an angle to the line of sight
-/// does, folds there.
+/// A face whose distance decreases by less than this factor, that is by less than that of a surface
+/// at an angle to the line of sight, folds there.
 const FOLDED: f64 = 1.0 / 8.0;
 
-/// How far things must be apart for rays to tell them apart, in the part's unit.
+/// The smallest distances that ray casting resolves, in the part's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// Gaps and slivers up to this length are none.
+    /// Gaps and slivers up to this length are ignored.
     pub sliver: f64,
-    /// A count holds where it is the same on the lines of sight this far aside.
+    /// A count is valid if it is the same on lines of sight at this lateral distance.
     pub lateral: f64,
-    /// How far a curve along which round surfaces meet may lie from where it is told: they touch by
-    /// the resolution, and cross next to that.
+    /// The error of the position of a curve in which curved surfaces intersect: they are tangent
+    /// within the resolution, and cross close to that curve.
     pub shift: f64,
     /// The part's size.
     pub size: f64,
 }
 
-/// What lines of sight tell of how a point of a contour is hidden.
+/// The result of ray casting about how a contour point is hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SightEvidence {
-    /// How often they all enter material between the eye and the point: its quantitative
-    /// invisibility.
+    /// The number of times that all lines of sight enter material between the eye and the point:
+    /// its quantitative invisibility.
     Count(u32),
-    /// The same, but a face of the point folds next to it, nearer than lines of sight can tell: before
-    /// a point that is not on the limb itself the fold may lie once more.
+    /// The count, where a face of the point folds closer to it than ray casting resolves. In front
+    /// of a point that is not on the limb itself, the fold may lie once more.
     Fold(u32),
-    /// They disagree: another contour is near, or a face is seen edge-on.
+    /// The counts differ: another contour is close, or a face is seen edge-on.
     Mixed,
-    /// A face that is not the point's own lies close before it.
+    /// Another face is close in front of the point.
     Close,
-    /// Material or gaps before it are too thin to count on: surfaces touch near by.
+    /// Material or gaps in front of the point are too thin: surfaces touch close to it.
     Thin,
 }
 
 impl Clearance {
-    /// The same with lines of sight that run this much closer.
+    /// The clearance with the lines of sight moved closer by a factor.
     pub fn closer(&self, by: f64) -> Self {
         Self {
             sliver: self.sliver * by,
@@ -62,11 +63,11 @@ impl Clearance {
 }
 
 impl RayOracle {
-    /// How often the lines of sight next to a point of a contour enter material between the eye
+    /// Counts how often the lines of sight close to a contour point enter material between the eye
     /// and the point.
     ///
-    /// `sight` gives the unit direction from a point to the eye, and how far the line of sight
-    /// reaches.
+    /// `sight` gives the unit direction from a point to the eye, and the length of the line of
+    /// sight.
     pub fn invisibility(
         &self,
         point: &Point3<f64>,
@@ -83,7 +84,7 @@ impl RayOracle {
         sight: impl Fn(&Point3<f64>) -> (Vector3<f64>, f64),
         clearance: &Clearance,
     ) -> Result<SightEvidence, SightEvidence> {
-        // Aside of a limb, its own surface lies this much nearer.
+        // At the lateral distance from a limb, its own surface is closer by this much.
         let depth = 2.0 * (clearance.lateral * clearance.size).sqrt();
         let (towards, length) = sight(point);
         if length <= depth {
@@ -96,25 +97,25 @@ impl RayOracle {
         }
         let count = entries(&own, depth, length);
         let frame = Frame::about(*point, towards);
-        // What is nearer than this is rounding on the point's own faces.
+        // Smaller distances are rounding on the point's own faces.
         let least = clearance.sliver * CLOSER * CLOSER;
         let mut folds = false;
         for k in 0..NEIGHBOURS {
             let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
-            let beside = |by: f64| {
+            let at_lateral = |by: f64| {
                 let origin = frame.point(by * cos, by * sin, 0.0);
                 let (towards, length) = sight(&origin);
                 Ok((self.along(&origin, towards, clearance)?, length))
             };
-            let (lateral, length) = beside(clearance.lateral)?;
+            let (lateral, length) = at_lateral(clearance.lateral)?;
             if entries(&lateral, depth, length) != count {
                 return Err(SightEvidence::Mixed);
             }
-            // The point's own faces draw near with the line of sight, another one does not, however
-            // close it lies.
+            // The distance to the point's own faces decreases as the line of sight approaches the
+            // point; that to another face does not, however close it is.
             let close = first_exit(&lateral, least);
             if close < depth {
-                let (closer, _) = beside(clearance.lateral * CLOSER)?;
+                let (closer, _) = at_lateral(clearance.lateral * CLOSER)?;
                 let drawn = first_exit(&closer, 0.0);
                 if drawn >= close * DRAWN {
                     return Err(SightEvidence::Close);
@@ -128,8 +129,8 @@ impl RayOracle {
         })
     }
 
-    /// The material along a line of sight, where no gaps or slivers that are more than rounding
-    /// are too short to count on: next to where two surfaces touch.
+    /// The material along a line of sight. Fails if gaps or slivers longer than rounding are too
+    /// short to be reliable, as they are where two surfaces touch.
     fn along(
         &self,
         origin: &Point3<f64>,
@@ -153,7 +154,7 @@ impl RayOracle {
     }
 }
 
-/// Where the material beyond `from` first ends.
+/// The first end of material beyond `from`.
 fn first_exit(intervals: &[[f64; 2]], from: f64) -> f64 {
     let ends = intervals.iter().map(|i| i[1]).filter(|end| *end > from);
     ends.fold(f64::INFINITY, f64::min)

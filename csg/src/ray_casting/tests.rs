@@ -55,7 +55,7 @@ fn volumes_of_operations() {
     assert_volume("P = SPH(R=2) DIF SPH(R=1)", 28.0 / 3.0 * PI);
 }
 
-/// Small balls, two of them in the box: rays through the box of all meet none.
+/// Small balls, two of them in the box: rays through the box of all of them hit none.
 #[test]
 fn small_parts_of_large_trees_are_measured() {
     let balls = material(
@@ -72,7 +72,7 @@ fn small_parts_of_large_trees_are_measured() {
     assert!(about.standard_error < 1e-2 * ball, "{about:?}");
 }
 
-/// What lies in a box and what does not is the whole.
+/// The parts inside and outside a box add up to the whole.
 #[test]
 fn volumes_about_a_box_are_whole() {
     let part = material("P = CYL(R=2, H=3) DIF SPH(R=1)");
@@ -117,9 +117,9 @@ fn lines_through_a_torus() {
     let torus = material("P = TOR(RMAJ=3, RMIN=1)");
     let across = torus.intervals(&ray([-10.0, 0.0, 0.0], [1.0, 0.0, 0.0]), 0.0);
     assert_intervals(&across, &[[6.0, 8.0], [12.0, 14.0]]);
-    let beside = torus.intervals(&ray([2.5, 0.0, 0.0], [0.0, 1.0, 0.0]), 0.0);
+    let off_centre = torus.intervals(&ray([2.5, 0.0, 0.0], [0.0, 1.0, 0.0]), 0.0);
     let far = (16.0f64 - 6.25).sqrt();
-    assert_intervals(&beside, &[[-far, far]]);
+    assert_intervals(&off_centre, &[[-far, far]]);
     let above = torus.intervals(&ray([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]), 0.0);
     assert_intervals(&above, &[]);
     let tube = torus.intervals(&ray([3.0, 0.0, 5.0], [0.0, 0.0, -2.0]), 0.0);
@@ -162,7 +162,7 @@ fn gaps_are_closed() {
     assert_intervals(&part.intervals(&line, 0.01), &[[1.0, 3.001]]);
 }
 
-/// What lies before a point of a part of the given size, seen from far above.
+/// The faces in front of a point of a part of the given size, seen from far above.
 fn from_above(part: &RayOracle, size: f64, point: [f64; 3]) -> SightEvidence {
     let up = |_: &Point3<f64>| (Vector3::z(), f64::INFINITY);
     let clearance = Clearance {
@@ -193,7 +193,7 @@ fn faces_before_a_point() {
 fn a_fold_next_to_a_point_is_not_told_from_its_own() {
     let part = material("P = CYL(R=1, H=2) AT (ROTY=90)");
     let count = |x, y, z| from_above(&part, 4.0, [x, y, z]);
-    // On the limb; 1e-18 aside of it in the image, below it; well below it; on top.
+    // On the limb; 1e-18 from it in the image, below it; well below it; on top.
     assert_eq!(count(1.0, 1.0, 0.0), SightEvidence::Fold(0));
     assert_eq!(count(1.0, 1.0, -1e-9), SightEvidence::Fold(0));
     assert_eq!(count(1.0, 0.8, -0.6), SightEvidence::Count(1));

@@ -1,4 +1,4 @@
-//! The volume by rays: the mean length of material on parallel lines.
+//! The volume by ray casting: the mean length of material on parallel lines.
 
 use super::shape::clip;
 use super::{Ray, RayOracle};
@@ -8,7 +8,7 @@ use premio_kernel::geometry::frame::Frame;
 use premio_kernel::random::Random;
 use std::f64::consts::{PI, SQRT_2};
 
-/// A measured value.
+/// A measured value with its standard error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// The value.
@@ -18,7 +18,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// How many standard errors a value is away; none where it is as near as `rounding`.
+    /// The deviation of a value in standard errors; zero if it is within `rounding`.
     pub fn deviation(&self, value: f64, rounding: f64) -> f64 {
         let off = (value - self.value).abs();
         if off <= rounding {
@@ -28,31 +28,31 @@ impl Estimate {
     }
 }
 
-/// How many independent grids the rays are dealt to: their scatter gives the error.
+/// The number of independent grids among which the rays are divided; their scatter gives the error.
 const GRIDS: usize = 32;
 
-/// The plastic number's powers, by which Roberts's sequence steps through the unit square.
+/// Powers of the plastic number, the steps of Roberts's sequence in the unit square.
 const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
 
 impl RayOracle {
-    /// The volume by about `rays` rays along a direction in general position: low-discrepancy
-    /// grids at random places, which `seed` chooses.
+    /// The volume by about `rays` rays in a direction of general position. The rays form
+    /// low-discrepancy grids at random offsets, which `seed` determines.
     pub fn volume(&self, rays: usize, seed: u64) -> Estimate {
         let length = |_: &Ray, [lo, hi]: [f64; 2]| hi - lo;
         self.measured(&self.bounds, length, rays, seed)
     }
 
-    /// The same, with as many rays for what lies in a box as for what does not: a small part of a
-    /// large tree is missed otherwise.
+    /// The volume, with half of the rays for the part inside a box. Otherwise a small part of a
+    /// large tree is missed.
     pub fn volume_about(&self, part: &Aabb, rays: usize, seed: u64) -> Estimate {
         let within = |ray: &Ray, span: [f64; 2]| {
             let mut inside = span;
-            let met = (0..3).all(|i| {
+            let hits = (0..3).all(|i| {
                 let (from, along) = (ray.origin[i], ray.direction[i]);
                 clip(&mut inside, part.min[i] - from, -along)
                     && clip(&mut inside, from - part.max[i], along)
             });
-            if met { inside[1] - inside[0] } else { 0.0 }
+            if hits { inside[1] - inside[0] } else { 0.0 }
         };
         let beyond = |ray: &Ray, span: [f64; 2]| span[1] - span[0] - within(ray, span);
         let near = self.measured(part, within, rays, seed);
@@ -63,7 +63,7 @@ impl RayOracle {
         }
     }
 
-    /// The integral of a length along rays through a box, of each span of material.
+    /// The integral, over rays through a box, of a function of each interval of material.
     fn measured(
         &self,
         bounds: &Aabb,
@@ -100,9 +100,9 @@ impl RayOracle {
 }
 
 impl RayOracle {
-    /// The box around all places where about `rays` parallel rays enter or leave material: no
-    /// larger than the part's own. Spans up to `least` long are none: where faces of primitives
-    /// coincide, they are rounding.
+    /// The box around all points where about `rays` parallel rays enter or leave material. It is
+    /// never larger than the part's own box. Intervals of length up to `least` are ignored: they
+    /// are rounding where faces of primitives coincide.
     pub fn extent(&self, rays: usize, least: f64) -> Aabb {
         let mut extent = Aabb::EMPTY;
         if self.bounds.min[0] > self.bounds.max[0] {
@@ -123,7 +123,7 @@ impl RayOracle {
     }
 }
 
-/// A rectangle across the direction of the rays that a whole box is behind.
+/// A rectangle perpendicular to the direction of the rays that covers a box.
 struct Window {
     frame: Frame,
     min: [f64; 2],
@@ -132,7 +132,7 @@ struct Window {
 
 impl Window {
     fn around(bounds: &Aabb) -> Self {
-        // No turn of a whole number of degrees brings an axis to this direction.
+        // No rotation by a whole number of degrees maps an axis to this direction.
         let direction = Vector3::new(1.0, SQRT_2, PI).normalize();
         let frame = Frame::about(bounds.centre(), direction);
         let half = Vector3::from_fn(|i, _| 0.5 * (bounds.max[i] - bounds.min[i]));

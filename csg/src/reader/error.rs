@@ -1,36 +1,36 @@
-//! What is wrong with a text, and where.
+//! Reading errors, and their positions in the text.
 
 use premio_text::{LineColumn, nearest};
 use std::fmt;
 use std::ops::Range;
 
-/// Whether the text is wrong, or right and beyond a stated limit.
+/// Whether the text is invalid, or valid and beyond a stated limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The text does not mean a solid.
+    /// The text does not describe a solid.
     Input,
-    /// The text means a solid, but one beyond a stated limit.
+    /// The text describes a solid that exceeds a stated limit.
     Limit,
 }
 
 /// Why a text was not read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadError {
-    /// What the text is called, as given to the reader.
+    /// The name of the text, as given to the reader.
     pub name: Box<str>,
-    /// Wrong input or a stated limit.
+    /// Invalid input, or a stated limit.
     pub kind: ErrorKind,
-    /// The place in the text, in bytes.
+    /// The position in the text, in bytes.
     pub span: Range<usize>,
     /// The line, from 1.
     pub line: usize,
     /// The column in characters, from 1.
     pub column: usize,
-    /// What stands there.
+    /// What was found.
     pub found: Box<str>,
-    /// What should stand there.
+    /// What was expected.
     pub expected: Box<str>,
-    /// What to do about it.
+    /// How to fix it.
     pub help: Option<Box<str>>,
 }
 
@@ -57,7 +57,7 @@ impl fmt::Display for ReadError {
 
 impl std::error::Error for ReadError {}
 
-/// An error before its line is known.
+/// An error whose line is not yet known.
 #[derive(Debug, Clone)]
 pub(super) struct SpannedError {
     kind: ErrorKind,
@@ -68,7 +68,7 @@ pub(super) struct SpannedError {
 }
 
 impl SpannedError {
-    /// The text is wrong here.
+    /// The text is invalid here.
     pub(super) fn input(
         span: Range<usize>,
         found: impl Into<String>,
@@ -84,7 +84,7 @@ impl SpannedError {
         }
     }
 
-    /// The text goes beyond a stated limit here.
+    /// The text exceeds a stated limit here.
     pub(super) fn limit(
         span: Range<usize>,
         found: impl Into<String>,
@@ -96,7 +96,7 @@ impl SpannedError {
         }
     }
 
-    /// Adds what to do about it.
+    /// Adds advice on how to fix it.
     pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self {
             help: Some(help.into()),
@@ -104,7 +104,7 @@ impl SpannedError {
         }
     }
 
-    /// Adds the name that was perhaps meant, if one is near.
+    /// Adds the name that was probably meant, if one is similar.
     pub(super) fn suggest<'a>(self, word: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         match nearest(word, known) {
             Some(near) => self.help(format!("did you mean `{near}`?")),

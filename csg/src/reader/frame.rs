@@ -1,7 +1,7 @@
-//! Directions and edges, as vectors in a text, as exact turns and lengths.
+//! Converts directions and edges, given as vectors in a text, to exact rotations and lengths.
 //!
-//! Exact where the lengths are rational; else the nearest that f64 values tell, so that a turn stays
-//! rigid.
+//! They are exact if the lengths are rational. Otherwise they are the nearest to f64 precision,
+//! such that a rotation stays rigid.
 
 use premio_kernel::motion::{Motion, RationalMatrix};
 use premio_kernel::number::rational::{Rational, exact_sqrt, from_f64, to_f64};
@@ -29,8 +29,8 @@ pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
 }
 
-/// The length of a vector: exact where it is rational, else the nearest that a double tells;
-/// `None` beyond the range of f64 values, and for zero.
+/// The length of a vector: exact if it is rational, otherwise to f64 precision. `None` for zero and
+/// beyond the range of f64.
 pub(super) fn length(vector: &Vector) -> Option<Rational> {
     let square = dot(vector, vector);
     if square.is_zero() {
@@ -42,10 +42,10 @@ pub(super) fn length(vector: &Vector) -> Option<Rational> {
     })
 }
 
-/// Where an axis points, and how long it is.
+/// The direction and the length of an axis.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
-    /// The turn that takes z to it.
+    /// The rotation that maps z to it.
     pub(super) turn: Transform,
     pub(super) length: Rational,
 }
@@ -59,7 +59,7 @@ impl Axis {
     }
 }
 
-/// The turn by quarters that takes z to a vector along a coordinate axis.
+/// The quarter turns that map z to a vector along a coordinate axis.
 fn quarter([x, y, z]: &Vector) -> Option<Transform> {
     let negative = |value: &Rational| *value < Rational::ZERO;
     let turn = |axis: [i32; 3], degrees: i32| {
@@ -75,8 +75,8 @@ fn quarter([x, y, z]: &Vector) -> Option<Transform> {
     }
 }
 
-/// The shortest turn that takes z, or first -z, to a vector: about the cross product of the two,
-/// which with the scalar product is the quaternion of half the angle.
+/// The shortest rotation that maps z, or -z first, to a vector. It is about the cross product of
+/// the two, which with the dot product is the quaternion of half the angle.
 fn oblique([x, y, z]: &Vector, length: &Rational) -> Option<Transform> {
     let zero = Rational::ZERO;
     if *z >= zero {
@@ -96,18 +96,18 @@ fn moves(step: TransformStep) -> Option<Transform> {
     Some(moves)
 }
 
-/// Three edges at right angles, right-handed.
+/// Three perpendicular edges, right-handed.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
-    /// The turn that takes x, y and z to them.
+    /// The rotation that maps x, y and z to them.
     pub(super) turn: Transform,
     pub(super) lengths: [Rational; 3],
-    /// How far unit vectors along them are from those written.
+    /// The largest difference between unit vectors along the edges used and those written.
     pub(super) residual: f64,
 }
 
 impl Frame {
-    /// The frame of three edges; `None` unless they are at right angles, up to the rounding of a
+    /// The frame of three edges; `None` unless they are perpendicular, up to the rounding of a
     /// text, and right-handed.
     pub(super) fn new(edges: &[Vector; 3]) -> Option<Self> {
         let [a, b, c] = edges.each_ref().map(length);
@@ -131,7 +131,7 @@ impl Frame {
     }
 }
 
-/// The turn of a matrix that is exactly orthogonal.
+/// The rotation of an exactly orthogonal matrix.
 fn exact(matrix: &RationalMatrix) -> Option<Transform> {
     Transform::quarter_turns(matrix).or_else(|| {
         Motion::from_matrix(matrix.clone(), [0, 0, 0].map(Rational::from))?;
@@ -142,8 +142,8 @@ fn exact(matrix: &RationalMatrix) -> Option<Transform> {
     })
 }
 
-/// The quaternion of a rotation matrix, times four times each of its own components in turn: one
-/// of them is not zero.
+/// The quaternion of a rotation matrix, multiplied by four times each of its components in turn. At
+/// least one of these is not zero.
 fn quaternions(m: &RationalMatrix) -> [[Rational; 4]; 4] {
     let sum = |i: usize, j: usize| &m[i][j] + &m[j][i];
     let wedge = |i: usize, j: usize| &m[i][j] - &m[j][i];

@@ -1,4 +1,4 @@
-//! The words of the languages, each with its place in the text.
+//! The tokens of the languages, each with its span in the text.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use winnow::token::{any, none_of, one_of, take_till, take_until, take_while};
 use super::error::SpannedError;
 use premio_text::escape::quote;
 
-/// What sets the languages apart before grammar.
+/// The lexical differences between the languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dialect {
-    /// `#` comments; the end of a line counts.
+    /// `#` comments; line ends are significant.
     Padl,
     /// `//` and `/* */` comments.
     Scad,
     /// No comments.
     Json,
-    /// `//` comments and `/* */` comments, also one inside another; more symbols.
+    /// `//` comments and nested `/* */` comments; more symbols.
     Pov,
 }
 
@@ -36,7 +36,7 @@ pub(super) enum Token {
     End,
 }
 
-/// A word and its place.
+/// A token and its span.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Lexeme {
     pub(super) token: Token,
@@ -79,9 +79,9 @@ fn name<'a>(input: &mut &'a str) -> Plain<&'a str> {
 }
 
 fn quoted<'a>(input: &mut &'a str) -> Plain<&'a str> {
-    let plain = none_of(['"', '\\', '\n']).void();
+    let unescaped = none_of(['"', '\\', '\n']).void();
     let escaped = ('\\', any).void();
-    let inside = repeat::<_, _, (), _, _>(0.., alt((plain, escaped)));
+    let inside = repeat::<_, _, (), _, _>(0.., alt((unescaped, escaped)));
     ('"', inside, '"').take().parse_next(input)
 }
 
@@ -104,7 +104,7 @@ fn comment<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<()> {
     }
 }
 
-/// A comment that may have comments in it.
+/// A comment that may contain comments.
 fn nested_comment(input: &mut &str) -> Plain<()> {
     let rest = "/*".parse_next(input).map(|_| *input)?;
     let mut depth = 1usize;
@@ -150,7 +150,7 @@ fn word(dialect: Dialect, input: &mut &str) -> Plain<Token> {
     .parse_next(input)
 }
 
-/// All words of a text, the last of them [`Token::End`].
+/// All tokens of a text, the last of which is [`Token::End`].
 fn lex(source: &str, dialect: Dialect) -> Result<Vec<Lexeme>, SpannedError> {
     let mut rest = source.strip_prefix('\u{feff}').unwrap_or(source);
     let mut lexemes = Vec::new();
@@ -166,7 +166,7 @@ fn lex(source: &str, dialect: Dialect) -> Result<Vec<Lexeme>, SpannedError> {
             });
             return Ok(lexemes);
         }
-        // What is left of a comment has no end; its first two characters are symbols, too.
+        // The rest of a comment that has no end; its first two characters are symbols, too.
         let comments = matches!(dialect, Dialect::Scad | Dialect::Pov);
         if comments && rest.starts_with("/*") {
             return Err(unreadable(source, start));
@@ -202,7 +202,7 @@ fn unreadable(source: &str, start: usize) -> SpannedError {
     )
 }
 
-/// A place among the words of a text.
+/// A position among the tokens of a text.
 pub(super) struct Cursor<'a> {
     source: &'a str,
     lexemes: Vec<Lexeme>,
@@ -252,7 +252,7 @@ impl<'a> Cursor<'a> {
         self.source.get(lexeme.span()).unwrap_or_default()
     }
 
-    /// The error that something else should stand in a word's place.
+    /// The error that something else is expected in place of a token.
     pub(super) fn unexpected(&self, lexeme: Lexeme, expected: impl Into<String>) -> SpannedError {
         let found = match lexeme.token {
             Token::End => "the end of the file".to_owned(),
@@ -262,7 +262,7 @@ impl<'a> Cursor<'a> {
         SpannedError::input(lexeme.span(), found, expected)
     }
 
-    /// Takes a symbol, or says what it was expected for.
+    /// Takes a symbol, or reports what it was expected for.
     pub(super) fn expect(&mut self, symbol: char, what_for: &str) -> Result<Lexeme, SpannedError> {
         let lexeme = self.next();
         if lexeme.is(symbol) {

@@ -1,7 +1,7 @@
-//! Readers of the description languages: text in, tree out.
+//! Readers of the description languages, from text to tree.
 //!
-//! Nothing here touches files. Every error has its place in the text, and no text, however deep
-//! its brackets, makes a reader overflow the stack.
+//! Nothing here accesses files. Every error has its position in the text. No text, however deeply
+//! nested, can overflow a reader's stack.
 
 mod brlcad;
 mod error;
@@ -45,7 +45,7 @@ impl Format {
     /// All languages.
     pub const ALL: [Self; 5] = [Self::Padl, Self::Csg, Self::Json, Self::Asc, Self::Pov];
 
-    /// The language that a file's ending says; `None` for another ending.
+    /// The language with a file name's extension; `None` for another extension.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
         let ending = path.as_ref().extension()?.to_str()?;
         match ending.to_ascii_lowercase().as_str() {
@@ -58,7 +58,7 @@ impl Format {
         }
     }
 
-    /// The ending of its files.
+    /// The extension of its files.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Padl => "padl",
@@ -70,57 +70,58 @@ impl Format {
     }
 }
 
-/// How to read.
+/// How a description is read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReadOptions {
     /// Reads a `.csg` primitive with a small `$fn` as the smooth one.
     pub smooth: bool,
-    /// The part to read from a text in which parts have names; if absent, of `.padl` the last
-    /// solid assigned, of `.asc` the one object that no other holds, of `.pov` the whole scene.
+    /// The name of the part to read, for languages in which parts have names. By default it is the
+    /// last solid assigned in `.padl`, the only object that no other contains in `.asc`, and the
+    /// whole scene in `.pov`.
     pub part: Option<String>,
 }
 
-/// Something the author may want to know, and its place in the text in bytes.
+/// A remark for the author, and its span in the text in bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
-    /// What there is to know.
+    /// The remark.
     pub text: String,
-    /// The place.
+    /// The span.
     pub span: Range<usize>,
 }
 
-/// What was read.
+/// The result of reading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
     /// The solid.
     pub tree: Tree,
-    /// The noise of the coordinates relative to their size, where the text holds rounded
-    /// numbers that had to be replaced; `None` for exact numbers.
+    /// The noise of the coordinates relative to their size, if rounded numbers of the text had to
+    /// be replaced; `None` if all numbers are exact.
     pub digits: Option<f64>,
-    /// What the author may want to know.
+    /// The remarks for the author.
     pub notes: Vec<Note>,
 }
 
-/// A part as it was written: by its operations and motions, with nothing copied.
+/// A part as it was written, by its operations and motions, without copies.
 #[derive(Debug)]
 pub struct Program {
     /// The parts of the text.
     pub builder: Builder,
-    /// The one that was requested.
+    /// The requested part.
     pub part: SolidId,
     /// The noise of the coordinates; see [`Description::digits`].
     pub digits: Option<f64>,
-    /// What the author may want to know.
+    /// The remarks for the author.
     pub notes: Vec<Note>,
-    /// Where the part stands in the text.
+    /// The span of the part in the text.
     span: Range<usize>,
 }
 
 impl Program {
-    /// The tree of the part. `name` and `bytes` are those that were read.
+    /// The tree of the part. `name` and `bytes` must be those that were read.
     ///
     /// # Errors
-    /// The tree is beyond a limit; the error has the place of the part in the text.
+    /// The tree exceeds a limit; the error has the position of the part in the text.
     ///
     /// # Examples
     ///
@@ -143,7 +144,7 @@ impl Program {
         })
     }
 
-    /// The tree of the part; a tree beyond its limits is pointed at as a whole.
+    /// The tree of the part. If it exceeds a limit, the error points at the whole part.
     fn description(self) -> Result<Description, SpannedError> {
         Ok(Description {
             tree: self.finished()?,
@@ -153,7 +154,7 @@ impl Program {
     }
 }
 
-/// Reads a description. `name` is what messages call it.
+/// Reads a description. `name` is used in messages.
 pub fn read(
     name: &str,
     bytes: &[u8],
@@ -165,7 +166,7 @@ pub fn read(
         .map_err(|fault| fault.locate(name, bytes))
 }
 
-/// Reads a description as far as it is written again. `name` is what messages call it.
+/// Reads a description in a form that can be written again. `name` is used in messages.
 pub fn parse(
     name: &str,
     bytes: &[u8],
@@ -190,7 +191,7 @@ fn parse_bytes(
         )
     })?;
     if options.part.is_some() && matches!(format, Format::Csg | Format::Json) {
-        let found = "a part asked for by name";
+        let found = "a part requested by name";
         let expected = "a `.padl`, `.asc` or `.pov` file, in which parts have names";
         return Err(SpannedError::input(0..0, found, expected));
     }

@@ -1,25 +1,24 @@
-//! What the author may want to know, and how much a text's numbers had to be changed.
+//! Remarks for the author, and the noise of a text's numbers.
 
 use std::ops::Range;
 
 use super::Note;
 
-/// Collects notes; of many of one kind the first.
+/// Collects remarks; of many of the same kind it keeps the first.
 #[derive(Debug)]
 pub(super) struct Notes {
     notes: Vec<Note>,
     passed_over: usize,
-    /// The noise that any number that is replaced tells of.
+    /// The noise implied by any number that is replaced.
     least: f64,
     digits: Option<f64>,
 }
 
 impl Notes {
-    /// More than this many notes of one kind nobody reads.
+    /// The number of remarks of one kind that are kept.
     const MOST: usize = 100;
 
-    /// No notes yet, of a text whose numbers, where any has to be replaced, are as inexact as
-    /// `least`.
+    /// No remarks yet. `least` is the noise of the text's numbers, should any have to be replaced.
     pub(super) fn of_digits(least: f64) -> Self {
         Self {
             notes: Vec::new(),
@@ -29,13 +28,14 @@ impl Notes {
         }
     }
 
-    /// Something to know.
+    /// Adds a remark.
     pub(super) fn add(&mut self, text: impl Into<String>, span: Range<usize>) {
         let text = text.into();
         self.notes.push(Note { text, span });
     }
 
-    /// A turn was replaced by an exact one, entries changing by up to `residual`.
+    /// Records that a rotation was replaced by an exact one, with entries changed by up to
+    /// `residual`.
     pub(super) fn snapped(&mut self, residual: f64, span: Range<usize>) {
         let digits = self.digits.unwrap_or(self.least);
         self.digits = Some(digits.max(residual));
@@ -48,11 +48,14 @@ impl Notes {
         self.add(text, span);
     }
 
-    /// The noise of the coordinates, if any, and all notes.
+    /// The noise of the coordinates, if any, and all remarks.
     pub(super) fn finish(mut self) -> (Option<f64>, Vec<Note>) {
         if let (Some(last), 1..) = (self.notes.last(), self.passed_over) {
             let span = last.span.clone();
-            self.add(format!("{} more were read so", self.passed_over), span);
+            self.add(
+                format!("{} more were read in the same way", self.passed_over),
+                span,
+            );
         }
         (self.digits, self.notes)
     }

@@ -1,4 +1,4 @@
-//! Numbers in texts: exact, and of bounded length.
+//! Exact numbers of bounded length.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::error::SpannedError;
 use crate::primitive::PrimitiveError;
 use premio_text::escape::quote;
 
-/// The longest number that arithmetic in a description may make, in bits.
+/// The longest number that arithmetic in a description may produce, in bits.
 pub(super) const MAX_BITS: usize = 1 << 13;
 
 /// The exact value of a decimal literal.
@@ -27,7 +27,7 @@ pub(super) fn literal(text: &str, span: Range<usize>) -> Result<Rational, Spanne
     })
 }
 
-/// Refuses a number that has grown too long.
+/// Refuses a number that is too long.
 pub(super) fn check_length(value: Rational, span: Range<usize>) -> Result<Rational, SpannedError> {
     let length = bits(&value);
     if length > MAX_BITS {
@@ -41,7 +41,7 @@ pub(super) fn check_length(value: Rational, span: Range<usize>) -> Result<Ration
     Ok(value)
 }
 
-/// A number for a message.
+/// A number as shown in a message.
 pub(super) fn show(value: &Rational) -> String {
     if value.is_int() && bits(value) <= 64 {
         format!("the value {value}")
@@ -50,7 +50,7 @@ pub(super) fn show(value: &Rational) -> String {
     }
 }
 
-/// The error that a length makes no primitive.
+/// The error that a length is invalid for a primitive.
 pub(super) fn bad_length(
     error: PrimitiveError,
     value: Option<&Rational>,

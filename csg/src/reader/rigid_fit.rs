@@ -1,7 +1,7 @@
-//! The rigid placement that a matrix of six-digit decimals stands for.
+//! Finds the rigid placement that a matrix of six-digit decimals represents.
 //!
-//! Notation: `A` the matrix as written, `S` the mirror `y -> -y`, `R` an exact rotation with
-//! `A = R` or `A = R S` up to the rounding of the file.
+//! Notation: `A` the matrix as written, `S` the mirror `y -> -y`, `R` an exact rotation with `A =
+//! R` or `A = R S` up to the rounding of the file.
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use premio_kernel::motion::RationalMatrix;
@@ -9,20 +9,21 @@ use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
 use crate::transform::{Transform, TransformStep};
 
-/// How far, entry by entry, a matrix may be from the rotation it stands for.
+/// The largest difference between an entry of a matrix and that of the rotation it represents.
 // Programs write six digits: 5e-7 an entry, and a few times that after products of matrices.
 pub(super) const MAX_RESIDUAL: f64 = 2e-5;
 
-/// An entry this near to a whole number comes from a sine or cosine of a quarter turn.
+/// The distance from an integer within which an entry is the sine or cosine of a quarter turn.
 const NEAR_WHOLE: f64 = 1e-12;
 
-/// The rounding of a turn's entry, where numbers are written with six digits or fewer.
+/// The rounding of a rotation's entry if numbers are written with six digits or fewer.
 const SIX_DIGITS: f64 = 1.1e-6;
 
-/// The rounding of a turn's entry, where it was computed and written with all digits of a double.
+/// The rounding of a rotation's entry if it was computed and written with all digits of an f64.
 const ALL_DIGITS: f64 = 1e-15;
 
-/// `p -> R S p + t` or `p -> R p + t`, and how far its matrix is from the one written.
+/// `p -> R S p + t` or `p -> R p + t`, and the largest difference between its matrix and the one
+/// written.
 #[derive(Debug, Clone)]
 pub(super) struct Placement {
     pub(super) moves: Transform,
@@ -32,11 +33,11 @@ pub(super) struct Placement {
     full: bool,
 }
 
-/// What is less than this changes a matrix of f64 values by their rounding only.
+/// Smaller differences are only the rounding of f64 entries.
 pub(super) const F64_DIGITS: f64 = 1e-12;
 
 impl Placement {
-    /// The placement that moves nothing.
+    /// The identity placement.
     pub(super) fn identity() -> Self {
         Self {
             moves: Transform::new(),
@@ -46,8 +47,8 @@ impl Placement {
         }
     }
 
-    /// Whether the matrix stands for another than the one that is written: a file of six digits has
-    /// lost those of its offsets, too.
+    /// Whether the matrix differs from the one that is written. A file of six digits has lost
+    /// digits of its offsets, too.
     pub(super) fn replaces(&self) -> bool {
         match self.full {
             true => self.residual > F64_DIGITS,
@@ -71,10 +72,10 @@ impl Placement {
     }
 }
 
-/// Why a matrix is no rigid placement.
+/// Why a matrix is not a rigid placement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum NotRigid {
-    /// The same factor in all directions.
+    /// A uniform scale by this factor.
     Scaled(f64),
     /// Lengths or angles change.
     Distorted,
@@ -120,7 +121,7 @@ fn distance(a: &RationalMatrix, b: &RationalMatrix) -> f64 {
 }
 
 fn check_rigid(matrix: &Matrix3<f64>) -> Result<(), NotRigid> {
-    // A product of two columns f64 values the error of an entry, and adds three of them.
+    // A product of two columns doubles the error of an entry, and adds three of them.
     let gram = matrix.transpose() * matrix;
     let far = |target: f64| (gram - Matrix3::identity() * target).amax();
     if far(1.0) <= 6.0 * MAX_RESIDUAL {
@@ -133,16 +134,16 @@ fn check_rigid(matrix: &Matrix3<f64>) -> Result<(), NotRigid> {
     Err(NotRigid::Distorted)
 }
 
-/// The digits of most files.
+/// The number of digits in most files.
 const FEW: i32 = 6;
 
-/// How far an entry may be from a sine or cosine, by the digits that the entries are written with.
+/// The largest distance of an entry from a sine or cosine, for the number of digits written.
 fn rounding(digits: i32) -> f64 {
     let beyond = digits.max(FEW) - FEW;
     ALL_DIGITS.max(SIX_DIGITS * 0.1f64.powi(beyond))
 }
 
-/// The number of digits of a decimal from the first that is not zero, to seventeen at the most.
+/// The number of significant digits of a decimal, at most seventeen.
 fn significant_digits(value: &Rational) -> i32 {
     const MOST: i32 = 17;
     let ten = Rational::from(10);
@@ -151,7 +152,7 @@ fn significant_digits(value: &Rational) -> i32 {
     } else {
         value.clone()
     };
-    // Entries are at most one, or nearly so; what is much smaller is noise.
+    // Entries are at most about one; much smaller ones are noise.
     let mut digits = 0;
     while digits < MOST && !magnitude.is_int() {
         magnitude *= &ten;
@@ -183,7 +184,7 @@ fn quarter_turns(matrix: &Matrix3<f64>) -> Option<Transform> {
     Transform::quarter_turns(&[0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))))
 }
 
-/// A turn about a coordinate axis by a multiple of a quarter degree, if that explains all digits.
+/// A rotation about a coordinate axis by a multiple of a quarter degree, if it explains all digits.
 fn whole_angle(matrix: &Matrix3<f64>, rounding: f64) -> Option<TransformStep> {
     const STEPS: f64 = 4.0;
     let axis = (0..3).find(|&k| (matrix[(k, k)] - 1.0).abs() <= NEAR_WHOLE)?;
@@ -196,7 +197,7 @@ fn whole_angle(matrix: &Matrix3<f64>, rounding: f64) -> Option<TransformStep> {
     explained.then_some(step)
 }
 
-/// The rotation of the quaternion that is nearest to a matrix.
+/// The rotation of the quaternion closest to a matrix.
 fn general(matrix: &Matrix3<f64>) -> Option<TransformStep> {
     let rotation = Rotation3::from_matrix_unchecked(orthogonal_factor(matrix)?);
     let quaternion: Quaternion<f64> = UnitQuaternion::from_rotation_matrix(&rotation).into_inner();
@@ -205,8 +206,8 @@ fn general(matrix: &Matrix3<f64>) -> Option<TransformStep> {
     Some(TransformStep::Quaternion([w?, x?, y?, z?]))
 }
 
-/// The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986).
-/// A matrix this close to orthogonal needs two steps; zeros stay zeros.
+/// The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986). A matrix
+/// so close to orthogonal needs two steps; zeros stay zeros.
 fn orthogonal_factor(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let mut factor = *matrix;
     for _ in 0..4 {

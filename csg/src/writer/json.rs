@@ -1,4 +1,4 @@
-//! `.json`: the tree as it is.
+//! `.json`: the tree itself.
 
 use premio_kernel::number::rational::{Rational, whole};
 
@@ -43,7 +43,7 @@ fn step(step: &TransformStep) -> String {
 }
 
 impl Json {
-    /// The transform, where there is one, and the end of the object.
+    /// The transform, if there is one, and the end of the object.
     fn place(&mut self, steps: &[TransformStep]) {
         if !steps.is_empty() {
             let all: Vec<String> = steps.iter().map(step).collect();
@@ -65,7 +65,7 @@ impl Language for Json {
         self.place(steps);
     }
 
-    /// Nothing has a name here.
+    /// JSON has no names.
     fn name(&mut self, _: usize, _: &[TransformStep]) {}
 
     fn open(&mut self, op: Operation, _: &[TransformStep]) {

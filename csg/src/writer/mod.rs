@@ -1,8 +1,8 @@
-//! Writers of the description languages: a part, text out.
+//! Writers of the description languages, from part to text.
 //!
-//! A part is written by the steps and operations that it was read with, so that the text means the
-//! same tree wherever the language can hold its numbers. Mirrors and scales are written at the
-//! primitives. Nothing here recurses.
+//! A part is written by the steps and operations with which it was read. The text therefore
+//! describes the same tree if the language can represent its numbers. Mirrors and scales are
+//! applied to the primitives. Nothing here recurses.
 
 mod json;
 mod number;
@@ -20,25 +20,26 @@ use crate::reader::Format;
 use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 
-/// The longest text that is written, in bytes.
+/// The longest text, in bytes.
 pub const MAX_TEXT: usize = 1 << 30;
 
 /// Why a part was not written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum WriteError {
-    /// A `.padl` text needs a primitive.
+    /// `.padl` cannot represent the empty solid.
     #[error("`.padl` has no word for the empty solid")]
     Empty,
-    /// Only what is read is understood of a language, and not written.
+    /// The language is supported for reading only.
     #[error("this language is read, and not written: expected padl, csg or json")]
     ReadOnly,
-    /// Parts used many times are copied where a language has no names, and there are too many.
+    /// Parts used several times are copied if a language has no names, and there are too many
+    /// copies.
     #[error("{leaves} primitives, with every use of a part counted; the limit is {MAX_LEAVES}")]
     TooManyLeaves {
-        /// How many primitives there would be.
+        /// The number of primitives.
         leaves: u64,
     },
-    /// The part is of another builder.
+    /// The part belongs to another builder.
     #[error("a solid of another builder was used")]
     ForeignSolid,
     /// The text would be too long.
@@ -48,10 +49,10 @@ pub enum WriteError {
 
 /// The description of a part.
 ///
-/// Numbers are written with all their digits. What a language cannot hold is written as near as
-/// f64 values are: in `.padl` turns about another than a coordinate axis, in `.csg` turns by other
-/// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers that are no
-/// decimals.
+/// Numbers are written with all their digits. What a language cannot represent is written to f64
+/// precision: in `.padl` rotations about other than coordinate axes, in `.csg` rotations by other
+/// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers without a finite
+/// decimal.
 pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String, WriteError> {
     if builder.is_foreign(part) {
         return Err(WriteError::ForeignSolid);
@@ -69,12 +70,12 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     }
 }
 
-/// A part as it is used: perhaps in the mirror `y -> -y`, and perhaps larger.
+/// A use of a part: possibly mirrored by `y -> -y`, and possibly scaled.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Use {
     draft: usize,
     mirrored: bool,
-    /// How much larger; none for one.
+    /// The scale factor; `None` for one.
     factor: Option<Rational>,
 }
 
@@ -87,7 +88,7 @@ impl Use {
         }
     }
 
-    /// A part in its place.
+    /// The same use of another draft.
     fn with(&self, draft: usize) -> Self {
         let factor = self.factor.clone();
         Self {
@@ -109,11 +110,11 @@ impl Use {
         }
     }
 
-    /// What is moved, as it is used inside the motion, and the steps that move it.
+    /// The moved part, as it is used inside the motion, and the steps of the motion.
     fn resolved(mut self, builder: &Builder) -> (Self, Vec<TransformStep>) {
         let mut steps = Vec::new();
         if let BuilderNode::Moved { child, entry, .. } = builder.draft(self.draft) {
-            // From the last placing to the first: those outside act on the steps inside.
+            // From the last placing to the first: the outer ones act on the inner steps.
             let mut next = Some(*entry);
             while let Some(entry) = next.map(|index| builder.entry(index)) {
                 match &entry.placing {
@@ -136,7 +137,7 @@ impl Use {
         (self, Transform::tidied(steps))
     }
 
-    /// A primitive as it is used, and the shift that a mirror makes of it.
+    /// A primitive as it is used, and the translation that a mirror causes.
     fn primitive(&self, primitive: &Primitive) -> (Primitive, Option<TransformStep>) {
         let primitive = match &self.factor {
             Some(factor) => primitive.scaled(factor),
@@ -149,7 +150,7 @@ impl Use {
     }
 }
 
-/// How a language is written.
+/// The syntax of a language.
 trait Language {
     /// A primitive, moved.
     fn leaf(&mut self, primitive: &Primitive, steps: &[TransformStep]);
@@ -157,22 +158,22 @@ trait Language {
     fn name(&mut self, name: usize, steps: &[TransformStep]);
     /// The beginning of an operation.
     fn open(&mut self, op: Operation, steps: &[TransformStep]);
-    /// What stands between two operands.
+    /// The separator of two operands.
     fn between(&mut self, op: Operation);
     /// The end of an operation, moved.
     fn close(&mut self, steps: &[TransformStep]);
-    /// How long the text is.
+    /// The length of the text.
     fn length(&self) -> usize;
 }
 
-/// What is still to be written.
+/// A pending task.
 enum Task {
     Enter(Use),
     Between(Operation),
     Close(Vec<TransformStep>),
 }
 
-/// Writes a part; what `name` gives a name to is written by it.
+/// Writes a part. Parts to which `name` assigns a name are written by name.
 fn walk(
     builder: &Builder,
     top: Use,
@@ -223,13 +224,13 @@ fn enter(
                 }
             }
         }
-        // Placements in a row are one.
+        // Consecutive placements are merged.
         BuilderNode::Moved { .. } => {}
     }
 }
 
-/// What an operation is on: in place of an operand that is the same operation, its own, where that
-/// changes nothing.
+/// The operands of an operation. An operand that is the same operation is replaced by its own
+/// operands, where that changes nothing.
 fn operands(
     builder: &Builder,
     part: &Use,
@@ -261,7 +262,7 @@ fn operands(
     operands
 }
 
-/// Blanks before a line at some depth.
+/// The indentation at a depth.
 fn indent(depth: usize) -> &'static str {
     const BLANKS: &str = "                                ";
     &BLANKS[..(2 * depth).min(BLANKS.len())]

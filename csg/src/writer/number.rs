@@ -1,8 +1,9 @@
-//! Numbers as they are written: with all their digits, never with an exponent.
+//! Numbers with all their digits, without an exponent.
 
 use premio_kernel::number::rational::{MAX_DIGITS, Rational, to_decimal, to_f64};
 
-/// A number as a decimal; the nearest double's where it is none, or takes too many digits.
+/// A number as a decimal. If it has no finite decimal, or too many digits, the nearest f64 is
+/// written.
 pub(super) fn decimal(value: &Rational) -> String {
     to_decimal(value).unwrap_or_else(|| to_f64(value).to_string())
 }

@@ -27,10 +27,10 @@ pub(super) fn write(builder: &Builder, top: Use) -> Result<String, WriteError> {
     Ok(padl.text)
 }
 
-/// The operations that are used more than once, in an order in which they can be written: what
-/// they are made of has smaller numbers.
+/// The operations that are used more than once, numbered such that their components have smaller
+/// numbers.
 fn named(builder: &Builder, top: &Use) -> BTreeMap<Use, usize> {
-    let mut met: BTreeSet<Use> = BTreeSet::new();
+    let mut visited: BTreeSet<Use> = BTreeSet::new();
     let mut again: BTreeSet<Use> = BTreeSet::new();
     let mut ahead = vec![top.clone()];
     while let Some(part) = ahead.pop() {
@@ -38,12 +38,12 @@ fn named(builder: &Builder, top: &Use) -> BTreeMap<Use, usize> {
         let BuilderNode::Operation { children, .. } = builder.draft(part.draft) else {
             continue;
         };
-        if met.contains(&part) {
+        if visited.contains(&part) {
             again.insert(part);
             continue;
         }
         ahead.extend(children.iter().map(|&child| part.with(child)));
-        met.insert(part);
+        visited.insert(part);
     }
     again.into_iter().zip(1..).collect()
 }

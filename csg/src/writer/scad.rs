@@ -1,4 +1,4 @@
-//! `.csg`: as OpenSCAD flattens, so that it reads it, too.
+//! `.csg`: OpenSCAD's flattened form, which OpenSCAD can read.
 
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::to_f64;
@@ -26,12 +26,12 @@ struct Scad {
     depth: usize,
 }
 
-/// As OpenSCAD writes a smooth surface.
+/// The arguments with which OpenSCAD writes a smooth surface.
 const SMOOTH: &str = "$fn = 0, $fa = 12, $fs = 2";
 
 impl Scad {
-    /// Opens a matrix for each motion, the last of them outermost: a matrix of one turn is known by
-    /// its angle.
+    /// Opens a matrix for each motion, the last of them outermost. A matrix of a single rotation
+    /// can be identified by its angle.
     fn begin(&mut self, steps: &[TransformStep]) {
         for motion in motions(steps).iter().rev() {
             push(
@@ -46,12 +46,12 @@ impl Scad {
     }
 }
 
-/// The motions that are written as a matrix each, in the order in which they are made: a turn with
-/// the shifts after it, quarter turns and shifts together.
+/// The motions that are each written as a matrix, in order: a rotation with the translations after
+/// it, or a sequence of quarter turns and translations.
 fn motions(steps: &[TransformStep]) -> Vec<Motion> {
     let mut motions: Vec<(Motion, bool)> = Vec::new();
     for step in steps {
-        // A step was made when it was read, so that it has a motion.
+        // A step was valid when it was read, so it has a motion.
         let motion = step.motion().unwrap_or_default();
         let is_shift = matches!(step, TransformStep::Shift(_));
         match motions.last_mut() {
@@ -67,7 +67,8 @@ fn motions(steps: &[TransformStep]) -> Vec<Motion> {
 fn matrix(motion: &Motion) -> String {
     let turn = motion.rotation_matrix();
     let row = |i: usize| {
-        // What is no short decimal is rounded to a double; the reader finds the nearest turn.
+        // An entry without a short decimal is rounded to an f64; the reader finds the nearest
+        // rotation.
         let [a, b, c] = turn[i].each_ref().map(to_f64);
         format!("[{a}, {b}, {c}, {}]", decimal(&motion.offset()[i]))
     };
@@ -120,7 +121,8 @@ fn node(primitive: &Primitive) -> String {
             format!("cube(size = [{x}, {y}, {z}], center = false);")
         }
         Primitive::Wedge { size } => {
-            // Raised along z from a triangle in x and y: turned, z becomes -y and y becomes z.
+            // Extruded along z from a triangle in x and y, then rotated: z becomes -y and y becomes
+            // z.
             let [x, y, z] = size.each_ref().map(decimal);
             format!(
                 "multmatrix([[1, 0, 0, 0], [0, 0, -1, {y}], [0, 1, 0, 0], [0, 0, 0, 1]]) {{ \

@@ -1,4 +1,4 @@
-//! Tests of the writers: what is written is read as the same tree.
+//! Tests of the writers: written text is read as the same tree.
 
 use super::*;
 use crate::reader::{Program, ReadOptions, parse, read};
@@ -21,7 +21,7 @@ fn tree(text: &str, format: Format) -> Tree {
     }
 }
 
-/// Asserts that a text in one language means the same tree in another, and there again.
+/// Asserts that a text written in another language, and written there again, gives the same tree.
 fn assert_same(text: &str, from: Format, to: Format) {
     let other = written(text, from, to);
     let original = tree(text, from);
@@ -46,7 +46,7 @@ const PLAIN: &str = "PART = (BLO(X=1, Y=2, Z=3) AT (ROTX=30, MOVX=1.5, ROTZ=-90)
 fn padl_and_json_hold_the_same() {
     assert_same(PLAIN, Format::Padl, Format::Json);
     assert_same(PADL, Format::Padl, Format::Padl);
-    // Two thirds are no decimal.
+    // Two thirds have no finite decimal.
     let json = written(PADL, Format::Padl, Format::Json);
     assert!(tree(&json, Format::Json) != tree(PADL, Format::Padl));
     let halves = PADL.replace("20/3", "20/8");
@@ -141,7 +141,7 @@ fn any_turn_is_held_by_json() {
         {"quaternion":[3,-1,0.25,7]},{"translate":[1,2,3]},{"rotate":[[1,2,3],17.5]}]}"#;
     assert_same(text, Format::Json, Format::Json);
     assert_snapshot!(written(text, Format::Json, Format::Json), @r#"{"prim":"block","size":[1,2,3],"transform":[{"quaternion":[12,-4,1,28]},{"translate":[1,2,3]},{"rotate":[[1,2,3],17.5]}]}"#);
-    // Turns about other axes are written by their nearest angles.
+    // Rotations about other axes are written by their nearest angles.
     let padl = written(text, Format::Json, Format::Padl);
     let (near, exact) = (tree(&padl, Format::Padl), tree(text, Format::Json));
     let matrix = |tree: &Tree| tree.leaves().next().unwrap().1.motion.rotation_f64();
@@ -163,7 +163,7 @@ fn turns_by_decimals_about_three_axes_are_found_again() {
     );
 }
 
-/// The quaternion of the turn of a text's one primitive, in whole numbers.
+/// The quaternion of the rotation of a text's only primitive, in integers.
 fn quaternion(text: &str) -> [Rational; 4] {
     let matrix = tree(text, Format::Padl)
         .leaves()

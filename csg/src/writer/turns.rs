@@ -1,13 +1,13 @@
-//! Turns about coordinate axes, which are all that `.padl` has.
+//! Rotations about coordinate axes, the only ones in `.padl`.
 
 use nalgebra::Matrix3;
 use premio_kernel::number::rational::{Rational, from_f64};
 
 use crate::transform::{Transform, TransformStep};
 
-/// Turns about coordinate axes, by degrees, that come to a step: the same turn where it is one, or
-/// where whole decimals of a degree about x, y and z in this order give it exactly; else the
-/// nearest that f64 values tell. Nothing of a shift.
+/// The rotations about coordinate axes, in degrees, that compose to a step. They are exact if the
+/// step is one of them, or if whole decimals of a degree about x, y and z in this order give it;
+/// otherwise they are accurate to f64. A translation gives none.
 pub(super) fn about_axes(step: &TransformStep) -> Vec<(usize, Rational)> {
     if let TransformStep::Turn { axis, degrees } = step {
         let others = |k: usize| (0..3).all(|i| i == k || axis[i].is_zero());
@@ -36,7 +36,7 @@ pub(super) fn about_axes(step: &TransformStep) -> Vec<(usize, Rational)> {
     })
 }
 
-/// The turns that are not zero, by angles of few decimals.
+/// The non-zero rotations, by angles of few decimals.
 fn rounded(angles: &[f64; 3], digits: i32) -> Vec<(usize, Rational)> {
     let scale = 10f64.powi(digits);
     let round = |(axis, &degrees): (usize, &f64)| {
@@ -46,11 +46,11 @@ fn rounded(angles: &[f64; 3], digits: i32) -> Vec<(usize, Rational)> {
     angles.iter().enumerate().filter_map(round).collect()
 }
 
-/// The angles in degrees of turns about x, then y, then z.
+/// The angles in degrees of rotations about x, then y, then z.
 fn angles(m: &Matrix3<f64>) -> [f64; 3] {
     let level = m[(0, 0)].hypot(m[(1, 0)]);
     let y = (-m[(2, 0)]).atan2(level);
-    // With x turned to z, turns about x and z are the same.
+    // With x rotated to z, rotations about x and z are the same.
     let upright = level < f64::EPSILON;
     let (x, z) = match upright {
         true => (0.0, (-m[(0, 1)]).atan2(m[(1, 1)])),

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// Triangles whose points are in single precision.
 #[derive(Clone, Debug)]
 pub(super) struct F32Points {
-    /// The corners, from the origin of the file.
+    /// The corners, relative to the file's origin.
     pub points: Vec<[f32; 3]>,
     /// The triangles.
     pub facets: Vec<Facet>,
@@ -19,7 +19,7 @@ pub(super) fn rounded(p: &Point3<f64>, origin: &Point3<f64>) -> [f32; 3] {
 }
 
 impl F32Points {
-    /// The triangles, where rounding does not take points farther than triangles may be off.
+    /// The triangles. Fails if rounding moves points farther than triangles may deviate.
     pub fn new(facets: &Facets, origin: &Point3<f64>) -> Result<Self, MeshError> {
         let points: Vec<[f32; 3]> = facets.points.iter().map(|p| rounded(p, origin)).collect();
         let exact: Vec<Point3<f64>> = points.iter().map(|p| p.map(f64::from).into()).collect();
@@ -38,10 +38,10 @@ impl F32Points {
         Ok(single)
     }
 
-    /// A corner at which rounding lays a side of triangles on another that the exact `points` keep
-    /// apart: readers, who join corners by their places, would take the two for one.
+    /// A corner at which rounding moves a side of triangles onto another, while the exact `points`
+    /// keep them separate. Readers, which join corners by their coordinates, would merge the two.
     pub fn closed_gap(&self, points: &[Point3<f64>]) -> Option<u32> {
-        // Adding zero makes one of its two signs.
+        // Adding zero merges the two signs of zero.
         let place = |c: u32| self.points[c as usize].map(|x| (x + 0.0).to_bits());
         let exact = |c: u32| points[c as usize];
         let mut sides = HashMap::with_capacity(3 * self.facets.len());

@@ -1,7 +1,7 @@
 //! Binary glTF 2.0: triangles with the surfaces' normals, and the edges as lines.
 //!
-//! Single precision, about the middle of the part; the node above it takes that to its place, to
-//! metres and to y up, as the format has it.
+//! Coordinates are in single precision, relative to the part's centre. The node above translates
+//! them to their position and converts to metres and y up, as the format requires.
 
 use super::f32_points::{F32Points, rounded};
 use super::{Facets, MeshError};
@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, HashMap};
 const FACES: [f32; 4] = [0.65, 0.68, 0.72, 1.0];
 const EDGES: [f32; 4] = [0.05, 0.05, 0.05, 1.0];
 
-/// How rough a face looks.
+/// The roughness of a face.
 const ROUGH: f32 = 0.6;
 
 /// The bytes of a file.
@@ -59,7 +59,7 @@ pub fn write(facets: &Facets, name: &str, unit: Unit) -> Result<Vec<u8>, MeshErr
     })
 }
 
-/// The middle of the box around points.
+/// The centre of the bounding box of points.
 fn centre(points: &[Point3<f64>]) -> Point3<f64> {
     let over = |pick: fn(&Point3<f64>, &Point3<f64>) -> Point3<f64>| {
         points.iter().copied().reduce(|p, q| pick(&p, &q))
@@ -69,7 +69,7 @@ fn centre(points: &[Point3<f64>]) -> Point3<f64> {
     nalgebra::center(&low, &high)
 }
 
-/// The matrix, column by column, that takes a part about its middle to its place in metres, y up.
+/// The matrix, column by column, that moves a part from its centre to its position in metres, y up.
 fn to_metres(centre: &Point3<f64>, unit: Unit) -> [f32; 16] {
     let size = unit.millimetres() / 1000.0;
     let [x, y, z] = [centre.x * size, centre.z * size, -centre.y * size];
@@ -86,7 +86,7 @@ fn to_metres(centre: &Point3<f64>, unit: Unit) -> [f32; 16] {
     matrix
 }
 
-/// A file as it grows.
+/// A file under construction.
 #[derive(Default)]
 struct File {
     root: Root,
@@ -94,7 +94,7 @@ struct File {
 }
 
 impl File {
-    /// The triangles: a corner is there once for each of its normals.
+    /// The triangles. A corner occurs once for each of its normals.
     fn faces(&mut self, single: &F32Points) -> Primitive {
         let mut place: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
         let (mut points, mut normals, mut indices) = (Vec::new(), Vec::new(), Vec::new());
@@ -117,7 +117,7 @@ impl File {
         self.primitive(Mode::Triangles, &attributes, &indices, material)
     }
 
-    /// The edges: a line for each two neighbouring points of one.
+    /// The edges: a line for each two consecutive points of one.
     fn edges(&mut self, lines: &[Vec<Point3<f64>>], centre: &Point3<f64>) -> Primitive {
         let (mut points, mut indices) = (Vec::new(), Vec::new());
         for line in lines {
@@ -168,7 +168,7 @@ impl File {
         })
     }
 
-    /// Vectors, with the box around them.
+    /// Vectors, with their bounding box.
     fn vectors(&mut self, vectors: &[[f32; 3]]) -> Index<Accessor> {
         let numbers = vectors.iter().flatten();
         let bytes = numbers.flat_map(|x| x.to_le_bytes()).collect();
@@ -206,7 +206,7 @@ impl File {
         }
     }
 
-    /// A part of the buffer; all are made of numbers of four bytes, so each starts where it may.
+    /// A view of the buffer. All views consist of numbers of four bytes, so each is aligned.
     fn view(&mut self, bytes: Vec<u8>, target: Target) -> Index<View> {
         let view = View {
             buffer: Index::new(0),
@@ -222,7 +222,7 @@ impl File {
         self.root.push(view)
     }
 
-    /// The bytes of the file; none where there are more than it can count.
+    /// The bytes of the file; `None` if there are more than its 32-bit lengths can count.
     fn finish(mut self) -> Option<Vec<u8>> {
         self.root.asset = Asset {
             generator: Some("premio".to_owned()),
@@ -236,11 +236,11 @@ impl File {
             uri: None,
         });
         let json = escape::json(serialize::to_string(&self.root).ok()?).into_bytes();
-        // Every length is one of 32 bits; the chunks' heads and paddings take less than this.
+        // Every length has 32 bits; the chunks' headers and padding take less than this.
         const HEADS: usize = 64;
         let length = u32::try_from(HEADS + json.len() + self.bytes.len()).ok()?;
         let glb = Glb {
-            // What is written counts the length itself.
+            // The length includes the header.
             header: Header {
                 magic: *b"glTF",
                 version: 2,

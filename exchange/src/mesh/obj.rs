@@ -1,6 +1,6 @@
 //! Wavefront OBJ: points and normals in f64, an object for each solid, a group for each face.
 //!
-//! Written here: the crates that write it write single precision.
+//! It is written here, because the crates that write it use single precision.
 
 use super::{Facet, Facets};
 use nalgebra::Vector3;
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 
 /// The text of a file.
 pub fn write(facets: &Facets, name: &str) -> String {
-    // A name ends with its line.
+    // A name ends at the end of its line.
     let name = escape::line(name);
     let mut text = String::new();
     for p in &facets.points {

@@ -1,19 +1,19 @@
-//! Triangles without an area, which rounding makes, taken out: a side of no length is drawn together,
-//! and a triangle whose corners lie in a line gives way to the one across its longest side.
+//! Removes triangles of zero area, which rounding produces. A side of length zero is merged to a
+//! point. A triangle with collinear corners is flipped with the neighbour across its longest side.
 
 use super::Facet;
 use nalgebra::Point3;
 use robust::{Coord, orient2d};
 use std::collections::HashMap;
 
-/// Takes out the triangles without an area. What is left has two triangles at every side; else the
-/// corner where it has not is told.
+/// Removes the triangles of zero area. Every remaining side has two triangles; otherwise the corner
+/// where one does not is returned as the error.
 pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<(), u32> {
     merge_short_edges(points, facets);
     let mut sides = sides(facets)?;
     let mut waiting: Vec<usize> = (0..facets.len()).collect();
     waiting.retain(|&f| is_flat(points, &facets[f]));
-    // Each takes one turn as a rule; those that never end are told by the count.
+    // Usually each takes one flip; the count stops those that would never end.
     let mut turns = 2 * facets.len();
     while let Some(flat) = waiting.pop() {
         if !is_flat(points, &facets[flat]) {
@@ -31,13 +31,13 @@ pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<()
     Ok(())
 }
 
-/// The sides of a triangle, each from a corner to the next.
+/// The sides of a triangle, each from one corner to the next.
 pub(super) fn sides_of(facet: &Facet) -> [[u32; 2]; 3] {
     let [a, b, c] = facet.corners;
     [[a, b], [b, c], [c, a]]
 }
 
-/// Makes one corner of the two at the ends of every side without length.
+/// Merges the two corners at the ends of every side of length zero.
 fn merge_short_edges(points: &[Point3<f64>], facets: &mut Vec<Facet>) {
     let mut same: HashMap<u32, u32> = HashMap::new();
     let first = |same: &HashMap<u32, u32>, mut corner: u32| {
@@ -63,7 +63,7 @@ fn merge_short_edges(points: &[Point3<f64>], facets: &mut Vec<Facet>) {
     facets.retain(|f| sides_of(f).iter().all(|[a, b]| a != b));
 }
 
-/// The triangle of each side. Each is there once, and the other way round, too.
+/// The triangle of each side. Each side occurs once in each direction.
 fn sides(facets: &[Facet]) -> Result<HashMap<[u32; 2], usize>, u32> {
     let mut sides = HashMap::with_capacity(3 * facets.len());
     for (number, facet) in facets.iter().enumerate() {
@@ -80,7 +80,7 @@ fn sides(facets: &[Facet]) -> Result<HashMap<[u32; 2], usize>, u32> {
     }
 }
 
-/// Whether the corners lie in a line, exactly.
+/// Whether the corners are collinear, exactly.
 fn is_flat(points: &[Point3<f64>], facet: &Facet) -> bool {
     let corners = facet.corners.map(|c| points[c as usize]);
     [[0, 1], [1, 2], [2, 0]].iter().all(|&[i, j]| {
@@ -89,8 +89,8 @@ fn is_flat(points: &[Point3<f64>], facet: &Facet) -> bool {
     })
 }
 
-/// The two triangles in place of a flat one and of the one across its longest side: the corner
-/// between the two others is joined to the one across.
+/// The two triangles that replace a flat one and its neighbour across the longest side: the corner
+/// between the two others is joined to the neighbour's opposite corner.
 fn turned(
     points: &[Point3<f64>],
     facets: &[Facet],
@@ -109,7 +109,7 @@ fn turned(
     let start = facet.corners.iter().position(|&c| c == p)?;
     let [from, to, apex] = [0, 1, 2].map(|j| (start + j) % 3);
     let s = facet.corners[apex];
-    // A side that was turned away is listed still.
+    // A side that was flipped away is still listed.
     let taken = |side: [u32; 2]| {
         let of = sides.get(&side);
         of.is_some_and(|&f| sides_of(&facets[f]).contains(&side))
@@ -151,8 +151,8 @@ mod tests {
         }
     }
 
-    /// A tetrahedron with a fifth point in the middle of the side from 0 to 1: towards 2 that is a
-    /// corner of two triangles, towards 3 of a triangle without an area.
+    /// A tetrahedron with a fifth point in the middle of the side from 0 to 1. Towards 2 it is a
+    /// corner of two triangles, towards 3 a corner of a triangle of zero area.
     fn tetrahedron() -> (Vec<Point3<f64>>, Vec<Facet>) {
         let points = [
             [0.0, 0.0, 0.0],
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(facets.len(), 6);
         assert!(facets.iter().all(|f| !is_flat(&points, f)));
         assert!(sides(&facets).is_ok());
-        // Side 3 of the fifth point is of the face that it was in the middle of.
+        // Side 3 of the fifth point belongs to the face in whose middle it was.
         assert!(facets.iter().all(|f| f.corners != [0, 4, 1]));
         assert_eq!(facets.iter().filter(|f| f.face == FaceId(1)).count(), 2);
     }
@@ -200,7 +200,7 @@ mod tests {
         facets.pop();
         assert!(mend(&points, &mut facets).is_err());
         let (mut points, mut facets) = tetrahedron();
-        // All in a plane, and nothing is left but triangles without an area.
+        // All corners are coplanar, and only triangles of zero area remain.
         points[3] = points[0];
         points[2] = points[0];
         let flat = mend(&points, &mut facets);

@@ -1,7 +1,7 @@
-//! A mesh taken apart where more than two of its triangles share a side, or fans of them a corner.
+//! Splits a mesh where more than two triangles share a side, or several fans of triangles a corner.
 //!
-//! As the edges of the boundary are: of the faces around an edge those go together that enclose
-//! material between them, and a corner is one within a fan of triangles.
+//! The pairing is that of the boundary's edges: of the faces around an edge, those that enclose
+//! material between them are paired. Each fan of triangles gets its own corner.
 
 use super::{Facet, Facets, MeshError};
 use premio_kernel::brep::Brep;
@@ -9,10 +9,10 @@ use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense};
 use premio_kernel::tessellation::Mesh;
 use std::collections::HashMap;
 
-/// The side from corner `k` of triangle `t` to the next is number `3 t + k`.
+/// Side `3 t + k` runs from corner `k` of triangle `t` to the next corner.
 type Side = usize;
 
-/// Which two coedges lie on both sides of the same material.
+/// The coedge on the other side of the same material.
 fn partner(brep: &Brep, coedge: CoedgeId) -> Option<CoedgeId> {
     let around = &brep
         .topology
@@ -32,7 +32,7 @@ pub(super) fn facets(brep: &Brep, mesh: &Mesh) -> Result<Facets, MeshError> {
         if corner[start].is_some() {
             continue;
         }
-        // Around the corner: the other side of each side ends in it, and the next one starts there.
+        // Go around the corner: the twin of each side ends in it, and the next side starts there.
         let point = facets.points.len() as u32;
         let mut side = start;
         while corner[side].is_none() {
@@ -59,7 +59,7 @@ pub(super) fn facets(brep: &Brep, mesh: &Mesh) -> Result<Facets, MeshError> {
     Ok(facets)
 }
 
-/// The side after a side, in its triangle.
+/// The next side of the same triangle.
 fn next(side: Side) -> Side {
     if side % 3 == 2 { side - 2 } else { side + 1 }
 }
@@ -77,7 +77,7 @@ struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    /// Of every side the one that it is glued to.
+    /// For every side its twin.
     fn twins(&self) -> Result<Vec<Side>, MeshError> {
         let unordered = |side: &Side| {
             let [a, b] = ends(self.mesh, *side);
@@ -105,7 +105,8 @@ impl Sides<'_> {
         Ok(twins)
     }
 
-    /// The edges along each pair of neighbouring points, with the sense of the first to the second.
+    /// The edges along each pair of consecutive points, each with its sense from the first to the
+    /// second.
     fn edges(&self) -> HashMap<[u32; 2], Vec<(EdgeId, Sense)>> {
         let mut edges: HashMap<_, Vec<_>> = HashMap::new();
         for (edge, line) in self.brep.topology.edge_ids().zip(&self.mesh.lines) {
@@ -121,7 +122,7 @@ impl Sides<'_> {
         edges
     }
 
-    /// Glues the sides between two points to one another, as the coedges that they lie along are.
+    /// Pairs the sides between two points, as the coedges along them are paired.
     fn pair(
         &self,
         crowd: &[Side],

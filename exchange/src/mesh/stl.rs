@@ -1,6 +1,6 @@
-//! Binary STL: triangles in single precision, each with its corners and its normal, and nothing else.
+//! Binary STL: triangles in single precision, each with its corners and its normal.
 //!
-//! It has no unit, and what touches in a point or along an edge is one again for its readers.
+//! The format has no unit. Readers merge what touches in a point or along an edge.
 
 use super::f32_points::F32Points;
 use super::{Facets, MeshError};

@@ -1,4 +1,4 @@
-//! 3MF: points in f64, an object for each solid, the unit.
+//! 3MF: points in f64, an object for each solid, and the unit.
 
 use super::{Facet, Facets, MeshError};
 use premio_kernel::unit::Unit;
@@ -10,7 +10,7 @@ use threemf2::package::ThreemfPackageBuilder;
 
 /// The bytes of a file.
 pub fn write(facets: &Facets, name: &str, unit: Unit) -> Result<Vec<u8>, MeshError> {
-    // What could fail is what is not used here: the errors are of extensions, and of writing.
+    // The errors that can occur concern extensions, which are not used, and writing.
     written(facets, name, unit).ok_or(MeshError::TooMany {
         triangles: facets.facets.len(),
     })
@@ -24,7 +24,7 @@ fn written(facets: &Facets, name: &str, unit: Unit) -> Option<Vec<u8>> {
         Unit::Micrometre => Length::Micron,
         Unit::Inch => Length::Inch,
     };
-    // The writer puts texts into the file as they are.
+    // The writer inserts texts without escaping.
     let name = escape::xml(name);
     let mut model = ModelBuilder::new(unit, true);
     model.add_metadata("Title", Some(&name));
@@ -44,7 +44,7 @@ fn written(facets: &Facets, name: &str, unit: Unit) -> Option<Vec<u8>> {
     Some(bytes.into_inner())
 }
 
-/// Adds the triangles of a solid to an object, with their own points only.
+/// Adds the triangles of a solid to an object, with only the points they use.
 fn add(object: &mut MeshObjectBuilder, facets: &Facets, of_solid: &[Facet]) {
     let mut place: HashMap<u32, usize> = HashMap::new();
     for facet in of_solid {

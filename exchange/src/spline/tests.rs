@@ -36,7 +36,7 @@ fn window(surface: Surface) -> ParameterWindow {
     }
 }
 
-/// Both splines are within the accuracy of the surfaces, and of each other, all along.
+/// Asserts that both splines are within the accuracy of the surfaces, and of each other.
 fn holds(curve: &Curve, range: [f64; 2], surfaces: &[Surface], pace: Pace, accuracy: f64) -> usize {
     let windows: Vec<ParameterWindow> = surfaces.iter().map(|s| window(*s)).collect();
     let follow = Follow {
@@ -79,7 +79,7 @@ fn a_tilted_circle_is_followed_on_its_sphere() {
     }
 }
 
-/// The edges of parts that have no conic of their own.
+/// Edges of parts that are not conics.
 #[test]
 fn edges_are_followed_on_the_faces_beside_them() {
     let parts = [
@@ -112,7 +112,8 @@ fn edges_are_followed_on_the_faces_beside_them() {
                     pieces.push(holds(curve, range, &surfaces, Pace::Length, accuracy));
                 }
             }
-            // A thousandth takes some four times as many pieces, for a sixth order.
+            // A thousandth of the accuracy takes about four times as many pieces, for a method of
+            // sixth order.
             assert!(pieces.windows(2).all(|p| p[1] < 8 * p[0]), "{pieces:?}");
         }
     }

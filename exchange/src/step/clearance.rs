@@ -1,24 +1,24 @@
-//! The distances between edges of one face that share no vertex: where they are smaller than the points of
-//! other kernels are apart, these take the loops for crossing.
+//! The distances between edges of one face that share no vertex. If they are below the point
+//! tolerance of other kernels, those take the loops to cross.
 
 use crate::two_manifold::{SeamedEdge, TwoManifold};
 use nalgebra::Point3;
 
-/// Into so many steps an edge is divided; between these the least distance is refined.
+/// The number of steps into which an edge is divided; between them the least distance is refined.
 const STEPS: u32 = 32;
-/// How often the interval around the least distance is narrowed, by the golden section.
+/// The number of golden-section steps that narrow the interval around the least distance.
 const SECTIONS: u32 = 48;
 
-/// Two edges of a face that are near each other.
+/// Two edges of a face that are close to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NearEdges {
-    /// The point of one of them that is nearest to the other.
+    /// The point of one edge closest to the other.
     pub place: Point3<f64>,
-    /// How far apart they are there.
+    /// Their distance there.
     pub distance: f64,
 }
 
-/// An edge with a box around it.
+/// An edge with its bounding box.
 struct Boxed<'s> {
     edge: &'s SeamedEdge<'s>,
     min: Point3<f64>,
@@ -33,7 +33,7 @@ impl<'s> Boxed<'s> {
             (min, max) = (min.inf(&pair[1]), max.sup(&pair[1]));
             step = step.max((pair[1] - pair[0]).norm());
         }
-        // Between two points the curve is no farther away than they are from each other.
+        // Between two samples the curve is at most as far away as they are from each other.
         let margin = nalgebra::Vector3::repeat(margin + step);
         Self {
             edge,
@@ -46,15 +46,15 @@ impl<'s> Boxed<'s> {
         (0..3).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
     }
 
-    /// Whether the two end in a common place.
+    /// Whether the two edges end in a common point.
     fn is_adjacent(&self, other: &Self, points: &[Point3<f64>]) -> bool {
         let ends = |b: &Self| b.edge.ends.map(|v| points[v]);
         ends(self).iter().any(|p| ends(other).contains(p))
     }
 }
 
-/// The first two edges of a face that share no vertex and are between `resolution` and `least` apart: what
-/// is nearer touches.
+/// The first two edges of a face that share no vertex and have a distance between `resolution` and
+/// `least`. Closer edges touch.
 pub(super) fn near_edges(
     seamed: &TwoManifold<'_>,
     resolution: f64,
@@ -78,13 +78,13 @@ pub(super) fn near_edges(
     })
 }
 
-/// The point of an edge at a step, which may lie between two.
+/// The point of an edge at a step, which may be fractional.
 fn at(edge: &SeamedEdge<'_>, step: f64) -> Point3<f64> {
     let [lo, hi] = edge.range;
     edge.curve.point(lo + (hi - lo) * step / f64::from(STEPS))
 }
 
-/// How far a point is from an edge.
+/// The distance of a point from an edge.
 fn distance(edge: &SeamedEdge<'_>, p: &Point3<f64>) -> f64 {
     let [lo, hi] = edge.range;
     let t = edge.curve.in_cycle(edge.curve.parameter(p), lo);
@@ -95,7 +95,7 @@ fn distance(edge: &SeamedEdge<'_>, p: &Point3<f64>) -> f64 {
     }
 }
 
-/// Where one edge is nearest to another.
+/// The closest points of one edge and another.
 fn nearest(a: &SeamedEdge<'_>, b: &SeamedEdge<'_>) -> NearEdges {
     let away = |step: f64| distance(b, &at(a, step));
     let steps: Vec<f64> = (0..=STEPS).map(|k| away(f64::from(k))).collect();
@@ -117,7 +117,7 @@ fn nearest(a: &SeamedEdge<'_>, b: &SeamedEdge<'_>) -> NearEdges {
     }
 }
 
-/// Where a function is least, by golden sections.
+/// The minimum of a function, by golden-section search.
 fn least_between([mut lo, mut hi]: [f64; 2], f: &impl Fn(f64) -> f64) -> f64 {
     let golden = 0.5 * (5.0f64.sqrt() - 1.0);
     for _ in 0..SECTIONS {

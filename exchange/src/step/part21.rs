@@ -38,7 +38,7 @@ impl Exchange {
             }
             Protocol::Ap214 => "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }",
         };
-        // Without the time, so that one part is one file.
+        // Without the time, so that equal parts give equal files.
         format!(
             "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('{name}'),'2;1');\n\
              FILE_NAME('{name}','',(''),(''),'premio {version}','premio','');\n\
@@ -50,7 +50,7 @@ impl Exchange {
     }
 }
 
-/// A number as the format has it: with a point, and a capital E.
+/// A number in the format's notation: with a point, and a capital E.
 pub(super) struct Real(pub f64);
 
 impl std::fmt::Display for Real {
@@ -70,7 +70,7 @@ impl std::fmt::Display for Real {
     }
 }
 
-/// Numbers in brackets.
+/// Numbers in parentheses.
 pub(super) struct Reals<'a>(pub &'a [f64]);
 
 impl std::fmt::Display for Reals<'_> {
@@ -79,7 +79,7 @@ impl std::fmt::Display for Reals<'_> {
     }
 }
 
-/// Whatever is written, in brackets.
+/// Items in parentheses.
 pub(super) struct List<'a, T>(pub &'a [T]);
 
 impl<T: std::fmt::Display> std::fmt::Display for List<'_, T> {

@@ -1,15 +1,16 @@
-//! The product that the solids are the shape of, and the units.
+//! The product whose shape the solids are, and the units.
 
 use super::part21::{Exchange, Id, List, Real};
 use super::{Protocol, StepOptions};
 use premio_kernel::unit::Unit;
 use premio_text::escape;
 
-/// The uncertainty that a file states is this part of the accuracy: readers make up to within it what
-/// a file leaves to them, such as where circles run in the parameters of faces.
+/// The ratio of the accuracy to the uncertainty stated in the file. Readers use the uncertainty for
+/// what a file leaves to them, such as the course of circles in the parameters of faces.
 const FINER: f64 = 1024.0;
 
-/// The context of the shape: three dimensions, its units, and how near points are that are one.
+/// The context of the shape: three dimensions, its units, and the distance within which points are
+/// equal.
 pub(super) fn context(exchange: &mut Exchange, options: &StepOptions) -> Id {
     let length = length_unit(exchange, options.unit);
     let radian = exchange.add(format_args!(

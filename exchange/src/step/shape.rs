@@ -17,7 +17,7 @@ pub(super) struct Shape<'s, 'e> {
     exchange: &'e mut Exchange,
     seamed: &'s TwoManifold<'s>,
     accuracy: f64,
-    /// Of the curves in the parameters of surfaces.
+    /// The context of the curves in the parameters of surfaces.
     parametric: Option<Id>,
     vertices: Vec<Option<Id>>,
     edges: Vec<Option<Id>>,
@@ -26,11 +26,11 @@ pub(super) struct Shape<'s, 'e> {
     sides: Vec<Vec<usize>>,
 }
 
-/// A face's surface as it is written.
+/// The placement of a face's surface in the file.
 #[derive(Clone, Copy)]
 struct Placed {
     id: Id,
-    /// Height above the apex from which that of a cone is counted.
+    /// For a cone, the height above the apex from which its height is measured.
     level: f64,
 }
 
@@ -223,8 +223,8 @@ impl<'s, 'e> Shape<'s, 'e> {
             Curve::Hyperbola(c) if !(is_bent && is_sharp(edge, c.a.min(c.b))) => {
                 self.conic("HYPERBOLA", &c.frame, &[c.a, c.b])
             }
-            // Readers differ on the parameter of a parabola, which matters where another curve shares
-            // it.
+            // Readers disagree on the parameter of a parabola, which matters if another curve
+            // shares it.
             Curve::Conic(c) if c.is_parabola() && !is_bent => {
                 self.conic("PARABOLA", &c.frame, &[0.5 / c.curvature])
             }
@@ -254,7 +254,7 @@ impl<'s, 'e> Shape<'s, 'e> {
             .add(format_args!("{name}('',{placement}{all})"))
     }
 
-    /// The splines that follow an edge, in space and on some of the faces next to it.
+    /// The splines that approximate an edge, in space and on some of the adjacent faces.
     fn course(
         &self,
         edge: &SeamedEdge<'_>,
@@ -273,7 +273,7 @@ impl<'s, 'e> Shape<'s, 'e> {
         Ok(follow.course()?)
     }
 
-    /// A curve with those that stand for it in the parameters of faces.
+    /// A curve with the curves that represent it in the parameters of faces.
     fn surface_curve(&mut self, curve: Id, sides: &[usize], on: Vec<Spline<2>>) -> Id {
         let mut all = Vec::with_capacity(on.len());
         for (face, mut on) in sides.iter().zip(on) {
@@ -323,9 +323,9 @@ impl<'s, 'e> Shape<'s, 'e> {
     }
 }
 
-/// The same edge; on a circle or an ellipse, with the parameter at its start in the half of the
-/// period about its middle. Readers find the parameters of an edge's ends from its vertices, and
-/// rounding makes a whole period of zero.
+/// The same edge. On a circle or an ellipse the parameter of its start is moved to the half period
+/// about the middle of the period. Readers compute the parameters of an edge's ends from its
+/// vertices, and rounding turns zero into a whole period.
 fn started_far_from_zero<'a>(edge: &SeamedEdge<'a>) -> SeamedEdge<'a> {
     let mut edge = edge.clone();
     let frame = match edge.curve.to_mut() {
@@ -348,8 +348,8 @@ fn half_angle(cone: &Cone) -> f64 {
     cone.sin.atan2(cone.cos)
 }
 
-/// Whether an edge is more than a straight line, or a conic, in the parameters of a surface: whether
-/// both of them change, and one is an angle. A seam never is, whatever an angle does at a pole.
+/// Whether an edge is neither a straight line nor a conic in the parameters of a surface: both of
+/// them change, and one is an angle. A seam never is, whatever an angle does at a pole.
 fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
     if edge.source.is_none() || matches!(window.surface, Surface::Plane(_)) {
         return false;
@@ -371,15 +371,15 @@ fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
     changes(0) && changes(1)
 }
 
-/// Whether an edge turns in much less than its length, about a semi-axis: its parameter says little
-/// of where on it a point is.
+/// Whether an edge turns within much less than its length, about a semi-axis. Its parameter then
+/// determines the position poorly.
 fn is_sharp(edge: &SeamedEdge<'_>, semi_axis: f64) -> bool {
     let [from, to] = edge.range.map(|t| edge.curve.point(t));
     semi_axis < SHARP * (to - from).norm()
 }
 
-/// A hyperbola with a semi-axis smaller than this part of an edge is sharp.
+/// The ratio of the semi-axis to the edge's length below which a hyperbola is sharp.
 const SHARP: f64 = 1.0 / 1024.0;
 
-/// A parameter that changes by no more than this part is constant.
+/// The relative change below which a parameter is constant.
 const LEVEL: f64 = 1.0 / (1u64 << 36) as f64;

@@ -1,4 +1,4 @@
-//! Edges, faces and walls that are too thin for other kernels, whose vertices and edges have a width.
+//! Finds edges, faces and walls that are too thin for the tolerances of other kernels.
 
 use super::{StepError, clearance};
 use crate::two_manifold::{SeamedEdge, TwoManifold, short};
@@ -9,44 +9,45 @@ use premio_kernel::brep::topology::ShellId;
 use premio_kernel::unit::Unit;
 use std::fmt;
 
-/// What is no farther apart other kernels take for one, in millimetres (Open CASCADE's
+/// The distance, in millimetres, up to which other kernels merge points (Open CASCADE's
 /// `Precision::Confusion`).
 const APART: f64 = 1.0 / 10_000_000.0;
 
-/// Two edges of a face cross for other kernels where they are no farther apart than this part of that
-/// (Open CASCADE's `Precision::Intersection`).
+/// The fraction of that distance up to which two edges of a face cross for other kernels (Open
+/// CASCADE's `Precision::Intersection`).
 const CROSSING: f64 = 1.0 / 100.0;
 
-/// A part of a boundary that is thin.
+/// A kind of thin entity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Thin {
     /// An edge is short.
     Edge,
     /// A face is narrow.
     Face,
-    /// Two edges of a face are next to each other.
+    /// Two edges of a face are close to each other.
     Gap,
-    /// The two sides of a shell are next to each other.
+    /// The two sides of a shell are close to each other.
     Shell,
 }
 
 impl fmt::Display for Thin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Edge => "an edge as short as",
-            Self::Face => "a face as narrow as",
-            Self::Gap => "two edges of a face as near as",
-            Self::Shell => "a wall or gap as thin as",
+            Self::Edge => "an edge of length",
+            Self::Face => "a face of width",
+            Self::Gap => "two edges of a face at the distance",
+            Self::Shell => "a wall or gap of thickness",
         })
     }
 }
 
-/// What is no farther apart other kernels take for one, in the part's unit.
+/// The distance up to which other kernels merge points, in the part's unit.
 pub(super) fn apart(unit: Unit) -> f64 {
     APART / unit.millimetres()
 }
 
-/// That every edge is longer than that, every face wider, and that edges of a face touch or are well apart.
+/// Checks that every edge is longer and every face wider than that, and that edges of a face touch
+/// or are farther from each other.
 pub(super) fn check(
     brep: &Brep,
     seamed: &TwoManifold<'_>,
@@ -88,7 +89,7 @@ fn thin(what: Thin, place: Point3<f64>, size: f64, least: f64) -> StepError {
     }
 }
 
-/// That no shell has its two sides as near.
+/// Checks that the two sides of each shell are farther from each other.
 pub(super) fn check_shells(brep: &Brep, least: f64) -> Result<(), StepError> {
     let topology = &brep.topology;
     let measures = FaceIntegrals::new(brep);

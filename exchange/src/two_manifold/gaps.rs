@@ -1,4 +1,4 @@
-//! Where a face leaves room for a seam.
+//! Finds where a face leaves room for a seam.
 
 use crate::parameters::ParameterWindow;
 use nalgebra::{Point2, Point3, Vector3};
@@ -12,24 +12,25 @@ use std::f64::consts::TAU;
 #[derive(Debug)]
 pub(super) struct Samples {
     edges: Vec<Sampled>,
-    /// Where edges touch.
+    /// The points where edges touch.
     touches: Vec<Point3<f64>>,
 }
 
 #[derive(Debug)]
 struct Sampled {
     points: Vec<Point3<f64>>,
-    /// Whether the last point is the first without being a vertex.
+    /// Whether the last point equals the first without being a vertex.
     closed: bool,
 }
 
-/// Into how many steps a smooth piece of a curve is divided.
+/// The number of steps into which a smooth piece of a curve is divided.
 const STEPS: u32 = 16;
 
-/// How far inside an edge it is asked next to its ends, as a part of it: at an apex there is no angle.
+/// The distance from an edge's ends, relative to its range, at which it is sampled in their place:
+/// at an apex the angle is undefined.
 const INNER: f64 = 1.0 / (1 << 16) as f64;
 
-/// So many seams are tried.
+/// The number of candidate seams.
 const TRIED: usize = 24;
 
 impl Samples {
@@ -63,8 +64,7 @@ impl Samples {
         self.edges.iter().flat_map(|e| &e.points)
     }
 
-    /// By how much the parameter `i`, an angle, turns along each edge; not a number along one through a
-    /// pole.
+    /// The change of parameter `i`, an angle, along each edge; NaN for an edge through a pole.
     pub fn turns(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
         let turn = |edge: &Sampled| {
             let angles: Vec<f64> = edge
@@ -77,7 +77,7 @@ impl Samples {
         self.edges.iter().map(turn).collect()
     }
 
-    /// The values of the parameter `i`, which is an angle, at which edges end, turn back or touch.
+    /// The values of parameter `i`, an angle, at which edges end, turn back or touch.
     pub fn critical(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
         let touches = self.touches.iter().map(|p| window.parameters_at(p)[i]);
         let mut critical: Vec<f64> = touches.filter(|x| x.is_finite()).collect();
@@ -92,8 +92,8 @@ impl Samples {
         critical
     }
 
-    /// The places at which a seam is tried, of the parameter `i`, which is an angle: at zero if there
-    /// is room, then amid the gaps between where edges end or turn back, the widest first.
+    /// The values of parameter `i`, an angle, at which a seam is tried. The first is zero if there
+    /// is room. The others lie amid the gaps between the critical values, the widest gap first.
     pub fn candidates(&self, window: &ParameterWindow, i: usize) -> Vec<f64> {
         let mut critical = self.critical(window, i);
         let Some(&first) = critical.first() else {
@@ -113,17 +113,18 @@ impl Samples {
     }
 }
 
-/// An angle that changes by more from one sample to the next leaps.
+/// The change between consecutive samples above which an angle jumps.
 const LEAP: f64 = 1.0;
 
-/// Angles that differ by no more are the same.
+/// The difference up to which angles are equal.
 pub(super) const SAME: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// There is room at an angle if nothing is nearer than this part of the widest gap.
+/// The distance of the closest critical value, relative to the widest gap, that leaves room for a
+/// seam.
 const ROOM: f64 = 1.0 / 8.0;
 
 impl Sampled {
-    /// The angles at the ends of the edge and where it turns back.
+    /// Adds the angles at the ends of the edge and where it turns back.
     fn add_turns(&self, window: &ParameterWindow, i: usize, found: &mut Vec<f64>) {
         let parameters = self.points.iter().map(|p| window.parameters_at(p));
         let known: Vec<Point2<f64>> = parameters.filter(|p| p[i].is_finite()).collect();
@@ -140,14 +141,15 @@ impl Sampled {
         }
         let turns = steps.windows(2).filter(|s| s[0].1 * s[1].1 <= 0.0);
         found.extend(turns.map(|s| s[1].0));
-        // Through an apex the angle leaps.
+        // The angle jumps at an apex.
         let leaps = steps.iter().filter(|s| s.1.abs() > LEAP);
         found.extend(leaps.flat_map(|s| [s.0, s.0 + s.1]));
     }
 }
 
-/// Axes of a sphere's parameters for a face, the best first: those that keep well away from the edges, and
-/// of them one to which most edges are parallel circles; its own, if no other is better.
+/// The candidate axes of a sphere's parameters for a face, the best first. The poles must be far
+/// from the edges. Among these, one to which most edges are parallel circles comes first, or the
+/// sphere's own axis if none is better.
 pub(super) fn axes(
     sphere: &Sphere,
     samples: &Samples,
@@ -179,18 +181,18 @@ pub(super) fn axes(
         let r = (1.0 - z * z).sqrt();
         Vector3::new(r * cos, r * sin, z)
     });
-    // Later ones first, which are taken where two are as far away.
+    // Reversed, so that of two equally distant ones the later one comes first.
     let mut all: Vec<Vector3<f64>> = [f.x, f.y].into_iter().chain(spread).collect();
     all.reverse();
     all.sort_by(|a, b| away(b).total_cmp(&away(a)));
     best.copied().into_iter().chain(all).collect()
 }
 
-/// Directions are the same if their cosine is less by this than one.
+/// Directions are equal if their cosine is closer to one than this.
 const PARALLEL: f64 = 1.0 / (1u64 << 40) as f64;
-/// A pole is well away from the edges if its cosine to them is less by this than one.
+/// A pole is far from the edges if the cosine of the angle to each is less than one minus this.
 const CLEAR: f64 = 1.0 / 512.0;
-/// How many axes are tried next to a sphere's own.
+/// The number of axes tried in addition to a sphere's own.
 const SPREAD: u32 = 64;
 /// The golden angle: its multiples spread over the circle.
 const GOLDEN: f64 = 2.399_963_229_728_653;

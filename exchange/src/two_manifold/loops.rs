@@ -1,7 +1,7 @@
-//! Edges divided where seams meet them, and the loops that run along both.
+//! Divides edges where seams meet them, and links edges and seams to loops.
 //!
-//! A half is one side of an edge: the face lies to its left. Halves follow one another around a face;
-//! where a seam meets an edge the loop turns into the seam, and comes back along its other side.
+//! A half is one side of an edge, with the face to its left. Halves follow one another around a
+//! face. Where a seam meets an edge, the loop turns into the seam and returns along its other side.
 
 use super::gaps::SAME;
 use super::pairs::Pairs;
@@ -34,14 +34,14 @@ impl Half {
     }
 }
 
-/// The boundary with seams, as its parts are made.
+/// The boundary with seams, under construction.
 struct Linking<'a, 'p> {
     brep: &'a Brep,
     pairs: &'p Pairs,
     seamed: TwoManifold<'a>,
     /// The parameters at which each edge of a pair is divided, in order.
     joints: Vec<Vec<f64>>,
-    /// The edges that each edge of a pair is divided into.
+    /// The edges into which each edge of a pair is divided.
     parts: Vec<Range<usize>>,
 }
 
@@ -78,7 +78,7 @@ pub(super) fn seamed<'a>(
 }
 
 impl<'a> Linking<'a, '_> {
-    /// Divides the edges where seams meet them, and gives every one two vertices.
+    /// Divides the edges where seams meet them, and gives each edge two vertices.
     fn divide(&mut self, cuts: &[Cut]) {
         let ends = cuts.iter().flat_map(|c| &c.seams).flat_map(|s| s.ends);
         for end in ends {
@@ -94,7 +94,8 @@ impl<'a> Linking<'a, '_> {
             let joints = std::mem::take(&mut self.joints[pair]);
             let joints = match self.pairs.ends[pair] {
                 Some([first, last]) => {
-                    // Between two vertices in one place no reader can tell a turn from nothing.
+                    // Between two coincident vertices readers cannot distinguish a full turn from
+                    // an edge of length zero.
                     let is_turn = first != last && self.seamed.are_in_one_place(first, last);
                     let middle = is_turn.then_some(0.5 * (lo + hi));
                     let all = joints.into_iter().chain(middle);
@@ -137,7 +138,7 @@ impl<'a> Linking<'a, '_> {
         }
     }
 
-    /// The halves of a coedge, in the order in which it runs.
+    /// The halves of a coedge, in its direction.
     fn halves(&self, coedge: CoedgeId) -> Vec<Half> {
         let sense = self.brep.topology.coedge(coedge).sense;
         let parts = self.parts[self.pairs.edge_of[&coedge]].clone();
@@ -148,14 +149,14 @@ impl<'a> Linking<'a, '_> {
         }
     }
 
-    /// The halves of a coedge that end and that start where a seam meets it, and the vertex there.
+    /// The halves of a coedge that end and start where a seam meets it, and the vertex there.
     fn around(&self, coedge: CoedgeId, t: f64) -> ([Half; 2], usize) {
         let pair = self.pairs.edge_of[&coedge];
         let [lo, hi] = self.brep.range(self.brep.topology.coedge(coedge).edge);
         let is_open = self.pairs.ends[pair].is_some();
         let away = |x: &f64| match is_open {
             true => (x - t).abs(),
-            // The other way round may be shorter.
+            // The opposite direction may be shorter.
             false => {
                 let once = (x - t).rem_euclid(hi - lo);
                 once.min(hi - lo - once)
@@ -177,7 +178,7 @@ impl<'a> Linking<'a, '_> {
         (halves.map(|edge| Half { edge, sense }), vertex)
     }
 
-    /// Adds a face, or its pieces where its seams part it.
+    /// Adds a face, or its pieces if its seams divide it.
     fn add_face(&mut self, face: FaceId, cut: &Cut) -> Result<(), SeamError> {
         let mut next: HashMap<Half, Half> = HashMap::new();
         let mut order: Vec<Half> = Vec::new();
@@ -222,7 +223,7 @@ impl<'a> Linking<'a, '_> {
         Ok(())
     }
 
-    /// Adds the seams of a face, and lets its loops turn into them.
+    /// Adds the seams of a face, and routes its loops along them.
     fn add_seams(
         &mut self,
         face: FaceId,
@@ -231,7 +232,8 @@ impl<'a> Linking<'a, '_> {
         order: &mut Vec<Half>,
     ) {
         let mut crossing: Option<usize> = None;
-        // At a crossing the edges that come from below and from the left, go up and to the right.
+        // At a crossing: the edges from below and from the left, and those upwards and to the
+        // right.
         let mut star: [Option<usize>; 4] = [None; 4];
         for seam in &cut.seams {
             let edge = self.seamed.edges.len();
@@ -239,7 +241,7 @@ impl<'a> Linking<'a, '_> {
             order.extend([there, back]);
             let mut ends = [0; 2];
             for (k, end) in seam.ends.iter().enumerate() {
-                // Toward this end, and away from it.
+                // Towards this end, and away from it.
                 let [to, from] = if k == 1 { [there, back] } else { [back, there] };
                 ends[k] = match *end {
                     End::Edge { coedge, t } => {
@@ -265,7 +267,7 @@ impl<'a> Linking<'a, '_> {
         }
         let [below, left, above, right] = star;
         if let (Some(below), Some(left), Some(above), Some(right)) = (below, left, above, right) {
-            // Seen from outside: to the left, where that is to the left of the surface's normal, too.
+            // As seen from outside: left if it is also to the left of the surface's normal.
             let turns = match self.brep.sense(face) {
                 Sense::Along => [
                     (Half::along(below), Half::against(left)),
@@ -285,15 +287,15 @@ impl<'a> Linking<'a, '_> {
     }
 }
 
-/// Joints in order, those in one place once: seams of two faces may meet an edge in the same place.
+/// Joints in order, without duplicates: seams of two faces may meet an edge at the same point.
 fn distinct(mut joints: Vec<f64>, length: f64) -> Vec<f64> {
     joints.sort_by(f64::total_cmp);
     joints.dedup_by(|b, a| *b - *a <= SAME * length);
     joints
 }
 
-/// The same for a closed edge, on which the last joint is next to the first: where the range starts
-/// is where it ends.
+/// The same for a closed edge. Its last joint is adjacent to the first, because the range ends
+/// where it starts.
 fn distinct_around(joints: Vec<f64>, [lo, hi]: [f64; 2]) -> Vec<f64> {
     let length = hi - lo;
     let around = joints.into_iter().map(|t| lo + (t - lo).rem_euclid(length));
@@ -331,11 +333,11 @@ impl TwoManifold<'_> {
 struct Outline {
     halves: Vec<Half>,
     points: Vec<Point2<f64>>,
-    /// Its signed area: positive if the face lies within it.
+    /// Its signed area, positive if the face lies inside.
     area: f64,
 }
 
-/// Into how many steps an edge is divided to see which loop is within which.
+/// The number of steps into which an edge is divided to determine which loop encloses which.
 const STEPS: u32 = 24;
 
 impl Outline {
@@ -366,7 +368,7 @@ impl Outline {
         }
     }
 
-    /// Whether it goes around a point, by the crossings of a ray.
+    /// Whether it encloses a point, by the crossings of a ray.
     fn encloses(&self, p: &Point2<f64>) -> bool {
         let after = self.points.iter().cycle().skip(1);
         let crossed = self.points.iter().zip(after).filter(|(a, b)| {
@@ -379,7 +381,7 @@ impl Outline {
     }
 }
 
-/// Places along an edge in the parameters of a face, in the direction of the edge.
+/// Points along an edge in the parameters of a face, in the direction of the edge.
 fn along(
     edge: &SeamedEdge<'_>,
     sense: Sense,
@@ -395,7 +397,7 @@ fn along(
     if edge.source.is_none() || is_at_start(&points, window) {
         on_seam(&mut points, sense == side, window);
     }
-    // From the middle on, where the window holds it, whatever rounding does at its edges.
+    // Start at the middle, which the window contains whatever rounding does at its edges.
     let middle = points.len() / 2;
     for i in 0..2 {
         for k in (middle + 1)..points.len() {
@@ -408,7 +410,7 @@ fn along(
     points
 }
 
-/// The same value next to another; on an axis, where there is none, the other.
+/// The equivalent value closest to another. On an axis, where it is undefined, the other value.
 fn nearest_equivalent(window: &ParameterWindow, i: usize, x: f64, other: f64) -> f64 {
     if x.is_nan() {
         return other;
@@ -427,8 +429,8 @@ fn is_at_start(points: &[Point2<f64>], window: &ParameterWindow) -> bool {
     })
 }
 
-/// Puts the middle of a seam on that edge of the window on which its side lies: the face is to the
-/// left of what runs up at the end of the window, and of what runs along its start.
+/// Moves the middle of a seam to the edge of the window on which this side of it lies. The face is
+/// to the left of an upward run at the end of the window and of a run along its start.
 fn on_seam(points: &mut [Point2<f64>], runs_along: bool, window: &ParameterWindow) {
     let middle = points.len() / 2;
     let (before, after) = (points[middle - 1], points[middle + 1]);
@@ -449,13 +451,13 @@ fn whole(mut outlines: Vec<Outline>) -> Vec<Outline> {
     outlines
 }
 
-/// The loops by the pieces of the face that they bound; none if a loop is in none.
+/// The loops grouped by the pieces of the face that they bound; `None` if a loop is in no piece.
 fn nested(outlines: Vec<Outline>) -> Option<Vec<Vec<Outline>>> {
     let (outer, holes): (Vec<Outline>, Vec<Outline>) =
         outlines.into_iter().partition(|o| o.area > 0.0);
     let mut pieces: Vec<Vec<Outline>> = outer.into_iter().map(|o| vec![o]).collect();
     for hole in holes {
-        // In the middle of an edge: in a vertex it may touch another loop.
+        // A point in the middle of an edge: at a vertex it may touch another loop.
         let p = *hole.points.get(STEPS as usize / 2)?;
         let around = pieces.iter_mut().filter(|piece| piece[0].encloses(&p));
         let smallest = around.min_by(|a, b| a[0].area.total_cmp(&b[0].area));

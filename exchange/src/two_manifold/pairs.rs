@@ -1,4 +1,4 @@
-//! Edges taken apart into pairs of faces that enclose material, vertices into fans.
+//! Splits edges into pairs of faces that enclose material, and vertices into fans.
 
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
@@ -10,13 +10,13 @@ use std::collections::{HashMap, HashSet};
 pub(super) struct Pairs {
     /// The two coedges of each edge.
     pub edges: Vec<[CoedgeId; 2]>,
-    /// The edge of each coedge that is kept.
+    /// The edge of each coedge that remains.
     pub edge_of: HashMap<CoedgeId, usize>,
     /// The loops of each face, without slits.
     pub rings: Vec<Vec<Vec<CoedgeId>>>,
-    /// The vertices at the ends of each edge; none where it is closed.
+    /// The vertices at the ends of each edge; none if it is closed.
     pub ends: Vec<Option<[usize; 2]>>,
-    /// The vertex that each fan of faces is of.
+    /// The original vertex of each fan of faces.
     pub fans: Vec<VertexId>,
 }
 
@@ -48,8 +48,8 @@ impl Pairs {
         pairs
     }
 
-    /// The loops of a face without slits: where its edge has the same face on both sides of the
-    /// material, the face goes on.
+    /// The loops of a face without slits. Where an edge has the same face on both sides of the
+    /// material, the face continues.
     fn rings_of(
         &self,
         brep: &Brep,
@@ -92,8 +92,8 @@ impl Pairs {
         rings
     }
 
-    /// An edge of a loop that encloses nothing: it runs along the same edges there and back, with only
-    /// the face's outside between its two sides.
+    /// An edge of a loop that encloses nothing: the loop runs along the same edges in both
+    /// directions, with only the face's outside in between.
     pub fn crack(&self, brep: &Brep) -> Option<EdgeId> {
         let mut cracks = self
             .rings
@@ -104,7 +104,8 @@ impl Pairs {
         first.map(|c| brep.topology.coedge(*c).edge)
     }
 
-    /// Gives every edge its vertices: around a fan each edge's other side goes on to the next.
+    /// Assigns vertices to every edge: around a fan, each edge's other side continues to the next
+    /// edge.
     fn find_fans(&mut self, brep: &Brep, partner: &HashMap<CoedgeId, CoedgeId>) {
         let mut next: HashMap<CoedgeId, CoedgeId> = HashMap::new();
         for ring in self.rings.iter().flatten() {
@@ -149,8 +150,8 @@ fn is_crack(brep: &Brep, ring: &[CoedgeId]) -> bool {
     })
 }
 
-/// A loop cut where it passes a vertex twice, so that the face touches itself there: other kernels take
-/// simple loops only.
+/// Splits a loop where it passes a vertex twice, so that the face touches itself there. Other
+/// kernels accept simple loops only.
 fn simple(brep: &Brep, mut ring: Vec<CoedgeId>) -> Vec<Vec<CoedgeId>> {
     let mut loops = Vec::new();
     let mut places: HashMap<VertexId, usize> = HashMap::new();
@@ -159,9 +160,9 @@ fn simple(brep: &Brep, mut ring: Vec<CoedgeId>) -> Vec<Vec<CoedgeId>> {
         let Some([vertex, _]) = brep.topology.run(ring[k]) else {
             return vec![ring];
         };
-        let met = places.insert(vertex, k);
+        let visited = places.insert(vertex, k);
         let rest = |first: usize| [&ring[..first], &ring[k..]].concat();
-        match met.filter(|&f| !is_crack(brep, &ring[f..k]) && !is_crack(brep, &rest(f))) {
+        match visited.filter(|&f| !is_crack(brep, &ring[f..k]) && !is_crack(brep, &rest(f))) {
             Some(first) => {
                 loops.push(ring.drain(first..k).collect());
                 places.retain(|_, place| *place < first);

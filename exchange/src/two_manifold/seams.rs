@@ -1,9 +1,9 @@
 //! The seams of a face.
 //!
 //! A seam is a ruling of a cylinder or a cone, a meridian of a sphere, a circle about the tube of a
-//! torus or a parallel of it. The crossings of a seam with the edges of its face say which part of it
-//! lies in the face (`kernel::brep::surface_path`). Of the tracks that are tried, the one that needs
-//! the fewest cuts is taken. Two seams of a torus cross in a vertex of their own.
+//! torus or a parallel of it. Its crossings with the edges of its face determine which part of it
+//! lies in the face (`kernel::brep::surface_path`). Of several candidate tracks the one with the
+//! fewest cuts is used. Two seams of a torus cross in a vertex of their own.
 
 use super::SeamError;
 use super::gaps::{Samples, axes};
@@ -18,10 +18,10 @@ use premio_kernel::geometry::curve::{Circle, Curve};
 use premio_kernel::geometry::surface::Surface;
 use std::f64::consts::TAU;
 
-/// How a face is cut.
+/// The cut of a face.
 #[derive(Debug)]
 pub(super) struct Cut {
-    /// The surface and where its angles start: at the seams.
+    /// The surface, and the starts of its angles, which are at the seams.
     pub window: ParameterWindow,
     /// The seams, pieces of which lie in the face.
     pub seams: Vec<Seam>,
@@ -33,7 +33,7 @@ pub(super) struct Seam {
     pub curve: Curve,
     /// The parameter of the curve at both ends, increasing.
     pub range: [f64; 2],
-    /// Where it starts and ends.
+    /// The kinds of its ends.
     pub ends: [End; 2],
     /// The parameter of the surface that is constant along it.
     pub across: usize,
@@ -42,16 +42,16 @@ pub(super) struct Seam {
 /// An end of a piece of a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
-    /// It meets an edge.
+    /// It ends at an edge.
     Edge {
         /// The side of the edge.
         coedge: CoedgeId,
         /// The parameter on the edge's curve.
         t: f64,
     },
-    /// A pole or an apex inside the face: the seam turns round there.
+    /// A pole or an apex inside the face, where the seam turns back.
     Pole(Point3<f64>),
-    /// Where the two seams of a torus cross inside the face.
+    /// The crossing of the two seams of a torus inside the face.
     Crossing,
 }
 
@@ -60,14 +60,14 @@ struct Faced<'a> {
     face: FaceId,
     resolution: f64,
     coedges: Vec<CoedgeId>,
-    /// How many coedges each loop has.
+    /// The number of coedges of each loop.
     rings: Vec<usize>,
     arcs: Vec<DirectedArc<'a>>,
     samples: Samples,
 }
 
 impl Cut {
-    /// The cut of a face, of which `rings` are the loops without slits.
+    /// The cut of a face; `rings` are its loops without slits.
     pub fn new(
         brep: &Brep,
         face: FaceId,
@@ -102,14 +102,14 @@ impl Faced<'_> {
         let of_axis = |z: Vector3<f64>| self.cut_of(with_axis(sphere, z));
         let mut cuts = axes.into_iter().take(AXES).map(of_axis);
         let first = cuts.next()?;
-        // Where seams run from both poles to one loop, readers take them for none.
+        // If seams run from both poles to one loop, readers ignore them.
         match first.as_ref().is_some_and(|cut| cut.seams.len() < 2) {
             true => first,
             false => least(std::iter::once(first).chain(cuts)),
         }
     }
 
-    /// The cut of a face whose parameters are those of a surface.
+    /// The cut of a face with the parameters of a given surface.
     fn cut_of(&self, surface: Surface) -> Option<Cut> {
         let starts = [0.0; 2];
         let origin = surface.frame().origin;
@@ -157,10 +157,10 @@ impl Faced<'_> {
         Some(cut)
     }
 
-    /// Whether a loop goes around an angle of the surface, so that it closes only along a seam. A loop
-    /// through a pole, where there is no angle, does not tell.
+    /// Whether a loop winds around an angle of the surface, so that it closes only along a seam. A
+    /// loop through a pole, where the angle is undefined, is inconclusive.
     fn winds(&self, window: &ParameterWindow, i: usize) -> bool {
-        // A torus' face that touches itself is closed by that, and goes around all the same.
+        // A face of a torus that touches itself is closed thereby, and still winds around.
         if let Surface::Torus(_) = window.surface {
             return false;
         }
@@ -176,8 +176,7 @@ impl Faced<'_> {
         })
     }
 
-    /// A cut across an angle, or none where the face touches itself instead, so that it does not
-    /// close.
+    /// A cut across an angle; none if the face touches itself, so that it does not close.
     fn unless_parted(
         &self,
         window: &ParameterWindow,
@@ -212,20 +211,20 @@ impl Faced<'_> {
         }
     }
 
-    /// Whether a track runs along edges, or passes vertices, wherever it is in the face.
+    /// Whether a track runs along edges or passes vertices wherever it is in the face.
     fn is_parted(&self, surface: &Surface, track: &Track) -> bool {
         let side = self.brep.sense(self.face);
         let crossings = track
             .walk
             .crossings(surface, side, &self.arcs, self.resolution);
-        // Next to a vertex, and where edges touch, a passage says nothing.
-        let is_plain = |at: f64| {
+        // Close to a vertex, and where edges touch, a crossing is inconclusive.
+        let is_clear = |at: f64| {
             let mut unclear = crossings
                 .iter()
                 .filter(|c| c.passage == CrossingSense::Unclear);
             unclear.all(|c| (c.at - at).abs() > 2.0 * self.resolution)
         };
-        if crossings.iter().any(|c| is_plain(c.at)) {
+        if crossings.iter().any(|c| is_clear(c.at)) {
             return false;
         }
         let parameter = |p: &Point3<f64>| track.curve.parameter(p);
@@ -248,7 +247,7 @@ impl Faced<'_> {
                 // All of a circle.
                 return true;
             }
-            // The end that comes first, as the middle tells.
+            // The end that comes first, as the midpoint shows.
             let [a, m, b] = [0.0, 0.5, 1.0].map(|part| parameter(&at(part)));
             let (a, b) = match track.course {
                 Course::Open { .. } => (a.min(b), a.max(b)),
@@ -276,14 +275,14 @@ impl Faced<'_> {
         covered[1..].iter().all(|next| {
             let gap = [end, next[0]];
             end = end.max(next[1]);
-            // What is met in one place has its parameters apart by rounding.
+            // Crossings at the same point have parameters that differ by rounding.
             let is_none = gap[1] - gap[0] <= 2.0 * self.resolution * track.by;
             is_none || self.place_between(track, gap) == PointLocation::Outside
         })
     }
 
-    /// Where a track lies between two of its parameters; on the face's boundary only if several of its
-    /// points are.
+    /// The location of a track between two of its parameters. It is on the face's boundary only if
+    /// several of its points are.
     fn place_between(&self, track: &Track, [a, b]: [f64; 2]) -> PointLocation {
         let parts = [0.5, 0.31, 0.73].into_iter();
         let mut places = parts.map(|part| self.place(&track.curve.point(a + part * (b - a))));
@@ -291,8 +290,8 @@ impl Faced<'_> {
         clear.unwrap_or(PointLocation::On)
     }
 
-    /// The pieces of a seam in the face, across the angle `across` at a value; none where that is not
-    /// plain.
+    /// The pieces of a seam in the face, at a value of the angle `across`; `None` if they are
+    /// ambiguous.
     fn seams(&self, surface: &Surface, across: usize, at: f64) -> Option<Vec<Seam>> {
         let tracks = self.tracks(surface, across, at);
         tracks.iter().find_map(|track| {
@@ -307,7 +306,7 @@ impl Faced<'_> {
         })
     }
 
-    /// The line of a constant angle, from several starts if it closes.
+    /// The line of a constant angle; from several starting points if it closes.
     fn tracks(&self, surface: &Surface, across: usize, at: f64) -> Vec<Track> {
         let f = surface.frame();
         match surface {
@@ -323,7 +322,7 @@ impl Faced<'_> {
                 ruling(surface, from, course).into_iter().collect()
             }
             Surface::Cone(s) => {
-                // Where edges end at the apex, from above it.
+                // If edges end at the apex, it starts above the apex.
                 let slants = self.samples.points().map(|p| (p - f.origin).norm());
                 let nearest = slants
                     .filter(|d| *d > self.resolution)
@@ -379,7 +378,7 @@ impl Faced<'_> {
         }
     }
 
-    /// The pieces of a track in the face: the curve's parameter at each end, and what is there.
+    /// The pieces of a track in the face: the curve's parameter at each end, and the kind of end.
     fn pieces(&self, surface: &Surface, track: &Track) -> Option<Vec<[(f64, End); 2]>> {
         let side = self.brep.sense(self.face);
         let crossings = track
@@ -393,7 +392,7 @@ impl Faced<'_> {
             };
             stops.push((c.passage, track.start + c.at * track.by, end));
         }
-        // Where the face touches itself it is left before it is entered again.
+        // Where the face touches itself, the track leaves it before entering it again.
         for k in 1..stops.len() {
             let (before, after) = (stops[k - 1], stops[k]);
             let together = (after.1 - before.1).abs() <= self.resolution * track.by;
@@ -442,7 +441,7 @@ impl Faced<'_> {
         pieces.collect()
     }
 
-    /// The axes of the circles that are edges.
+    /// The axes of the edges that are circles.
     fn circles(&self) -> Vec<Vector3<f64>> {
         let axis = |arc: &DirectedArc<'_>| match arc.curve {
             Curve::Circle(c) => Some(c.frame.z),
@@ -451,7 +450,7 @@ impl Faced<'_> {
         self.arcs.iter().filter_map(axis).collect()
     }
 
-    /// Whether the face holds a point of its surface that no edge passes.
+    /// Whether the face contains a point of its surface that is not on an edge.
     fn contains(&self, p: &Point3<f64>) -> bool {
         self.place(p) == PointLocation::Inside
     }
@@ -463,16 +462,16 @@ impl Faced<'_> {
     }
 }
 
-/// From how many places a closed seam is tried.
+/// The number of starting points tried for a closed seam.
 const STARTS: usize = 4;
-/// How many axes are tried for a sphere that is cut in pieces by the first.
+/// The number of axes tried for a sphere that the first axis cuts into pieces.
 const AXES: usize = 16;
 
 fn cuts_something(cut: &Option<Cut>) -> bool {
     cut.as_ref().is_some_and(|cut| !cut.seams.is_empty())
 }
 
-/// The cut that cuts least, the first of such; one that cuts nothing at once.
+/// The first cut with the fewest seams; a cut without seams is returned at once.
 fn least(cuts: impl Iterator<Item = Option<Cut>>) -> Option<Cut> {
     let mut best: Option<Cut> = None;
     for cut in cuts.flatten() {
@@ -490,10 +489,10 @@ fn least(cuts: impl Iterator<Item = Option<Cut>>) -> Option<Cut> {
 }
 
 impl Cut {
-    /// Parts the pieces of both seams where they cross.
+    /// Splits the pieces of both seams where they cross.
     fn part_at_crossing(&mut self) {
         let v = self.window.starts[1];
-        // Along the one seam the other angle is the curve's parameter.
+        // Along one seam the other angle is the curve's parameter.
         let at = [v, 0.0];
         let passes = |seam: &Seam| {
             let [lo, hi] = seam.range;

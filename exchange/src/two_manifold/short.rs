@@ -1,18 +1,17 @@
-//! Edges so short that other kernels take their ends for one, drawn together to one vertex, and faces so
-//! narrow that their two edges become one.
+//! Merges the ends of edges that are too short for other kernels, and removes faces so narrow that
+//! their two edges become one.
 
 use super::TwoManifold;
 use nalgebra::Point3;
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::curve::Curve;
 
-/// An edge's ends are looked at between so many steps for how long it is.
+/// The number of steps from which an edge's length is computed.
 const STEPS: u32 = 16;
 
 impl TwoManifold<'_> {
-    /// Makes one vertex of the two at the ends of every edge no longer than `least`, and leaves the
-    /// edge out. Several that follow one another stay, where together they are longer, and so does the
-    /// last edge of a loop.
+    /// Merges the vertices at the ends of every edge no longer than `least`, and removes the edge.
+    /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop.
     pub fn merge_short_edges(&mut self, least: f64) {
         let short: Vec<usize> = (0..self.edges.len())
             .filter(|&e| {
@@ -45,7 +44,8 @@ impl TwoManifold<'_> {
 type Half = (usize, Sense);
 
 impl TwoManifold<'_> {
-    /// Leaves out the faces between two edges that are no farther apart than `least`, which become one.
+    /// Removes the faces between two edges with a distance of at most `least`, which become one
+    /// edge.
     pub fn close_narrow(&mut self, least: f64) {
         let mut closed = vec![false; self.faces.len()];
         for face in 0..self.faces.len() {
@@ -85,7 +85,7 @@ impl TwoManifold<'_> {
         is_one.then_some([kept, given_up])
     }
 
-    /// Leaves out the faces that are marked.
+    /// Removes the marked faces.
     fn leave_out(&mut self, marked: &[bool]) {
         let mut place = Vec::with_capacity(marked.len());
         let mut kept = 0;
@@ -102,7 +102,7 @@ impl TwoManifold<'_> {
     }
 }
 
-/// How long a curve is over a range.
+/// The length of a curve over a range.
 pub(crate) fn length(curve: &Curve, [lo, hi]: [f64; 2]) -> f64 {
     let at = |k: u32| curve.point(lo + (hi - lo) * (f64::from(k) / f64::from(STEPS)));
     (0..STEPS).map(|k| (at(k + 1) - at(k)).norm()).sum()

@@ -12,18 +12,18 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 pub(super) struct Track {
     pub(super) walk: SurfacePath,
     pub(super) curve: Curve,
-    /// The curve's parameter at the start, and by the length of the walk.
+    /// The curve's parameter at the start, and its change per length of the path.
     pub(super) start: f64,
     pub(super) by: f64,
     pub(super) course: Course,
 }
 
-/// What a track is at its ends.
+/// The ends of a track.
 pub(super) enum Course {
     /// It closes.
     Round,
-    /// It starts at a point of the surface, at which the face's boundary is not, and ends at another
-    /// one or beyond the face.
+    /// It starts at a point of the surface that is not on the face's boundary, and ends at another
+    /// such point or beyond the face.
     Open {
         first: Option<f64>,
         last: Option<f64>,

@@ -1,4 +1,5 @@
-//! The arcs that bound faces of one surface, with their boxes, to be asked which a walk may meet.
+//! The boundary arcs of the faces of one surface, indexed by bounding boxes to find those that a
+//! path may intersect.
 
 use super::surface_path::{DirectedArc, SurfacePath};
 use crate::geometry::bounds::{Aabb, bounds, pieces};
@@ -12,22 +13,22 @@ use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
 type ArcBox = GeomWithData<Rectangle<[f64; 3]>, usize>;
 
-/// More arcs than this get a tree of boxes.
+/// The number of arcs above which a tree of boxes is built.
 const FEW: usize = 12;
 
-/// A smooth piece of an arc without a closed form.
+/// A smooth piece of an arc without a closed-form intersection.
 #[derive(Clone, Copy, Debug)]
 struct Part<N: Float = f64> {
     range: [N; 2],
     bounds: Aabb,
 }
 
-/// Directed arcs with their boxes.
+/// Directed arcs with their bounding boxes.
 #[derive(Debug)]
 pub(super) struct Arcs<'a, N: Float = f64> {
     /// The arcs.
     pub all: Vec<DirectedArc<'a, N>>,
-    /// Their boxes, in the same order, grown by the resolution.
+    /// Their boxes, in the same order, enlarged by the resolution.
     pub boxes: Vec<Aabb>,
     parts: Vec<Vec<Part<N>>>,
     tree: Option<RTree<ArcBox>>,
@@ -50,8 +51,8 @@ impl<N: Float> SelectionFunction<ArcBox> for Along<'_, N> {
     }
 }
 
-/// The parts of an arc, each with its box grown by the resolution; none where a plane meets the arc in a
-/// closed form.
+/// The parts of an arc, each with its box enlarged by the resolution; empty if the arc intersects a
+/// plane in closed form.
 fn parts<N: Float>(arc: &DirectedArc<'_, N>, resolution: N) -> Vec<Part<N>> {
     let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
         return Vec::new();
@@ -65,7 +66,7 @@ fn parts<N: Float>(arc: &DirectedArc<'_, N>, resolution: N) -> Vec<Part<N>> {
 }
 
 impl<'a, N: Float> Arcs<'a, N> {
-    /// The arcs with their boxes; `resolution` is the resolution.
+    /// The arcs with their boxes.
     pub fn new(all: Vec<DirectedArc<'a, N>>, resolution: N) -> Self {
         let parts: Vec<Vec<Part<N>>> = all.iter().map(|a| parts(a, resolution)).collect();
         let hull = |(a, parts): (&DirectedArc<'_, N>, &Vec<Part<N>>)| match parts.as_slice() {
@@ -87,12 +88,12 @@ impl<'a, N: Float> Arcs<'a, N> {
         }
     }
 
-    /// Whether there are so many arcs that a short walk is worth while.
+    /// Whether there are so many arcs that a short path is worth trying first.
     pub fn are_many(&self) -> bool {
         self.tree.is_some()
     }
 
-    /// The arcs whose boxes hold `p`.
+    /// The arcs whose boxes contain `p`.
     pub fn around(&self, p: &Point3<N>) -> impl Iterator<Item = usize> {
         let at = AABB::from_point(rounded(p));
         let tree = self.tree.iter();
@@ -119,7 +120,7 @@ impl<'a, N: Float> Arcs<'a, N> {
         parts.is_empty() || parts.iter().any(|part| part.bounds.contains(p))
     }
 
-    /// Calls `meet` for every arc that a walk may meet, with the ranges of it in which it may.
+    /// Calls `meet` for every arc that a path may intersect, with the ranges in which it may.
     pub fn hit_by(
         &self,
         walk: &SurfacePath<N>,
@@ -137,7 +138,8 @@ impl<'a, N: Float> Arcs<'a, N> {
         }
     }
 
-    /// The ranges of an arc that a walk may meet: all of it where a plane meets it in a closed form.
+    /// The ranges of an arc that a path may intersect; the entire arc if it intersects a plane in
+    /// closed form.
     pub fn ranges(&self, walk: &SurfacePath<N>, i: usize, resolution: N) -> Vec<[N; 2]> {
         let parts = &self.parts[i];
         if parts.is_empty() {

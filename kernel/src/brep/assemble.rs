@@ -1,8 +1,8 @@
-//! From edges with the faces around them to loops, faces, shells and solids.
+//! Assembles loops, faces, shells and solids from edges and the faces around them.
 //!
 //! Loops: at a vertex a coedge is followed by the next one clockwise, seen from outside, so that
-//! the face stays to the left. Faces: loops of one surface that bound one region (`region`).
-//! Shells and solids: `shells`. Where several of these touch: `non_manifold_points`.
+//! the face stays on the left. Faces: loops of one surface that bound one region (`region`). Shells
+//! and solids: `shells`. Points where several of these touch: `non_manifold_points`.
 
 use super::non_manifold_points::touches;
 use super::region::{RegionError, regions};
@@ -27,9 +27,9 @@ use std::collections::{BTreeMap, HashMap};
 pub struct FaceUse {
     /// The index of the surface.
     pub surface: usize,
-    /// Whether the outward normal is the surface's own.
+    /// Whether the outward normal is that of the surface.
     pub outward: Sense,
-    /// Whether the face's loop runs along the edge.
+    /// Whether the face's loop runs in the edge's direction.
     pub sense: Sense,
 }
 
@@ -40,29 +40,29 @@ pub struct EdgeInput<N: Float = f64> {
     pub curve: usize,
     /// The range of the parameter, increasing.
     pub range: [N; 2],
-    /// The points (by index) at both ends; none for a closed edge.
+    /// The indices of the points at both ends; none for a closed edge.
     pub ends: Option<[usize; 2]>,
-    /// Counterclockwise about the curve's direction; pairs enclose material.
+    /// The faces, counterclockwise about the curve's direction. Consecutive pairs enclose material.
     pub face_uses: Vec<FaceUse>,
     /// Whether two faces meet smoothly.
     pub smooth: bool,
-    /// The points (by index) that it runs through.
+    /// The indices of the points that the edge passes through.
     pub passes: Vec<usize>,
 }
 
-/// A point where curves end, cross or touch a surface.
+/// A point where curves end or cross, or where a curve is tangent to a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VertexInput<N: Float = f64> {
-    /// The place.
+    /// The location.
     pub place: Point3<N>,
     /// The indices of all surfaces through it.
     pub surfaces: Vec<usize>,
-    /// The pairs of surfaces that have it by themselves: where they touch, where their curve
-    /// crosses itself, an apex.
+    /// The pairs of surfaces for which it is a singular point: a tangency, a self-crossing of their
+    /// curve, or an apex.
     pub nodes: Vec<[usize; 2]>,
 }
 
-/// All edges of a boundary, and the closed surfaces that are faces without an edge.
+/// All edges of a boundary, and the closed surfaces that are faces without edges.
 #[derive(Clone, Debug, Default)]
 pub struct BoundaryInput<N: Float = f64> {
     /// The surfaces.
@@ -77,7 +77,7 @@ pub struct BoundaryInput<N: Float = f64> {
     pub whole: Vec<(usize, Sense)>,
 }
 
-/// Why edges do not form a boundary. Each is a failure of this program on the part.
+/// Why edges do not form a boundary. Each is a failure of this program for the part.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AssemblyError {
     /// The coedges of a face do not close at a vertex.
@@ -86,41 +86,42 @@ pub enum AssemblyError {
         /// The vertex.
         place: [f64; 3],
     },
-    /// The edges of a face around a vertex cannot be put in order.
-    #[error("the edges around ({:.9}, {:.9}, {:.9}) cannot be told apart", place[0], place[1], place[2])]
+    /// The order of a face's edges around a vertex is ambiguous.
+    #[error("the edges around ({:.9}, {:.9}, {:.9}) cannot be put in order", place[0], place[1], place[2])]
     AmbiguousVertex {
         /// The vertex.
         place: [f64; 3],
     },
-    /// The loops of a surface cannot be sorted into faces.
+    /// The loops of a surface cannot be grouped into faces.
     #[error(transparent)]
     Region(#[from] RegionError),
-    /// A shell encloses no volume that is distinguished from rounding.
-    #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume that is told from rounding", place[0], place[1], place[2])]
+    /// A shell encloses no volume that can be distinguished from rounding.
+    #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume above rounding", place[0], place[1], place[2])]
     ZeroVolumeShell {
         /// A point of it.
         place: [f64; 3],
     },
-    /// It is not told which solid a void lies in.
-    #[error("it cannot be told which solid holds the void at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
+    /// It cannot be determined in which solid a void lies.
+    #[error("it cannot be determined which solid contains the void at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
     OrphanVoid {
         /// A point of the void's boundary.
         place: [f64; 3],
     },
 }
 
-/// A small sphere around a vertex on which the edges there are distinguished.
+/// A small sphere around a vertex on which the edges there are ordered.
 struct Around {
-    /// It reaches no further than any edge at this part of its range.
+    /// The fraction of each edge's range that the sphere may reach.
     along: f64,
-    /// Its radius as a part of that reach.
+    /// The radius relative to the shortest such distance.
     part: f64,
-    /// By how many times the resolution a gap must be seen.
+    /// The smallest gap that separates two edges, in multiples of the resolution.
     clear: f64,
 }
 
-/// A gap must be seen well above the vertex's own uncertainty, next to it; halfway along, edges are
-/// apart by the resolution, or are one; or further on, where they end at different vertices.
+/// Spheres close to the vertex need gaps well above the vertex's own uncertainty. Halfway along the
+/// edges a gap of the resolution suffices, as closer edges would be one. The last sphere lies
+/// farther along, where edges may end at different vertices.
 const SPHERES: [Around; 7] = {
     const fn sphere(along: f64, part: f64, clear: f64) -> Around {
         Around { along, part, clear }
@@ -136,7 +137,7 @@ const SPHERES: [Around; 7] = {
     ]
 };
 
-/// A coedge before it has an owner.
+/// A coedge that is not yet in a loop.
 #[derive(Clone, Copy, Debug)]
 struct Half {
     edge: usize,
@@ -145,19 +146,19 @@ struct Half {
 
 type Group = (usize, Sense);
 
-/// An edge, and whether it is its first end that is meant.
+/// An edge, and whether its first end is meant.
 type End = (usize, bool);
 
 struct Assembler<'a, N: Float = f64> {
     raw: &'a BoundaryInput<N>,
     predicates: &'a Predicates,
     halves: Vec<Half>,
-    /// Where the halves of each edge begin.
+    /// The index of the first half of each edge.
     first: Vec<usize>,
     next: Vec<usize>,
 }
 
-/// The boundary representation with the given edges.
+/// Assembles the boundary representation with the given edges.
 pub fn assemble<N: Float>(
     raw: BoundaryInput<N>,
     predicates: &Predicates,
@@ -176,13 +177,13 @@ pub fn assemble<N: Float>(
     Ok(brep)
 }
 
-/// What the entities are called that came of raw ones.
+/// The ids of the entities made from the input.
 pub(super) struct Names {
-    /// The partner of each coedge across its edge's material.
+    /// The partner of each coedge across the material at its edge.
     pub partner: Vec<CoedgeId>,
-    /// The vertex of a point.
+    /// The vertex id of a point.
     pub vertex_of: HashMap<usize, VertexId>,
-    /// The index of a surface.
+    /// The surface index of an input surface.
     pub surface_of: HashMap<usize, usize>,
 }
 
@@ -211,16 +212,16 @@ impl<'a, N: Float> Assembler<'a, N> {
         }
     }
 
-    /// The vertex that a half starts at (`false`) or ends at (`true`).
+    /// The vertex at which a half starts (`false`) or ends (`true`).
     fn end(&self, half: usize, at_end: bool) -> Option<usize> {
         let h = &self.halves[half];
         let ends = self.raw.edges[h.edge].ends?;
         Some(ends[usize::from(at_end == (h.face_use.sense == Sense::Along))])
     }
 
-    /// Finds the follower of every half.
+    /// Finds the successor of every half.
     fn link(&mut self) -> Result<(), AssemblyError> {
-        // Per vertex and group: the halves that come in and those that go out.
+        // Per vertex and group: the incoming and the outgoing halves.
         let mut meeting: BTreeMap<(usize, Group), [Vec<usize>; 2]> = BTreeMap::new();
         for i in 0..self.halves.len() {
             let w = self.halves[i].face_use;
@@ -263,7 +264,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         let n = order.len();
         let rank: HashMap<End, usize> = order.into_iter().zip(0..).collect();
         let follower = |i: &usize| {
-            // One at least away: an end may be followed by itself, after a whole turn.
+            // The distance is at least one: an end may be followed by itself, after a full turn.
             let clockwise = |o: &&usize| (rank[&back(i)] + n - rank[&away(o)] + n - 1) % n;
             out.iter().min_by_key(clockwise).copied()
         };
@@ -281,14 +282,14 @@ impl<'a, N: Float> Assembler<'a, N> {
         Ok(())
     }
 
-    /// Whether a half's end (`at_end`) or start is the first end of its edge.
+    /// Whether a half's end (`at_end`) or start is its edge's first end.
     fn at_first_end(&self, half: usize, at_end: bool) -> bool {
         at_end != (self.halves[half].face_use.sense == Sense::Along)
     }
 
-    /// Edge ends in their order around a vertex, counterclockwise seen from outside: of the points
-    /// in which a small sphere around the vertex meets them. What is tangent, and not distinguished
-    /// on one sphere, is on a wider one, which only these have to reach.
+    /// Sorts edge ends around a vertex, counterclockwise seen from outside, by their intersections
+    /// with a small sphere around it. Ends that are tangent and cannot be separated on one sphere
+    /// are sorted on a wider one, which only they need to reach.
     fn order(
         &self,
         vertex: usize,
@@ -299,7 +300,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         let frame = self.tangent_frame(group, &v);
         let mut bundles = vec![ends];
         while let Some(at) = bundles.iter().position(|b| b.len() > 1) {
-            let parts = self.told_apart(&v, &frame, &bundles[at]);
+            let parts = self.separated(&v, &frame, &bundles[at]);
             if parts.len() < 2 {
                 return Err(AssemblyError::AmbiguousVertex { place: rounded(&v) });
             }
@@ -308,8 +309,9 @@ impl<'a, N: Float> Assembler<'a, N> {
         Ok(bundles.concat())
     }
 
-    /// Edge ends counterclockwise, in as many bundles as any sphere distinguishes that all reach.
-    fn told_apart(&self, v: &Point3<N>, frame: &Frame<N>, ends: &[End]) -> Vec<Vec<End>> {
+    /// Edge ends in counterclockwise order, in as many separate bundles as any one sphere that all
+    /// of them reach can distinguish.
+    fn separated(&self, v: &Point3<N>, frame: &Frame<N>, ends: &[End]) -> Vec<Vec<End>> {
         let mut best = Vec::new();
         for sphere in &SPHERES {
             let [along, part, clear] = [sphere.along, sphere.part, sphere.clear].map(N::from_f64);
@@ -337,15 +339,14 @@ impl<'a, N: Float> Assembler<'a, N> {
     fn tangent_frame(&self, (surface, outward): Group, v: &Point3<N>) -> Frame<N> {
         let s = &self.raw.surfaces[surface];
         let normal = match s {
-            // At the apex the rulings are ordered around the axis.
+            // At the apex the rulings are sorted around the axis.
             Surface::Cone(c) if self.predicates.within((v - c.frame.origin).length()) => -c.frame.z,
             _ => s.normal(v),
         };
         Frame::about(*v, normal * outward.sign::<N>())
     }
 
-    /// The parameters where an edge leaves the vertex at one of its ends, and a part of its range
-    /// further on.
+    /// The parameters at one of an edge's ends, and at a fraction `along` of its range from there.
     fn stretch(&self, (edge, first): End, along: N) -> [N; 2] {
         let [lo, hi] = self.raw.edges[edge].range;
         match first {
@@ -354,14 +355,14 @@ impl<'a, N: Float> Assembler<'a, N> {
         }
     }
 
-    /// The point of an edge that part of its range from one of its ends.
+    /// The point of an edge at a fraction of its range from one of its ends.
     fn point_along(&self, end: End, along: N) -> Point3<N> {
         let [_, t] = self.stretch(end, along);
         self.raw.curves[self.raw.edges[end.0].curve].point(t)
     }
 
-    /// The point of an edge at a distance from the vertex at one of its ends, no further than a part
-    /// of its range.
+    /// The point of an edge at a distance from the vertex at one of its ends, within a fraction of
+    /// its range.
     fn point_at(&self, end: End, along: N, v: &Point3<N>, radius: N) -> Point3<N> {
         let curve = &self.raw.curves[self.raw.edges[end.0].curve];
         let [start, far] = self.stretch(end, along);
@@ -373,7 +374,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         curve.point(t)
     }
 
-    /// The closed runs of halves.
+    /// The closed cycles of halves.
     fn rings(&self) -> Vec<Vec<usize>> {
         let mut seen = vec![false; self.halves.len()];
         let mut rings = Vec::new();
@@ -402,7 +403,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         }
     }
 
-    /// The loops of each surface sorted into faces.
+    /// Groups the loops of each surface into faces.
     fn faces(&self, rings: &[Vec<usize>]) -> Result<Vec<Region>, AssemblyError> {
         let mut groups: BTreeMap<Group, Vec<usize>> = BTreeMap::new();
         for (i, ring) in rings.iter().enumerate() {
@@ -440,7 +441,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         Ok(faces)
     }
 
-    /// The entities but for shells, solids and touches, and how they are called.
+    /// All entities except shells, solids and touches, and their ids.
     fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep<N>, Names) {
         let raw = self.raw;
         let mut topology = Topology::default();
@@ -521,7 +522,7 @@ impl<'a, N: Float> Assembler<'a, N> {
     }
 }
 
-/// Ends by their angles, in order from the widest gap on, in bundles that are parted by more than
+/// Sorts edge ends by angle, starting at the widest gap, into bundles separated by more than
 /// `least`.
 fn bundled<N: Float>(mut angles: Vec<(N, End)>, least: N) -> Vec<Vec<End>> {
     angles.sort_by(|a, b| a.0.total_cmp(&b.0));

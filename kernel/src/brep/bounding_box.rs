@@ -1,4 +1,4 @@
-//! The box of a boundary, to rounding.
+//! The bounding box of a boundary, to rounding.
 
 use super::Brep;
 use super::locate::{FaceLocator, PointLocation};
@@ -10,7 +10,7 @@ use crate::number::float::Float;
 use crate::number::predicates::ROUNDING;
 use nalgebra::Vector3;
 
-/// The box of a boundary: of its edges, and of its faces where they bulge beyond them.
+/// The bounding box of a boundary: that of its edges, extended where faces bulge beyond them.
 pub fn bounds<N: Float>(brep: &Brep<N>) -> Aabb {
     let mut all = Aabb::EMPTY;
     for e in brep.topology.edge_ids() {
@@ -22,7 +22,7 @@ pub fn bounds<N: Float>(brep: &Brep<N>) -> Aabb {
     all
 }
 
-/// The box of a face: of its edges, and of the face where it bulges beyond them.
+/// The bounding box of a face: that of its edges, extended where the face bulges beyond them.
 pub(super) fn face_bounds<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
     let edges = brep.topology.edges_of(face);
     let edges = edges.fold(Aabb::EMPTY, |all, e| {
@@ -31,8 +31,8 @@ pub(super) fn face_bounds<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
     edges.hull(&bulge(brep, face, &edges))
 }
 
-/// The box of the points of a face whose normal is along an axis, where it bulges out of what is
-/// `known`, and of a cone's apex.
+/// The box of a cone's apex and of the points of a face whose normal is parallel to a coordinate
+/// axis, where these lie outside `known`.
 fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
     let surface = brep.surface(face);
     let f = surface.frame();
@@ -45,7 +45,8 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
                 points.extend([-N::ONE, N::ONE].map(|k| f.origin + axis * (k * s.radius)));
             }
             Surface::Torus(t) => {
-                // Of products, which keep their digits where the axis is nearly this one.
+                // Computed from products, which keep their digits where the axis is nearly this
+                // one.
                 let across = f.z.cross(&axis.cross(&f.z));
                 let out = direction(&across).unwrap_or(f.x);
                 for (k, l) in [
@@ -63,7 +64,7 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
     if let Surface::Cone(c) = surface {
         points.push(c.frame.origin);
     }
-    // Edges next to such a point say as much of the box, to rounding.
+    // Edges close to such a point give the same box, to rounding.
     let rounding = ROUNDING * known.diagonal();
     if rounding.is_finite() {
         let known = known.grown(rounding);
@@ -72,7 +73,7 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
     if points.is_empty() {
         return Aabb::EMPTY;
     }
-    // A band of nothing would miss boundaries by rounding. An apex may be far from the face.
+    // A resolution of zero would miss boundaries by rounding. An apex may be far from the face.
     let arcs = FaceLocator::from_face(brep, face, N::ZERO);
     let around = match surface {
         Surface::Cone(_) => Aabb::EMPTY,

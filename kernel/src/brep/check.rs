@@ -1,4 +1,4 @@
-//! The checker: one named violation for each rule that a boundary must keep.
+//! The checker of boundary representations: one named violation for each rule.
 
 use super::Brep;
 use super::cycle_basis;
@@ -18,16 +18,16 @@ pub enum Violation {
     LoopOpen {
         /// The loop.
         ring: LoopId,
-        /// The coedge that leads nowhere.
+        /// The coedge whose end is not connected.
         after: CoedgeId,
     },
-    /// A loop is no sum of the cycles of its face's boundary.
-    #[error("loop {} is no sum of cycles", ring.0)]
+    /// A loop is not a sum of the cycles of its face's boundary.
+    #[error("loop {} is not a sum of cycles", ring.0)]
     LoopNoCycle {
         /// The loop.
         ring: LoopId,
     },
-    /// An edge is not used in pairs that run oppositely.
+    /// An edge is not used in pairs of opposite direction.
     #[error("edge {} is not used in opposite pairs", edge.0)]
     EdgeUse {
         /// The edge.
@@ -40,7 +40,7 @@ pub enum Violation {
         edge: EdgeId,
         /// The vertex.
         vertex: VertexId,
-        /// How far away, in the part's unit.
+        /// The distance, in the part's unit.
         distance: f64,
     },
     /// An edge leaves the surface of one of its faces.
@@ -50,26 +50,26 @@ pub enum Violation {
         edge: EdgeId,
         /// The face.
         face: FaceId,
-        /// How far, in the part's unit.
+        /// The distance, in the part's unit.
         distance: f64,
     },
-    /// A point at which the boundary touches itself lies off what meets there.
-    #[error("touch {} lies {distance:e} off what meets there", touch.0)]
+    /// A point at which the boundary touches itself does not lie on the entities that meet there.
+    #[error("touch {} lies {distance:e} away from the entities that meet there", touch.0)]
     TouchOff {
         /// The touch.
         touch: TouchId,
-        /// How far, in the part's unit.
+        /// The distance, in the part's unit.
         distance: f64,
     },
-    /// The entities of a shell do not add up (Euler-Poincaré).
+    /// The entities of a shell violate the Euler-Poincaré formula.
     #[error("shell {} has the Euler characteristic {euler}", shell.0)]
     Euler {
         /// The shell.
         shell: ShellId,
-        /// Vertices less edges plus the faces' characteristics: must be even, and at most two.
+        /// Vertices minus edges plus the faces' characteristics. It must be even and at most two.
         euler: i32,
     },
-    /// A face has an area that is no area.
+    /// The area of a face is invalid.
     #[error("face {} has the area {area:e}", face.0)]
     Area {
         /// The face.
@@ -87,12 +87,12 @@ pub enum Violation {
     },
 }
 
-/// An edge may lie this many times the resolution off its faces and its vertices: it was found
-/// from two of them, and what coincides within the resolution was made one.
+/// The multiple of the resolution by which an edge may miss its faces and its vertices. The edge
+/// was constructed from two of them, and the others were merged with these within the resolution.
 const PLAY: f64 = 8.0;
 
-/// The farthest that an edge lies from a vertex at its end or from a face, where that is more than
-/// the resolution `resolution` accounts for: the place on the edge, and the distance.
+/// The largest distance of an edge from a vertex at its end or from a face, if it exceeds what
+/// merging within the resolution accounts for: the point on the edge, and the distance.
 pub fn worst_gap<N: Float>(brep: &Brep<N>, resolution: N) -> Option<(Point3<N>, N)> {
     let t = &brep.topology;
     let gaps = t.edge_ids().flat_map(|id| {
@@ -104,12 +104,12 @@ pub fn worst_gap<N: Float>(brep: &Brep<N>, resolution: N) -> Option<(Point3<N>, 
     worst.filter(|gap| !is_accounted(gap.1, resolution))
 }
 
-/// Whether a distance is what making one of what coincides may leave.
+/// Whether merging of coincident entities accounts for a distance.
 fn is_accounted<N: Float>(distance: N, resolution: N) -> bool {
     distance.is_within(N::from_f64(PLAY) * resolution)
 }
 
-/// The ends of an edge: the vertex, the place on the edge, and how far they are apart.
+/// The ends of an edge: the vertex, the point on the edge, and their distance.
 pub(super) fn gaps_at_ends<N: Float>(
     brep: &Brep<N>,
     id: EdgeId,
@@ -122,7 +122,7 @@ pub(super) fn gaps_at_ends<N: Float>(
     })
 }
 
-/// Where an edge lies farthest off a face's surface, and how far.
+/// The point of an edge farthest from a face's surface, and its distance.
 fn gap_from_face<N: Float>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3<N>, N) {
     let ([lo, hi], curve) = (brep.range(id), brep.curve(id));
     let gaps = (0..=PLACES).map(|k| {
@@ -133,10 +133,10 @@ fn gap_from_face<N: Float>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3<
     worst.unwrap_or((Point3::origin(), N::ZERO))
 }
 
-/// At how many places, less one, an edge is held against a face.
+/// The number of sample points, less one, at which an edge is compared with a face.
 const PLACES: u32 = 8;
 
-/// The rules that a boundary breaks; none where it is sound. `resolution` is the resolution.
+/// The rules that a boundary breaks; empty if it is valid.
 pub fn check<N: Float>(
     brep: &Brep<N>,
     measures: &FaceIntegrals<N>,
@@ -152,10 +152,10 @@ pub fn check<N: Float>(
     found
 }
 
-/// A face that is less than nothing has a loop that is taken for what it is not.
+/// A face with a negative area has a loop that was misclassified.
 fn check_areas<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>, found: &mut Vec<Violation>) {
     for (i, FaceArea { area, noise }) in measures.areas(brep).into_iter().enumerate() {
-        // A sliver's may be rounding.
+        // The area of a sliver may be rounding.
         if area.is_nan() || area.is_at_most(-noise) {
             found.push(Violation::Area {
                 face: FaceId(i as u32),
@@ -186,7 +186,7 @@ fn check_loops<N: Float>(brep: &Brep<N>, found: &mut Vec<Violation>) {
     }
 }
 
-/// The loops of a face against the cycles of its boundary.
+/// Checks the loops of a face against the cycles of its boundary.
 fn check_cycles<N: Float>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Violation>) {
     let t = &brep.topology;
     let mut number: BTreeMap<EdgeId, usize> = BTreeMap::new();
@@ -202,7 +202,8 @@ fn check_cycles<N: Float>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Viol
             }
         }
     }
-    // A face with thousands of loops is a graph of as many parts: each is its own check.
+    // A face with thousands of loops is a graph with as many components, each of which is its own
+    // check.
     let few = loops.len() <= 64;
     for &l in loops.iter().filter(|_| few) {
         let mut edges = BTreeSet::new();
@@ -292,7 +293,7 @@ fn check_shells<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>, found: &m
         let id = ShellId(i as u32);
         let enclosed = measures.enclosed(brep, id);
         let volume = enclosed.volume;
-        // The volume of a sliver may be below rounding: then it tells nothing.
+        // The volume of a sliver may be below rounding, and then its sign is meaningless.
         let is_turned = enclosed.is_clear() && volume.is_below_zero() != shell.void;
         if volume.is_nan() || is_turned {
             found.push(Violation::Orientation {

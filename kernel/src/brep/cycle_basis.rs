@@ -1,9 +1,9 @@
-//! The cycles of an undirected graph by Welch's method (J. ACM 13(2), 1966): a spanning forest,
+//! A cycle basis of an undirected graph by Welch's method (J. ACM 13(2), 1966): a spanning forest,
 //! and for each edge outside it the cycle that it closes.
 //!
-//! The loops of a face are found by the order of edges around vertices; here they are checked to
-//! be sums (modulo two) of such cycles. Gibbs (1969) showed Welch's ways to list all cycles from
-//! the basis to be wrong; the basis itself is sound, and all that is used.
+//! The loops of a face are found from the order of edges around vertices. Here they are checked to
+//! be sums (modulo two) of such cycles. Gibbs (1969) showed that Welch's enumeration of all cycles
+//! from the basis is wrong; the basis itself is correct, and only it is used.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 

@@ -1,9 +1,10 @@
 //! Volume, area and centroid of the exact boundary.
 //!
-//! By the divergence theorem each is a sum over faces of ∫ g dA, and by Green's in the surface's
-//! parameters (u, v) a sum over edges: with G(u, v) = ∫ g |P_u × P_v| dv from a fixed v, the face
-//! gives −∮ G du. What a period or a pole adds is told by the area, which lies between nothing and
-//! the whole surface. Notation: P relative to a reference point, N the surface's normal, h = P·N.
+//! By the divergence theorem each is a sum over faces of ∫ g dA. By Green's theorem in the
+//! surface's parameters (u, v) that is a sum over edges: with G(u, v) = ∫ g |P_u × P_v| dv from a
+//! fixed v, the face contributes −∮ G du. The contribution of a period or a pole follows from the
+//! area, which lies between zero and that of the whole surface. Notation: P relative to a reference
+//! point, N the surface's normal, h = P·N.
 
 mod face;
 mod ground;
@@ -34,19 +35,19 @@ pub struct Mass {
 /// ∫ dA, ∫ h dA and ∫ h P dA over a face.
 type Moments<N> = [N; 5];
 
-/// What the faces of a boundary measure: once for all that is asked of them.
+/// The integrals over the faces of a boundary, computed once for all queries.
 #[derive(Clone, Debug)]
 pub struct FaceIntegrals<N: Float = f64> {
-    /// Amid all faces.
+    /// Reference point of all faces.
     whole: Amid<N>,
-    /// Amid each shell, so that how far apart shells lie costs no digits.
+    /// Reference point of each shell, so that the distance between shells costs no digits.
     shells: Vec<Amid<N>>,
-    /// The moments of each face, about the point amid its shell.
+    /// The moments of each face about the reference point of its shell.
     faces: Vec<Moments<N>>,
 }
 
 impl<N: Float> FaceIntegrals<N> {
-    /// The measures of the faces of a boundary, as far as f64 values tell them.
+    /// The integrals over the faces of a boundary, to the precision of f64.
     pub fn new(brep: &Brep<N>) -> Self {
         Self::with(brep, Care::Doubles)
     }
@@ -74,7 +75,7 @@ impl<N: Float> FaceIntegrals<N> {
         }
     }
 
-    /// The mass properties, and what rounding may make of the volume.
+    /// The mass properties, and the rounding error of the volume.
     fn summed_up(&self, brep: &Brep<N>) -> (Mass, f64) {
         let reference = self.whole.reference;
         let (mut area, mut volume, mut first) = (N::ZERO, N::ZERO, Vector3::zeros());
@@ -107,9 +108,9 @@ impl<N: Float> FaceIntegrals<N> {
         let faces = &brep.topology.shells[shell.index()].faces;
         let amid = &self.shells[shell.index()];
         let of = faces.iter().map(|&f| (f, self.faces[f.index()]));
-        let told = enclosed(brep, faces, shell_moments(brep, of), amid, self.whole.size);
-        match N::IS_DOUBLE || told.is_clear() {
-            true => told,
+        let integral = enclosed(brep, faces, shell_moments(brep, of), amid, self.whole.size);
+        match N::IS_DOUBLE || integral.is_clear() {
+            true => integral,
             false => shell_volume(brep, faces, self.whole.size),
         }
     }
@@ -125,9 +126,9 @@ impl<N: Float> FaceIntegrals<N> {
         };
         let of_face = |face: FaceId| {
             let shell = brep.topology.face(face).shell.index();
-            let told = covered(face, &self.shells[shell], self.faces[face.index()][0]);
-            if N::IS_DOUBLE || told.area.is_beyond(told.noise) {
-                return told;
+            let integral = covered(face, &self.shells[shell], self.faces[face.index()][0]);
+            if N::IS_DOUBLE || integral.area.is_beyond(integral.noise) {
+                return integral;
             }
             let amid = Amid {
                 care: Care::Digits,
@@ -139,7 +140,7 @@ impl<N: Float> FaceIntegrals<N> {
     }
 }
 
-/// Where the volume is at least so much more than what f64 values may make of it, they tell it.
+/// The ratio of rounding error to volume below which f64 is accurate enough.
 const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;
 
 /// The signed volume that a shell encloses.
@@ -147,7 +148,7 @@ const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;
 pub struct ShellVolume<N: Float = f64> {
     /// The volume, negative for a void, in cubic units.
     pub volume: N,
-    /// What rounding may make of it.
+    /// The bound of its rounding error.
     pub noise: N,
 }
 
@@ -158,19 +159,19 @@ impl<N: Float> ShellVolume<N> {
     }
 }
 
-/// How closely integrals are followed.
+/// The precision of the integrals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Care {
-    /// As f64 values tell them.
+    /// That of f64.
     Doubles,
-    /// With more digits to far more than is told; as f64 values tell them where there are no more.
+    /// Extended precision, to far more than is reported; f64 where there is no other.
     Digits,
-    /// To the last digit.
+    /// Full precision.
     Last,
 }
 
 impl Care {
-    /// What sums are known to, relative to their terms.
+    /// The error of sums relative to their terms.
     fn part<N: Float>(self) -> N {
         match self {
             Self::Doubles => N::from_f64(f64::rules().settled / NOISE),
@@ -180,33 +181,33 @@ impl Care {
     }
 }
 
-/// How many times the rounding of its area times the part's size a volume may be off.
+/// The volume's error bound, in multiples of area times the part's size times rounding.
 const NOISE: f64 = 64.0;
 
-/// The size of a part, in terms of which its coordinates are rounded.
+/// The size of a part, to which the rounding of its coordinates is proportional.
 pub fn size<N: Float>(brep: &Brep<N>) -> N {
     Amid::new(brep, brep.topology.face_ids(), Care::Doubles).size
 }
 
 /// The signed volume that a shell encloses; `size` is that of the part.
 pub fn shell_volume<N: Float>(brep: &Brep<N>, faces: &[FaceId], size: N) -> ShellVolume<N> {
-    let told = |care| {
+    let volume = |care| {
         let amid = Amid::new(brep, faces.iter().copied(), care);
         let of = faces.iter().map(|&f| (f, moments(brep, f, &amid)));
         enclosed(brep, faces, shell_moments(brep, of), &amid, size)
     };
-    let rough = told(Care::Doubles);
+    let rough = volume(Care::Doubles);
     if N::IS_DOUBLE || rough.is_clear() {
         return rough;
     }
-    let fine = told(Care::Digits);
+    let fine = volume(Care::Digits);
     match fine.is_clear() {
         true => fine,
-        false => told(Care::Last),
+        false => volume(Care::Last),
     }
 }
 
-/// What is known of the volume of some faces by their moments.
+/// The volume of some faces, and its error, from their moments.
 fn enclosed<N: Float>(
     brep: &Brep<N>,
     faces: &[FaceId],
@@ -220,7 +221,8 @@ fn enclosed<N: Float>(
     }
 }
 
-/// The moments of a shell, by those of its faces: its area, and the others signed.
+/// The moments of a shell from those of its faces. The area is summed without signs, the others
+/// with signs.
 fn shell_moments<N: Float>(
     brep: &Brep<N>,
     faces: impl Iterator<Item = (FaceId, Moments<N>)>,
@@ -241,16 +243,17 @@ fn shell_moments<N: Float>(
 pub struct FaceArea<N: Float = f64> {
     /// The area, in square units.
     pub area: N,
-    /// What rounding may make of it.
+    /// The bound of its rounding error.
     pub noise: N,
 }
 
-/// A point amid some faces, relative to which sums do not cancel, and their size.
+/// A reference point amid some faces, relative to which sums do not cancel, and the size of these
+/// faces.
 #[derive(Clone, Debug)]
 struct Amid<N: Float = f64> {
     reference: Point3<N>,
     size: N,
-    /// How closely integrals are followed.
+    /// The precision of the integrals.
     care: Care,
 }
 
@@ -259,7 +262,7 @@ impl<N: Float> Amid<N> {
         let (mut edges, mut all) = (Aabb::EMPTY, Aabb::EMPTY);
         for face in faces {
             edges = edges.hull(&box_of(brep, face));
-            // What bulges beyond its edges is of the size of its surface.
+            // A face that bulges beyond its edges has about the size of its surface.
             if let Surface::Sphere(_) | Surface::Torus(_) = brep.surface(face) {
                 all = all.hull(&Aabb::new(&brep.surface(face).frame().origin));
             }
@@ -277,13 +280,13 @@ impl<N: Float> Amid<N> {
         }
     }
 
-    /// What sums are known to, relative to their terms.
+    /// The error of sums relative to their terms.
     fn part(&self) -> N {
         self.care.part()
     }
 
-    /// What the volume of faces may be off, by their area times the size of the part. Where numbers
-    /// of more digits are asked about in f64, that area may itself be next to nothing.
+    /// The error of the volume of faces; `bulk` is their area times the part's size. If f64 stands
+    /// in for extended precision, that area may itself be close to zero.
     fn noise(&self, brep: &Brep<N>, faces: impl Iterator<Item = FaceId>, bulk: N) -> N {
         let by_area = self.part() * bulk;
         let floors = match self.tells_in_doubles() {
@@ -293,12 +296,13 @@ impl<N: Float> Amid<N> {
         N::from_f64(NOISE) * (by_area + floors)
     }
 
-    /// Whether f64 values tell for numbers of more digits.
+    /// Whether f64 stands in for extended precision.
     fn tells_in_doubles(&self) -> bool {
         !N::IS_DOUBLE && self.care == Care::Doubles
     }
 
-    /// The errors of a face's moments that do not matter: what the rounding of its edges makes.
+    /// The errors of a face's moments that may be ignored: those caused by the rounding of its
+    /// edges.
     fn floor(&self, brep: &Brep<N>, face: FaceId) -> Moments<N> {
         let along = N::from_f64(box_of(brep, face).diagonal()).min(self.size);
         let area = self.part() * self.size * along;
@@ -307,7 +311,7 @@ impl<N: Float> Amid<N> {
     }
 }
 
-/// A box amid a face: of its edges' ends and middles, or of the whole surface, where it has none.
+/// A box amid a face: of its edges' ends and middles, or of the whole surface if it has no edges.
 fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
     let mut b = Aabb::EMPTY;
     for edge in brep.topology.edges_of(face) {

@@ -1,8 +1,8 @@
-//! Whether a point of a surface lies in a face of it, in the surface's own periodic parameters.
+//! Point-in-face classification, in the surface's own periodic parameters.
 //!
-//! From the point a walk is taken along the surface; the nearest arc of the face's boundary that
-//! it crosses decides by its orientation. Faces are bounded, so a walk without end that meets
-//! nothing lies outside. An unclear meeting is never decided: another walk is taken.
+//! A path is followed from the point along the surface. The first boundary arc that it crosses
+//! decides by its orientation. Faces are bounded, so a point is outside if an endless path from it
+//! crosses nothing. An unclear crossing is never used; another path is tried.
 
 mod interior;
 
@@ -21,7 +21,7 @@ use crate::number::predicates::Compare;
 use nalgebra::Point3;
 use std::sync::OnceLock;
 
-/// Where a point of a surface lies with respect to a face of it.
+/// The location of a point of a surface relative to a face of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PointLocation {
     /// Within the face.
@@ -32,26 +32,26 @@ pub enum PointLocation {
     Outside,
 }
 
-/// How many walks are tried before a point counts as being on the boundary.
+/// The number of paths after which a point counts as being on the boundary.
 const WALKS: usize = 48;
-/// The golden section: multiples of it spread over the unit without ever repeating.
+/// The golden section. Its multiples modulo one are well spread and never repeat.
 const SPREAD: f64 = 0.618_033_988_749_894_9;
 
-/// Answers for one face where points lie.
+/// Classifies points relative to one face.
 #[derive(Debug)]
 pub struct FaceLocator<'a, N: Float = f64> {
     surface: &'a Surface<N>,
     side: Sense,
     arcs: Arcs<'a, N>,
-    /// About how far it is from one arc to the next.
+    /// The approximate distance between neighbouring arcs.
     spacing: N,
     resolution: N,
 }
 
-/// How far edges are off, in terms of the part's size and of rounding.
+/// The bound of the error of edges, in multiples of the part's size times rounding.
 const OFF: f64 = 4096.0;
 
-/// The outcome of one walk.
+/// The result of one path.
 enum Outcome {
     Found(PointLocation),
     Nothing,
@@ -59,8 +59,8 @@ enum Outcome {
 }
 
 impl<'a, N: Float> FaceLocator<'a, N> {
-    /// A locator for the region of `surface` that `arcs` bound; `side` is the sense of the face's outward
-    /// normal against the surface's own, `resolution` is the resolution.
+    /// A locator for the region of `surface` bounded by `arcs`. `side` is the sense of the face's
+    /// outward normal relative to the surface's.
     pub fn new(
         surface: &'a Surface<N>,
         side: Sense,
@@ -92,8 +92,8 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         )
     }
 
-    /// The same where the resolution is not at hand: edges are off by the rounding of the part's
-    /// `size`, and no walk may pass between them where they end apart.
+    /// A locator for when the resolution is not known. Edges are assumed to have the rounding error
+    /// of the part's `size`, and no path may pass between two edges whose ends do not coincide.
     pub fn by_gaps(brep: &'a Brep<N>, face: FaceId, size: N) -> Self {
         let edges = brep.topology.edges_of(face);
         let gaps = edges.flat_map(|edge| gaps_at_ends(brep, edge));
@@ -107,12 +107,12 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         &self.arcs.all
     }
 
-    /// The boxes of the arcs, in the same order, grown by the resolution.
+    /// The boxes of the arcs, in the same order, enlarged by the resolution.
     pub fn boxes(&self) -> &[Aabb] {
         &self.arcs.boxes
     }
 
-    /// Where `p`, a point of the surface, lies.
+    /// Classifies `p`, a point of the surface.
     pub fn place(&self, p: &Point3<N>) -> PointLocation {
         if self.arcs.all.is_empty() {
             return PointLocation::Inside;
@@ -123,7 +123,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         self.place_off_boundary(p)
     }
 
-    /// Where `p` lies, which is known not to be on the boundary.
+    /// Classifies `p`, which is known not to be on the boundary.
     pub fn place_off_boundary(&self, p: &Point3<N>) -> PointLocation {
         if self.arcs.all.is_empty() {
             return PointLocation::Inside;
@@ -131,7 +131,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         for k in 0..WALKS {
             match self.attempt(p, k) {
                 Outcome::Found(place) => return place,
-                // Only walks without end, and closed ones through an arc, end up here.
+                // Only endless paths, and closed ones through an arc, end here.
                 Outcome::Nothing => return PointLocation::Outside,
                 Outcome::Unclear => {}
             }
@@ -151,10 +151,10 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         let DirectedArc { curve, range, .. } = self.arcs.all[i];
         let [lo, hi] = range;
         if let Curve::Circle(c) = curve {
-            // Most points in the box of a circle are clearly aside of it.
+            // Most points in the box of a circle are clearly away from it.
             let q = c.frame.coordinates(p);
-            let aside = q.x.hypot(q.y) - c.radius;
-            if aside.abs().is_beyond(N::TWO * self.resolution) {
+            let residual = q.x.hypot(q.y) - c.radius;
+            if residual.abs().is_beyond(N::TWO * self.resolution) {
                 return false;
             }
         }
@@ -163,7 +163,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         (t.lies_in(range) && near(t)) || near(lo) || near(hi)
     }
 
-    /// The k-th walk from `p`, in one or two legs.
+    /// Tries the k-th path from `p`, of one or two legs.
     fn attempt(&self, p: &Point3<N>, k: usize) -> Outcome {
         let turn =
             N::TAU * (N::from_f64(0.123) + N::from_f64(SPREAD) * N::from_f64(k as f64)).fract();
@@ -179,8 +179,9 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         }
     }
 
-    /// A great circle to a point of the boundary, by turns from aside: where the boundary is a great
-    /// circle, one from next to it, or from farther on along it, runs along it.
+    /// A great circle to a point of the boundary, sometimes from another starting point. If the
+    /// boundary is a great circle, a path from a point close to it, or from farther along it, would
+    /// run along it.
     fn spherical(&self, sphere: &Sphere<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         let (centre, target) = (&sphere.frame.origin, self.target(k / 2));
         if k.is_multiple_of(2) {
@@ -191,24 +192,24 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         }
         let tangent = Frame::about(*p, (p - centre).unit());
         let (sin, cos) = turn.sin_cos();
-        let beside = tangent.point(sphere.radius * cos, sphere.radius * sin, N::ZERO);
-        let Some(aside) = SurfacePath::great_circle(centre, p, &beside) else {
+        let lateral = tangent.point(sphere.radius * cos, sphere.radius * sin, N::ZERO);
+        let Some(detour) = SurfacePath::great_circle(centre, p, &lateral) else {
             return Outcome::Unclear;
         };
-        let leg = aside.upto(sphere.radius);
+        let leg = detour.upto(sphere.radius);
         match self.take(&leg) {
             Outcome::Nothing => {}
             decided => return decided,
         }
         let corner = leg.point(sphere.radius);
         match SurfacePath::great_circle(centre, &corner, &target).map(|walk| self.take(&walk)) {
-            // It passes the target: nothing there means that it was not seen.
+            // The path passes through the target. If nothing was found, the target was missed.
             None | Some(Outcome::Nothing) => Outcome::Unclear,
             Some(decided) => decided,
         }
     }
 
-    /// A ruling, after the first attempts from another point of the parallel.
+    /// A ruling; after the first attempts from another point of the parallel.
     fn ruled(&self, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         let sense = if k.is_multiple_of(2) {
             Sense::Along
@@ -222,7 +223,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         if k < 2 {
             return direct(SurfacePath::ruling_through(self.surface, p, sense));
         }
-        // At the apex the parallel is a point and any ruling starts there.
+        // At the apex the parallel is a point, and any ruling starts there.
         let Some(walk) = SurfacePath::parallel(self.surface, p, sense, self.resolution) else {
             return direct(SurfacePath::ruling(self.surface, p, turn, sense));
         };
@@ -237,7 +238,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         }
     }
 
-    /// Around the tube, or along both circles of a torus to a point of the boundary.
+    /// A circle around the tube, or both circles of a torus to a point of the boundary.
     fn toric(&self, torus: &Torus<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         if k == 0 {
             match self.take(&SurfacePath::tube(torus, p, Sense::Along)) {
@@ -254,13 +255,14 @@ impl<'a, N: Float> FaceLocator<'a, N> {
                 decided => return decided,
             }
         }
-        // The last leg passes the target: nothing there means that it was not seen.
+        // The last leg passes through the target. If nothing was found, the target was missed.
         Outcome::Unclear
     }
 
-    /// The k-th way to a point of the boundary: along one circle to where the other, once round,
-    /// passes it. Every target is reached both ways. Where the boundary runs along the circles
-    /// through `p` they do not cross it: later ways first lead aside, by an angle.
+    /// The k-th path to a point of the boundary: along one circle to its intersection with the
+    /// other, a full circle through the target. Every target is tried in both orders. Where the
+    /// boundary runs along the circles through `p`, they do not cross it; later paths therefore
+    /// start with a lateral step of an angle.
     fn toric_way(
         &self,
         torus: &Torus<N>,
@@ -278,12 +280,12 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         let mut from = *p;
         if k >= WALKS / 2 {
             let [theta, phi] = self.surface.parameters(p);
-            let (walk, aside) = match tube_last {
+            let (walk, turning_point) = match tube_last {
                 true => (tube(p)?, self.surface.point(theta, phi + turn)),
                 false => (round(p)?, self.surface.point(theta + turn, phi)),
             };
-            way.push(walk.upto(walk.at(&aside)));
-            from = aside;
+            way.push(walk.upto(walk.at(&turning_point)));
+            from = turning_point;
         }
         let (walk, corner, last) = if tube_last {
             let corner = self.with_tube_angle(&target, &from);
@@ -303,7 +305,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         self.surface.point(theta, phi)
     }
 
-    /// A point inside some arc of the boundary.
+    /// A point inside some boundary arc.
     fn target(&self, k: usize) -> Point3<N> {
         let arc = &self.arcs.all[k % self.arcs.all.len()];
         let part =
@@ -313,8 +315,8 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             .point(lo + (hi - lo) * (N::from_f64(0.1) + N::from_f64(0.8) * part))
     }
 
-    /// A walk without end, in growing lengths where there are many arcs: mostly the nearest
-    /// crossing is near.
+    /// Follows an endless path, in growing lengths if there are many arcs: the first crossing is
+    /// usually close.
     fn reach(&self, walk: &SurfacePath<N>) -> Outcome {
         let mut length = self.spacing;
         if self.arcs.are_many() {
@@ -333,7 +335,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         self.arcs.hit_by(walk, self.resolution, &mut |i, ranges| {
             let arc = &self.arcs.all[i];
             let mut note = |at: N, _: N, passage: CrossingSense| {
-                first.note(Met {
+                first.note(Hit {
                     at,
                     passage,
                     arc: i,
@@ -353,28 +355,28 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 }
 
-/// Where a walk meets an arc.
+/// An intersection of a path with an arc.
 #[derive(Clone, Copy, Debug)]
-struct Met<N: Float = f64> {
+struct Hit<N: Float = f64> {
     at: N,
     passage: CrossingSense,
     arc: usize,
 }
 
-/// The first three meetings of a walk, in order.
+/// The first three intersections of a path, in order.
 #[derive(Clone, Copy, Debug, Default)]
 struct First<N: Float = f64> {
-    met: [Option<Met<N>>; 3],
+    hit: [Option<Hit<N>>; 3],
 }
 
 impl<N: Float> First<N> {
-    fn note(&mut self, mut met: Met<N>) {
-        for slot in &mut self.met {
+    fn note(&mut self, mut hit: Hit<N>) {
+        for slot in &mut self.hit {
             match slot {
-                Some(known) if known.at.is_at_most(met.at) => {}
-                Some(known) => std::mem::swap(known, &mut met),
+                Some(known) if known.at.is_at_most(hit.at) => {}
+                Some(known) => std::mem::swap(known, &mut hit),
                 None => {
-                    *slot = Some(met);
+                    *slot = Some(hit);
                     return;
                 }
             }
@@ -382,18 +384,18 @@ impl<N: Float> First<N> {
     }
 
     fn outcome(&self, resolution: N, one_edge: impl Fn(usize, usize) -> bool) -> Outcome {
-        let [Some(first), second, third] = self.met else {
+        let [Some(first), second, third] = self.hit else {
             return Outcome::Nothing;
         };
         let with_first =
-            |other: Option<Met<N>>| other.filter(|m| (m.at - first.at).is_at_most(resolution));
+            |other: Option<Hit<N>>| other.filter(|m| (m.at - first.at).is_at_most(resolution));
         match (with_first(second), with_first(third)) {
             (None, _) => match first.passage {
                 CrossingSense::Entering => Outcome::Found(PointLocation::Outside),
                 CrossingSense::Leaving => Outcome::Found(PointLocation::Inside),
                 CrossingSense::Unclear => Outcome::Unclear,
             },
-            // An edge with the face on both of its sides.
+            // An edge with the face on both sides.
             (Some(second), None) if one_edge(first.arc, second.arc) => {
                 match (first.passage, second.passage) {
                     (CrossingSense::Entering, CrossingSense::Leaving)
@@ -408,8 +410,8 @@ impl<N: Float> First<N> {
     }
 }
 
-/// Answers for all faces of a boundary representation; each face's index is built when it is first
-/// requested.
+/// Locators for all faces of a boundary representation. The index of each face is built when it is
+/// first queried.
 #[derive(Debug)]
 pub struct Locator<'a, N: Float = f64> {
     brep: &'a Brep<N>,
@@ -418,7 +420,7 @@ pub struct Locator<'a, N: Float = f64> {
 }
 
 impl<'a, N: Float> Locator<'a, N> {
-    /// A locator for all faces of `brep`; `resolution` is the resolution.
+    /// A locator for all faces of `brep`.
     pub fn new(brep: &'a Brep<N>, resolution: N) -> Self {
         let faces = brep.topology.faces.iter().map(|_| OnceLock::new());
         Self {
@@ -434,7 +436,7 @@ impl<'a, N: Float> Locator<'a, N> {
             .get_or_init(|| FaceLocator::from_face(self.brep, face, self.resolution))
     }
 
-    /// Where `p`, a point of the face's surface, lies with respect to the face.
+    /// Classifies `p`, a point of the face's surface, relative to the face.
     pub fn place(&self, face: FaceId, p: &Point3<N>) -> PointLocation {
         self.face(face).place(p)
     }

@@ -1,9 +1,9 @@
-//! The boundary representation: topology as ids in one arena, geometry hung on the ids.
+//! The boundary representation: topology as ids in one arena, with geometry attached to the ids.
 //!
-//! Faces are maximal and there are no seams: a sphere is one face without a loop, a cylinder has
-//! three faces, two closed edges and no vertex. Where the boundary is no manifold it is represented
-//! as it is: an edge may bound more than two face corners, and a point at which the boundary touches
-//! itself, in a vertex, along an edge or within a face, is a touch.
+//! Faces are maximal and there are no seams: a sphere is one face without a loop; a cylinder has
+//! three faces, two closed edges and no vertex. A non-manifold boundary is represented as it is. An
+//! edge may bound more than two face corners. A point at which the boundary touches itself, in a
+//! vertex, along an edge or within a face, is a touch.
 
 mod arcs;
 pub mod assemble;
@@ -26,22 +26,22 @@ use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 use topology::{EdgeId, FaceId, Sense, Topology, VertexId};
 
-/// The geometry that hangs on the entities: indexed by their ids.
+/// The geometry of the entities, indexed by their ids.
 #[derive(Clone, Debug, Default)]
 pub struct BrepGeometry<N: Float = f64> {
-    /// The distinct carriers that have a face.
+    /// The distinct surfaces that have a face.
     pub surfaces: Vec<Surface<N>>,
     /// The distinct curves that have an edge.
     pub curves: Vec<Curve<N>>,
-    /// The place of each vertex, by [`VertexId`].
+    /// The location of each vertex, by [`VertexId`].
     pub points: Vec<Point3<N>>,
-    /// Each edge's curve (an index into `curves`) and range of its parameter, by [`EdgeId`]; a
-    /// closed edge runs over one period, and a range may pass the end of a period.
+    /// Each edge's curve (an index into `curves`) and parameter range, by [`EdgeId`]. A closed edge
+    /// covers one period, and a range may extend beyond the end of a period.
     pub arcs: Vec<EdgeGeometry<N>>,
-    /// Each face's surface (an index into `surfaces`) and whether the face's outward normal is the
-    /// surface's own, by [`FaceId`].
+    /// Each face's surface (an index into `surfaces`), and whether the face's outward normal is
+    /// that of the surface, by [`FaceId`].
     pub patches: Vec<FaceGeometry>,
-    /// The place of each touch, by [`TouchId`](topology::TouchId).
+    /// The location of each touch, by [`TouchId`](topology::TouchId).
     pub touches: Vec<Point3<N>>,
 }
 
@@ -59,16 +59,16 @@ pub struct EdgeGeometry<N: Float = f64> {
 pub struct FaceGeometry {
     /// The index of the surface.
     pub surface: usize,
-    /// `Along` where the outward normal of the solid is the surface's normal.
+    /// `Along` if the outward normal of the solid is the surface's normal.
     pub sense: Sense,
 }
 
 /// A boundary representation.
 #[derive(Clone, Debug, Default)]
 pub struct Brep<N: Float = f64> {
-    /// Who meets whom.
+    /// The incidences of the entities.
     pub topology: Topology,
-    /// Where.
+    /// The geometry of the entities.
     pub geometry: BrepGeometry<N>,
 }
 
@@ -93,7 +93,7 @@ impl<N: Float> Brep<N> {
         self.geometry.patches[face.0 as usize].sense
     }
 
-    /// The place of a vertex.
+    /// The location of a vertex.
     pub fn point(&self, vertex: VertexId) -> Point3<N> {
         self.geometry.points[vertex.0 as usize]
     }
@@ -107,7 +107,7 @@ impl<N: Float> Brep<N> {
         }
     }
 
-    /// The same in f64: what lies closer together than these tell has one place.
+    /// The boundary rounded to f64. Points closer than f64 can distinguish become equal.
     pub fn to_f64(&self) -> Brep {
         let g = &self.geometry;
         let arc = |a: &EdgeGeometry<N>| EdgeGeometry {

@@ -1,8 +1,9 @@
-//! Where a boundary touches itself: a vertex with several fans of faces, and points at which a
-//! vertex, an edge or a face meets another edge or face inside it without an edge there.
+//! Finds the points where a boundary touches itself: a vertex with several fans of faces, and
+//! points at which a vertex, an edge or a face meets the interior of another edge or face without
+//! an edge there.
 //!
-//! Every point that curves or surfaces share is known beforehand, with all surfaces through it.
-//! What is left to ask is which faces hold it inside.
+//! All common points of curves or surfaces are known beforehand, with all surfaces through them.
+//! Only the faces that contain them in their interior remain to be found.
 
 use super::Brep;
 use super::assemble::{BoundaryInput, Names};
@@ -14,7 +15,7 @@ use crate::number::predicates::Predicates;
 use nalgebra::Point3;
 use std::collections::{HashMap, HashSet};
 
-/// The touches of a boundary, with their places.
+/// The touches of a boundary, with their locations.
 pub(super) fn touches<N: Float>(
     brep: &Brep<N>,
     raw: &BoundaryInput<N>,
@@ -30,7 +31,7 @@ pub(super) fn touches<N: Float>(
         let fans = vertex.map_or(0, |v| fans.at_vertex[v.index()]);
         let edges_through = edges.through.get(&point).cloned().unwrap_or_default();
         let bounded = fans + edges_through.len();
-        // A face with an edge at the point does not hold it inside.
+        // A face with an edge at the point does not contain it in its interior.
         let open = at.surfaces.iter().filter_map(|s| names.surface_of.get(s));
         let open = open.filter(|&&s| !edges.bounding.contains(&(point, s)));
         if bounded + open.clone().count() < 2 {
@@ -41,7 +42,7 @@ pub(super) fn touches<N: Float>(
         if bounded + faces.len() < 2 {
             continue;
         }
-        // Next to a touch of two faces other points are on both, too, within the resolution.
+        // Close to a touch of two faces other points also lie on both, within the resolution.
         let touching = |node: &[usize; 2]| {
             let named = |s| {
                 names
@@ -68,9 +69,9 @@ pub(super) fn touches<N: Float>(
 /// The edges at points.
 #[derive(Default)]
 struct Edges {
-    /// Those that run through a point.
+    /// The edges through each point.
     through: HashMap<usize, Vec<EdgeId>>,
-    /// The points with the surfaces that have a face with an edge there.
+    /// The points, with the surfaces that have a face with an edge there.
     bounding: HashSet<(usize, usize)>,
 }
 
@@ -111,7 +112,7 @@ impl<'a, N: Float> Faces<'a, N> {
         }
     }
 
-    /// The face of a surface that holds a point of it inside.
+    /// The face of a surface that contains a point in its interior.
     fn holding(&self, surface: usize, p: &Point3<N>) -> Option<FaceId> {
         let mut faces = self.of_surface[surface].iter().copied();
         faces.find(|&face| self.locator.place(face, p) == PointLocation::Inside)

@@ -1,4 +1,4 @@
-//! Whether shells hold a point: the parity of a line's crossings.
+//! Point-in-solid classification by the parity of a line's crossings.
 
 use super::Brep;
 use super::bounding_box::face_bounds;
@@ -13,12 +13,12 @@ use crate::number::predicates::Compare;
 use crate::number::roots::{RootKind, Roots};
 use nalgebra::{Point3, Vector3};
 
-/// How many lines are tried before it is left open.
+/// The number of lines tried before the question is left open.
 const LINES: u32 = 64;
 
-/// Whether the solids hold a point that is not on the boundary; none where no ray from it crosses
-/// faces clearly, farther than `resolution` from their edges. That is no less than their places are rounded
-/// by.
+/// Whether the solids contain a point that is not on the boundary. `None` if every ray from it
+/// passes within `resolution` of an edge of some face it crosses. The resolution must be at least
+/// the rounding error of the faces.
 pub fn contains<N: Float>(brep: &Brep<N>, p: &Point3<N>, resolution: N) -> Option<bool> {
     let faces: Vec<FaceId> = brep.topology.face_ids().collect();
     Closed::new(brep, &faces, resolution).contains(p)
@@ -28,13 +28,13 @@ pub fn contains<N: Float>(brep: &Brep<N>, p: &Point3<N>, resolution: N) -> Optio
 pub(super) struct Closed<'a, N: Float> {
     brep: &'a Brep<N>,
     faces: Vec<(FaceId, Aabb)>,
-    /// The box of all.
+    /// The box of all faces.
     pub bounds: Aabb,
     resolution: N,
 }
 
 impl<'a, N: Float> Closed<'a, N> {
-    /// The faces, what lies within `resolution` of an edge being on it.
+    /// The faces; points within `resolution` of an edge count as on it.
     pub fn new(brep: &'a Brep<N>, faces: &[FaceId], resolution: N) -> Self {
         let boxed = |&f: &FaceId| (f, face_bounds(brep, f).grown(resolution));
         let faces: Vec<(FaceId, Aabb)> = faces.iter().map(boxed).collect();
@@ -47,7 +47,8 @@ impl<'a, N: Float> Closed<'a, N> {
         }
     }
 
-    /// Whether they hold a point. Rays are tried until one crosses clearly.
+    /// Whether they contain a point. Rays are tried until one crosses faces only away from their
+    /// edges.
     fn contains(&self, p: &Point3<N>) -> Option<bool> {
         let crossings = (0..LINES).find_map(|k| {
             let ray = Line {
@@ -60,23 +61,23 @@ impl<'a, N: Float> Closed<'a, N> {
         crossings.map(|all| all.len() % 2 == 1)
     }
 
-    /// Whether they hold others that do not cross them, though they may touch them: the place
-    /// where a line crosses these tells, and where it crosses those beyond.
+    /// Whether they enclose others that do not cross them, though they may touch. The points where
+    /// a line crosses the two sets, and the order of these points, decide.
     pub fn enclosing(&self, others: &Self) -> Option<bool> {
         (0..LINES).find_map(|k| {
             let line = others.line_across(k);
             let range = others.reach(&line);
             let at = *others.crossings(&line, range)?.first()?;
             let [_, far] = self.reach(&line);
-            // Where the two touch it is not told.
+            // Where the two touch, the order is ambiguous.
             let beyond = self.crossings(&line, [at - self.resolution, far])?;
             let apart = beyond.iter().all(|t| t.is_beyond(at + self.resolution));
             apart.then_some(beyond.len() % 2 == 1)
         })
     }
 
-    /// The k-th line through the box, which meets the faces or not: each at other depths next to
-    /// its middle.
+    /// The k-th line through the box, which need not meet the faces. Each passes the middle at
+    /// another distance.
     fn line_across(&self, k: u32) -> Line<N> {
         let b = self.faces[k as usize % self.faces.len()].1;
         let part = |i: u32| {
@@ -92,14 +93,14 @@ impl<'a, N: Float> Closed<'a, N> {
         }
     }
 
-    /// The range of a line beyond which nothing is crossed.
+    /// The range of a line outside which there are no crossings.
     fn reach(&self, line: &Line<N>) -> [N; 2] {
         let away = (self.bounds.centre().map(N::from_f64) - line.origin).length();
         let length = N::TWO * (away + N::from_f64(self.bounds.diagonal()));
         [-length, length]
     }
 
-    /// Where a line crosses the faces, in order; none where that is unclear.
+    /// The crossings of a line with the faces, in order; `None` if one is ambiguous.
     fn crossings(&self, line: &Line<N>, range: [N; 2]) -> Option<Vec<N>> {
         let mut crossed = Vec::new();
         let curve = Curve::Line(*line);
@@ -131,7 +132,7 @@ impl<'a, N: Float> Closed<'a, N> {
     }
 }
 
-/// The direction of the k-th line: none along an axis or a common diagonal.
+/// The direction of the k-th line. None is parallel to an axis or a common diagonal.
 fn towards<N: Float>(k: u32) -> Vector3<N> {
     let a = N::from_f64(0.61) + N::from_f64(2.4) * N::whole(k);
     let rise = N::from_f64(0.37) - N::from_f64(0.21) * N::whole(k % 5);

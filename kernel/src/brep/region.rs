@@ -1,11 +1,11 @@
-//! The loops of one surface sorted into the regions that they bound.
+//! Groups the loops of one surface into the regions that they bound.
 //!
-//! From each loop a walk runs over the surface to its end: along a line of a plane, a ruling of a
+//! From each loop a path runs over the surface to its end: along a line of a plane, a ruling of a
 //! cylinder or a cone, a great circle of a sphere to a fixed point. Between entering the boundary
-//! and leaving it, the walk is in one region, so the two loops passed belong together. Every loop
-//! of a plane, a cylinder, a cone or a sphere parts the surface (Jordan), so these pairs connect
-//! all loops of a region. On a torus both circles through each loop are walked, and ways to the
-//! first loop.
+//! and leaving it the path is in one region, so the two loops that it crosses bound the same
+//! region. Every loop of a plane, a cylinder, a cone or a sphere separates the surface (Jordan), so
+//! these pairs connect all loops of a region. On a torus both circles through each loop are
+//! followed, and paths to the first loop.
 
 mod torus;
 
@@ -23,13 +23,13 @@ use torus::Turns;
 /// A region: the loops that bound it, by index, and its Euler characteristic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Region {
-    /// In increasing order.
+    /// The loops, in increasing order.
     pub loops: Vec<usize>,
-    /// 2 less the number of loops on a part of a sphere.
+    /// 2 minus the number of loops, for a part of a sphere.
     pub euler: i32,
 }
 
-/// The loops of a surface cannot be sorted.
+/// The loops of a surface cannot be grouped into regions.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the loops of a surface around ({:.9}, {:.9}, {:.9}) bound no regions", place[0], place[1], place[2])]
 pub struct RegionError {
@@ -37,16 +37,16 @@ pub struct RegionError {
     pub place: [f64; 3],
 }
 
-/// The least sine of the angle under which a walk leaves an arc.
+/// The least sine of the angle between a path and the arc that it leaves.
 const SLANT: f64 = 0.02;
 
-/// Where on an arc a walk may start.
+/// The fractions of an arc at which a path may start.
 const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
 
-/// How many directions are tried.
+/// The number of directions tried.
 const ATTEMPTS: usize = 4;
 
-/// A point of a loop from which walks start.
+/// A point of a loop from which paths start.
 struct Start<N: Float = f64> {
     arc: usize,
     point: Point3<N>,
@@ -60,11 +60,11 @@ struct Sorter<'a, N: Float = f64> {
     arcs: Arcs<'a, N>,
     /// The loop of each arc.
     owner: Vec<usize>,
-    /// The first arc of each loop, and one beyond the last.
+    /// The first arc of each loop, and one past the last.
     firsts: Vec<usize>,
     resolution: N,
     parent: Vec<usize>,
-    /// Whether a loop on a torus winds around the axis, and around the tube.
+    /// Whether a loop on a torus winds around the axis and around the tube.
     winding: [bool; 2],
 }
 
@@ -84,7 +84,7 @@ pub(super) fn regions<'a, N: Float>(
         firsts.push(arcs.len());
     }
     let arcs = Arcs::new(arcs, resolution);
-    // More than the loops: the fixed points of a sphere or a cone, one for each attempt.
+    // One entry per loop, and one for each attempt's fixed point of a sphere or a cone.
     let parent = (0..loops.len() + ATTEMPTS).collect();
     let mut sorter = Sorter {
         surface,
@@ -133,8 +133,8 @@ impl<N: Float> Sorter<'_, N> {
         self.parent[a.max(b)] = a.min(b);
     }
 
-    /// Joins all loops that bound a region together. They are led to one goal, so that all must
-    /// reach it in one attempt.
+    /// Joins all loops that bound a common region. All paths of an attempt lead to one goal, so
+    /// they must all succeed in the same attempt.
     fn connect_all(&mut self, loops: usize) -> Result<(), RegionError> {
         let mut failed = None;
         for attempt in 0..ATTEMPTS {
@@ -146,8 +146,8 @@ impl<N: Float> Sorter<'_, N> {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Joins a loop to those that it bounds a region with; none where a walk was clear, else a point
-    /// of the loop.
+    /// Joins a loop to those that bound the same region. Returns `None` if a path was clear,
+    /// otherwise an error at a point of the loop.
     fn connect(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
         if let Surface::Cylinder(_) | Surface::Cone(_) = self.surface {
             return self.connect_ruled(ring, attempt);
@@ -162,7 +162,7 @@ impl<N: Float> Sorter<'_, N> {
         Some(RegionError { place })
     }
 
-    /// The points of a loop from which walks may start.
+    /// The points of a loop from which paths may start.
     fn starts(&self, ring: usize) -> Vec<Start<N>> {
         let mut starts = Vec::new();
         for &fraction in &STARTS {
@@ -183,10 +183,10 @@ impl<N: Float> Sorter<'_, N> {
         Start { arc, point, left }
     }
 
-    /// Walks down the rulings of a cylinder or a cone, all the same way, to the lowest loop of the
-    /// region. A walk from below which the region does not lie begins on the loop's other side, and
-    /// comes to the region through the loop itself, if it is not the lowest. Where all walks are
-    /// unclear, or the loop is of rulings alone, one first turns along a parallel.
+    /// Follows the rulings of a cylinder or a cone downwards to the lowest loop of the region. If
+    /// the region does not lie below a starting point, the path starts on the loop's other side and
+    /// reaches the region through the loop itself, unless the loop is the lowest. If all paths are
+    /// unclear, or the loop consists of rulings, the path first turns along a parallel.
     fn connect_ruled(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
         let starts = self.starts(ring);
         let down = |start: &Start<N>| {
@@ -195,7 +195,7 @@ impl<N: Float> Sorter<'_, N> {
             Some((heading, walk))
         };
         let mut walks: Vec<_> = starts.iter().map(|s| (s, down(s))).collect();
-        // First those below which the region lies.
+        // Start with those below which the region lies.
         walks.sort_by_key(|(_, down)| !down.as_ref().is_some_and(|d| d.0.is_above_zero()));
         for (start, down) in walks {
             if let Some((_, walk)) = down
@@ -212,15 +212,15 @@ impl<N: Float> Sorter<'_, N> {
         (!turned).then_some(RegionError { place })
     }
 
-    /// The walk down the ruling through a point, without end.
+    /// The endless path down the ruling through a point.
     fn down(&self, p: &Point3<N>) -> Option<SurfacePath<N>> {
         let [u, _] = self.surface.parameters(p);
         Some(SurfacePath::ruling(self.surface, p, u, Sense::Along)?.reversed())
     }
 
-    /// Follows legs of which the last goes down. Where loops pass through a cone's apex it goes
-    /// around just before it, to the loop that bounds the sector it came through; farther away with
-    /// each attempt, for loops that are tangent there.
+    /// Follows legs, the last of which leads downwards. Where loops pass through a cone's apex the
+    /// path goes around the apex just before it, to the loop that bounds the sector from which it
+    /// came. The distance from the apex grows with each attempt, for loops that are tangent there.
     fn follow_down(
         &mut self,
         ring: usize,
@@ -254,7 +254,7 @@ impl<N: Float> Sorter<'_, N> {
         self.follow(ring, start.arc, &start.point, &start.left, &legs, goal)
     }
 
-    /// A turn along the parallel into the face, then down.
+    /// A turn along the parallel into the face, then downwards.
     fn turn_down(&mut self, ring: usize, start: &Start<N>, turn: N, attempt: usize) -> bool {
         let p = &start.point;
         let Some(round) = SurfacePath::parallel(self.surface, p, Sense::Along, self.resolution)
@@ -272,7 +272,7 @@ impl<N: Float> Sorter<'_, N> {
         }
     }
 
-    /// Walks from a point of a loop; false where the walk was unclear.
+    /// Follows a path from a point of a loop; false if it was unclear.
     fn walk_from(&mut self, ring: usize, start: &Start<N>, attempt: usize) -> bool {
         let Start { arc, point, left } = start;
         match self.surface {
@@ -298,9 +298,10 @@ impl<N: Float> Sorter<'_, N> {
         }
     }
 
-    /// Follows the legs of a walk and joins the loops passed; `goal` is joined where the walk ends
-    /// inside. It starts into the region of the loop, or down a ruling also into that on the other side
-    /// of the edge, if there is one. False where anything is unclear.
+    /// Follows the legs of a path and joins the loops that it crosses; `goal` is joined if the path
+    /// ends inside. The path starts into the region of the loop. A path down a ruling may also
+    /// start into the region on the other side of the edge, if there is one. Returns false if
+    /// anything is unclear.
     fn follow(
         &mut self,
         ring: usize,
@@ -311,7 +312,8 @@ impl<N: Float> Sorter<'_, N> {
         goal: Option<usize>,
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
-        // What ends next to the arc has not left it: the next leg may run to its other side.
+        // A leg that ends close to the arc has not left it; the next leg may lead to its other
+        // side.
         let leaves = legs.len() == 1 || legs[0].length().is_beyond(self.start());
         if !leaves {
             return false;
@@ -347,7 +349,7 @@ impl<N: Float> Sorter<'_, N> {
             && goal.is_none()
             && round.closes()
         {
-            // Back at the start from its other side: the face bounds itself there.
+            // The path returns to its start from the other side: the face bounds itself there.
             let Some(twin) = self.twin(arc) else {
                 return false;
             };
@@ -357,7 +359,7 @@ impl<N: Float> Sorter<'_, N> {
             && goal.is_none()
             && round.closes()
         {
-            // Back where this leg began, which is not on an arc.
+            // The path returns to the start of this leg, which is not on an arc.
             match (inside, before) {
                 (Some(from), Some(to)) => pairs.push((from, to)),
                 (None, None) => {}
@@ -373,19 +375,19 @@ impl<N: Float> Sorter<'_, N> {
         true
     }
 
-    /// As far as this from a walk's start the arc is that it starts on.
+    /// The distance from a path's start within which its starting arc lies.
     fn start(&self) -> N {
         N::from_f64(64.0) * self.resolution
     }
 
-    /// The arc that runs over the same edge the other way.
+    /// The arc over the same edge in the opposite direction.
     fn twin(&self, arc: usize) -> Option<usize> {
         let a = &self.arcs.all[arc];
         let mut all = self.arcs.all.iter();
         all.position(|b| a.shares_edge(b) && a.sense != b.sense)
     }
 
-    /// The crossings of a leg in order, but for its start on an arc; none where one is unclear.
+    /// The crossings of a leg in order, without its start on an arc; `None` if one is unclear.
     fn crossings(
         &self,
         walk: &SurfacePath<N>,
@@ -394,12 +396,12 @@ impl<N: Float> Sorter<'_, N> {
         let mut found: Vec<PathCrossing<N>> = Vec::new();
         let mut clear = true;
         self.arcs.hit_by(walk, self.resolution, &mut |i, ranges| {
-            // The rest is of no use to anyone.
+            // The rest is not needed.
             if !clear {
                 return;
             }
             let arc = &self.arcs.all[i];
-            // Arcs of both senses run over the starting edge where a face bounds itself.
+            // Arcs of both senses run over the starting edge if a face bounds itself there.
             let own = start.is_some_and(|start| arc.shares_edge(&self.arcs.all[start]));
             let mut note = |at: N, t: N, passage: CrossingSense| {
                 let here = own && (at.is_at_most(self.start()) || self.is_full_turn(walk, at));
@@ -426,7 +428,7 @@ impl<N: Float> Sorter<'_, N> {
             return None;
         }
         found.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.arc.cmp(&b.arc)));
-        // Where faces of one surface share an edge, one is left before the other is entered.
+        // Where faces of one surface share an edge, the path leaves one before it enters the other.
         for k in 1..found.len() {
             let together = (found[k].at - found[k - 1].at).is_at_most(self.resolution);
             if together
@@ -439,7 +441,7 @@ impl<N: Float> Sorter<'_, N> {
         Some(found)
     }
 
-    /// Whether a closed walk is back at its start.
+    /// Whether a closed path is back at its start.
     fn is_full_turn(&self, walk: &SurfacePath<N>, at: N) -> bool {
         let away = (walk.point(at) - walk.point(N::ZERO)).length();
         away.is_within(self.start())
@@ -451,15 +453,15 @@ impl<N: Float> Sorter<'_, N> {
         if !matches!(self.surface, Surface::Torus(_)) {
             return 2 - n;
         }
-        // With a loop that does not shrink to a point the region is an annulus with holes; with
-        // one that runs counterclockwise, a disc with holes; else a torus with holes.
+        // A region with a loop that is not contractible is an annulus with holes; one with a
+        // counterclockwise loop is a disc with holes; any other is a torus with holes.
         let turns: Vec<Turns<N>> = list.iter().map(|&i| self.turns(&loops[i])).collect();
         let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area.is_above_zero());
         if is_part_of_sphere { 2 - n } else { -n }
     }
 }
 
-/// A point of a sphere where nothing is likely to be: another for each attempt.
+/// A point of a sphere that is unlikely to be special; a different one for each attempt.
 fn pole<N: Float>(centre: Point3<N>, radius: N, attempt: usize) -> Point3<N> {
     let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).unit();
     let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);

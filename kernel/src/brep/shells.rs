@@ -1,5 +1,5 @@
-//! Shells and solids: faces that enclose material together along an edge are one shell, shells
-//! around shells one solid.
+//! Groups faces into shells and shells into solids. Faces that enclose material together along an
+//! edge are one shell; an outer shell and the voids in it are one solid.
 
 use super::Brep;
 use super::assemble::AssemblyError;
@@ -12,7 +12,7 @@ use crate::number::predicates::{Compare, Predicates};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 
-/// Sets joined by pairs.
+/// A union-find structure.
 struct Union(Vec<usize>);
 
 impl Union {
@@ -33,11 +33,12 @@ impl Union {
     }
 }
 
-/// Who is connected: the shell number of each face, and the Euler characteristic of each shell.
+/// The connected components: the shell number of each face, and the Euler characteristic of each
+/// shell.
 pub(super) struct Fans {
     shell_of: Vec<usize>,
     euler: Vec<i32>,
-    /// How many fans of faces meet in each vertex.
+    /// The number of fans of faces at each vertex.
     pub at_vertex: Vec<usize>,
 }
 
@@ -57,8 +58,8 @@ pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
     for (f, face) in topology.faces.iter().enumerate() {
         euler[shell_of[f]] += face.euler;
     }
-    // A corner is where a coedge ends and the next begins; corners that share an edge end are one
-    // fan around the vertex. Named by the coedge that ends there.
+    // A corner is where a coedge ends and the next begins. Corners that share an edge end belong to
+    // one fan around the vertex. A corner is identified by the coedge that ends there.
     let mut corners = Union::new(topology.coedges.len());
     let mut ends_before = vec![usize::MAX; topology.coedges.len()];
     for ring in &topology.loops {
@@ -73,7 +74,7 @@ pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
             .ends
             .is_some();
         if open {
-            // Partners run oppositely: the end of one is the start of the other.
+            // Partners run in opposite directions: the end of one is the start of the other.
             corners.join(i, ends_before[p.index()]);
             if i < p.index() {
                 let shell = shell_of[topology.face_of(CoedgeId(i as u32)).index()];
@@ -98,7 +99,7 @@ pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
     }
 }
 
-/// Names the shells, tells voids from outer shells, and gives every void to its solid.
+/// Names the shells, distinguishes voids from outer shells, and assigns every void to its solid.
 pub(super) fn bind_shells<N: Float>(
     brep: &mut Brep<N>,
     fans: &Fans,
@@ -137,7 +138,8 @@ pub(super) fn bind_shells<N: Float>(
     Ok(())
 }
 
-/// Enters the shells, by which side of them is material, and gives the volumes they enclose.
+/// Creates the shells according to the side on which their material lies, and returns the volumes
+/// that they enclose.
 fn name_shells<N: Float>(
     brep: &mut Brep<N>,
     fans: &Fans,
@@ -146,7 +148,7 @@ fn name_shells<N: Float>(
     let size = size(brep);
     let mut volumes = Vec::new();
     for (s, faces) in members.iter().enumerate() {
-        // One shell alone is an outer one.
+        // A single shell is an outer one.
         let void = members.len() > 1 && {
             let enclosed = shell_volume(brep, faces, size);
             if !enclosed.is_clear() {
@@ -168,7 +170,7 @@ fn name_shells<N: Float>(
     Ok(volumes)
 }
 
-/// The outer shell of each void: the smallest that holds it, `outer` being in order of volume.
+/// The outer shell of each void: the smallest one that contains it. `outer` is sorted by volume.
 fn homes<N: Float>(
     brep: &Brep<N>,
     voids: &[usize],
@@ -194,7 +196,7 @@ fn homes<N: Float>(
             b.encloses(&hollow.bounds)
         };
         let mut may: Vec<usize> = (0..outer.len()).filter(fits).collect();
-        // What no other can hold is held by the last.
+        // If no other shell can contain the void, the last one does.
         let last = may.pop();
         for k in may {
             match around[k].enclosing(&hollow) {
@@ -209,7 +211,7 @@ fn homes<N: Float>(
     voids.iter().map(|&void| home_of(void)).collect()
 }
 
-/// A point of a face's boundary, or of the face where it has none.
+/// A point on a face's boundary, or in the face if it has none.
 pub(super) fn point_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Point3<N> {
     let topology = &brep.topology;
     match topology.face(face).loops.first() {

@@ -1,15 +1,15 @@
-//! What a boundary is besides its coordinates: who meets whom, how often, in which order.
+//! The combinatorics of a boundary: its incidences and their order, without coordinates.
 //!
-//! Every entity gets a colour, at first by its kind; again and again each takes into its colour those
-//! of its neighbours, in their order where there is one (Weisfeiler and Leman, 1968). Boundaries that
-//! are the same but for the numbering have the same colours in the end; others hardly ever.
+//! Every entity gets a colour, initially from its kind. Repeatedly each colour is combined with
+//! those of the neighbours, in their order where there is one (Weisfeiler and Leman, 1968).
+//! Boundaries that differ only in numbering end with the same colours; others hardly ever do.
 
 use super::Brep;
 use super::topology::{CoedgeId, EdgeId, Sense, Topology};
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
-/// How often colours are taken from the neighbours.
+/// The number of rounds of refinement.
 const ROUNDS: usize = 12;
 
 /// The combinatorics of a boundary.
@@ -33,7 +33,7 @@ fn sorted(colours: impl Iterator<Item = u64>) -> Vec<u64> {
     all
 }
 
-/// A run of colours, wherever it starts.
+/// The colour of a cyclic sequence, independent of its starting point.
 fn cycle(colours: &[u64]) -> u64 {
     let n = colours.len();
     let turned = |k: usize| -> Vec<u64> { (0..n).map(|i| colours[(i + k) % n]).collect() };
@@ -155,8 +155,8 @@ impl Colouring<'_> {
         ))
     }
 
-    /// The colours of the coedges around an edge in their order, from one of them on; what runs along
-    /// the edge and what runs against it see them in opposite orders.
+    /// The colours of the coedges around an edge in their order, from one of them on. Coedges along
+    /// the edge and against it see them in opposite orders.
     fn around(&self, edge: EdgeId, from: CoedgeId) -> Vec<u64> {
         let all = &self.topology.edge(edge).coedges;
         let n = all.len();

@@ -1,11 +1,11 @@
-//! Walks on a surface along plane sections of it, and the arcs they cross.
+//! Paths on a surface along plane sections of it, and their crossings with arcs.
 //!
-//! A walk is a straight line of a plane, a ruling or a parallel of a cylinder or a cone, a great
+//! A path is a straight line of a plane, a ruling or a parallel of a cylinder or a cone, a great
 //! circle or a parallel of a sphere, or either circle of a torus. Each lies in a plane, so its
-//! crossings with an arc are the roots of that plane's distance along the arc; at the top of a torus,
-//! which the plane touches, those of the cylinder's through the walk. Notation: s is the length
-//! along the walk, D its direction, N the outward normal of the face, T the direction of an arc; the
-//! face lies to the left, towards N × T, so the walk enters the face where D·(N × T) > 0.
+//! crossings with an arc are the roots of that plane's distance along the arc. At the top of a
+//! torus the plane is tangent, and the cylinder through the path is used. Notation: s is the length
+//! along the path, D its direction, N the outward normal of the face, T the direction of an arc.
+//! The face lies to the left, towards N × T, so the path enters the face where D·(N × T) > 0.
 
 mod reach;
 
@@ -23,15 +23,15 @@ use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 use reach::Reach;
 
-/// A piece of a face's boundary: the face lies to the left of its sense, seen from the side the
-/// face's outward normal points to.
+/// A piece of a face's boundary. The face lies to the left of its direction, seen from the side to
+/// which the face's outward normal points.
 #[derive(Clone, Copy, Debug)]
 pub struct DirectedArc<'a, N: Float = f64> {
     /// The curve.
     pub curve: &'a Curve<N>,
     /// The range of its parameter, increasing.
     pub range: [N; 2],
-    /// Whether it is run along the curve's direction.
+    /// Whether it runs in the curve's direction.
     pub sense: Sense,
 }
 
@@ -46,26 +46,26 @@ impl<'a, N: Float> DirectedArc<'a, N> {
         }
     }
 
-    /// Whether both are of one edge: if a face has two such arcs, it lies on both sides of the edge.
-    /// Several edges may be of one curve.
+    /// Whether both belong to one edge. If a face has two such arcs, it lies on both sides of the
+    /// edge. Several edges may belong to one curve.
     pub fn shares_edge(&self, other: &Self) -> bool {
         std::ptr::eq(self.curve, other.curve) && self.range == other.range
     }
 }
 
-/// What a walk does where it meets an arc.
+/// How a path crosses an arc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CrossingSense {
-    /// It goes into the face, from the arc's right to its left.
+    /// The path enters the face, from the arc's right to its left.
     Entering,
-    /// It goes out of the face, from the arc's left to its right.
+    /// The path leaves the face, from the arc's left to its right.
     Leaving,
-    /// It touches the arc, runs along it, passes an end of it within the resolution, or crosses it
-    /// where rounding moves it by more than the resolution: take another walk.
+    /// The path is tangent to the arc, runs along it, passes an end of it within the resolution, or
+    /// crosses it where rounding moves the arc by more than the resolution. Another path is needed.
     Unclear,
 }
 
-/// A meeting of a walk with an arc.
+/// An intersection of a path with an arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathCrossing<N: Float = f64> {
     /// The length along the walk from its start, in the part's unit.
@@ -74,38 +74,39 @@ pub struct PathCrossing<N: Float = f64> {
     pub arc: usize,
     /// The parameter on the arc's curve.
     pub t: N,
-    /// What the walk does there.
+    /// How the path crosses the arc.
     pub passage: CrossingSense,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Track<N: Float = f64> {
     Line(Vector3<N>),
-    /// About the frame's z axis, from its x axis, with the radius.
+    /// The circle about the frame's z axis, starting at its x axis, with the radius.
     Circle(Frame<N>, N),
 }
 
-/// Which part of the plane section the walk is.
+/// The part of the plane section that is the path.
 #[derive(Clone, Copy, Debug)]
 enum Branch<N: Float = f64> {
     Whole,
-    /// On this side of the plane through the point.
+    /// The part on this side of the plane through the point.
     Half(Point3<N>, Vector3<N>),
     /// The outer (+1) or inner (-1) of a torus's two circles at one height.
     Parallel(Torus<N>, N),
-    /// A torus's circle next to its top (+1) or bottom (-1): of the two that the cylinder shares
-    /// with it, which stands upright on the walk.
+    /// A torus's circle close to its top (+1) or bottom (-1): one of the two circles that it shares
+    /// with the cylinder perpendicular to the path's plane.
     Level(Cylinder<N>, N),
 }
 
-/// Next to the top of a torus, as a part of the tube's radius: there the two circles at one height
-/// are close to each other, those at one distance from the axis far apart.
+/// The distance from the top of a torus, relative to the tube's radius, within which the cylinder
+/// is used. There the two circles at one height are close to each other, and those at one distance
+/// from the axis are not.
 const TOP: f64 = 0.5;
 
-/// A walk on a surface from a point of it.
+/// A path on a surface from a point of it.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePath<N: Float = f64> {
-    /// Of the plane that the walk lies in.
+    /// The normal of the plane in which the path lies.
     normal: Vector3<N>,
     start: Point3<N>,
     track: Track<N>,
@@ -132,15 +133,15 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
-    /// A straight line without end in a plane, along the unit vector `direction`.
+    /// An endless straight line in a plane, along the unit vector `direction`.
     pub fn straight(plane: &Plane<N>, start: &Point3<N>, direction: Vector3<N>) -> Self {
         let normal = direction.cross(&plane.frame.z).unit();
         let track = Track::Line(direction);
         Self::new(start, normal, track, Branch::Whole, N::INFINITY)
     }
 
-    /// The great circle of a sphere from `start` towards `target`, once round; none where they
-    /// lie on one diameter.
+    /// The great circle of a sphere from `start` towards `target`, once round; `None` if the two
+    /// are antipodal or coincide.
     pub fn great_circle(centre: &Point3<N>, start: &Point3<N>, target: &Point3<N>) -> Option<Self> {
         let arm = start - centre;
         let normal = arm.cross(&(target - centre));
@@ -158,7 +159,7 @@ impl<N: Float> SurfacePath<N> {
     }
 
     /// The parallel circle of a cylinder, a cone, a sphere or a torus through `start`, once round
-    /// in the given sense about the axis. None on the axis and on a plane.
+    /// in the given sense about the axis. `None` on the axis and for a plane.
     pub fn parallel(
         surface: &Surface<N>,
         start: &Point3<N>,
@@ -189,16 +190,16 @@ impl<N: Float> SurfacePath<N> {
         is_off_axis.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
     }
 
-    /// The ruling of a cylinder or a cone through `start`, or at the angle `u` from a cone's apex,
-    /// without end; along the axis or, on a cylinder, against it.
+    /// The endless ruling of a cylinder or a cone through `start`, or at the angle `u` from a
+    /// cone's apex. It runs along the axis or, on a cylinder, against it.
     pub fn ruling(surface: &Surface<N>, start: &Point3<N>, u: N, sense: Sense) -> Option<Self> {
         let f = surface.frame();
         let (sin, cos) = u.sin_cos();
         Self::ruling_over(surface, start, f.x * cos + f.y * sin, sense)
     }
 
-    /// The ruling of a cylinder or a cone through a point of it; on the axis, as the one at the
-    /// angle zero.
+    /// The ruling of a cylinder or a cone through a point of it; for a point on the axis, the one
+    /// at angle zero.
     pub fn ruling_through(surface: &Surface<N>, start: &Point3<N>, sense: Sense) -> Option<Self> {
         let f = surface.frame();
         let q = f.coordinates(start);
@@ -210,7 +211,7 @@ impl<N: Float> SurfacePath<N> {
         Self::ruling_over(surface, start, radial, sense)
     }
 
-    /// The ruling over a unit vector across the axis.
+    /// The ruling in the direction of a unit vector perpendicular to the axis.
     fn ruling_over(
         surface: &Surface<N>,
         start: &Point3<N>,
@@ -234,8 +235,8 @@ impl<N: Float> SurfacePath<N> {
         ))
     }
 
-    /// The circle about the tube of a torus through `start`, once round with the angle about the
-    /// tube rising or falling.
+    /// The circle about the tube of a torus through `start`, once round, with the angle about the
+    /// tube increasing or decreasing.
     pub fn tube(torus: &Torus<N>, start: &Point3<N>, sense: Sense) -> Self {
         let f = &torus.frame;
         let q = f.coordinates(start);
@@ -245,7 +246,7 @@ impl<N: Float> SurfacePath<N> {
         Self::circle(start, centre, axis, Branch::Half(f.origin, radial))
     }
 
-    /// The walk from the same point that way round which leads to the side of `left` at `p`.
+    /// The path from the same point in the direction that leads to the side of `left` at `p`.
     pub(super) fn toward(self, p: &Point3<N>, left: &Vector3<N>) -> Self {
         if self.direction(p).dot(left).is_below_zero() {
             self.reversed()
@@ -254,7 +255,7 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
-    /// The walk from the same point the other way.
+    /// The path from the same point in the opposite direction.
     pub(super) fn reversed(self) -> Self {
         let track = match self.track {
             Track::Line(d) => Track::Line(-d),
@@ -263,18 +264,18 @@ impl<N: Float> SurfacePath<N> {
         Self::new(&self.start, self.normal, track, self.branch, self.length)
     }
 
-    /// The same walk, no longer than `length`.
+    /// The same path, limited to `length`.
     pub fn upto(self, length: N) -> Self {
         let length = self.length.min(length);
         Self::new(&self.start, self.normal, self.track, self.branch, length)
     }
 
-    /// How long it is.
+    /// The length.
     pub(super) fn length(&self) -> N {
         self.length
     }
 
-    /// Whether the walk ends where it starts.
+    /// Whether the path ends where it starts.
     pub(super) fn closes(&self) -> bool {
         matches!(self.track, Track::Circle(_, radius) if self.length.reaches(N::TAU * radius))
     }
@@ -290,7 +291,7 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
-    /// The length at which the walk passes a point of it.
+    /// The length at which the path passes a point of it.
     pub fn at(&self, p: &Point3<N>) -> N {
         match self.track {
             Track::Line(d) => (p - self.start).dot(&d),
@@ -323,7 +324,7 @@ impl<N: Float> SurfacePath<N> {
         inward.is_beyond(-resolution) && s.lies_between([-resolution, self.length + resolution])
     }
 
-    /// Whether the walk may pass through a box.
+    /// Whether the path may pass through a box.
     pub fn may_intersect(&self, lo: &[f64; 3], hi: &[f64; 3], resolution: N) -> bool {
         self.reach.may_intersect(lo, hi, resolution.above())
     }
@@ -333,8 +334,8 @@ impl<N: Float> SurfacePath<N> {
         self.may_intersect(&b.min, &b.max, resolution)
     }
 
-    /// The crossings with `arcs` on `surface`, in order; `side` is the sense of the face's outward
-    /// normal against the surface's own, `resolution` is the resolution.
+    /// The crossings with `arcs` on `surface`, in order. `side` is the sense of the face's outward
+    /// normal relative to the surface's.
     pub fn crossings(
         &self,
         surface: &Surface<N>,
@@ -364,8 +365,8 @@ impl<N: Float> SurfacePath<N> {
         found
     }
 
-    /// Reports the crossings with one arc, of which only some ranges may be met: (length along the
-    /// walk, parameter, passage).
+    /// Reports the crossings with one arc, within the given ranges: (length along the path,
+    /// parameter, crossing sense).
     pub(super) fn intersections(
         &self,
         surface: &Surface<N>,
@@ -385,7 +386,7 @@ impl<N: Float> SurfacePath<N> {
             }
         }
         let sign = arc.sense.sign::<N>() * side.sign::<N>();
-        let mut root = |t: N, plain: bool| {
+        let mut root = |t: N, simple: bool| {
             let p = arc.curve.point(t);
             if !self.passes(&p, resolution) {
                 return;
@@ -399,7 +400,7 @@ impl<N: Float> SurfacePath<N> {
                 Curve::Toric(c) => c.rounding_error(t).is_beyond(resolution),
                 _ => false,
             };
-            let passage = if !plain || at_end || is_along || is_vague() {
+            let passage = if !simple || at_end || is_along || is_vague() {
                 CrossingSense::Unclear
             } else if turn.is_above_zero() {
                 CrossingSense::Entering
@@ -420,7 +421,7 @@ impl<N: Float> SurfacePath<N> {
             return;
         }
         if !ranges.is_empty()
-            && let Some(all) = self.met_on_torus(surface, arc.curve, resolution)
+            && let Some(all) = self.crossings_on_torus(surface, arc.curve, resolution)
         {
             let all = all.into_iter().map(|t| arc.curve.in_cycle(t, lo));
             return all
@@ -446,10 +447,10 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
-    /// Where a walk along a circle clearly crosses a curve through the angles of a torus, of the whole
-    /// curve: a circle of that torus, or of the curve's other surface. None where that is not plain,
-    /// and of other walks and curves.
-    fn met_on_torus(
+    /// The transversal crossings of a circular path with a whole curve through the angles of a
+    /// torus, where the circle is one of that torus or of the curve's other surface. `None` if the
+    /// result is ambiguous, and for other paths and curves.
+    fn crossings_on_torus(
         &self,
         surface: &Surface<N>,
         curve: &Curve<N>,
@@ -471,7 +472,7 @@ impl<N: Float> SurfacePath<N> {
         curve.across(fixed, angle, resolution)
     }
 
-    /// The distance of a point from what cuts the walk out of its surface.
+    /// The distance of a point from the surface that cuts the path out of its own surface.
     fn off(&self, p: &Point3<N>) -> N {
         match self.branch {
             Branch::Level(c, _) => Surface::Cylinder(c).distance(p),
@@ -480,7 +481,7 @@ impl<N: Float> SurfacePath<N> {
     }
 }
 
-/// Whether the arc runs over its whole closed curve.
+/// Whether the arc covers its entire closed curve.
 fn closes<N: Float>(arc: &DirectedArc<'_, N>) -> bool {
     arc.curve.period().is_some_and(|period| {
         let [lo, hi] = arc.range;

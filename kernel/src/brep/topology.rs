@@ -1,4 +1,4 @@
-//! Who meets whom: no coordinates here.
+//! The topology: incidences of entities, without coordinates.
 
 pub use crate::geometry::sense::Sense;
 
@@ -9,7 +9,7 @@ macro_rules! ids {
         pub struct $name(pub u32);
 
         impl $name {
-            /// The place in the arena.
+            /// The index in the arena.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -41,8 +41,8 @@ ids! {
 pub struct Edge {
     /// Its first and its last vertex; none for a closed edge.
     pub ends: Option<[VertexId; 2]>,
-    /// Its uses, in the order in which their faces lie around it, counterclockwise as seen against
-    /// the edge's direction; a pair (2i, 2i+1) encloses material.
+    /// Its uses, in the order of their faces around it, counterclockwise as seen against the edge's
+    /// direction. A pair (2i, 2i+1) encloses material.
     pub coedges: Vec<CoedgeId>,
     /// Whether it has two faces whose normals agree along it.
     pub smooth: bool,
@@ -53,16 +53,16 @@ pub struct Edge {
 pub struct Coedge {
     /// The edge.
     pub edge: EdgeId,
-    /// Whether it is run along its own direction.
+    /// Whether it runs in the edge's direction.
     pub sense: Sense,
     /// The loop it belongs to.
     pub owner: LoopId,
 }
 
-/// A closed run of coedges.
+/// A closed sequence of coedges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Loop {
-    /// In order; the end of each is the start of the next.
+    /// The coedges in order; the end of each is the start of the next.
     pub coedges: Vec<CoedgeId>,
     /// The face it bounds.
     pub face: FaceId,
@@ -71,7 +71,7 @@ pub struct Loop {
 /// A face: a maximal connected piece of one surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Face {
-    /// Its loops; none where the face is a whole closed surface.
+    /// Its loops; none if the face is a whole closed surface.
     pub loops: Vec<LoopId>,
     /// Its shell.
     pub shell: ShellId,
@@ -88,9 +88,9 @@ pub struct Shell {
     pub solid: LumpId,
     /// Whether it bounds a void.
     pub void: bool,
-    /// Its genus: one less half its Euler characteristic.
+    /// Its genus: one minus half its Euler characteristic.
     pub genus: i32,
-    /// Whether the characteristic is odd, which no closed shell's is.
+    /// Whether the characteristic is odd, which is impossible for a closed shell.
     pub odd: bool,
 }
 
@@ -101,24 +101,25 @@ pub struct Lump {
     pub shells: Vec<ShellId>,
 }
 
-/// A point at which the boundary touches itself: the faces around it make no disc. What meets there
-/// is two or more of: a fan of faces around a vertex, the inside of an edge, the inside of a face.
+/// A point at which the boundary touches itself, so that the faces around it do not form a disc. At
+/// least two of these meet there: a fan of faces around a vertex, the interior of an edge, the
+/// interior of a face.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NonManifoldPoint {
     /// The vertex there, where edges end.
     pub vertex: Option<VertexId>,
-    /// How many fans of faces meet in the vertex; none without one.
+    /// The number of fans of faces at the vertex; zero without a vertex.
     pub fans: usize,
     /// The edges that run through the point.
     pub edges: Vec<EdgeId>,
-    /// The faces that hold the point inside.
+    /// The faces that contain the point in their interior.
     pub faces: Vec<FaceId>,
 }
 
 /// The entities of a boundary.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topology {
-    /// How many vertices there are.
+    /// The number of vertices.
     pub vertices: u32,
     /// The edges, by id.
     pub edges: Vec<Edge>,
@@ -136,12 +137,12 @@ pub struct Topology {
     pub touches: Vec<NonManifoldPoint>,
 }
 
-/// How many there are of each entity: what boundaries of one kind share.
+/// The number of each kind of entity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EntityCounts {
     /// Vertices, edges, loops and faces.
     pub cells: [usize; 4],
-    /// Of every shell the genus, in ascending order.
+    /// The genus of every shell, in ascending order.
     pub genus: Vec<i32>,
     /// Solids.
     pub solids: usize,
@@ -150,7 +151,7 @@ pub struct EntityCounts {
 }
 
 impl Topology {
-    /// How many there are of each entity.
+    /// Counts the entities of each kind.
     pub fn census(&self) -> EntityCounts {
         let mut genus: Vec<i32> = self.shells.iter().map(|s| s.genus).collect();
         genus.sort_unstable();
@@ -193,13 +194,14 @@ impl Topology {
         self.ring(self.coedge(id).owner).face
     }
 
-    /// The coedges of a face, as its loops run along them.
+    /// The coedges of a face, in the order of its loops.
     pub fn coedges_of(&self, id: FaceId) -> impl Iterator<Item = CoedgeId> + '_ {
         let loops = self.face(id).loops.iter();
         loops.flat_map(|&l| self.ring(l).coedges.iter().copied())
     }
 
-    /// The edges of a face, as its loops run along them: one twice, on whose both sides it lies.
+    /// The edges of a face, in the order of its loops. An edge with the face on both sides occurs
+    /// twice.
     pub fn edges_of(&self, id: FaceId) -> impl Iterator<Item = EdgeId> + '_ {
         self.coedges_of(id).map(|c| self.coedge(c).edge)
     }
@@ -209,12 +211,13 @@ impl Topology {
         self.edge(id).coedges.iter().map(|&c| self.face_of(c))
     }
 
-    /// How many edges bound more than two face corners: along them the boundary is no manifold.
+    /// The number of edges that bound more than two face corners, along which the boundary is not a
+    /// manifold.
     pub fn edges_of_many_faces(&self) -> usize {
         self.edges.iter().filter(|e| e.coedges.len() > 2).count()
     }
 
-    /// Where a coedge starts and ends; none for a closed edge.
+    /// The start and end of a coedge; none for a closed edge.
     pub fn run(&self, id: CoedgeId) -> Option<[VertexId; 2]> {
         let c = self.coedge(id);
         let [a, b] = self.edge(c.edge).ends?;

@@ -1,5 +1,5 @@
-//! Trigonometric polynomials of degree two in each of two angles: what any of the five surfaces,
-//! and the limb of a torus, is on the parameter torus of a torus.
+//! Trigonometric polynomials of degree two in each of two angles. Each of the five surfaces, and
+//! the limb of a torus, is one on the parameter torus of a torus.
 
 mod thirds;
 
@@ -8,8 +8,8 @@ pub use thirds::{Reaches, Thirds};
 use crate::number::analytic::Analytic;
 use crate::number::float::Float;
 
-/// Coefficients by (function of the first angle, function of the second), each of
-/// 1, cos, sin, cos 2, sin 2.
+/// The coefficient of each product of a function of the first angle and one of the second, where
+/// the functions are 1, cos, sin, cos 2, sin 2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BivariateTrigPoly<N: Float = f64>(pub [[N; 5]; 5]);
 
@@ -42,13 +42,12 @@ fn basis<N: Float, S: Analytic<Float = N>>(angle: S) -> [[S; 5]; 3] {
     ]
 }
 
-/// What is left of a polynomial in two angles where one of them is fixed: the coefficients of the
-/// functions of the other.
+/// A polynomial in two angles with one angle fixed: the coefficients of the functions of the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<N: Float = f64>(pub [N; 5]);
 
 impl<N: Float> Section<N> {
-    /// The sum of the absolute coefficients: what rounding is in proportion to.
+    /// The sum of the absolute coefficients, to which rounding is proportional.
     pub fn size(&self) -> N {
         self.0.iter().map(|c| c.abs()).sum()
     }
@@ -66,8 +65,8 @@ impl<N: Float> Section<N> {
     }
 }
 
-/// The sum of the coefficients times the functions of both angles, with its derivatives: each row
-/// is summed over the second angle's functions once.
+/// The polynomial with its derivatives. Each row is summed once over the functions of the second
+/// angle.
 fn partials<N: Float, S: Analytic<Float = N>>(
     k: &[[N; 5]; 5],
     bx: &[[S; 5]; 3],
@@ -82,7 +81,7 @@ fn partials<N: Float, S: Analytic<Float = N>>(
         let mut inner = [zero; 3];
         for (n, &c) in row.iter().enumerate().filter(|(_, c)| **c != N::ZERO) {
             inner[0] = inner[0] + by[0][n].scale(c);
-            // The derivatives of the constant vanish.
+            // The derivatives of the constant are zero.
             if n > 0 {
                 inner[1] = inner[1] + by[1][n].scale(c);
                 inner[2] = inner[2] + by[2][n].scale(c);
@@ -108,7 +107,7 @@ fn partials<N: Float, S: Analytic<Float = N>>(
 }
 
 impl<N: Float> BivariateTrigPoly<N> {
-    /// What is left where the first angle, or the second, is fixed to `angle`.
+    /// The polynomial with the first angle, or the second, fixed to `angle`.
     pub fn section(&self, first: bool, angle: N) -> Section<N> {
         let fixed = &basis(angle)[0];
         let entry = |i: usize, j: usize| if first { self.0[i][j] } else { self.0[j][i] };
@@ -121,8 +120,8 @@ impl<N: Float> BivariateTrigPoly<N> {
         Self([[N::ZERO; 5]; 5])
     }
 
-    /// The polynomial that takes the values of `f`, which is known to be one: found from 25
-    /// samples by the discrete orthogonality of the five functions.
+    /// The polynomial that equals `f`, which must be one. It is found from 25 samples by the
+    /// discrete orthogonality of the five functions.
     pub fn interpolate(f: impl Fn(N, N) -> N) -> Self {
         let node = |i: usize| N::TAU * (N::from_f64(i as f64)) / N::from_f64(5.0);
         let rows: [[N; 5]; 5] = std::array::from_fn(|i| basis(node(i))[0]);
@@ -147,7 +146,7 @@ impl<N: Float> BivariateTrigPoly<N> {
         Self(k)
     }
 
-    /// The sum of the absolute coefficients: a bound of the value.
+    /// The sum of the absolute coefficients, a bound of the absolute value.
     pub fn bound(&self) -> N {
         self.0.iter().flatten().map(|c| c.abs()).sum()
     }
@@ -200,7 +199,7 @@ impl<N: Float> BivariateTrigPoly<N> {
         d
     }
 
-    /// A bound of the n-th derivatives in any direction of length one in each angle, over n!.
+    /// A bound of the n-th derivatives, over n!, in any direction of length one in each angle.
     pub fn variation(&self, n: usize) -> N {
         let degree = [N::ZERO, N::ONE, N::ONE, N::TWO, N::TWO];
         let mut total = N::ZERO;

@@ -6,10 +6,11 @@
 //!   s = ε σᵃ,   y = Y(s) + σᵇ κ,   F = σʷ G(σ, κ),
 //!
 //! a weighted blow-up (Arnold, Gusein-Zade and Varchenko, Singularities of Differentiable Maps I,
-//! 1985): where n branches cross (a, b, w) = (1, 1, n), where two touch (1, 2, 4), (1, 3, 6), ...,
-//! at a cusp (2, 3, 6), (2, 5, 10), .... What of F is of less weight vanishes, so G(σ, κ) = 0 passes
-//! through (0, κ₀) with G_κ ≠ 0: Newton's steps and enclosures are as good there as anywhere else. F
-//! is Taylor's polynomial about the point, with a bound of what is left.
+//! 1985). The weights (a, b, w) are (1, 1, n) where n branches cross; (1, 2, 4), (1, 3, 6), ...
+//! where two branches touch; (2, 3, 6), (2, 5, 10), ... at a cusp. Terms of F of lower weight
+//! vanish, so G(σ, κ) = 0 passes through (0, κ₀) with G_κ ≠ 0. There Newton's method and enclosures
+//! work as well as at a regular point. F is replaced by its Taylor polynomial about the point, with
+//! a bound of the remainder.
 
 use super::bivariate_trig_poly::{BivariateTrigPoly, Partials};
 use super::torus_curve::TorusParameter;
@@ -18,20 +19,20 @@ use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::{Jet, JetScalar};
 
-/// The degree of Taylor's polynomials.
+/// The degree of the Taylor polynomials.
 pub const DEGREE: usize = 12;
 
-/// The coefficients of Taylor's polynomial of F, by the powers of s and of y.
+/// The coefficients of the Taylor polynomial of F, by the powers of s and of y.
 pub type Taylor<N> = [[N; DEGREE + 1]; DEGREE + 1];
 
 /// The exponents (a, b, w).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Weights {
-    /// a: the running angle's offset is a power of σ.
+    /// a: the running angle's offset is ε σᵃ.
     pub run: usize,
-    /// b: the power of σ that stands with κ.
+    /// b: the power of σ that multiplies κ.
     pub rise: usize,
-    /// w: the power of σ that F holds.
+    /// w: the power of σ that is divided out of F.
     pub form: usize,
 }
 
@@ -44,14 +45,15 @@ pub struct Chart<N: Float = f64> {
     pub origin: [N; 2],
     /// ε, 1 or -1: the side on which the running angle lies.
     pub side: N,
-    /// Y by the powers of s, of which the first is zero: what the branches have in common.
+    /// The coefficients of Y by the powers of s, the first of which is zero: the common part of the
+    /// branches.
     trend: Vec<N>,
     /// (a, b, w).
     pub weights: Weights,
     /// The coefficients of G by the power of κ, each by the power of σ.
     rows: Vec<Vec<N>>,
-    /// A bound of the next derivatives of F in any direction of length one in each angle, over the
-    /// factorial.
+    /// A bound, over the factorial, of the first derivatives of F beyond the Taylor polynomial, in
+    /// any direction of length one in each angle.
     rest: N,
 }
 
@@ -60,7 +62,7 @@ fn terms<N: Float>(angle: N) -> [[N; 5]; DEGREE + 1] {
     let (s, c) = angle.sin_cos();
     let (s2, c2) = (N::TWO * angle).sin_cos();
     let mut all = [[N::ZERO; 5]; DEGREE + 1];
-    // By turns cos, -sin, -cos, sin.
+    // The derivatives cycle through cos, -sin, -cos, sin.
     let turn = |c: N, s: N, n: usize| [c, -s, -c, s][n % 4];
     let (mut one, mut two) = (N::ONE, N::ONE);
     for (n, row) in all.iter_mut().enumerate() {
@@ -79,8 +81,8 @@ fn terms<N: Float>(angle: N) -> [[N; 5]; DEGREE + 1] {
     all
 }
 
-/// Taylor's polynomial of a form about a point, by the powers of the offsets along `axis` and
-/// across.
+/// The Taylor polynomial of a form about a point, by the powers of the offsets along `axis` and
+/// along the other angle.
 pub fn taylor<N: Float>(
     form: &BivariateTrigPoly<N>,
     origin: [N; 2],
@@ -103,7 +105,7 @@ pub fn taylor<N: Float>(
     all
 }
 
-/// The same by the powers of s and of e = y - c sⁿ, to the same degree.
+/// The polynomial in s and e = y - c sⁿ, to the same degree.
 pub fn sheared<N: Float>(taylor: &Taylor<N>, n: usize, c: N) -> Taylor<N> {
     let mut all = [[N::ZERO; DEGREE + 1]; DEGREE + 1];
     for (p, row) in taylor.iter().enumerate() {
@@ -135,8 +137,8 @@ fn product<N: Float>(a: &[N], b: &[N]) -> Vec<N> {
 }
 
 impl<N: Float> Chart<N> {
-    /// The chart about a singular point of branches that have Y in common, given by the powers of s
-    /// from the first on.
+    /// The chart about a singular point whose branches share Y, given by the powers of s from the
+    /// first on.
     pub fn new(
         form: &BivariateTrigPoly<N>,
         origin: [N; 2],
@@ -176,7 +178,7 @@ impl<N: Float> Chart<N> {
         chart
     }
 
-    /// Adds c sᵖ P(s) eʳ to F, as far as it weighs enough.
+    /// Adds c sᵖ P(s) eʳ to F, omitting terms of too low weight.
     fn add(&mut self, c: N, p: usize, polynomial: &[N], r: usize) {
         let Weights { run, rise, form } = self.weights;
         for (n, k) in polynomial.iter().enumerate() {
@@ -207,12 +209,12 @@ impl<N: Float> Chart<N> {
         y - self.trend.iter().rev().fold(N::ZERO, |sum, c| sum * s + *c)
     }
 
-    /// σ of the point with the offsets (s, y); zero beyond the chart's side.
+    /// σ of the point with the offsets (s, y); zero on the other side of the chart.
     pub fn sigma(&self, s: N, y: N) -> N {
         let run = s * self.side;
         match self.weights.run {
             1 => run,
-            // Where s is a square, σ has the sign of what is odd in it.
+            // For even a, σ has the sign of the odd part.
             _ => run.max(N::ZERO).sqrt().copysign(self.above(s, y)),
         }
     }
@@ -222,7 +224,7 @@ impl<N: Float> Chart<N> {
         self.above(s, y) / self.sigma(s, y).powi(self.weights.rise as i32)
     }
 
-    /// The same in f64.
+    /// The chart rounded to f64.
     pub(super) fn to_f64(&self) -> Chart {
         let round = |all: &Vec<N>| all.iter().map(|&x| x.rounded()).collect();
         Chart {
@@ -236,7 +238,7 @@ impl<N: Float> Chart<N> {
         }
     }
 
-    /// G over κ at a fixed σ, by the powers of κ.
+    /// The coefficients of G at a fixed σ, by the powers of κ.
     pub fn section(&self, sigma: N) -> [N; DEGREE + 1] {
         let mut section = [N::ZERO; DEGREE + 1];
         for (value, row) in section.iter_mut().zip(&self.rows) {
@@ -245,7 +247,7 @@ impl<N: Float> Chart<N> {
         section
     }
 
-    /// G with its partial derivatives by σ and κ; what Taylor leaves is not in it.
+    /// G with its partial derivatives by σ and κ, without the Taylor remainder.
     pub fn partials<S: Analytic<Float = N>>(&self, sigma: S, kappa: S) -> Partials<S> {
         let zero = S::constant_f64(0.0);
         let most = self.rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -289,8 +291,8 @@ impl<N: Float> Chart<N> {
         }
     }
 
-    /// Bounds of what Taylor leaves of G and of its first and second derivatives where |σ| and |κ|
-    /// are at most these.
+    /// Bounds of the Taylor remainder of G and of its first and second derivatives, for |σ| and |κ|
+    /// up to the given values.
     pub fn remainder(&self, sigma: N, kappa: N) -> [N; 3] {
         let Weights { run, rise, form } = self.weights;
         let n = DEGREE + 1;
@@ -300,12 +302,12 @@ impl<N: Float> Chart<N> {
         let size = (trend + sigma.powi((rise - run) as i32) * kappa).max(N::ONE);
         let power = (run * n - form) as i32;
         let value = self.rest * size.powi(n as i32);
-        // A derivative takes a factor of σ away, and no more than this comes with it.
+        // Each derivative removes a factor σ and adds at most this factor.
         let factor = N::from_f64((form + 2 * n * rise) as f64);
         [0, 1, 2].map(|d| value * factor.powi(d) * sigma.powi(power - d))
     }
 
-    /// A bound of what Taylor leaves of F.
+    /// A bound of the Taylor remainder of F.
     pub fn left(&self, sigma: N, kappa: N) -> N {
         let [value, ..] = self.remainder(sigma, kappa);
         value * sigma.powi(self.weights.form as i32)

@@ -1,4 +1,4 @@
-//! Boxes around curves.
+//! Axis-aligned bounding boxes of curves.
 
 use super::curve::{Curve, Line};
 use super::frame::Frame;
@@ -9,29 +9,29 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use nalgebra::Point3;
 
-/// An axis-parallel box: its least and its greatest corner.
+/// An axis-aligned box, by its minimum and maximum corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// The least coordinates.
+    /// The minimum of each coordinate.
     pub min: [f64; 3],
-    /// The greatest coordinates.
+    /// The maximum of each coordinate.
     pub max: [f64; 3],
 }
 
 impl Aabb {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self {
         min: [f64::INFINITY; 3],
         max: [f64::NEG_INFINITY; 3],
     };
 
-    /// The box that holds everything.
+    /// The box that contains every point.
     pub const ALL: Self = Self {
         min: [f64::NEG_INFINITY; 3],
         max: [f64::INFINITY; 3],
     };
 
-    /// The box around one point.
+    /// The box of one point.
     pub fn new<N: Float>(p: &Point3<N>) -> Self {
         let c = [p.x, p.y, p.z];
         Self {
@@ -40,7 +40,7 @@ impl Aabb {
         }
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that contains both.
     pub fn hull(&self, o: &Self) -> Self {
         Self {
             min: std::array::from_fn(|i| self.min[i].min(o.min[i])),
@@ -48,7 +48,7 @@ impl Aabb {
         }
     }
 
-    /// The box grown by `by` on all sides, if by less than f64 values tell, then by what they do.
+    /// The box enlarged by `by` on all sides, but by at least the rounding of f64.
     pub fn grown<N: Float>(&self, by: N) -> Self {
         let by = by.above();
         if by == 0.0 {
@@ -65,17 +65,18 @@ impl Aabb {
         (0..3).all(|i| N::from_f64(self.min[i]) <= p[i] && p[i] <= N::from_f64(self.max[i]))
     }
 
-    /// Whether another box lies in it.
+    /// Whether it contains another box.
     pub fn encloses(&self, o: &Self) -> bool {
         (0..3).all(|i| self.min[i] <= o.min[i] && o.max[i] <= self.max[i])
     }
 
-    /// The part of a line over `range` that runs in it.
+    /// The part of `range` in which a line runs inside the box.
     pub fn along<N: Float>(&self, line: &Line<N>, range: [N; 2]) -> Option<[N; 2]> {
         let [mut lo, mut hi] = range;
         for i in 0..3 {
             let (o, d) = (line.origin[i], line.direction[i]);
-            // Steep enough to cross the slab within the extent, or else it lies along it.
+            // If the line is steep enough it crosses the slab within the range; otherwise it runs
+            // along it.
             let (min, max) = (N::from_f64(self.min[i]), N::from_f64(self.max[i]));
             let (x, y) = ((min - o) / d, (max - o) / d);
             if d == N::ZERO || !x.is_finite() || !y.is_finite() {
@@ -90,22 +91,22 @@ impl Aabb {
         (lo < hi).then_some([lo, hi])
     }
 
-    /// Its middle.
+    /// The centre.
     pub fn centre(&self) -> Point3<f64> {
         Point3::from(std::array::from_fn::<f64, 3, _>(|i| {
             0.5 * (self.min[i] + self.max[i])
         }))
     }
 
-    /// The length of its diagonal.
+    /// The length of the diagonal.
     pub fn diagonal(&self) -> f64 {
         let d: f64 = (0..3).map(|i| (self.max[i] - self.min[i]).powi(2)).sum();
         d.sqrt()
     }
 }
 
-/// The box of the arc of a curve over `range`: tight for lines and conics with an angle, an
-/// enclosure for the rest.
+/// The bounding box of the arc of a curve over `range`: tight for lines and for conics with an
+/// angle as parameter, an enclosure for other curves.
 pub fn bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     match curve {
         Curve::Line(_) => ends(curve, range),
@@ -115,7 +116,7 @@ pub fn bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     }
 }
 
-/// Consecutive pieces of a curve over `range`, each smooth and with a box that holds it.
+/// Consecutive pieces of a curve over `range`, each smooth and with an enclosing box.
 pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
     if !N::IS_DOUBLE && !has_exact_bounds(curve) {
         return rounded_pieces(curve, [lo, hi]);
@@ -132,8 +133,9 @@ pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb
     all
 }
 
-/// The same of a curve of more digits: of the curve rounded to f64 values, and grown by more than that
-/// moves it, next to a node by the root of rounding.
+/// The pieces of a curve in extended precision. The boxes are those of the curve rounded to f64,
+/// enlarged by more than rounding moves the curve; next to a node that is the square root of the
+/// rounding.
 fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
     let mut rounded = pieces(&curve.to_f64(), [lo, hi].map(N::rounded));
     let whole = rounded.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
@@ -150,7 +152,7 @@ fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], 
     .collect()
 }
 
-/// Whether the box of every arc is known in closed form.
+/// Whether the box of every arc has a closed form.
 fn has_exact_bounds<N: Float>(curve: &Curve<N>) -> bool {
     matches!(curve, Curve::Line(_) | Curve::Circle(_) | Curve::Ellipse(_))
 }
@@ -159,7 +161,7 @@ fn ends<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Aabb {
     Aabb::new(&curve.point(lo)).hull(&Aabb::new(&curve.point(hi)))
 }
 
-/// Grows the box of the ends by the extrema a x cos t + b y sin t that the range passes.
+/// Enlarges the box of the ends by the extrema of a x cos t + b y sin t inside the range.
 fn turn_bounds<N: Float>(f: &Frame<N>, a: N, b: N, [lo, hi]: [N; 2], mut hull: Aabb) -> Aabb {
     for i in 0..3 {
         let (c, s) = (a * f.x[i], b * f.y[i]);
@@ -174,15 +176,15 @@ fn turn_bounds<N: Float>(f: &Frame<N>, a: N, b: N, [lo, hi]: [N; 2], mut hull: A
     hull
 }
 
-/// An enclosure may be larger than the curve by this part of its size.
+/// The excess of an enclosure over the curve that is accepted, relative to the curve's size.
 const LOOSE: f64 = 1.0 / 16.0;
-/// How often a smooth piece is sampled in search of its extremes.
+/// The number of samples of a smooth piece in the search for extrema.
 const SAMPLES: u32 = 16;
-/// The pieces looked at after which enclosures are taken as they are: those of a curve that is
-/// hardly longer than rounding never get tight.
+/// The number of pieces after which enclosures are accepted as they are. The enclosures of a curve
+/// that is hardly longer than rounding never become tight.
 const PIECES: usize = 2048;
 
-/// The box of the arc of a curve, to rounding.
+/// The bounding box of the arc of a curve, to rounding.
 pub fn tight_bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     if has_exact_bounds(curve) {
         bounds(curve, range)
@@ -191,8 +193,8 @@ pub fn tight_bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     }
 }
 
-/// The box of the ends and of the points at which a coordinate turns back: between samples of its
-/// derivative, found by halving.
+/// The box of the ends and of the coordinates' extrema, found by bisection between samples of the
+/// derivative.
 fn extremes<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     let mut hull = ends(curve, range);
     for pair in curve.breaks(range[0], range[1]).windows(2) {
@@ -201,7 +203,7 @@ fn extremes<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
         for k in 1..=SAMPLES {
             let t = pair[0] + step * N::whole(k);
             let after = (t, curve.derivative(t));
-            // A sample may be an extreme itself.
+            // A sample may itself be an extremum.
             hull = hull.hull(&Aabb::new(&curve.point(t)));
             for i in 0..3 {
                 if before.1[i] * after.1[i] < N::ZERO {
@@ -228,8 +230,8 @@ fn enclosure<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     all
 }
 
-/// Branch and bound: pieces are halved until none reaches beyond the points seen by more than a
-/// part of their size; each is handed over with its box, in order.
+/// Branch and bound. Pieces are halved until none extends beyond the sampled points by more than a
+/// fraction of their size. Each is passed to `give` with its box, in order.
 fn enclosed<N: Float>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 2], Aabb)) {
     let mut seen = Aabb::EMPTY;
     for pair in breaks.windows(2) {
@@ -256,8 +258,8 @@ fn enclosed<N: Float>(curve: &Curve<N>, breaks: &[N], mut give: impl FnMut([N; 2
     }
 }
 
-/// A box that holds the piece [a, b], to rounding: of its ends where a coordinate only rises or
-/// falls.
+/// A box that contains the piece [a, b], to rounding. Where a coordinate is monotone it is that of
+/// the ends.
 fn piece_box<N: Float>(curve: &Curve<N>, a: N, b: N) -> Aabb {
     let t = Interval { lo: a, hi: b };
     let wide = curve.jet_over(t);
@@ -268,7 +270,7 @@ fn piece_box<N: Float>(curve: &Curve<N>, a: N, b: N) -> Aabb {
         let (w, m): (&Jet<Interval<N>>, &Jet<N>) = (&wide[i], &mid[i]);
         let (v, d) = (Interval::point(m.v), Interval::point(m.d));
         if w.d.has_zero() {
-            // To the second order, too: next to an extremum the slope alone tells little.
+            // Second-order bounds as well: next to an extremum the first-order ones are loose.
             let second = v + d * run + (w.dd * run.square()).times(0.5);
             w.v.intersection(v + w.d * run)
                 .intersection(second)

@@ -30,7 +30,7 @@ pub struct Circle<N: Float = f64> {
 }
 
 impl<N: Float> Circle<N> {
-    /// The circle through three points; none where they are on a line.
+    /// The circle through three points; `None` if they are collinear.
     pub fn through(a: &Point3<N>, b: &Point3<N>, c: &Point3<N>) -> Option<Self> {
         let (u, v) = (b - a, c - a);
         let across = u.cross(&v);
@@ -68,8 +68,8 @@ pub struct Hyperbola<N: Float = f64> {
 }
 
 /// A conic about one of its points, as a graph over the tangent there: κ y² + 2 β x y + α x² = 2 x,
-/// and the parameter is y. For a parabola, and what is so long that the way to its centre would take
-/// its digits; meant is the part on which x is single.
+/// with the parameter y. It represents parabolas, and conics whose centre is so far away that its
+/// coordinates would lose digits. Only the part on which x is single-valued belongs to the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conic<N: Float = f64> {
     /// Origin at the point, x along the inner normal.
@@ -83,7 +83,7 @@ pub struct Conic<N: Float = f64> {
 }
 
 impl<N: Float> Conic<N> {
-    /// A conic about its vertex, by its semi-latus rectum p and k: y² = 2 p x - k x².
+    /// A conic about its vertex, y² = 2 p x - k x², with p the semi-latus rectum.
     pub fn about_vertex(frame: Frame<N>, rectum: N, k: N) -> Self {
         Self {
             frame,
@@ -100,18 +100,18 @@ impl<N: Float> Conic<N> {
         rest + (rest.square() - bend).root()
     }
 
-    /// x over y: κ y²/(r + √(r² - κ α y²)).
+    /// x as a function of y: κ y² / (r + √(r² - κ α y²)).
     pub fn height<S: Analytic<Float = N>>(&self, y: S) -> S {
         y.square().scale(self.curvature).over(self.depth(y))
     }
 
-    /// m = x/(κ y): how steep the chord from the point is, over the curvature. With it (x, y) is
-    /// (2 κ m², 2 m)/(1 + 2 β m + κ α m²).
+    /// m = x/(κ y): the slope of the chord from the point, divided by the curvature. In terms of m,
+    /// (x, y) = (2 κ m², 2 m)/(1 + 2 β m + κ α m²).
     pub fn chord(&self, y: N) -> N {
         y / self.depth(y)
     }
 
-    /// The parameter at the end of a chord, where x is single there.
+    /// The parameter at the end of a chord; `None` if x is not single-valued there.
     pub fn end_of_chord(&self, m: N) -> Option<N> {
         let bend = self.curvature * self.flatness * (m * m);
         let scale = N::ONE + N::TWO * self.shear * m + bend;
@@ -152,7 +152,7 @@ impl<N: Float> Line<N> {
 }
 
 impl<N: Float> Curve<N> {
-    /// The name used in outputs.
+    /// The name used in output.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Line(_) => "line",
@@ -166,7 +166,7 @@ impl<N: Float> Curve<N> {
         }
     }
 
-    /// The parameter's period, where the curve is closed.
+    /// The parameter's period, if the curve is closed.
     pub fn period(&self) -> Option<N> {
         match self {
             Self::Circle(_) | Self::Ellipse(_) => Some(N::TAU),
@@ -176,8 +176,8 @@ impl<N: Float> Curve<N> {
         }
     }
 
-    /// The least shift of the parameter that leads back to the same point: the period of a closed
-    /// curve, and a turn of the angle where poles keep a quartic from closing.
+    /// The smallest shift of the parameter that leads back to the same point: the period of a
+    /// closed curve, or a full turn of the angle for a quartic that has poles and does not close.
     pub fn cycle(&self) -> Option<N> {
         match (self, self.period()) {
             (Self::Quartic(_), None) => Some(N::TAU),
@@ -191,7 +191,7 @@ impl<N: Float> Curve<N> {
             .map_or(t, |cycle| lo + (t - lo).rem_euclid(cycle))
     }
 
-    /// The point at t, over any scalar; a toric curve has its own ways.
+    /// The point at t, over any scalar; `None` for a curve on a torus, which has no closed form.
     fn closed_form<S: Analytic<Float = N>>(&self, t: S) -> Option<[S; 3]> {
         Some(match self {
             Self::Line(c) => c.at(t),
@@ -246,8 +246,9 @@ impl<N: Float> Curve<N> {
         }
     }
 
-    /// The certified range of the point over an interval of t, without derivatives; none for a
-    /// toric curve, which has them anyway, but at a single parameter.
+    /// The certified range of the point over an interval of t, without derivatives. `None` for a
+    /// curve on a torus unless the interval is a single parameter: its evaluation yields the
+    /// derivatives anyway.
     pub fn box_over(&self, t: Interval<N>) -> Option<[Interval<N>; 3]> {
         match self {
             Self::Toric(c) => (t.lo == t.hi).then(|| c.box_at(t.lo)),
@@ -264,7 +265,7 @@ impl<N: Float> Curve<N> {
         Vector3::new(j[0].d, j[1].d, j[2].d)
     }
 
-    /// How fast the point moves along the curve: the length of its derivative.
+    /// The speed: the length of the derivative at t.
     pub fn speed(&self, t: N) -> N {
         match self {
             Self::Circle(c) => c.radius,
@@ -272,7 +273,7 @@ impl<N: Float> Curve<N> {
         }
     }
 
-    /// Whether the curve turns back at t: whether a cusp is there.
+    /// Whether the curve has a cusp at t.
     pub fn turns_back(&self, t: N) -> bool {
         match self {
             Self::Toric(c) => c.turns_back(t),
@@ -281,7 +282,7 @@ impl<N: Float> Curve<N> {
         }
     }
 
-    /// The unit tangent at t; at a cusp, of what comes after.
+    /// The unit tangent at t; at a cusp, that of the part after t.
     pub fn tangent(&self, t: N) -> Vector3<N> {
         let d = self.derivative(t);
         if d != Vector3::zeros() && !self.turns_back(t) {
@@ -300,7 +301,7 @@ impl<N: Float> Curve<N> {
         (dd - d * (d.dot(&dd) / speed2)) / speed2
     }
 
-    /// Where the smooth pieces of the range [lo, hi] meet, with both ends.
+    /// The ends of the smooth pieces of the range [lo, hi], including both ends of the range.
     pub fn breaks(&self, lo: N, hi: N) -> Vec<N> {
         let mut breaks = vec![lo];
         match self {
@@ -311,7 +312,7 @@ impl<N: Float> Curve<N> {
                     k += N::ONE;
                 }
             }
-            // Quarter turns keep the first enclosures narrow.
+            // Breaks at quarter turns keep the first enclosures narrow.
             _ if self.period().is_some() => {
                 let n = ((hi - lo) / (N::PI / N::TWO)).ceil();
                 let mut k = N::ONE;
@@ -326,7 +327,8 @@ impl<N: Float> Curve<N> {
         breaks
     }
 
-    /// The parameter of the curve's point next to `p`, which lies on the curve or close by.
+    /// The parameter of the point of the curve closest to `p`, which lies on the curve or close to
+    /// it.
     pub fn parameter(&self, p: &Point3<N>) -> N {
         match self {
             Self::Line(c) => (p - c.origin).dot(&c.direction),
@@ -356,7 +358,7 @@ impl<N: Float> Curve<N> {
         let local = frame.coordinates(p);
         let u = turn(local.y.atan2(local.x));
         let mut candidates = q.parameters_of(u);
-        // A cone's apex has no angle of its own.
+        // A cone's apex has no definite angle.
         candidates.extend(q.apex_parameters());
         let distance = |t: &N| (self.point(*t) - p).length();
         candidates
@@ -365,8 +367,8 @@ impl<N: Float> Curve<N> {
             .unwrap_or(u)
     }
 
-    /// Newton's steps on the distance to `p`, as long as they lead nearer: where the curve stands
-    /// still they lead anywhere.
+    /// Newton steps on the distance to `p`, as long as they reduce it. Where the speed is zero a
+    /// step may lead anywhere.
     fn polish(&self, p: &Point3<N>, mut t: N) -> N {
         for _ in 0..3 {
             let j = self.jet(t);
@@ -385,8 +387,8 @@ impl<N: Float> Curve<N> {
         }
     }
 
-    /// The parameters for which the curve can lie within `radius` of `centre`: an open curve's
-    /// range there, or one whole period.
+    /// The range of parameters for which the curve can lie within `radius` of `centre`: part of an
+    /// open curve's range, or a whole period.
     pub fn range_within(&self, centre: &Point3<N>, radius: N) -> Option<[N; 2]> {
         match self {
             Self::Line(c) => {
@@ -401,7 +403,7 @@ impl<N: Float> Curve<N> {
                 (reach >= c.a).then_some([-t, t])
             }
             Self::Conic(c) => {
-                // κ y² = 2 x - 2 β x y - α x², and x as y are no more than the distance.
+                // κ y² = 2 x - 2 β x y - α x², and neither |x| nor |y| exceeds the distance.
                 let reach = (c.frame.origin - centre).length() + radius;
                 let most = N::TWO + reach * (N::TWO * c.shear.abs() + (-c.flatness).max(N::ZERO));
                 let t = reach.min((reach * most / c.curvature).sqrt());

@@ -1,4 +1,5 @@
-//! Where a curve meets a plane, or a line of its surface: in closed form where there is one.
+//! Intersections of a curve with a plane, or with a line on its surface, in closed form where
+//! possible.
 
 use super::curve::Curve;
 use super::curve_surface::cut;
@@ -10,8 +11,8 @@ use crate::number::float::Float;
 use crate::number::roots::{RootKind, Roots};
 use nalgebra::{Point3, Vector3};
 
-/// Where a curve meets a plane, over a range: reports each parameter and whether the curve clearly
-/// crosses there. Lines and conics with an angle in closed form.
+/// Intersects a curve with a plane over a range. Reports each parameter, and whether the curve
+/// crosses there transversally. Lines, circles and ellipses have a closed form.
 pub fn plane_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -23,7 +24,7 @@ pub fn plane_roots<N: Float>(
     section_roots(curve, range, section, resolution, found);
 }
 
-/// The same for the plane through a point with a unit normal.
+/// Intersects with the plane through a point with a unit normal.
 pub(crate) fn section_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -54,7 +55,7 @@ pub(crate) fn section_roots<N: Float>(
     }
 }
 
-/// The same for any surface.
+/// Intersects with any surface.
 pub(crate) fn surface_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -79,7 +80,7 @@ fn base_frame<N: Float>(curve: &QuadricCurve<N>) -> &Frame<N> {
     }
 }
 
-/// Whether a plane goes through the axis of the surface whose rulings carry a curve.
+/// Whether a plane contains the axis of the surface whose rulings carry a curve.
 fn through_axis<N: Float>(
     curve: &QuadricCurve<N>,
     (o, n): (&Point3<N>, &Vector3<N>),
@@ -90,8 +91,8 @@ fn through_axis<N: Float>(
     n.dot(&axis.z).abs() <= N::ROUNDING && away <= resolution
 }
 
-/// Where a curve over the rulings of a surface meets a plane through their axis, with the normal
-/// `n`: on two rulings.
+/// Intersects a curve over the rulings of a surface with a plane through their axis and with normal
+/// `n`. The intersections lie on two rulings.
 fn ruling_roots<N: Float>(
     curve: &QuadricCurve<N>,
     [lo, hi]: [N; 2],
@@ -116,7 +117,7 @@ fn ruling_roots<N: Float>(
             }
             Sweep::Oval { mid, half } => {
                 let away = (u - mid + N::HALF * N::TAU).rem_euclid(N::TAU) - N::HALF * N::TAU;
-                // At the ends of the sweep the curve touches the ruling.
+                // At the ends of the sweep the curve is tangent to the ruling.
                 let end = if away < N::ZERO {
                     N::ZERO
                 } else {
@@ -183,15 +184,16 @@ fn turn_roots<N: Float>(
             false,
         );
     }
-    // The height that is missed is better known than its arc cosine near the top.
+    // Close to the top, the difference of squares is more accurate than the arc cosine.
     let half = ((size - c) * (size + c)).sqrt().atan2(-c);
     within(at - half, true);
     within(at + half, true);
 }
 
-/// Where a line on one of two quadrics, by a point and its unit direction, meets the curve they
-/// share over a range: where it meets the other one, a cylinder. Reports each parameter, and that
-/// the curve is crossed clearly; false where no more can be said in closed form.
+/// Intersects a line on one of two quadrics with their intersection curve over a range. The line is
+/// given by a point and its unit direction; it meets the curve where it meets the other quadric, a
+/// cylinder. Reports each parameter, always as a transversal crossing. Returns false if there is no
+/// reliable closed form.
 pub fn line_intersections<N: Float>(
     curve: &Curve<N>,
     [lo, hi]: [N; 2],
@@ -214,7 +216,7 @@ pub fn line_intersections<N: Float>(
     let rho = q.x.hypot(q.y);
     let c = (rho - s.radius) * (rho + s.radius);
     let radicand = b * b - a * c;
-    // Next to a touch the roots are not told from each other.
+    // Close to tangency the two roots cannot be separated.
     if radicand.abs() <= N::from_f64(16.0) * s.radius * resolution * a {
         return false;
     }
@@ -225,7 +227,7 @@ pub fn line_intersections<N: Float>(
     for at in [k / a, c / k] {
         let p = start + direction * at;
         let t = curve.in_cycle(curve.parameter(&p), lo);
-        // Else on another branch.
+        // Otherwise the point lies on another branch.
         if t >= lo && t <= hi && (curve.point(t) - p).length() <= N::from_f64(64.0) * resolution {
             found(t, true);
         }

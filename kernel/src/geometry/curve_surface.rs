@@ -1,4 +1,4 @@
-//! Where a curve meets a surface.
+//! Intersections of a curve with a surface.
 
 use super::bounds::Aabb;
 use super::curve::Curve;
@@ -13,13 +13,14 @@ use crate::number::roots::{Function, Root, RootKind, Roots, isolate, isolate_clo
 use nalgebra::Point3;
 use std::borrow::Cow;
 
-/// How far above a surface a curve runs.
+/// The signed distance of a curve from a surface, to first order.
 struct Height<'a, N: Float = f64> {
     curve: Cow<'a, Curve<N>>,
     surface: Cow<'a, Surface<N>>,
-    /// The same of a line or circle, where coordinates may cancel by more than halving makes up for.
+    /// The implicit polynomial along a line or circle. Coordinates may cancel there by more than
+    /// halving can make up for.
     restriction: Option<ImplicitOnCurve<N>>,
-    /// The same in f64, of one of more digits.
+    /// The f64 version, for extended precision.
     rounded_f64: Option<Box<Height<'static>>>,
 }
 
@@ -85,8 +86,8 @@ impl<N: Float> Function<N> for Height<'_, N> {
     }
 }
 
-/// Where the curve, over `range` of its parameter, meets the surface: isolated parameters with
-/// their contact, or everywhere where it lies on the surface. `resolution` is the resolution.
+/// Intersects the curve over `range` of its parameter with the surface: isolated parameters with
+/// their multiplicity, or everywhere if the curve lies on the surface.
 pub fn cut<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -103,11 +104,11 @@ pub fn cut<N: Float>(
     }
 }
 
-/// Roots, and what is apart from zero by little: (parameter, value).
+/// The roots, and the near misses as (parameter, value).
 pub type CurveSurfaceRoots<N = f64> = (Vec<Root<N>>, Vec<(N, N)>);
 
-/// The same over a part of a curve that does not lie on the surface, however short: the roots, and
-/// all misses that are close calls.
+/// Intersects a part of a curve, however short, that does not lie on the surface: the roots, and
+/// all near misses that are close calls.
 pub fn roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -128,8 +129,8 @@ pub fn roots<N: Float>(
     }
 }
 
-/// The same of a curve of more digits than f64 values have: isolated in f64, where these follow the
-/// curve far more closely than the resolution, and then with all digits.
+/// The roots of a curve in extended precision: isolated in f64, if the rounded curve is far closer
+/// than the resolution, and then refined to full precision.
 fn rounded_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -177,12 +178,12 @@ fn rounded_roots<N: Float>(
     Some((found.into_iter().map(root).collect(), misses.collect()))
 }
 
-/// How many times nearer than the resolution f64 values are to follow a curve.
+/// The factor by which the rounded curve must be closer to the exact one than the resolution.
 const FOLLOWING: f64 = 64.0;
-/// Newton's steps from the digits of a double to those of 237 bits.
+/// The number of Newton steps from f64 to 237 bits.
 const STEPS: u32 = 3;
 
-/// One touching root over the whole range.
+/// A single tangential root over the entire range.
 fn touching<N: Float>([lo, hi]: [N; 2]) -> Roots<N> {
     Roots::At {
         roots: vec![Root {
@@ -196,9 +197,10 @@ fn touching<N: Float>([lo, hi]: [N; 2]) -> Roots<N> {
     }
 }
 
-/// Whether a point of a box can be within `margin` of a surface, by its distance and by its level.
+/// Whether a point of a box can be within `margin` of a surface, by the surface's distance and by
+/// its implicit function.
 pub fn comes_near<N: Float>(surface: &Surface<N>, b: &Aabb, margin: N) -> bool {
-    // The distance of a surface changes by no more than the way, which f64 values tell to rounding.
+    // The distance from a surface changes by at most the length moved; f64 gives it up to rounding.
     let centre = b.centre();
     let rounding = f64::ROUNDING * (centre.coords.norm() + b.diagonal());
     let away = surface.distance(&centre.map(N::from_f64)).abs();

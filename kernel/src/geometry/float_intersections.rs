@@ -1,4 +1,4 @@
-//! Geometry of any precision, rounded to f64 values.
+//! Conversion of geometry from any precision to f64.
 
 use super::bivariate_trig_poly::BivariateTrigPoly;
 use super::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
@@ -9,7 +9,7 @@ use super::torus_curve::{TorusCurve, TorusCurveSegment};
 use crate::number::float::Float;
 
 impl<N: Float> Frame<N> {
-    /// The same in f64.
+    /// The frame rounded to f64.
     pub fn to_f64(&self) -> Frame {
         Frame {
             origin: self.origin.map(N::rounded),
@@ -50,7 +50,7 @@ impl<N: Float> Torus<N> {
 }
 
 impl<N: Float> Surface<N> {
-    /// The same in f64.
+    /// The surface rounded to f64.
     pub fn to_f64(&self) -> Surface {
         match self {
             Self::Plane(s) => Surface::Plane(Plane {
@@ -74,7 +74,7 @@ impl<N: Float> BivariateTrigPoly<N> {
 }
 
 impl<N: Float> Curve<N> {
-    /// The same in f64.
+    /// The curve rounded to f64.
     pub fn to_f64(&self) -> Curve {
         match self {
             Self::Line(c) => Curve::Line(Line {

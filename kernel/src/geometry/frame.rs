@@ -8,7 +8,7 @@ use nalgebra::{Point3, Vector3};
 /// A right-handed orthonormal frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<N: Float = f64> {
-    /// Where the frame stands.
+    /// The origin.
     pub origin: Point3<N>,
     /// Its first axis.
     pub x: Vector3<N>,
@@ -29,16 +29,17 @@ impl<N: Float> Frame<N> {
         }
     }
 
-    /// A frame with the unit vector `z` as its third axis, the others chosen.
+    /// A frame with the unit vector `z` as third axis and arbitrary other axes.
     pub fn about(origin: Point3<N>, z: Vector3<N>) -> Self {
         Self::toward(origin, z, perpendicular(&z))
     }
 
-    /// A frame with the unit vector `z` as third axis and `x` as near to `toward` as it can be.
+    /// A frame with the unit vector `z` as third axis and `x` as close to `toward` as possible.
     pub fn toward(origin: Point3<N>, z: Vector3<N>, toward: Vector3<N>) -> Self {
         let across = toward - z * z.dot(&toward);
         let x = across.unit();
-        // Once more: the first step loses digits where `toward` is nearly along z.
+        // A second orthogonalisation: the first loses digits where `toward` is nearly parallel to
+        // z.
         let x = (x - z * z.dot(&x)).unit();
         Self {
             origin,
@@ -88,13 +89,13 @@ impl<N: Float> Frame<N> {
         self.x * c.x + self.y * c.y + self.z * c.z
     }
 
-    /// The same frame standing at `origin`.
+    /// The same axes with the origin at `origin`.
     pub fn at(&self, origin: Point3<N>) -> Self {
         Self { origin, ..*self }
     }
 }
 
-/// A unit vector perpendicular to `v`, which is not zero.
+/// A unit vector perpendicular to `v`, which must not be zero.
 pub fn perpendicular<N: Float>(v: &Vector3<N>) -> Vector3<N> {
     let a = v.map(N::abs);
     let axis = if a.x <= a.y && a.x <= a.z {

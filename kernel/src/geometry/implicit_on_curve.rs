@@ -1,8 +1,8 @@
-//! How far above a surface a line or a circle runs, as the few coefficients of a polynomial.
+//! A surface's implicit polynomial restricted to a line or a circle, by its few coefficients.
 //!
-//! What is nearly constant along it, a line nearly on a ruling or a circle about nearly the same
-//! axis as the surface, is distinguished from these over long intervals; in coordinates it cancels, and only
-//! very short ones tell.
+//! The polynomial is nearly constant along a line close to a ruling, and along a circle about
+//! nearly the axis of the surface. Its coefficients separate such a curve from the surface over
+//! long intervals. In coordinates the terms cancel, and only very short intervals are conclusive.
 
 use super::curve::{Circle, Curve, Line};
 use super::surface::Surface;
@@ -12,19 +12,20 @@ use crate::number::analytic::Analytic;
 use crate::number::float::Float;
 use crate::number::interval::Interval;
 
-/// The restriction of a surface's polynomial to a curve: the level times what [`conjugate`] gives.
+/// The restriction of a surface's implicit polynomial to a curve. Its value is the level times the
+/// factor that [`conjugate`] gives.
 #[derive(Debug)]
 pub(super) enum ImplicitOnCurve<N: Float> {
-    /// Restriction a circle, by its angle.
+    /// For a circle, a trigonometric polynomial of its angle.
     Circle {
         coefficients: Trig2<N>,
-        /// How far rounding takes it off.
+        /// A bound of the rounding error.
         slop: N,
     },
-    /// Restriction a line, by the powers of its parameter.
+    /// For a line, the coefficients by the powers of its parameter.
     Line {
         powers: Quartic<N>,
-        /// How far the line's origin is from the surface's.
+        /// The distance of the line's origin from the surface's.
         away: N,
     },
 }
@@ -32,13 +33,13 @@ pub(super) enum ImplicitOnCurve<N: Float> {
 /// The coefficients of a polynomial, the constant first.
 type Quartic<N> = [N; 5];
 
-/// As many points as coefficients.
+/// The number of sample points: that of the coefficients.
 const POINTS: u32 = 5;
-/// The roundings of a coefficient.
+/// The number of roundings in a coefficient.
 const ROUNDINGS: f64 = 64.0;
 
 impl<N: Float> ImplicitOnCurve<N> {
-    /// None of curves that are neither, and where f64 values do as well without.
+    /// `None` for other curves, and for f64 where the restriction gives no advantage.
     pub(super) fn new(curve: &Curve<N>, surface: &Surface<N>) -> Option<Self> {
         match (curve, surface) {
             (Curve::Circle(circle), Surface::Torus(_)) => Some(Self::circle(circle, surface)),
@@ -49,7 +50,7 @@ impl<N: Float> ImplicitOnCurve<N> {
         }
     }
 
-    /// Of a circle.
+    /// The restriction to a circle.
     pub(super) fn circle(circle: &Circle<N>, surface: &Surface<N>) -> Self {
         let mut coefficients = [N::ZERO; 5];
         let mut most = N::ZERO;
@@ -109,8 +110,8 @@ impl<N: Float> ImplicitOnCurve<N> {
         }
     }
 
-    /// A range of the surface's level over a range of the parameter, in which the curve runs through
-    /// a box.
+    /// A range of the surface's level over an interval of the parameter; `place` is a box that
+    /// contains the curve there.
     pub(super) fn level(
         &self,
         t: Interval<N>,
@@ -140,7 +141,7 @@ fn square<N: Float>([a, b, c]: [N; 3]) -> Quartic<N> {
     ]
 }
 
-/// The range of a polynomial, about the middle.
+/// The range of a polynomial over an interval, by expansion about the midpoint.
 fn over<N: Float>(powers: &Quartic<N>, t: Interval<N>) -> Interval<N> {
     let middle = t.mid();
     let mut about = *powers;
@@ -154,8 +155,8 @@ fn over<N: Float>(powers: &Quartic<N>, t: Interval<N>) -> Interval<N> {
     about.iter().rev().fold(Interval::point(N::ZERO), term)
 }
 
-/// What the terms of a surface's polynomial come to so far from its origin, that its value is
-/// rounded by.
+/// The size of the terms of a surface's polynomial at the distance `away` from its origin, to which
+/// the rounding error is proportional.
 fn size<N: Float>(surface: &Surface<N>, away: N) -> N {
     let (lengths, degree) = match surface {
         Surface::Plane(_) => (away, 1),
@@ -167,7 +168,7 @@ fn size<N: Float>(surface: &Surface<N>, away: N) -> N {
     lengths.powi(degree)
 }
 
-/// What the polynomial is of the level, over a box in the surface's frame.
+/// The ratio of the polynomial to the level, over a box in the surface's frame.
 fn conjugate<N: Float>(surface: &Surface<N>, [x, y, z]: [Interval<N>; 3]) -> Interval<N> {
     let across = (x.square() + y.square()).root();
     match surface {
@@ -222,15 +223,19 @@ mod tests {
         for k in 0..60 {
             let t = Interval::around(0.1 * f64::from(k), 1e-3);
             let place = curve.box_over(t).unwrap();
-            let told = own.level(t, surface, place);
+            let level_range = own.level(t, surface, place);
             let p = curve.point(t.mid());
             let level = surface.level([p.x, p.y, p.z]);
-            assert!(told.lo <= level && level <= told.hi, "{told:?} {level}");
-            // Farther off a cone's other nappe may be near, where the polynomial tells little.
+            assert!(
+                level_range.lo <= level && level <= level_range.hi,
+                "{level_range:?} {level}"
+            );
+            // Farther away the other nappe of a cone may be close, where the polynomial is
+            // inconclusive.
             let is_far = level.abs() > 0.5;
             assert!(
-                told.width() < 0.02 || is_far,
-                "{told:?} {level} {surface:?}"
+                level_range.width() < 0.02 || is_far,
+                "{level_range:?} {level} {surface:?}"
             );
         }
     }
@@ -250,8 +255,11 @@ mod tests {
         for off in [-1e-9, 1e-9] {
             let line = line(off);
             let place = Curve::Line(line).box_over(far).unwrap();
-            let told = ImplicitOnCurve::line(&line, &cone).level(far, &cone, place);
-            assert!(told.lo * off < 0.0 && told.hi * off < 0.0, "{told:?}");
+            let level_range = ImplicitOnCurve::line(&line, &cone).level(far, &cone, place);
+            assert!(
+                level_range.lo * off < 0.0 && level_range.hi * off < 0.0,
+                "{level_range:?}"
+            );
         }
     }
 
@@ -270,13 +278,14 @@ mod tests {
         };
         let whole = Interval::new(0.0, 6.3);
         let place = Curve::Circle(circle).box_over(whole).unwrap();
-        // Its box holds the axis, where nothing is told; a quarter's does not.
+        // The box of the full circle contains the axis, where the range is infinite; that of a
+        // quarter does not.
         let quarter = Interval::new(0.1, 1.5);
         let near = Curve::Circle(circle).box_over(quarter).unwrap();
-        let told = ImplicitOnCurve::circle(&circle, &torus).level(quarter, &torus, near);
+        let level_range = ImplicitOnCurve::circle(&circle, &torus).level(quarter, &torus, near);
         assert!(
-            told.lo > 0.5 * gap * gap && told.hi < 4.0 * gap * gap,
-            "{told:?}"
+            level_range.lo > 0.5 * gap * gap && level_range.hi < 4.0 * gap * gap,
+            "{level_range:?}"
         );
         assert!(
             ImplicitOnCurve::circle(&circle, &torus)

@@ -1,4 +1,4 @@
-//! How curves and surfaces are written as JSON: a type and exact parameters.
+//! Curves and surfaces as JSON: a type and exact parameters.
 
 use super::curve::Curve;
 use super::frame::Frame;
@@ -54,8 +54,7 @@ fn with(mut v: Value, more: &[(&str, f64)]) -> Value {
     v
 }
 
-/// The JSON of a curve: its type, its parameters; the point is given in the documentation of
-/// [`Curve`].
+/// The JSON of a curve: its type and its parameters. [`Curve`] documents the point at a parameter.
 pub fn value(curve: &Curve) -> Value {
     match curve {
         Curve::Line(c) => {

@@ -1,4 +1,4 @@
-//! Surfaces and curves: what hangs on the entities of a boundary.
+//! Surfaces and curves: the geometry attached to the entities of a boundary.
 
 pub mod bivariate_trig_poly;
 pub mod blow_up;

@@ -1,12 +1,12 @@
-//! The curve in which two quadrics meet, by its parameterisation over the rulings of one of them.
+//! The intersection curve of two quadrics, parameterised over the rulings of one of them.
 //!
-//! Notation: a cylinder is r(u) + w z, a cone's nappe (1/w) d(u) from its apex, u the angle. The
-//! other quadric, along a ruling, is k w^2 + 2 B(u) w + C(u) = 0 with constant k, B of degree one
-//! and C of degree two in (cos u, sin u). Hence w = (-B ± √Δ)/k with Δ = B^2 - k C; the real roots
-//! of Δ are where a ruling touches the other quadric, and a double root is a point where the curve
-//! crosses itself. The parameter t is such that √Δ is analytic in it: over an arc between two
-//! simple roots u = mid - half cos t, and √Δ changes sign with sin t; a double root is passed with
-//! a change of sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
+//! Notation: a ruling of a cylinder is r(u) + w z, one of a cone's nappe (1/w) d(u) from its apex,
+//! with u the angle. Along a ruling the other quadric is k w^2 + 2 B(u) w + C(u) = 0, with constant
+//! k, B of degree one and C of degree two in (cos u, sin u). Hence w = (-B ± √Δ)/k with Δ = B^2 - k
+//! C. At a simple real root of Δ a ruling is tangent to the other quadric; at a double root the
+//! curve crosses itself. The parameter t is chosen so that √Δ is analytic in it. Over an arc
+//! between two simple roots u = mid - half cos t, and √Δ changes sign with sin t. At a double root
+//! √Δ changes sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
 
 use super::surface::{Cone, Cylinder};
 use super::trigonometric::{Trig1, Trig2, trig1};
@@ -22,19 +22,19 @@ pub enum Ruled<N: Float = f64> {
     Cone(Cone<N>),
 }
 
-/// How the angle u runs with the parameter t.
+/// The angle u as a function of the parameter t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sweep<N: Float = f64> {
-    /// u = t, closed after so many turns.
+    /// u = t, closed after the given number of turns.
     Round {
-        /// 1, or 2 where the curve closes after going round twice.
+        /// 1, or 2 if the curve closes after two turns.
         turns: u8,
     },
-    /// u = mid - half cos t: there on one branch, back on the other.
+    /// u = mid - half cos t: forward on one branch, back on the other.
     Oval {
-        /// The middle of the arc of angles.
+        /// The middle of the interval of angles.
         mid: N,
-        /// Half the arc.
+        /// Half the length of the interval.
         half: N,
     },
 }
@@ -46,11 +46,11 @@ pub struct Along<N: Float = f64> {
     pub lead: N,
     /// B.
     pub linear: Trig1<N>,
-    /// C, where k is so small next to B that -B and ±√Δ may cancel.
+    /// C, if k is so small relative to B that -B and ±√Δ may cancel.
     pub constant: Option<Trig2<N>>,
 }
 
-/// The part of B^2 that k C is no more than where digits would be lost.
+/// The ratio of |k C| to B^2 below which digits would be lost.
 const CANCELLING: f64 = 1.0 / 256.0;
 
 impl<N: Float> Along<N> {
@@ -65,7 +65,7 @@ impl<N: Float> Along<N> {
         }
     }
 
-    /// Δ, where its coefficients are known to be the given ones.
+    /// Δ; `whole` are its coefficients.
     fn radicand<S: Analytic<Float = N>>(&self, whole: &Trig2<N>, u: S, at: (S, S)) -> S {
         match &self.constant {
             Some(constant) => {
@@ -75,7 +75,8 @@ impl<N: Float> Along<N> {
         }
     }
 
-    /// (-B + r)/k for a square root r of Δ, as (numerator, denominator): C/(-B - r) is the same.
+    /// (-B + r)/k for a square root r of Δ, as (numerator, denominator). C/(-B - r) is equal and
+    /// may be used instead.
     fn quotient<S: Analytic<Float = N>>(&self, root: S, at: (S, S)) -> (S, S) {
         let linear = trig1(&self.linear, at);
         match &self.constant {
@@ -85,7 +86,7 @@ impl<N: Float> Along<N> {
     }
 }
 
-/// The height w over the angle u.
+/// The height w as a function of the angle u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Height<N: Float = f64> {
     /// (-B ± √Δ)/k with Δ positive everywhere.
@@ -97,13 +98,13 @@ pub enum Height<N: Float = f64> {
         /// +1 or -1.
         sign: N,
     },
-    /// (-B + s √q)/k where s vanishes at the ends of the sweep and at `node`.
+    /// (-B + s √q)/k, where s vanishes at the ends of the sweep and at `node`.
     Deflated {
         /// k, B and C.
         along: Along<N>,
         /// q, positive, of degree one.
         rest: Trig1<N>,
-        /// Where the curve crosses itself.
+        /// The angle at which the curve crosses itself.
         node: Option<N>,
         /// +1 or -1.
         sign: N,
@@ -115,7 +116,7 @@ pub enum Height<N: Float = f64> {
         /// C.
         constant: Trig2<N>,
     },
-    /// The same with a common ruling divided out: both in half angles.
+    /// -C/(2 B) with a common ruling divided out of B and C, in half angles.
     Cubic {
         /// B / sin((u-u0)/2): cos(u/2), sin(u/2).
         linear: [N; 2],
@@ -136,7 +137,8 @@ pub struct QuadricCurve<N: Float = f64> {
 }
 
 impl<N: Float> QuadricCurve<N> {
-    /// The parameter's period, where the branch is closed: all but rational ones with a pole.
+    /// The parameter's period, if the branch is closed. All branches are, except rational ones with
+    /// a pole.
     pub fn period(&self) -> Option<N> {
         match (self.height, self.sweep) {
             (Height::Rational { linear, .. }, _) => {
@@ -157,8 +159,8 @@ impl<N: Float> QuadricCurve<N> {
         }
     }
 
-    /// The parameters over an angle, within one period of a closed branch; the end of the sweep that
-    /// is nearest where it does not reach the angle.
+    /// The parameters at an angle, within one period of a closed branch. If the sweep does not
+    /// reach the angle, the closest end of the sweep.
     pub(super) fn parameters_of(&self, u: N) -> Vec<N> {
         match self.sweep {
             Sweep::Round { turns } => (0..turns.max(1))
@@ -172,8 +174,8 @@ impl<N: Float> QuadricCurve<N> {
         }
     }
 
-    /// The parameters at which a curve of one point on each ruling passes the cone's apex: the zeros
-    /// of B, if it has any.
+    /// The parameters at which a curve with one point on each ruling passes through the cone's
+    /// apex: the zeros of B.
     pub(super) fn apex_parameters(&self) -> Vec<N> {
         match (self.base, self.height) {
             (Ruled::Cone(_), Height::Rational { linear, .. }) => {
@@ -191,7 +193,7 @@ impl<N: Float> QuadricCurve<N> {
         }
     }
 
-    /// Whether the curve turns back at t, at the apex: where B has a double zero.
+    /// Whether the curve has a cusp at t: at the apex, where B has a double zero.
     pub(super) fn turns_back(&self, t: N) -> bool {
         let zeros = self.apex_parameters();
         let near = |u: &N| {
@@ -201,7 +203,7 @@ impl<N: Float> QuadricCurve<N> {
         !zeros.is_empty() && zeros.iter().all(near)
     }
 
-    /// The height as a quotient: (numerator, denominator) of w.
+    /// The height w as (numerator, denominator).
     fn quotient<S: Analytic<Float = N>>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
         match &self.height {
             Height::Whole {
@@ -242,7 +244,7 @@ impl<N: Float> QuadricCurve<N> {
         }
     }
 
-    /// The height w at t (for a cone, one over the height above the apex).
+    /// The height w at t. For a cone it is the reciprocal of the height above the apex.
     pub fn height_at<S: Analytic<Float = N>>(&self, t: S) -> S {
         let u = self.angle(t);
         let (n, d) = self.quotient(t, u, u.sin_cos());
@@ -268,7 +270,7 @@ impl<N: Float> QuadricCurve<N> {
     }
 }
 
-/// Zeros within this part of a radian are one double zero.
+/// Zeros closer than this, in radians, are one double zero.
 const DOUBLE: f64 = 1.0 / (1 << 20) as f64;
 
 /// √(sin((u-u0)/2) sin((u1-u)/2)) for u = mid - half cos t, analytic, with the sign of sin t.

@@ -1,8 +1,8 @@
-//! The sense of a curve or a face against the direction that its geometry gives.
+//! The sense of a curve or a face relative to the direction of its geometry.
 
 use crate::number::float::Float;
 
-/// Along or against the direction that geometry gives.
+/// Along or against the direction of the geometry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Sense {
     /// The same direction.

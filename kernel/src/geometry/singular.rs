@@ -1,7 +1,8 @@
 //! The singular points of F(θ, φ) = 0 on the parameter torus, by kind.
 //!
-//! Where F and its gradient vanish within the resolution, the Hessian tells: indefinite, two branches
-//! cross; definite, the point stands alone. Where it is degenerate, the `leading` terms tell.
+//! At a singular point F and its gradient vanish within the resolution. If the Hessian is
+//! indefinite, two branches cross there; if it is definite, the point is isolated. If it is
+//! degenerate, `leading_form` classifies the point.
 
 mod leading_form;
 
@@ -12,10 +13,10 @@ use super::trace::{Tracer, Unresolved, deepest, near};
 use crate::number::float::Float;
 use crate::number::predicates::CLOSE;
 
-/// A branch through a singular point.
+/// The tangent of a branch at a singular point.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BranchTangent<N: Float = f64> {
-    /// The coordinates in which it is smooth.
+    /// The coordinates in which the branch is smooth.
     pub chart: Chart<N>,
     /// κ at the point.
     pub kappa: N,
@@ -26,32 +27,32 @@ pub(super) struct BranchTangent<N: Float = f64> {
 pub(super) struct SingularPoint<N: Float = f64> {
     /// (θ, φ).
     pub angles: [N; 2],
-    /// The branches through it; none where it stands alone.
+    /// The branches through it; none if it is isolated.
     pub passes: Vec<BranchTangent<N>>,
-    /// How far from it the curve is known to be no more than these branches.
+    /// The distance within which the curve is known to consist of these branches only.
     pub zone: N,
 }
 
-/// The critical points of F at which F is small.
+/// The critical points of F at which |F| is small.
 #[derive(Debug, Default)]
 pub(super) struct Critical<N: Float = f64> {
-    /// Those at which F is within the resolution, in the order of their angles.
+    /// Those with F within the resolution, ordered by their angles.
     pub singular: Vec<SingularPoint<N>>,
-    /// The angles of these and of those at which it is nearly so.
+    /// The angles of these and of the near misses.
     pub close: Vec<[N; 2]>,
 }
 
-/// The greatest zone.
+/// The largest zone.
 const ZONE: f64 = 0.05;
-/// From this depth of cells on a degenerate point is looked for.
+/// The depth of cells from which on degenerate points are searched for.
 const DEEP: u32 = 10;
 
-/// The critical points of F at which F is within the resolution, or so near to it that it is to be told.
+/// The critical points of F at which F is within the resolution or a near miss.
 pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critical<N>, Unresolved> {
     let reach = N::from_f64(CLOSE) * tracer.resolution;
     let mut misses: Vec<[N; 2]> = Vec::new();
     let mut found: Vec<SingularPoint<N>> = Vec::new();
-    // Degenerate points, with how far from them F is within the resolution.
+    // Degenerate points, each with the distance up to which F is within the resolution.
     let mut degenerate: Vec<(SingularPoint<N>, N)> = Vec::new();
     let mut stack: Vec<(Cell<N>, u32)> = regular_grid().into_iter().map(|c| (c, 0)).collect();
     let rounded_f64 = tracer.to_f64();
@@ -133,8 +134,8 @@ pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critic
     })
 }
 
-/// Whether a degenerate point is looked for at a depth of cells: each search reaches far, and one for
-/// cells of every depth would find the same.
+/// Whether degenerate points are searched for at a depth of cells. One search covers a large
+/// distance, so a search at every depth would find the same points.
 fn is_milestone(depth: u32) -> bool {
     let next = |m: &u32| Some(m + m / 2);
     std::iter::successors(Some(DEEP), next)
@@ -142,15 +143,15 @@ fn is_milestone(depth: u32) -> bool {
         .any(|m| m == depth)
 }
 
-/// What a cell shows of critical points at which F is small.
+/// What the bounds over a cell show about critical points with small |F|.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Look<N: Float = f64> {
-    /// It has none.
+    /// There is none.
     Bare,
-    /// The Hessian is regular over the cell's surroundings: there is one at most.
+    /// The Hessian is regular over the cell's neighbourhood, so there is at most one.
     Regular,
-    /// No more is known than the least |F|, below zero where F may vanish, |F| at the centre, and the
-    /// angle along which F bends more.
+    /// Undecided: the lower bound of |F|, negative where F may vanish; |F| at the centre; and the
+    /// angle along which the second derivative is larger.
     Unclear { least: N, value: N, wide: usize },
 }
 
@@ -185,12 +186,13 @@ impl Look {
     }
 }
 
-/// Whether the Hessian is regular over a cell's surroundings; `at` is what F is at the centre.
+/// Whether the Hessian is regular over a cell's neighbourhood; `at` are the derivatives at the
+/// centre.
 fn is_regular<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>) -> bool {
     let half = cell.half();
     let around = half.map(|h| N::TWO * h);
     let (_, thirds) = (tracer.form).partials_about(cell.centre(), around, &tracer.reaches);
-    // In terms of the cell's sides, so that a long one is as good as a square one.
+    // Scaled by the cell's sides, so that a long cell is treated as a square one.
     let scaled = |xx: N, xy: N, yy: N| {
         let [hx, hy] = half;
         [xx * hx * hx, xy * hx * hy, yy * hy * hy].map(N::abs)
@@ -199,12 +201,12 @@ fn is_regular<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>
     let [hx, hy] = half.map(|h| h * h);
     let det = (at.xx * at.yy - at.xy * at.xy).abs() * hx * hy;
     let [xx, xy, yy] = thirds.seconds(around);
-    // ‖H⁻¹‖ times the change of H over the surroundings stays below one.
+    // The condition that ‖H⁻¹‖ times the change of H over the neighbourhood is below one.
     let change = rows(scaled(xx, xy, yy));
     rows(scaled(at.xx, at.xy, at.yy)) * change < N::from_f64(0.25) * det
 }
 
-/// The one critical point of a cell over whose surroundings the Hessian is regular, if it lies in it.
+/// The only critical point of a cell with a regular Hessian, if it lies in the cell.
 fn only_critical<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>) -> Option<[N; 2]> {
     let [hx, hy] = cell.half();
     let mut p = cell.centre();

@@ -39,7 +39,7 @@ pub struct Cone<N: Float = f64> {
 /// A sphere about its frame's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere<N: Float = f64> {
-    /// Origin at the centre; the axes only serve the parameters.
+    /// Origin at the centre; the axes only define the parameters.
     pub frame: Frame<N>,
     /// The radius.
     pub radius: N,
@@ -87,7 +87,7 @@ pub enum SurfaceKind {
 }
 
 impl SurfaceKind {
-    /// The name used in outputs.
+    /// The name used in output.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plane => "plane",
@@ -122,8 +122,8 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// A smooth function that is zero on the surface, negative inside, with a gradient of length
-    /// one on the surface: the signed distance to first order.
+    /// The implicit function: smooth, zero on the surface, negative inside, with a gradient of
+    /// length one on the surface. It is the signed distance to first order.
     pub fn level<S: Analytic<Float = N>>(&self, p: [S; 3]) -> S {
         match self {
             Self::Plane(s) => {
@@ -158,7 +158,7 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// The value of a polynomial that vanishes on the surface, of a cone on both nappes.
+    /// The implicit polynomial of the surface; for a cone it vanishes on both nappes.
     pub fn polynomial(&self, p: &Point3<N>) -> N {
         let q = self.frame().coordinates(p);
         let across = q.x * q.x + q.y * q.y;
@@ -174,8 +174,8 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// The signed distance of a point, negative inside; exact for all five but behind the apex of
-    /// a cone, where it is a lower bound of the distance with the right sign.
+    /// The signed distance of a point, negative inside. It is exact for all five surfaces except
+    /// behind the apex of a cone, where it is a lower bound of the distance with the right sign.
     pub fn distance(&self, p: &Point3<N>) -> N {
         let q = self.frame().coordinates(p);
         match self {
@@ -187,7 +187,8 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// The outward unit normal at a point of the surface; along the axis at a cone's apex.
+    /// The outward unit normal at a point of the surface; at a cone's apex, the direction of the
+    /// axis.
     pub fn normal(&self, p: &Point3<N>) -> Vector3<N> {
         let f = self.frame();
         let q = f.coordinates(p);
@@ -217,13 +218,15 @@ impl<N: Float> Surface<N> {
         self.second_form(p, t, t)
     }
 
-    /// The second fundamental form at `p` of two tangent vectors, positive where the surface bends
-    /// towards its inside: dN(a)·b, how the outward normal changes along `a`, measured along `b`.
+    /// The second fundamental form dN(a)·b at `p` for two tangent vectors: the change of the
+    /// outward normal along `a`, measured along `b`. It is positive where the surface bends towards
+    /// its inside.
     pub fn second_form(&self, p: &Point3<N>, a: &Vector3<N>, b: &Vector3<N>) -> N {
         let f = self.frame();
         let q = f.coordinates(p);
         let (a, b) = (f.components(a), f.components(b));
-        // The component of a tangent vector along the parallel circle, for a distance from the axis.
+        // The component of a tangent vector along the parallel circle, from its distance to the
+        // axis.
         let along = |t: &Vector3<N>, rho: N| (q.x * t.y - q.y * t.x) / rho;
         match self {
             Self::Plane(_) => N::ZERO,
@@ -242,9 +245,9 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// The parameters of a point on the surface: a plane's (x, y); the angle and the height of a
-    /// cylinder and of a cone (from the apex); longitude and latitude of a sphere; the angle about
-    /// the axis and about the tube of a torus. Angles lie in [0, 2 pi), the latitude in
+    /// The parameters of a point on the surface: (x, y) of a plane; the angle and the height of a
+    /// cylinder and of a cone (above the apex); longitude and latitude of a sphere; the angles
+    /// about the axis and about the tube of a torus. Angles lie in [0, 2 pi), the latitude in
     /// [-pi/2, pi/2].
     pub fn parameters(&self, p: &Point3<N>) -> [N; 2] {
         let q = self.frame().coordinates(p);
@@ -281,7 +284,7 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// The periods of the two parameters, where they have one.
+    /// The periods of the two parameters, where periodic.
     pub fn periods(&self) -> [Option<N>; 2] {
         match self {
             Self::Plane(_) => [None, None],
@@ -300,15 +303,15 @@ impl<N: Float> Surface<N> {
     }
 }
 
-/// How far (x, y) lies outside the circle of radius r about the origin: (x² + y² - r²)/(ρ + r), with
-/// the differences taken so that next to an axis, where planes are tangent, no digits cancel.
+/// The distance of (x, y) outside the circle of radius r about the origin: (x² + y² - r²)/(ρ + r).
+/// The differences are taken so that no digits cancel close to an axis, where planes are tangent.
 fn beyond_circle<N: Float>(x: N, y: N, r: N) -> N {
     let (x, y) = (x.abs(), y.abs());
     let (least, most) = if x < y { (x, y) } else { (y, x) };
     (least * least + (most - r) * (most + r)) / ((x * x + y * y).sqrt() + r)
 }
 
-/// The angle brought into [0, 2 pi).
+/// The angle modulo 2 pi, in [0, 2 pi).
 pub fn turn<N: Float>(angle: N) -> N {
     let a = angle.rem_euclid(N::TAU);
     if a >= N::TAU { N::ZERO } else { a }

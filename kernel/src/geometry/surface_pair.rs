@@ -1,8 +1,8 @@
-//! How two surfaces lie to one another, as distances over the part's extent.
+//! The relative position of two surfaces, as distances over the part's extent.
 //!
-//! A relation is written once, over any [`Enclosable`]: ranges in f64 first, exact coefficients with
-//! more bits where these do not tell. The constructions take the answers and work in f64.
-//! Directions need not have length one.
+//! Each measure is written once, over any [`Enclosable`]. It is evaluated in f64 intervals first,
+//! and from the exact coefficients with more bits where those are inconclusive. The constructions
+//! use the decisions and compute in f64. Directions need not have unit length.
 
 use super::intersect::RegionOfInterest;
 use super::surface::Surface;
@@ -14,23 +14,23 @@ use crate::number::rational::Rational;
 use crate::number::rational_interval::RationalInterval;
 use crate::number::separation_bound::SeparationBound;
 
-/// What defines a surface, over some number type.
+/// The defining coefficients of a surface, over some number type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients<N> {
-    /// A point of the plane or of the cylinder's axis, the apex, the centre.
+    /// A point of the plane or of the cylinder's axis, the apex or the centre.
     pub point: [N; 3],
-    /// The outward normal, or the axis, into the nappe of a cone; of any length. A sphere's is of no
-    /// account.
+    /// The outward normal or the axis, of any length; a cone's points into the nappe. Unused for a
+    /// sphere.
     pub direction: [N; 3],
-    /// The radius; the tangent of a cone's half angle; the radius of a torus's spine. A plane's is
-    /// of no account.
+    /// The radius; for a cone the tangent of the half angle; for a torus the radius of the spine.
+    /// Unused for a plane.
     pub size: N,
-    /// The radius of a torus's tube; of the others of no account.
+    /// The radius of a torus's tube; unused for other surfaces.
     pub tube: N,
 }
 
 impl<N> Coefficients<N> {
-    /// The same over another number type.
+    /// The coefficients converted to another number type.
     pub fn map<M>(&self, f: impl Fn(&N) -> M) -> Coefficients<M> {
         Coefficients {
             point: self.point.each_ref().map(&f),
@@ -41,7 +41,7 @@ impl<N> Coefficients<N> {
     }
 }
 
-/// Where the numbers of a surface come from.
+/// The origin of a surface's numbers.
 #[derive(Clone, Copy)]
 enum Source<'a> {
     /// They are exact.
@@ -52,10 +52,10 @@ enum Source<'a> {
     Constructed,
 }
 
-/// A surface in f64, with the way to its exact coefficients.
+/// A surface in f64, with access to its exact coefficients.
 #[derive(Clone, Copy)]
 pub struct Carrier<'a, N: Float = f64> {
-    /// The surface: its numbers are the exact ones, rounded.
+    /// The surface; its numbers are the exact ones, rounded.
     pub surface: &'a Surface<N>,
     source: Source<'a>,
 }
@@ -77,7 +77,7 @@ impl<'a, N: Float> Carrier<'a, N> {
         }
     }
 
-    /// A surface that a construction computed: how it lies is taken at its word, and not proven.
+    /// A surface computed by a construction. Its position is taken as exact and is not proven.
     pub fn constructed(surface: &'a Surface<N>) -> Self {
         Self {
             surface,
@@ -85,8 +85,8 @@ impl<'a, N: Float> Carrier<'a, N> {
         }
     }
 
-    /// Ranges that hold the exact coefficients: every number of a surface is within a few units in
-    /// the last place of its length.
+    /// Ranges that contain the exact coefficients: each number of a surface is within a few units
+    /// in the last place, relative to its length.
     fn ranges(&self) -> Coefficients<Interval<N>> {
         let near = |x: N, size: N| Interval::around(x, N::from_f64(SLACK) * N::EPSILON * size);
         numbers(
@@ -101,7 +101,7 @@ impl<'a, N: Float> Carrier<'a, N> {
         numbers(self.surface, |x| x, |x| x)
     }
 
-    /// The exact coefficients, to be computed with to so many bits.
+    /// The exact coefficients, for computation to so many bits.
     pub fn computed(&self, bits: usize) -> Coefficients<RationalInterval> {
         self.exact()
             .map(|c| RationalInterval::exact(c.clone(), bits))
@@ -120,11 +120,10 @@ impl<'a, N: Float> Carrier<'a, N> {
     }
 }
 
-/// How far a surface's numbers may lie from the exact ones, in units of the last place of what they
-/// measure.
+/// The bound of the error of a surface's numbers, in units in the last place of what they measure.
 const SLACK: f64 = 8.0;
 
-/// The coefficients of a surface: `of` takes lengths, `along` the components of directions.
+/// The coefficients of a surface: `of` converts lengths, `along` the components of directions.
 fn numbers<N: Float, M>(
     surface: &Surface<N>,
     of: impl Fn(N) -> M,
@@ -146,73 +145,76 @@ fn numbers<N: Float, M>(
     }
 }
 
-/// What can be asked of two surfaces, each a distance. Angles are measured by how far they take two
-/// directions apart over the extent's radius.
+/// A measure of two surfaces, always a distance. Angles are measured by the separation that they
+/// cause at the extent's radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairMeasure {
-    /// How far two surfaces of one kind are apart over the extent: where it is zero they are one.
+    /// The separation of two surfaces of one kind over the extent; they are identical where it is
+    /// zero.
     Apart,
-    /// How far two directions drift apart.
+    /// The angle between two directions.
     Drift,
-    /// How far a normal or an axis is from square to the other.
+    /// The deviation from a right angle between two normals or axes.
     Lean,
-    /// Between the points: centres, apexes.
+    /// The distance between the points: centres or apexes.
     Between,
-    /// How far the second's point lies above the first, a plane.
+    /// The height of the second's point above the first, a plane.
     Height,
-    /// How far the second's point lies from the axis of the first.
+    /// The distance of the second's point from the axis of the first.
     OffAxis,
-    /// Between two parallel axes, at the extent's centre.
+    /// The distance between two parallel axes at the extent's centre.
     BetweenAxes,
-    /// How far two axes are apart next to the extent's centre, whatever they lean.
+    /// The distance between two axes close to the extent's centre, for any angle between them.
     OffLine,
     /// The difference of the radii of two tubes.
     Tubes,
     /// The difference of the second's size and the radius of the first's tube.
     SizeOfTube,
-    /// How far the outer (`true`) or the inner rim of a torus, the second, is from the size of the
-    /// first's tube.
+    /// The distance of the outer (`true`) or the inner rim of a torus, the second, from the size of
+    /// the first's tube.
     RimOfTube(bool),
-    /// How far the second's point lies from the spine of a torus, the first.
+    /// The distance of the second's point from the spine of a torus, the first.
     OffSpine,
-    /// How far the second's axis is from running along the spine of a torus, the first, on which its
-    /// point lies.
+    /// The angle between the second's axis and the spine of a torus, the first, on which the
+    /// second's point lies.
     AcrossSpine,
-    /// How far a plane is from touching a sphere: negative where it cuts it.
+    /// The gap between a plane and a sphere; negative where they intersect.
     PlaneOnSphere,
-    /// How far a plane along a cylinder is from touching it.
+    /// The gap between a cylinder and a plane parallel to its axis.
     PlaneOnCylinder,
-    /// How far a plane across a cylinder tilts the circle in which it cuts it.
+    /// The tilt of the circle in which a plane cuts a cylinder across.
     PlaneAcrossCylinder,
-    /// How far a plane through a cone's apex is from touching it along a ruling.
+    /// The angle by which a plane through a cone's apex misses tangency along a ruling.
     PlaneOnRuling,
-    /// How far the nearer (`false`) or the farther ruling of a cone is from running along a plane.
+    /// The angle between a plane and the nearer (`false`) or the farther ruling of a cone.
     PlaneAlongRuling(bool),
     /// Two spheres: the gap between them.
     AdjacentSpheres,
-    /// Two spheres: the gap by which one holds the other.
+    /// Two spheres: the gap by which one contains the other.
     SphereInSphere,
     /// Two parallel cylinders: the gap between them.
     AdjacentCylinders,
-    /// Two parallel cylinders: the gap by which one holds the other.
+    /// Two parallel cylinders: the gap by which one contains the other.
     CylinderInCylinder,
-    /// How far the second's point lies from the first, a cylinder, a sphere or a cone with both
+    /// The distance of the second's point from the first: a cylinder, a sphere or a cone with both
     /// nappes.
     PointOnQuadric,
-    /// How far a plane's normal, or an axis, takes the rim of a torus, the first, off its plane.
+    /// The tilt of a plane's normal or an axis against a torus, the first, at its rim.
     Tilt,
-    /// How far a plane is from holding the axis of a torus, the first, at its rim.
+    /// The angle between a plane and the axis of a torus, the first, at its rim.
     Upright,
-    /// How far a plane through the centre of a torus, the first, is from touching it twice.
+    /// The gap by which a plane through the centre of a torus, the first, misses tangency at two
+    /// points.
     PlaneOnBothSides,
-    /// How far the profile of what is coaxial to a torus, the first, is from touching its tube: the
-    /// line of a plane, of a cylinder and of a cone.
+    /// The gap between the tube of a torus, the first, and the profile of a coaxial surface: the
+    /// line of a plane, a cylinder or a cone.
     LineOnTube,
-    /// Between the centres of the tube and of the coaxial sphere or the other tube, in the profile.
+    /// The distance between the centres of the tube and of the coaxial sphere or the other tube, in
+    /// the profile.
     BetweenTubes,
     /// The gap between the tube and the coaxial sphere or the other tube.
     NextToTube,
-    /// The gap by which one of them holds the other.
+    /// The gap by which one of them contains the other.
     InTube,
 }
 
@@ -233,7 +235,7 @@ fn norm<R: Enclosable>(a: &[R; 3]) -> R {
     dot(a, a).sqrt()
 }
 
-/// Two coefficients and the extent.
+/// The coefficients of both surfaces, and the extent.
 struct Over<R> {
     a: Coefficients<R>,
     b: Coefficients<R>,
@@ -254,7 +256,7 @@ impl<R: Enclosable> Over<R> {
         dot(a, b).over(norm(a) * norm(b))
     }
 
-    /// From the first's point to the second's.
+    /// The vector from the first's point to the second's.
     fn away(&self) -> [R; 3] {
         minus(&self.b.point, &self.a.point)
     }
@@ -264,12 +266,12 @@ impl<R: Enclosable> Over<R> {
         dot(v, &self.a.direction).over(norm(&self.a.direction))
     }
 
-    /// The length of a vector across the first's direction.
+    /// The length of a vector's component perpendicular to the first's direction.
     fn across(&self, v: &[R; 3]) -> R {
         norm(&cross(v, &self.a.direction)).over(norm(&self.a.direction))
     }
 
-    /// The point of the second's axis at the height of the extent's centre over it.
+    /// The point of the second's axis at the height of the extent's centre.
     fn foot(&self) -> [R; 3] {
         let d = &self.b.direction;
         let up = dot(&minus(&self.centre, &self.b.point), d).over(dot(d, d));
@@ -302,12 +304,12 @@ impl<R: Enclosable> Over<R> {
         (tangent.clone() * cos.clone(), cos)
     }
 
-    /// The gap between two circles, the distance of their centres given.
-    fn beside(between: R, [r, s]: [R; 2]) -> R {
+    /// The gap between two circles outside one another; `between` is the distance of their centres.
+    fn outer_gap(between: R, [r, s]: [R; 2]) -> R {
         between - (r + s)
     }
 
-    /// The gap by which one of two circles holds the other.
+    /// The gap by which one of two circles contains the other.
     fn within(between: R, [r, s]: [R; 2]) -> R {
         (r - s).abs() - between
     }
@@ -316,7 +318,7 @@ impl<R: Enclosable> Over<R> {
         [self.a.size.clone(), self.b.size.clone()]
     }
 
-    /// The radius of the torus, the first, with its tube.
+    /// The outer radius of the torus, the first: spine plus tube.
     fn rim(&self) -> R {
         self.a.size.clone() + self.a.tube.clone()
     }
@@ -330,7 +332,7 @@ impl<R: Enclosable> Over<R> {
         [self.a.tube.clone(), radius.clone()]
     }
 
-    /// Between the centres of the tube and of the other circle in the profile.
+    /// The distance between the centres of the tube and of the other circle in the profile.
     fn between_tubes<N: Float>(&self, other: &Surface<N>) -> R {
         let out = match other {
             Surface::Torus(_) => self.a.size.clone() - self.b.size.clone(),
@@ -354,7 +356,7 @@ impl<R: Enclosable> Over<R> {
         off.abs() - self.a.tube.clone()
     }
 
-    /// Two surfaces of the same kind.
+    /// The separation of two surfaces of the same kind.
     fn apart<N: Float>(&self, kind: &Surface<N>) -> R {
         let between = norm(&self.away());
         let drift = self.sine() * self.radius.clone();
@@ -384,8 +386,8 @@ impl<R: Enclosable> Over<R> {
         dot(&minus(&foot, &self.b.point), &self.b.direction).over(norm(&self.b.direction))
     }
 
-    /// The distance of two axes at the extent's centre, less what the way from there lets them
-    /// drift.
+    /// The distance of two axes at the extent's centre, less the separation that their angle allows
+    /// over the distance from there.
     fn off_line(&self) -> R {
         let away = self.away();
         let to_centre = minus(&self.centre, &self.a.point);
@@ -446,9 +448,9 @@ impl<R: Enclosable> Over<R> {
             PairMeasure::PlaneAcrossCylinder => self.sine() * b.size.clone(),
             PairMeasure::PlaneOnRuling => self.plane_on_ruling(),
             PairMeasure::PlaneAlongRuling(far) => self.plane_along_ruling(far),
-            PairMeasure::AdjacentSpheres => Self::beside(norm(&self.away()), self.sizes()),
+            PairMeasure::AdjacentSpheres => Self::outer_gap(norm(&self.away()), self.sizes()),
             PairMeasure::SphereInSphere => Self::within(norm(&self.away()), self.sizes()),
-            PairMeasure::AdjacentCylinders => Self::beside(self.between_axes(), self.sizes()),
+            PairMeasure::AdjacentCylinders => Self::outer_gap(self.between_axes(), self.sizes()),
             PairMeasure::CylinderInCylinder => Self::within(self.between_axes(), self.sizes()),
             PairMeasure::PointOnQuadric => self.point_on_quadric(first),
             PairMeasure::Tilt => self.sine() * self.rim(),
@@ -457,14 +459,14 @@ impl<R: Enclosable> Over<R> {
             PairMeasure::LineOnTube => self.line_on_tube(second),
             PairMeasure::BetweenTubes => self.between_tubes(second),
             PairMeasure::NextToTube => {
-                Self::beside(self.between_tubes(second), self.profile(second))
+                Self::outer_gap(self.between_tubes(second), self.profile(second))
             }
             PairMeasure::InTube => Self::within(self.between_tubes(second), self.profile(second)),
         }
     }
 }
 
-/// Two carriers over the part's extent.
+/// Two carriers and the part's extent.
 #[derive(Clone, Copy)]
 pub struct SurfacePair<'a, N: Float = f64> {
     /// The first.
@@ -476,12 +478,12 @@ pub struct SurfacePair<'a, N: Float = f64> {
 }
 
 impl<'a, N: Float> SurfacePair<'a, N> {
-    /// Two carriers in the order in which relations name them.
+    /// Two carriers in the order in which the measures name them.
     pub fn new(a: Carrier<'a, N>, b: Carrier<'a, N>, extent: &'a RegionOfInterest<N>) -> Self {
         Self { a, b, extent }
     }
 
-    /// The two the other way round.
+    /// The pair with its surfaces swapped.
     pub fn turned(&self) -> Self {
         Self {
             a: self.b,
@@ -490,7 +492,7 @@ impl<'a, N: Float> SurfacePair<'a, N> {
         }
     }
 
-    /// How the two lie to one another, in f64: enough to see that something is out of question.
+    /// The measure in f64. It is accurate enough to exclude what is far from any decision.
     pub fn estimate(&self, relation: PairMeasure) -> N {
         let [a, b] = [&self.a, &self.b].map(|c| c.numbers());
         How {
@@ -500,7 +502,7 @@ impl<'a, N: Float> SurfacePair<'a, N> {
         .over(a, b, |x| x)
     }
 
-    /// How the two lie to one another.
+    /// The measure, certified.
     pub fn how(&self, relation: PairMeasure) -> impl CertifiedDistance + use<'a, N> {
         How {
             pair: *self,
@@ -509,7 +511,7 @@ impl<'a, N: Float> SurfacePair<'a, N> {
     }
 }
 
-/// A relation of a pair, to be measured.
+/// A measure of a pair, evaluated on demand.
 struct How<'a, N: Float> {
     pair: SurfacePair<'a, N>,
     relation: PairMeasure,

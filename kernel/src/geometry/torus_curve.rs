@@ -1,9 +1,10 @@
-//! Curves on a torus, through its two angles: where another surface meets it, and its limb.
+//! Curves on a torus, in terms of its two angles: its intersection with another surface, and its
+//! limb.
 //!
-//! Notation: θ is the angle about the axis, φ about the tube; the curve is F(θ, φ) = 0 with F a
-//! [`BivariateTrigPoly`]. It is kept as a chain of segments, each a graph of one angle over the other inside a
-//! rectangle where the slope is bounded, so that every point is one well-conditioned root. Next to
-//! a singular point the graph is that of κ over σ in a [`Chart`].
+//! Notation: θ is the angle about the axis, φ that about the tube. The curve is F(θ, φ) = 0, with F
+//! a [`BivariateTrigPoly`]. It is stored as a chain of segments. Each is a graph of one angle over
+//! the other, inside a rectangle in which the slope is bounded, so that every point is one
+//! well-conditioned root. Close to a singular point the graph is that of κ over σ in a [`Chart`].
 
 mod across;
 
@@ -17,7 +18,7 @@ use crate::number::interval::Interval;
 use crate::number::jet::{Jet, JetScalar};
 use nalgebra::Point3;
 
-/// The angle that a segment runs along.
+/// The angle that a segment is parameterised by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TorusParameter {
     /// θ, about the axis.
@@ -29,7 +30,7 @@ pub enum TorusParameter {
 /// A graph of one angle over the other, or of κ over σ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorusCurveSegment<N: Float = f64> {
-    /// The angle that runs, or whose offset is a power of σ.
+    /// The running angle, or the angle whose offset is a power of σ.
     pub axis: TorusParameter,
     /// Where it starts.
     pub from: N,
@@ -41,20 +42,21 @@ pub struct TorusCurveSegment<N: Float = f64> {
     pub slopes: [N; 2],
     /// A bound of that derivative's absolute value.
     pub steep: N,
-    /// The range of the other angle in which the graph is the only one.
+    /// The range of the other angle in which no other part of the curve lies.
     pub bracket: [N; 2],
-    /// The chart of the segment's coordinates, an index into the curve's; else they are angles.
+    /// The index, into the curve's charts, of the chart of the segment's coordinates; `None` if
+    /// these are angles.
     pub chart: Option<usize>,
 }
 
-/// A branch of F(θ, φ) = 0 on a torus; the parameter runs over one unit for each segment.
+/// A branch of F(θ, φ) = 0 on a torus. Its parameter advances by one for each segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TorusCurve<N: Float = f64> {
     /// The torus.
     pub torus: Torus<N>,
     /// F.
     pub form: BivariateTrigPoly<N>,
-    /// F about its singular points, for each branch.
+    /// F about the singular points, for each branch.
     pub charts: Vec<Chart<N>>,
     /// The chain.
     pub segments: Vec<TorusCurveSegment<N>>,
@@ -62,7 +64,7 @@ pub struct TorusCurve<N: Float = f64> {
     pub closed: bool,
 }
 
-/// What a segment is solved by: F in its coordinates.
+/// F in the coordinates of a segment.
 #[derive(Clone, Copy)]
 enum Form<'a, N: Float = f64> {
     Angles(&'a BivariateTrigPoly<N>, TorusParameter),
@@ -75,11 +77,11 @@ enum Fixed<N: Float = f64> {
     Chart([N; DEGREE + 1]),
 }
 
-/// So many steps in f64 come to their rounding.
+/// The number of f64 steps after which only rounding remains.
 const BEGUN: u32 = 6;
 
 impl<N: Float> Fixed<N> {
-    /// The sum of the absolute coefficients: what rounding is in proportion to.
+    /// The sum of the absolute coefficients, to which rounding is proportional.
     fn size(&self) -> N {
         match self {
             Self::Angle(section) => section.size(),
@@ -87,7 +89,7 @@ impl<N: Float> Fixed<N> {
         }
     }
 
-    /// The first digits of a root, by Newton's steps in f64, where there are more.
+    /// An approximate root by Newton steps in f64, for extended precision.
     fn begun(&self, start: N) -> N {
         if N::IS_DOUBLE {
             return start;
@@ -141,7 +143,7 @@ impl<N: Float> Form<'_, N> {
     }
 }
 
-/// The partial derivatives with the running angle as the first.
+/// The partial derivatives, with the running angle as the first.
 fn run_along<S>(axis: TorusParameter, x: S, y: S, at: impl Fn(S, S) -> Partials<S>) -> Partials<S> {
     match axis {
         TorusParameter::Around => at(x, y),
@@ -159,7 +161,7 @@ fn run_along<S>(axis: TorusParameter, x: S, y: S, at: impl Fn(S, S) -> Partials<
 }
 
 impl<N: Float> TorusCurveSegment<N> {
-    /// The cubic through both ends with their slopes.
+    /// The cubic Hermite interpolant of both ends and slopes.
     fn hermite(&self, x: N) -> N {
         let length = self.to - self.from;
         let [y0, y1] = self.ends;
@@ -175,14 +177,15 @@ impl<N: Float> TorusCurveSegment<N> {
             - m1 * a * b * b
     }
 
-    /// Whether its ends are no farther apart than the bound of its slope allows, but for rounding.
+    /// Whether the ends are no farther from each other than the bound of the slope allows, except
+    /// for rounding.
     pub fn keeps_its_slope(&self) -> bool {
         let rise = (self.ends[1] - self.ends[0]).abs();
         let run = (self.to - self.from).abs();
         rise <= N::TWO * self.steep * run + N::TAU * N::ROUNDING
     }
 
-    /// The same graph, run the other way.
+    /// The same graph in the opposite direction.
     pub fn reversed(&self) -> Self {
         let flip = |[a, b]: [N; 2]| [b, a];
         Self {
@@ -194,7 +197,7 @@ impl<N: Float> TorusCurveSegment<N> {
         }
     }
 
-    /// The other angle over x.
+    /// The other angle at x.
     fn solve(&self, form: Form<'_, N>, x: N) -> N {
         let start = self.hermite(x);
         let [lo, hi] = self.bracket;
@@ -212,16 +215,16 @@ impl<N: Float> TorusCurveSegment<N> {
             let [value, slope] = section.at(y);
             let step = value / slope;
             let short = step.abs() <= N::TWO * N::EPSILON * (N::ONE + y.abs());
-            // A graph that leaves its cell by a side ends on it, or beyond it by rounding.
+            // A graph that leaves its cell through a side ends on the side, or beyond it by
+            // rounding.
             let next = (y - step).max(lo).min(hi);
             if !step.is_finite() || (next == y && !short) {
                 break;
             }
             y = next;
-            // Next to a singular point only rounding is left of the value, and steps no longer
-            // get shorter.
+            // Close to a singular point the value is all rounding, and the steps no longer shrink.
             let noise = value.abs() <= rounding && step.abs() >= N::HALF * last;
-            // Elsewhere each is in proportion to the square of the one before.
+            // Elsewhere convergence is quadratic.
             let ahead = step.abs() * (step / last).square();
             let next_to_none = last.is_finite() && ahead <= N::EPSILON;
             if noise || short || next_to_none {
@@ -229,7 +232,7 @@ impl<N: Float> TorusCurveSegment<N> {
             }
             last = step.abs();
         }
-        // Newton left the cell: F is monotone across it, so halving finds the root.
+        // Newton left the cell. F is monotone across it, so bisection finds the root.
         let value = |y: N| section.at(y)[0];
         let (flo, fhi) = (value(self.bracket[0]), value(self.bracket[1]));
         if self.bracket[0].is_finite() && flo * fhi < N::ZERO {
@@ -245,7 +248,7 @@ impl<N: Float> TorusCurveSegment<N> {
         [y, d, -(p.xx + N::TWO * p.xy * d + p.yy * d * d) / p.y]
     }
 
-    /// A range of the other angle over x, by the bound of its slope.
+    /// A range of the other angle over x, from the bound of the slope.
     fn solution(&self, form: Form<'_, N>, x: Interval<N>) -> Interval<N> {
         let m = x.mid();
         let y = self.solve(form, m);
@@ -282,7 +285,7 @@ impl<N: Float> TorusCurve<N> {
         }
     }
 
-    /// (θ, φ) of the coordinates of a segment.
+    /// (θ, φ) from the coordinates of a segment.
     fn unfolded<S: JetScalar<Float = N>>(
         &self,
         s: &TorusCurveSegment<N>,
@@ -300,7 +303,7 @@ impl<N: Float> TorusCurve<N> {
         }
     }
 
-    /// (θ, φ) at both ends of a segment, in its sense.
+    /// (θ, φ) at both ends of a segment, in its direction.
     pub fn ends(&self, index: usize) -> [[N; 2]; 2] {
         let s = &self.segments[index];
         let at = |x: N, y: N| {
@@ -310,7 +313,7 @@ impl<N: Float> TorusCurve<N> {
         [at(s.from, s.ends[0]), at(s.to, s.ends[1])]
     }
 
-    /// The number of segments: the parameter's length.
+    /// The number of segments, which is the length of the parameter range.
     pub fn length(&self) -> N {
         N::from_f64(self.segments.len() as f64)
     }
@@ -389,8 +392,8 @@ impl<N: Float> TorusCurve<N> {
         t.frame.world_of([rho * ct, rho * st, sp.scale(t.minor)])
     }
 
-    /// How far the point at t may be off by the rounding of F: F's rounding divided by its gradient.
-    /// In a chart of a singular point the curve is as well known as elsewhere: zero.
+    /// The error of the point at t by the rounding of F: F's rounding divided by its gradient. In a
+    /// chart of a singular point it is no larger than elsewhere: zero.
     pub fn rounding_error(&self, t: N) -> N {
         let (s, tau) = self.locate(t);
         if s.chart.is_some() {
@@ -402,7 +405,7 @@ impl<N: Float> TorusCurve<N> {
         self.form.bound() * N::ROUNDING / (p.x / along).hypot(p.y / about)
     }
 
-    /// Whether the curve turns back at t: whether a cusp is there.
+    /// Whether the curve has a cusp at t.
     pub fn turns_back(&self, t: N) -> bool {
         let n = self.segments.len();
         let near = t.rem_euclid(N::from_f64(n as f64)).round();
@@ -413,7 +416,7 @@ impl<N: Float> TorusCurve<N> {
             && self.chart(s).is_some_and(at_cusp)
     }
 
-    /// The parameter of the curve's point next to the angles (θ, φ).
+    /// The parameter of the point of the curve closest to the angles (θ, φ).
     pub fn parameter(&self, theta: N, phi: N) -> N {
         let mut best = (N::INFINITY, N::ZERO);
         for (i, s) in self.segments.iter().enumerate() {
@@ -451,7 +454,7 @@ impl<N: Float> TorusCurve<N> {
         Point3::from(self.lift(self.angles_on(s, tau)))
     }
 
-    /// (θ, φ) on a segment, at a part of its length.
+    /// (θ, φ) on a segment, at a fraction of its length.
     fn angles_on(&self, s: &TorusCurveSegment<N>, tau: N) -> [N; 2] {
         let x = s.from + tau * (s.to - s.from);
         let y = s.solve(self.form(s), x);
@@ -467,7 +470,7 @@ fn arrange<T>(axis: TorusParameter, run: T, other: T) -> [T; 2] {
     }
 }
 
-/// The angle brought into [-pi, pi).
+/// The angle modulo 2 pi, in [-pi, pi).
 pub fn wrap<N: Float>(angle: N) -> N {
     (angle + N::PI).rem_euclid(N::TAU) - N::PI
 }

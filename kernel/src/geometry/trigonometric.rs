@@ -31,7 +31,7 @@ pub(crate) fn product<N: Float>(m: &Trig1<N>, q: &Trig1<N>) -> Trig2<N> {
     ]
 }
 
-/// The q of degree one with m q nearest to `whole`.
+/// The q of degree one for which m q is closest to `whole`.
 pub(super) fn divide<N: Float>(whole: &Trig2<N>, m: &Trig1<N>) -> Trig1<N> {
     let columns: [Trig2<N>; 3] = [
         [N::ONE, N::ZERO, N::ZERO],
@@ -55,12 +55,12 @@ pub(super) fn between<N: Float>(a: N, b: N) -> Trig1<N> {
     ]
 }
 
-/// A trigonometric polynomial of degree two with its derivatives, which are such, too.
+/// A trigonometric polynomial of degree two with its derivatives, which are of the same form.
 pub(super) struct Trigonometric<N: Float = f64> {
     derivatives: [Trig2<N>; 4],
-    /// No value of the fourth derivative is greater.
+    /// A bound of the absolute value of the fourth derivative.
     most: N,
-    /// The same in f64, of one of more digits.
+    /// The polynomial rounded to f64, for extended precision.
     rounded_f64: Option<Box<Trigonometric>>,
 }
 
@@ -85,12 +85,13 @@ impl<N: Float> Trigonometric<N> {
     }
 }
 
-/// Taylor's sum is tried on what is shorter than this, in radians.
+/// The length, in radians, below which the Taylor bound is tried.
 const SHORT: f64 = 0.5;
 
 impl<N: Float> Function<N> for Trigonometric<N> {
-    /// By Taylor's sum about the middle: next to a zero of order four the terms of the polynomial
-    /// cancel, and their own ranges tell nothing before they are as short as its square.
+    /// The Taylor bound about the midpoint. Close to a zero of order four the terms of the
+    /// polynomial cancel, and their direct ranges are useless until the interval is as short as its
+    /// square.
     fn over(&self, u: Interval<N>) -> Jet<Interval<N>> {
         if u.width() > N::from_f64(SHORT) {
             return self.jet(u);
@@ -100,7 +101,7 @@ impl<N: Float> Function<N> for Trigonometric<N> {
         let [v, d, dd, ddd] = [0, 1, 2, 3].map(|i| harmonic(&self.derivatives[i], at));
         let run = u - Interval::point(middle);
         let square = run.square();
-        // A little more than its due.
+        // A slightly larger bound than needed.
         let rest = square.scale(self.most);
         let six = Interval::constant_f64(6.0);
         Jet {
@@ -133,13 +134,14 @@ impl<N: Float> Function<N> for Trigonometric<N> {
     }
 }
 
-/// The least interval about zero that holds another.
+/// The smallest interval symmetric about zero that contains another.
 fn about_zero<N: Float>(x: Interval<N>) -> Interval<N> {
     let most = x.magnitude();
     Interval::new(-most, most)
 }
 
-/// The zeros of a trigonometric polynomial in [0, 2π), in order, and whether it changes sign there.
+/// The zeros of a trigonometric polynomial in [0, 2π), in order, and whether it changes sign at
+/// each.
 pub(super) fn zeros_of<N: Float>(k: &Trig2<N>) -> Vec<(N, bool)> {
     let scale: N = k.iter().map(|c| c.abs()).sum();
     let zeros = zeros_once(k, N::ROUNDING * scale).unwrap_or_default();
@@ -147,12 +149,11 @@ pub(super) fn zeros_of<N: Float>(k: &Trig2<N>) -> Vec<(N, bool)> {
     zeros.into_iter().map(|(u, c)| (u, changes(c))).collect()
 }
 
-/// Two simple zeros are at least so many times farther from each other than both may be off.
+/// The least distance between two simple zeros, relative to the sum of their errors.
 const SEPARATION: f64 = 64.0;
 
-/// The zeros of a polynomial whose values are off by `resolution`, each with how far it may be off
-/// itself. None where one is not simple, or where two are too close to each other to be distinguished
-/// from a double zero.
+/// The zeros of a polynomial with an error of `resolution`, each with its own error; `None` unless
+/// all are simple, and apart enough to be distinguished from a double zero.
 pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, N)>> {
     let slope = harmonic_slope(k);
     let off = |u: N| resolution / harmonic(&slope, u.sin_cos()).abs();
@@ -168,9 +169,9 @@ pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<
     (zeros.len() < 2 || (0..zeros.len()).all(are_separate)).then_some(zeros)
 }
 
-/// The zeros over one turn; none of what vanishes everywhere.
+/// The zeros over one turn; `None` if the polynomial vanishes everywhere.
 fn zeros_once<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, RootKind)>> {
-    // Started off the axes, where symmetric polynomials have their zeros.
+    // The start is not on the axes, where symmetric polynomials have their zeros.
     let start = N::from_f64(0.1);
     let breaks: Vec<N> = (0..=8)
         .map(|i| start + N::TAU * N::whole(i) / N::from_f64(8.0))
@@ -187,9 +188,9 @@ fn zeros_once<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, RootKind)
     Some(zeros)
 }
 
-/// B and C divided by sin((u - u0)/2), a zero of both, in half angles.
+/// B and C divided by sin((u - u0)/2), where u0 is a zero of both, in half angles.
 pub(super) fn divide_half<N: Float>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 2], [N; 4]) {
-    // Sampled away from the zero, and solved for: both are exact up to rounding.
+    // Sampled away from the zero and solved for; both are exact up to rounding.
     let samples: Vec<N> = (0..8)
         .map(|i| u0 + N::TAU * (N::whole(i) + N::HALF) / N::from_f64(8.0))
         .collect();
@@ -217,7 +218,7 @@ mod tests {
     use super::*;
     use crate::number::extended::F237;
 
-    /// (cos u + 4/3 sin u - 5/3)², which touches zero to the fourth order, but for rounding.
+    /// (cos u + 4/3 sin u - 5/3)², which has a zero of order four, except for rounding.
     #[test]
     fn a_fourfold_zero_is_one() {
         let third = F237::ONE / F237::from_f64(3.0);

@@ -1,15 +1,15 @@
-//! Lengths of vectors of any precision.
+//! Lengths of vectors, and small linear systems, in any precision.
 
 use crate::number::float::Float;
 use nalgebra::{Point3, SVector, Vector3};
 
-/// What a vector's length is requested.
+/// The length of a vector.
 pub trait Length<N> {
     /// The length.
     fn length(&self) -> N;
     /// The square of the length.
     fn length_squared(&self) -> N;
-    /// The vector of length one in the same direction; not a number where the length is zero.
+    /// The unit vector in the same direction; NaN if the length is zero.
     #[must_use]
     fn unit(&self) -> Self;
 }
@@ -26,8 +26,8 @@ impl<N: Float, const D: usize> Length<N> for SVector<N, D> {
     }
 }
 
-/// The solution of m x = right by Gauss's elimination, the greatest pivot first; none where m has no
-/// inverse.
+/// The solution of m x = right by Gaussian elimination with partial pivoting; `None` if m is
+/// singular.
 pub fn solution<N: Float, const D: usize>(mut m: [[N; D]; D], mut right: [N; D]) -> Option<[N; D]> {
     for k in 0..D {
         let pivot = (k..D).max_by(|&i, &j| m[i][k].abs().total_cmp(&m[j][k].abs()))?;
@@ -53,13 +53,13 @@ pub fn solution<N: Float, const D: usize>(mut m: [[N; D]; D], mut right: [N; D])
     Some(right)
 }
 
-/// The direction of a vector; none where its length is zero.
+/// The unit vector in the direction of a vector; `None` if its length is zero.
 pub fn direction<N: Float>(v: &Vector3<N>) -> Option<Vector3<N>> {
     let length = v.length();
     (length > N::ZERO).then(|| v / length)
 }
 
-/// A point in f64.
+/// A point rounded to f64.
 pub fn rounded<N: Float>(p: &Point3<N>) -> [f64; 3] {
     [p.x, p.y, p.z].map(N::rounded)
 }

@@ -1,39 +1,39 @@
-//! What the generic formulas of surfaces and curves are written over.
+//! The scalar type of the generic formulas for surfaces and curves.
 //!
-//! One formula serves three readings: a [`Float`] gives a value,
-//! [`Interval`](super::interval::Interval) a certified range, and [`Jet`](super::jet::Jet) of either
-//! adds two derivatives.
+//! One formula has three readings. A [`Float`] gives a value, an
+//! [`Interval`](super::interval::Interval) a certified range, and a [`Jet`](super::jet::Jet) of
+//! either adds two derivatives.
 
 use super::float::Float;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A number that the geometric formulas can be evaluated over.
+/// A number type on which the geometric formulas can be evaluated.
 pub trait Analytic:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
-    /// The numbers of the precision that it is computed in.
+    /// The floating-point type in which it is computed.
     type Float: Float;
     /// The constant `x`.
     fn constant(x: Self::Float) -> Self;
     /// The product with the constant `k`.
     fn scale(self, k: Self::Float) -> Self;
-    /// The product with a double.
+    /// The product with an f64.
     fn times(self, k: f64) -> Self {
         self.scale(Self::Float::from_f64(k))
     }
-    /// A double.
+    /// The constant `x`, given as an f64.
     fn constant_f64(x: f64) -> Self {
         Self::constant(Self::Float::from_f64(x))
     }
-    /// The square, tighter than a product on intervals.
+    /// The square; on intervals it is tighter than a product.
     fn square(self) -> Self;
-    /// The quotient; everything where an interval divisor holds zero.
+    /// The quotient; the entire line if an interval divisor contains zero.
     fn over(self, divisor: Self) -> Self;
-    /// The square root of the non-negative part.
+    /// The square root; negative values are clamped to zero.
     fn root(self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
-    /// Sine and cosine of twice the angle, whose own are `at`.
+    /// Sine and cosine of twice the angle, from `at`, the sine and cosine of the angle.
     fn twice(self, _at: (Self, Self)) -> (Self, Self) {
         self.times(2.0).sin_cos()
     }
@@ -41,12 +41,12 @@ pub trait Analytic:
     fn sinh_cosh(self) -> (Self, Self);
     /// sin x / x, for 0 <= x <= pi.
     fn sinc(self) -> Self;
-    /// The trigonometric polynomial of degree two of this angle, whose sine and cosine are `at`:
-    /// tighter than [`harmonic`] on intervals where its terms cancel.
+    /// The trigonometric polynomial of degree two of this angle; `at` are the sine and cosine of
+    /// the angle. On intervals it is tighter than [`harmonic`] where terms cancel.
     fn harmonic(self, k: &[Self::Float; 5], at: (Self, Self)) -> Self {
         harmonic(k, at)
     }
-    /// Whether it surely has the sign of another: their sum does not cancel.
+    /// Whether it certainly has the same sign as `o`, so that their sum does not cancel.
     fn is_like(self, o: Self) -> bool;
 }
 
@@ -57,12 +57,12 @@ pub fn harmonic<S: Analytic>(k: &[S::Float; 5], (sin, cos): (S, S)) -> S {
     S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])
 }
 
-/// The derivative of such a polynomial, which is another one.
+/// The coefficients of the derivative of such a polynomial, which is one of the same form.
 pub(crate) fn harmonic_slope<N: Float>([_, c1, s1, c2, s2]: &[N; 5]) -> [N; 5] {
     [N::ZERO, *s1, -*c1, N::TWO * *s2, -N::TWO * *c2]
 }
 
-/// The scalar product of a constant vector and a vector of scalars.
+/// The dot product of a constant vector and a vector of scalars.
 pub fn dot<S: Analytic>(k: &nalgebra::Vector3<S::Float>, v: [S; 3]) -> S {
     v[0].scale(k.x) + v[1].scale(k.y) + v[2].scale(k.z)
 }
@@ -79,7 +79,7 @@ pub(super) fn sinc_jet<N: Float>(x: N) -> [N; 3] {
     [value, first, -value - N::TWO * first / x]
 }
 
-/// Taylor's series: the terms that are left out are below one ulp for |x| < 1/2.
+/// Taylor series. For |x| < 1/2 the omitted terms are below one ulp.
 fn sinc_series<N: Float>(x: N, x2: N) -> [N; 3] {
     let [mut value, mut first, mut second] = [N::ZERO; 3];
     for n in (0..N::SINC_TERMS).rev() {

@@ -1,8 +1,8 @@
-//! The zero of a function between two points at which it has opposite signs, to the last digit.
+//! Bracketed root finding: bisection, and Newton steps inside a bracket, to the last digit.
 
 use super::float::Float;
 
-/// More halvings than a bracket has digits.
+/// The greatest number of halvings: more than a bracket has bits.
 fn halvings<N: Float>() -> u32 {
     match N::IS_DOUBLE {
         true => 200,
@@ -10,7 +10,7 @@ fn halvings<N: Float>() -> u32 {
     }
 }
 
-/// The zero of `g` in [a, b] with opposite signs at the ends, to the last digit.
+/// The zero of `g` in [a, b], to the last digit. `g` has opposite signs at the ends; `ga` is g(a).
 pub fn bisect<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
     if ga == N::ZERO {
         return a;
@@ -33,10 +33,13 @@ pub fn bisect<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
     N::HALF * (a + b)
 }
 
-/// The zero of `g` in [a, b] by Newton's steps kept inside a shrinking bracket. `g` gives the value
-/// and the derivative. It ends where the next step would be less than rounding: a step of length s
-/// leaves |g''/2g'| s^2, with the second derivative from the last two points. Next to zero, where
-/// rounding is not relative, it ends where that would be so and steps are no longer shorter.
+/// The zero of `g` in [a, b] by Newton steps inside a shrinking bracket. `g` gives the value and
+/// the derivative; `ga` is the value at `a`.
+///
+/// The iteration ends where the error after the next step is below rounding. A step of length s
+/// leaves an error of |g''/2g'| s^2, with g'' estimated from the last two points. Close to zero,
+/// where rounding is not relative, it ends where this error is below the rounding of the bracket's
+/// ends and steps no longer shrink.
 pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N)) -> N {
     if ga == N::ZERO {
         return a;
@@ -74,7 +77,8 @@ pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N
             last = step.abs();
             newton
         } else {
-            // A step as long as what is left: to a zero that lies next to an end.
+            // Bisect, and allow a Newton step as long as the bracket: the zero may lie close to an
+            // end.
             last = b - a;
             N::HALF * (a + b)
         };
@@ -92,23 +96,23 @@ mod tests {
     use crate::number::extended::F237;
     use std::cell::Cell;
 
-    /// The zeros of cos t - cos z for many z, found from a bracket that is not symmetric: the last
-    /// step may end on either side of the zero, or on it but for rounding.
+    /// The zeros of cos t - cos z for many z, found from an asymmetric bracket. The last step may
+    /// end on either side of the zero, or on it except for rounding.
     fn zeros_to_the_last_digit<N: Float + std::fmt::Debug>() {
         let [a, b] = [0.9, 2.2].map(N::from_f64);
         for k in 1..400 {
             let z = a + (b - a) * N::whole(k) / N::whole(400);
             let level = z.sin_cos().1;
-            let asked = Cell::new(0);
+            let calls = Cell::new(0);
             let g = |t: N| {
-                asked.set(asked.get() + 1);
+                calls.set(calls.get() + 1);
                 let (sin, cos) = t.sin_cos();
                 (cos - level, -sin)
             };
             let ga = g(a).0;
             let found = bisect_newton(a, b, ga, g);
             assert!((found - z).abs() <= N::ROUNDING, "{z:?}: {found:?}");
-            assert!(asked.get() <= 20, "{z:?}: asked {} times", asked.get());
+            assert!(calls.get() <= 20, "{z:?}: evaluated {} times", calls.get());
             let found = bisect(a, b, ga, |t| g(t).0);
             assert!((found - z).abs() <= N::ROUNDING, "{z:?}: {found:?}");
         }

@@ -1,11 +1,14 @@
-//! A function of more digits than f64 values have over a piece of its parameter, as the polynomial that
-//! it is there within a part of the resolution.
+//! A polynomial model of a function in extended precision over a piece of its parameter range, with
+//! an error below a fraction of the resolution.
 //!
-//! What runs along zero all over a piece, by far less than its first terms vary, is distinguished from zero by
-//! halving only after a very great number of steps; from the polynomial, at once. How far the
-//! polynomial is off is estimated from its last coefficients and between its nodes (Trefethen,
-//! Approximation Theory and Approximation Practice, 2013, chapters 3 and 8), with a wide margin, and
-//! not bounded: only numbers of 237 bits are so treated, of which the same is said elsewhere.
+//! Some functions stay close to zero over a whole piece, at values far below the variation of their
+//! leading terms. Bisection needs very many steps to distinguish such a function from zero; the
+//! polynomial does so at once.
+//!
+//! The model's error is estimated from its last coefficients and from samples between its nodes
+//! (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 3 and 8), with a
+//! wide margin. The estimate is no bound. Only 237-bit numbers use it, and these are not certified
+//! elsewhere either.
 
 use super::analytic::Analytic;
 use super::float::Float;
@@ -13,30 +16,32 @@ use super::interval::Interval;
 use super::jet::Jet;
 use super::roots::{Function, probes};
 
-/// The number of its coefficients. More would cost the digits that powers cancel: for these, 18.
+/// The number of coefficients. More of them would lose digits to cancellation between powers; this
+/// number loses 18.
 const TERMS: u32 = 48;
 
-/// As many of the last coefficients of Chebyshev's series determine where it would end.
+/// The number of last Chebyshev coefficients from which the truncation error is estimated.
 const LAST: usize = 6;
 
-/// At how many places between its nodes it is compared.
+/// The number of samples between the nodes at which model and function are compared.
 const PLACES: usize = 5;
 
-/// How many times nearer than it is to be it has to be there.
+/// The safety factor: the observed error must be this many times smaller than the requested one.
 const NEARER: f64 = 16.0;
 
 /// A polynomial over [`middle` - `half`, `middle` + `half`].
 pub(super) struct ChebyshevModel<N: Float> {
     middle: N,
     half: N,
-    /// By the powers of the parameter that runs from -1 to 1, the constant first.
+    /// Coefficients of the powers of the parameter scaled to [-1, 1], the constant first.
     powers: Vec<N>,
-    /// How far it may be off.
+    /// The bound assumed for the error.
     off: N,
 }
 
 impl<N: Float> ChebyshevModel<N> {
-    /// The polynomial that the function is within `off`; none where it is none.
+    /// The model of `f` on [a, b] with an error of at most `off`; `None` if the estimate exceeds
+    /// it.
     pub(super) fn new(f: &impl Function<N>, [a, b]: [N; 2], off: N) -> Option<Self> {
         let (middle, half) = (N::HALF * (a + b), N::HALF * (b - a));
         let series = series(|s| f.value(middle + half * s));
@@ -56,7 +61,7 @@ impl<N: Float> ChebyshevModel<N> {
         holds.then_some(polynomial)
     }
 
-    /// The coefficients about a parameter.
+    /// The Taylor coefficients about a parameter.
     fn about(&self, t: N) -> Vec<N> {
         let s = (t - self.middle) / self.half;
         let mut about = self.powers.clone();
@@ -73,7 +78,7 @@ impl<N: Float> ChebyshevModel<N> {
     pub(super) fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
         let about = self.about(t.mid());
         let run = N::HALF * t.width() / self.half;
-        // The terms from the third on, each at its greatest.
+        // Each term from the third on at its greatest.
         let (mut rest, mut power) = ([N::ZERO; 3], N::ONE);
         for (n, c) in about.iter().enumerate().skip(3) {
             power *= run;
@@ -85,7 +90,7 @@ impl<N: Float> ChebyshevModel<N> {
         }
         let [c, slope, bend] = [about[0], about[1], about[2]];
         let rate = N::ONE / self.half;
-        // What the off value makes of derivatives, by Markov's inequality.
+        // The error of the derivatives, by Markov's inequality from the error of the value.
         let steep = N::whole(TERMS * TERMS);
         let ranged = |from: N, lo: N, hi: N, slack: N| Interval {
             lo: from + lo - slack,
@@ -112,7 +117,7 @@ impl<N: Float> ChebyshevModel<N> {
     }
 }
 
-/// The coefficients of Chebyshev's series of a function over [-1, 1].
+/// The coefficients of the Chebyshev series of a function on [-1, 1].
 fn series<N: Float>(f: impl Fn(N) -> N) -> Vec<N> {
     let step = N::HALF * N::TAU / N::whole(TERMS);
     let mut series = vec![N::ZERO; TERMS as usize];
@@ -129,14 +134,14 @@ fn series<N: Float>(f: impl Fn(N) -> N) -> Vec<N> {
     series
 }
 
-/// The same by powers.
+/// The Chebyshev series converted to powers.
 fn in_powers<N: Float>(series: &[N]) -> Vec<N> {
     let terms = series.len();
     let mut powers = vec![N::ZERO; terms];
     let (mut before, mut now) = (vec![N::ZERO; terms], vec![N::ZERO; terms]);
     now[0] = N::ONE;
     if terms > 1 {
-        // The one before the first is the second.
+        // T(-1) = T(1).
         before[1] = N::ONE;
     }
     for c in series {
@@ -176,13 +181,21 @@ mod tests {
                 lo: F237::from_f64(lo),
                 hi: F237::from_f64(hi),
             };
-            let (told, known) = (polynomial.over(x), wave(x));
-            let holds = |told: Interval<F237>, known: Interval<F237>| {
-                told.lo <= known.lo && told.hi >= known.hi
+            let (enclosure, known) = (polynomial.over(x), wave(x));
+            let holds = |enclosure: Interval<F237>, known: Interval<F237>| {
+                enclosure.lo <= known.lo && enclosure.hi >= known.hi
             };
-            assert!(holds(told.v, known.v) && holds(told.d, known.d) && holds(told.dd, known.dd));
+            assert!(
+                holds(enclosure.v, known.v)
+                    && holds(enclosure.d, known.d)
+                    && holds(enclosure.dd, known.dd)
+            );
             if lo == hi {
-                assert!(told.v.width() < F237::from_f64(3e-50), "{:?}", told.v);
+                assert!(
+                    enclosure.v.width() < F237::from_f64(3e-50),
+                    "{:?}",
+                    enclosure.v
+                );
             }
         }
     }

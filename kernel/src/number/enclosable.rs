@@ -1,5 +1,5 @@
-//! What the relations between surfaces are measured over: f64 values for an estimate, intervals of
-//! f64 values for the answer, enclosures with more bits where those do not tell.
+//! The scalar type in which relations between surfaces are evaluated: f64 for an estimate, f64
+//! intervals for the decision, and enclosures with more bits where those are inconclusive.
 
 use super::analytic::Analytic;
 use super::float::Float;
@@ -7,15 +7,15 @@ use super::interval::Interval;
 use super::rational_interval::RationalInterval;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A real number, or a range that is known to hold it.
+/// A real number, or a range known to contain it.
 pub trait Enclosable:
     Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
-    /// A double, exactly.
+    /// The constant `x`, exactly.
     fn constant(x: f64) -> Self;
-    /// The quotient; everything where the divisor may be zero.
+    /// The quotient; the entire line if the divisor may be zero.
     fn over(self, divisor: Self) -> Self;
-    /// The square root of the non-negative part.
+    /// The square root; negative values are clamped to zero.
     fn sqrt(self) -> Self;
     /// The absolute value.
     fn abs(self) -> Self;

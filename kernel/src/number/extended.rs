@@ -1,4 +1,4 @@
-//! Numbers of 237 bits: for what f64 values do not tell.
+//! Extended precision: floating-point numbers of 237 bits, for what f64 cannot resolve.
 
 mod circular;
 
@@ -18,10 +18,10 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct F237(f256);
 
-/// More bits than are kept, so that what is cut off does not count.
+/// Guard bits beyond the precision, so that truncation does not affect the result.
 const SPARE: isize = 12;
 
-/// The bits of a significand.
+/// The number of bits of a significand.
 const DIGITS: isize = 237;
 
 macro_rules! operators {
@@ -109,12 +109,12 @@ impl Analytic for F237 {
     }
 }
 
-/// Two to a small power: the exponent of one, 2^18 - 1, stands above 108 bits.
+/// Two to a small power. The biased exponent of one is 2^18 - 1, stored above 108 bits.
 const fn power(n: i128) -> f256 {
     f256::from_bits(((((1 << 18) - 1 + n) as u128) << 108, 0))
 }
 
-/// n times two to the power of `exponent`, n of no more than 256 bits.
+/// n times two to the power of `exponent`, for n of at most 256 bits.
 fn scaled(n: &UBig, exponent: isize) -> f256 {
     let low = u128::try_from(n & UBig::from(u128::MAX)).unwrap_or_default();
     let high = u128::try_from(n >> 128usize).unwrap_or_default();
@@ -140,7 +140,7 @@ impl F237 {
         (sign, significand, exponent as isize)
     }
 
-    /// e^|x| - 1, by Taylor's series of a part of x, doubled again: e^2x - 1 = d (2 + d).
+    /// e^|x| - 1: Taylor series of x / 2^n, then n doublings by e^2x - 1 = d (2 + d).
     fn growth(self) -> Self {
         let x = Float::abs(self);
         if x > Self::from_f64(GREAT) || x.is_nan() {
@@ -179,8 +179,8 @@ impl Float for F237 {
     const IS_DOUBLE: bool = false;
 
     fn rules() -> &'static GaussRules<Self> {
-        // Halves that agree to 2^-64 differ from the integral by far less, and what is told is told in
-        // f64 values.
+        // Halves that agree to 2^-64 differ from the integral by far less, and results are reported
+        // in f64.
         static RULES: LazyLock<GaussRules<F237>> =
             LazyLock::new(|| GaussRules::new(16, F237(power(-64))));
         &RULES
@@ -230,7 +230,7 @@ impl Float for F237 {
             };
         }
         let (sign, exponent, (high, low)) = self.0.as_sign_exp_signif();
-        // The upper 64 bits, and whether anything is left below them.
+        // The upper 64 bits, and whether any bit below them is set.
         let zeros = if high == 0 {
             128 + low.leading_zeros()
         } else {
@@ -346,7 +346,8 @@ impl Float for F237 {
         if let Some(angle) = circular::angle(self, x) {
             return angle;
         }
-        // By arcs of tangents up to one: the library's own is a quarter turn where both are equal.
+        // Reduced to arctangents of at most one: the library returns a quarter turn where both
+        // arguments are equal.
         let (along, across) = (Float::abs(x), Float::abs(self));
         let quarter = Self::HALF * Self::PI;
         let acute = if along == Self::ZERO && across == Self::ZERO {
@@ -374,10 +375,10 @@ impl Float for F237 {
     }
 }
 
-/// Beyond this number doubling costs digits.
+/// Above this number the doublings lose digits.
 const GREAT: f64 = 2.0;
 
-/// One over the factorials of 1, 2, ...: as many as count for numbers below 2^-8.
+/// 1 / n! for n = 1, 2, ...: as many terms as contribute for numbers below 2^-8.
 static SHARES: LazyLock<[F237; 24]> = LazyLock::new(|| {
     let mut share = F237::ONE;
     std::array::from_fn(|n| {
@@ -386,7 +387,7 @@ static SHARES: LazyLock<[F237; 24]> = LazyLock::new(|| {
     })
 });
 
-/// x times two to the power of n, also where the power alone is beyond f64 values.
+/// x times two to the power of n, also where the power alone exceeds the range of f64.
 fn by_power(x: f64, n: i32) -> f64 {
     if n.unsigned_abs() < 1022 {
         return x * f64::from_bits(((1023 + n) as u64) << 52);

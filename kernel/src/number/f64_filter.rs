@@ -1,4 +1,4 @@
-//! What f64 values tell of a function of more digits: where it is clearly apart from zero.
+//! An f64 filter for functions in extended precision: it finds where they are certainly not zero.
 
 use super::analytic::Analytic;
 use super::float::Float;
@@ -6,22 +6,22 @@ use super::interval::Interval;
 use super::jet::Jet;
 use super::roots::{Function, probes};
 
-/// A function in f64 that follows one of more digits over a piece of its parameter.
+/// An f64 function that approximates one in extended precision over a piece of its parameter range.
 pub struct F64Filter<'a> {
     rounded_f64: &'a dyn Function,
-    /// How far its value may be off.
+    /// The error assumed for its value.
     off: f64,
 }
 
-/// At how many places the two are compared.
+/// The number of samples at which the two are compared.
 const PLACES: usize = 5;
 
-/// How many times farther they may be apart elsewhere.
+/// The safety factor on the observed error.
 const FARTHER: f64 = 64.0;
 
 impl<'a> F64Filter<'a> {
-    /// The function in f64, by how far it is off at some places; `least` is what rounding alone
-    /// takes it off.
+    /// The filter of `whole` on [a, b]. The error is estimated from samples; `least` is the error
+    /// by rounding alone.
     pub fn new<N: Float>(
         whole: &dyn Function<N>,
         rounded_f64: &'a dyn Function,
@@ -32,7 +32,7 @@ impl<'a> F64Filter<'a> {
             let t = a + (b - a) * part;
             (whole.value(t).rounded() - rounded_f64.value(t.rounded())).abs()
         };
-        // A value that is not a number is taken for the greatest, so that nothing is clear.
+        // NaN counts as the greatest error, so that the filter then excludes nothing.
         let most = probes().take(PLACES).map(off).max_by(f64::total_cmp);
         Self {
             rounded_f64,
@@ -40,7 +40,7 @@ impl<'a> F64Filter<'a> {
         }
     }
 
-    /// Whether no value over an interval is within `reach` of zero.
+    /// Whether every value over an interval is farther than `reach` from zero.
     pub(super) fn is_clear<N: Float>(&self, t: Interval<N>, reach: N) -> bool {
         let far = self.off + reach.rounded();
         let clear = |v: Interval| v.lo > far || v.hi < -far;

@@ -1,4 +1,4 @@
-//! The precisions in which coordinates are kept.
+//! The floating-point types in which coordinates are stored.
 
 use super::analytic::Analytic;
 use super::quadrature::GaussRules;
@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 
 /// A floating-point number of some precision: a coordinate, a length, an angle in radians.
 ///
-/// The functions are those of [`f64`] of the same names.
+/// The functions have the names and meanings of those of [`f64`].
 #[allow(missing_docs, reason = "they are those of f64")]
 pub trait Float:
     Analytic<Float = Self>
@@ -40,43 +40,43 @@ pub trait Float:
     const INFINITY: Self;
     const NEG_INFINITY: Self;
     const NAN: Self;
-    /// How many terms of the series of sin x / x count for |x| < 1/2.
+    /// The number of terms of the series of sin x / x that contribute for |x| < 1/2.
     const SINC_TERMS: u32;
     /// The relative rounding error allowed to a short chain of operations.
     const ROUNDING: Self;
-    /// Whether it is a double.
+    /// Whether it is an f64.
     const IS_DOUBLE: bool;
 
-    /// The rules by which integrals are taken.
+    /// The quadrature rules for integrals.
     fn rules() -> &'static GaussRules<Self>;
 
-    /// A double, exactly.
+    /// The conversion from an f64, which is exact.
     fn from_f64(x: f64) -> Self;
-    /// The nearest to a rational number.
+    /// The nearest value to a rational number.
     fn nearest(x: &Rational) -> Self;
-    /// The same, exactly; none of what is not finite.
+    /// The exact value as a rational; `None` if it is not finite.
     fn exact(self) -> Option<Rational>;
-    /// The nearest double.
+    /// The nearest f64.
     fn rounded(self) -> f64;
-    /// A double that is no greater: itself, if it is one.
+    /// An f64 that is not greater: the number itself if it is an f64.
     fn below(self) -> f64;
-    /// A double that is no less.
+    /// An f64 that is not smaller.
     fn above(self) -> f64 {
         -(-self).below()
     }
-    /// A whole number, exactly.
+    /// An integer, exactly.
     fn whole(n: impl Into<f64>) -> Self {
         Self::from_f64(n.into())
     }
 
-    /// The n-th root, to the digits of a double.
+    /// The n-th root, to the precision of an f64.
     fn approximate_root(self, n: u32) -> Self {
         Self::from_f64(self.rounded().powf(1.0 / f64::from(n)))
     }
 
-    /// What tells it from every other number.
+    /// A bit pattern that distinguishes it from every other number.
     fn bits(self) -> [u64; 4];
-    /// The whole number that it is, where it is not negative.
+    /// The integer value as an index; it must not be negative.
     fn index(self) -> usize;
 
     fn abs(self) -> Self;
@@ -94,7 +94,7 @@ pub trait Float:
     fn fract(self) -> Self;
     fn rem_euclid(self, divisor: Self) -> Self;
     fn powi(self, n: i32) -> Self;
-    /// Not a number where it is negative.
+    /// The square root; NaN if it is negative.
     fn sqrt(self) -> Self;
     fn hypot(self, o: Self) -> Self;
     fn sin(self) -> Self;
@@ -108,7 +108,7 @@ pub trait Float:
     fn acosh(self) -> Self;
 }
 
-/// The functions of a number that it has itself.
+/// Forwards functions to the inherent ones of the number type.
 macro_rules! own {
     ($number:ty: $($name:ident($($argument:ident),*)),* $(,)?) => {
         $(#[inline]

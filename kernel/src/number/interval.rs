@@ -1,10 +1,10 @@
-//! Closed intervals of f64 values, rounded outwards: the first filter of every sign.
+//! Closed floating-point intervals, rounded outwards: the first filter of every predicate.
 
 use super::analytic::{Analytic, harmonic, harmonic_slope, sinc_jet};
 use super::float::Float;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A closed interval that holds the exact value.
+/// A closed interval that contains the exact value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval<N = f64> {
     /// The lower end.
@@ -13,8 +13,9 @@ pub struct Interval<N = f64> {
     pub hi: N,
 }
 
-/// A double below what was rounded to `x`: by one or two units in the last place, which costs less
-/// than the next one. A sum that is rounded to zero is zero; products see to it themselves.
+/// A number below `x`, the rounded result of an operation. It is one or two units in the last place
+/// lower, which costs less than finding the next one. A sum that rounds to zero is exactly zero;
+/// products handle their own underflow.
 fn down<N: Float>(x: N) -> N {
     if x == N::ZERO {
         return N::ZERO;
@@ -23,23 +24,23 @@ fn down<N: Float>(x: N) -> N {
     x - (x.abs() * N::EPSILON + N::MIN_POSITIVE)
 }
 
-/// A double above what was rounded to `x`.
+/// A number above `x`, the rounded result of an operation.
 fn up<N: Float>(x: N) -> N {
     -down(-x)
 }
 
-/// The lesser of two numbers.
+/// The smaller of two numbers.
 fn least<N: Float>(a: N, b: N) -> N {
     if a < b { a } else { b }
 }
 
-/// The greater of two numbers.
+/// The larger of two numbers.
 fn greatest<N: Float>(a: N, b: N) -> N {
     if a > b { a } else { b }
 }
 
 impl<N: Float> Interval<N> {
-    /// The whole line.
+    /// The entire line.
     pub const ENTIRE: Self = Self {
         lo: N::NEG_INFINITY,
         hi: N::INFINITY,
@@ -54,7 +55,7 @@ impl<N: Float> Interval<N> {
         }
     }
 
-    /// The single double `x`.
+    /// The interval that contains `x` only.
     pub fn point(x: N) -> Self {
         Self { lo: x, hi: x }
     }
@@ -67,7 +68,7 @@ impl<N: Float> Interval<N> {
         }
     }
 
-    /// A double inside.
+    /// A number inside, close to the midpoint.
     pub fn mid(self) -> N {
         let m = N::HALF * (self.lo + self.hi);
         if m.is_finite() { m } else { N::ZERO }
@@ -78,29 +79,29 @@ impl<N: Float> Interval<N> {
         self.hi - self.lo
     }
 
-    /// Whether zero may be the value.
+    /// Whether it contains zero.
     pub fn has_zero(self) -> bool {
         !(self.lo > N::ZERO || self.hi < N::ZERO)
     }
 
-    /// Whether the value is surely greater than zero.
+    /// Whether the value is certainly greater than zero.
     pub fn is_above_zero(self) -> bool {
         self.lo > N::ZERO
     }
 
-    /// The greatest absolute value.
+    /// The greatest absolute value in it.
     pub fn magnitude(self) -> N {
         self.lo.abs().max(self.hi.abs())
     }
 
-    /// What both intervals hold; they are known to share the exact value.
+    /// The intersection. Both intervals must contain the exact value.
     pub fn intersection(self, other: Self) -> Self {
         let lo = self.lo.max(other.lo);
         let hi = self.hi.min(other.hi);
         if lo <= hi { Self { lo, hi } } else { self }
     }
 
-    /// The smallest interval that holds both.
+    /// The smallest interval that contains both.
     pub fn hull(self, other: Self) -> Self {
         Self {
             lo: self.lo.min(other.lo),
@@ -113,7 +114,7 @@ impl<N: Float> Interval<N> {
         self.lo <= other.hi && other.lo <= self.hi
     }
 
-    /// Where an end is zero, though no factor is: made wide enough for what was lost.
+    /// Widens an end that underflowed to zero although no factor is zero.
     fn after_product(self, x: Self, y: Self) -> Self {
         let ends = |i: Self| [i.lo, i.hi];
         let lost = |a: N| {
@@ -130,7 +131,7 @@ impl<N: Float> Interval<N> {
         self
     }
 
-    /// The same between f64 values.
+    /// The enclosing f64 interval.
     pub fn to_f64(self) -> Interval {
         Interval {
             lo: self.lo.below(),
@@ -145,7 +146,7 @@ impl<N: Float> Interval<N> {
         }
     }
 
-    /// Sine and cosine: from those of the ends, and from which of their extrema are inside.
+    /// Sine and cosine: from their values at the ends, and from the extrema inside.
     fn waves(self) -> [Self; 2] {
         if self.width() >= N::TAU || self.width().is_nan() {
             return [Self {
@@ -153,7 +154,7 @@ impl<N: Float> Interval<N> {
                 hi: N::ONE,
             }; 2];
         }
-        // Turns are counted with a slack that only ever widens the answer.
+        // The number of turns is computed with a slack that can only widen the result.
         let slack = N::EPSILON * (self.magnitude() + N::TAU);
         let holds = |offset: N| {
             let k = ((self.lo - slack - offset) / N::TAU).ceil();
@@ -185,7 +186,7 @@ impl<N: Float> Interval<N> {
         if let Some(jet) = self.coarsely(Interval::sinc_jet) {
             return jet;
         }
-        // Bounds of the next derivative on the whole line: 0.4362, 1/3, 1/4.
+        // Bounds, on the entire line, of the derivative of each function: 0.4362, 1/3, 1/4.
         let centre = sinc_jet(self.mid());
         let radius = N::HALF * self.width();
         let slop = N::from_f64(8.0) * N::EPSILON;
@@ -233,7 +234,7 @@ impl<N: Float> Neg for Interval<N> {
     }
 }
 
-/// A product of ends; zero times infinity counts as zero.
+/// A product of interval ends; zero times infinity is zero.
 fn times<N: Float>(a: N, b: N) -> N {
     if a == N::ZERO || b == N::ZERO {
         N::ZERO
@@ -268,7 +269,7 @@ impl<N: Float> Analytic for Interval<N> {
         Self::point(x)
     }
     fn scale(self, k: N) -> Self {
-        // The axes of most frames are those of the world.
+        // Most frames have the axes of the world, so zero is common.
         if k == N::ZERO {
             return Self::point(N::ZERO);
         }
@@ -366,14 +367,14 @@ impl<N: Float> Analytic for Interval<N> {
         self.sinc_jet()[0]
     }
     fn harmonic(self, k: &[N; 5], at: (Self, Self)) -> Self {
-        let plain = harmonic(k, at);
-        if N::TWO * plain.mid().abs() > plain.width() {
-            return plain;
+        let direct = harmonic(k, at);
+        if N::TWO * direct.mid().abs() > direct.width() {
+            return direct;
         }
-        // Its mean value form.
+        // The mean value form.
         let middle = Self::point(self.mid());
         let slope = harmonic(&harmonic_slope(k), at);
-        plain.intersection(harmonic(k, middle.sin_cos()) + slope * (self - middle))
+        direct.intersection(harmonic(k, middle.sin_cos()) + slope * (self - middle))
     }
     fn is_like(self, o: Self) -> bool {
         (self * o).lo > N::ZERO

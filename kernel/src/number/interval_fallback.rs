@@ -1,14 +1,14 @@
-//! Intervals of many digits, computed in f64 where they are so wide that the digits are lost on
-//! them: that costs a small part of the time.
+//! Evaluation of extended-precision intervals in f64 where they are so wide that extra digits are
+//! useless. This costs a small fraction of the time.
 
 use super::float::Float;
 use super::interval::Interval;
 
-/// An interval that is wider than this part of its size.
+/// Relative width above which an interval is evaluated in f64.
 const BROAD: f64 = 1.0 / (1u64 << 32) as f64;
 
 impl<N: Float> Interval<N> {
-    /// An interval of f64 values that holds this one.
+    /// An f64 interval that contains this one.
     pub(super) fn enclosed(self) -> Interval {
         let outside = |x: N, step: fn(f64) -> f64| match x == N::ZERO {
             true => 0.0,
@@ -27,7 +27,7 @@ impl<N: Float> Interval<N> {
         }
     }
 
-    /// A function of it, where f64 values tell that as well.
+    /// Evaluates `f` in f64; `None` if the interval is narrow.
     pub(super) fn coarsely<const D: usize>(
         self,
         f: impl FnOnce(Interval) -> [Interval; D],
@@ -40,7 +40,7 @@ impl<N: Float> Interval<N> {
         is_broad.then(|| f(x).map(Self::back))
     }
 
-    /// A product or a quotient with another one, where f64 values tell it as well.
+    /// Evaluates a product or quotient in f64; `None` if both factors are narrow.
     pub(super) fn coarse_product(
         self,
         o: Self,
@@ -50,7 +50,7 @@ impl<N: Float> Interval<N> {
         self.coarse_pair(o, |x, y| is_broad(x) || is_broad(y), f)
     }
 
-    /// A sum or a difference with another one, where f64 values tell it as well.
+    /// Evaluates a sum or difference in f64; `None` if the intervals are narrow.
     pub(super) fn coarse_sum(
         self,
         o: Self,

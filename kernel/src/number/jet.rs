@@ -1,4 +1,4 @@
-//! A value with its first two derivatives along a curve's parameter.
+//! Jets: a value with its first two derivatives along a curve's parameter.
 
 use super::analytic::{Analytic, harmonic_slope, sinc_jet};
 use super::float::Float;
@@ -17,7 +17,7 @@ pub struct Jet<S> {
 }
 
 impl<S: Analytic> Jet<S> {
-    /// The parameter itself at `t`.
+    /// The jet of the parameter itself at `t`.
     pub fn variable(t: S) -> Self {
         Self {
             v: t,
@@ -26,7 +26,7 @@ impl<S: Analytic> Jet<S> {
         }
     }
 
-    /// The composite h(self) from h, h' and h'' at the value.
+    /// The chain rule: h(self) from h, h' and h'' at the value.
     fn chain(self, h: S, dh: S, ddh: S) -> Self {
         Self {
             v: h,
@@ -80,7 +80,7 @@ impl<S: Analytic> Mul for Jet<S> {
     }
 }
 
-/// The scalars that jets are taken over.
+/// A scalar over which jets are computed.
 pub trait JetScalar: Analytic {
     /// sin x / x with two derivatives, for 0 <= x <= pi.
     fn sinc_with_derivatives(self) -> [Self; 3];

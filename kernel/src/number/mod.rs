@@ -1,5 +1,5 @@
-//! Numbers: exact rationals, enclosures, intervals, jets, isolated roots, and the one place that
-//! decides signs.
+//! Numbers: exact rationals, enclosures, intervals, jets, root isolation, and the predicates, which
+//! alone decide signs.
 
 pub mod analytic;
 pub mod bisection;

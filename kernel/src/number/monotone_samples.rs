@@ -1,41 +1,41 @@
-//! Where the absolute value of a function turns back, by its values at places between which it
-//! only rises or falls.
+//! Local extrema of the absolute value of a function, from samples between which it is monotone.
 
 use super::float::Float;
 
-/// A function that changes by less than this part of its value is level.
+/// Relative change below which the function counts as constant.
 const LEVEL: f64 = 1.0 / 64.0;
 
-/// The values of a function at places in order.
+/// The samples of a function, in order of the parameter.
 #[derive(Debug, Default)]
 pub(super) struct MonotoneSamples<N: Float = f64> {
     marks: Vec<(N, N)>,
 }
 
-/// Which way the absolute value goes.
+/// Whether the absolute value rises or falls.
 #[derive(Clone, Copy)]
 enum Way {
-    /// It has been level so far.
+    /// Constant so far.
     Level,
     Up,
     Down,
 }
 
 impl<N: Float> MonotoneSamples<N> {
-    /// Adds a value: infinite where it is only known to be large.
+    /// Adds a sample; an infinite value means that only its large size is known.
     pub fn mark(&mut self, t: N, value: N) {
         self.marks.push((t, value));
     }
 
-    /// The places at which the absolute value turns back, with the value there: each least one and
-    /// each greatest one between lesser ones. At an end `beyond`, the function outside the range,
-    /// tells: where it falls on, or rises to it, the end is no turn.
+    /// The local extrema of the absolute value, as (parameter, value): each minimum, and each
+    /// maximum between smaller values. At an end of the range `beyond` continues the function. The
+    /// end is no minimum if the function decreases further outside.
     pub fn turns(&self, beyond: impl Fn(N) -> N) -> Vec<(N, N)> {
         let (Some(&first), Some(&last)) = (self.marks.first(), self.marks.last()) else {
             return Vec::new();
         };
         let size = |mark: (N, N)| mark.1.abs();
-        // Seen from where it has risen, an end is least where it is no less as far outside.
+        // An end counts as a minimum only if the function is no smaller at the mirrored parameter
+        // outside.
         let is_least =
             |end: (N, N), inside: N| beyond(N::TWO * end.0 - inside) * end.1.signum() >= size(end);
         let mut turns = Vec::new();
@@ -77,7 +77,7 @@ impl<N: Float> MonotoneSamples<N> {
         turns
     }
 
-    /// The last place before the least value at which there was more.
+    /// The last parameter before the minimum at which the absolute value is larger.
     fn risen_before(&self, least: (N, N)) -> N {
         let more = |m: &&(N, N)| m.1.abs() > least.1.abs() * (N::ONE + N::from_f64(LEVEL));
         self.marks.iter().rev().find(more).map_or(least.0, |m| m.0)
@@ -101,7 +101,7 @@ mod tests {
     fn least_and_greatest_values_are_turns_and_slopes_are_not() {
         assert_eq!(turns(|t| t * t + 1.0, [-1.0, 1.0]), [0.0]);
         assert_eq!(turns(|t| -(t * t) - 1.0, [-1.0, 1.0]), [0.0]);
-        // Two zeros with a greatest value between them.
+        // Two zeros with a maximum between them.
         assert_eq!(turns(|t| t * t - 0.25, [-1.0, 1.0]), [-0.5, 0.0, 0.5]);
         assert!(turns(|t| t + 3.0, [-1.0, 1.0]).is_empty());
         assert!(turns(|t| 3.0 - t, [-1.0, 1.0]).is_empty());

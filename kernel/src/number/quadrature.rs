@@ -1,27 +1,27 @@
-//! Gauss-Legendre quadrature, adaptive for analytic integrands; of numbers of more digits by f64
-//! where these are good enough.
+//! Gauss-Legendre quadrature, adaptive for analytic integrands. Extended-precision integrals use
+//! f64 where it is accurate enough.
 
 use super::float::Float;
 use super::roots::probes;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// The nodes in (-1, 1) and the weights of a rule.
+/// The nodes in (-1, 1) and the weights of a quadrature rule.
 pub type GaussRule<N = f64> = Vec<(N, N)>;
 
-/// The rules that integrals are taken by.
+/// The quadrature rules of a precision.
 #[derive(Debug)]
 pub struct GaussRules<N = f64> {
-    /// For smooth functions over a quarter turn or so.
+    /// For smooth functions over about a quarter turn.
     pub smooth: GaussRule<N>,
-    /// Two for functions that are nearly polynomials: where they agree, the second is good.
+    /// Two rules for functions that are nearly polynomials. If they agree, the second is used.
     pub short: [GaussRule<N>; 2],
-    /// What two sums may differ by, relative to their size, to be settled.
+    /// The relative difference of two sums below which the integral has converged.
     pub settled: N,
 }
 
 impl<N: Float> GaussRules<N> {
-    /// A rule with so many nodes.
+    /// The rules, with `smooth` nodes in the first.
     pub(super) fn new(smooth: usize, settled: N) -> Self {
         Self {
             smooth: gauss(smooth),
@@ -31,8 +31,8 @@ impl<N: Float> GaussRules<N> {
     }
 }
 
-/// The rule with `n` nodes, exact for polynomials up to degree 2n - 1: the roots of the Legendre
-/// polynomial by Newton's steps.
+/// The rule with `n` nodes, exact for polynomials of degree up to 2n - 1. The nodes are the roots
+/// of the Legendre polynomial, found by Newton's method.
 fn gauss<N: Float>(n: usize) -> GaussRule<N> {
     let size = N::from_f64(n as f64);
     let legendre = |x: N| {
@@ -74,12 +74,13 @@ pub fn integral<N: Float, const D: usize>(
     sum
 }
 
-/// A vector of functions of one number.
+/// A vector-valued function of one variable.
 pub trait Integrand<N: Float, const D: usize> {
     /// The values.
     fn at(&self, t: N) -> [N; D];
 
-    /// The same computed in f64, where that may be good enough for numbers of more digits.
+    /// The values computed in f64, where these may be accurate enough in place of extended
+    /// precision.
     fn roughly(&self, _: f64) -> Option<[f64; D]> {
         None
     }
@@ -91,13 +92,13 @@ impl<N: Float, const D: usize, F: Fn(N) -> [N; D]> Integrand<N, D> for F {
     }
 }
 
-/// A part of the range that an integral is taken over.
+/// A part of the range of integration.
 struct Part<N: Float, const D: usize> {
     range: [N; 2],
     sum: [N; D],
-    /// How far it may be off, in terms of what does not matter; nothing where all is settled.
+    /// The estimated error relative to the tolerance; 0 if converged.
     off: f64,
-    /// Over its halves, where they are known.
+    /// The integrals over its halves, where known.
     halves: [Option<[N; D]>; 2],
 }
 
@@ -121,12 +122,12 @@ impl<N: Float, const D: usize> PartialEq for Part<N, D> {
 
 impl<N: Float, const D: usize> Eq for Part<N, D> {}
 
-/// How many parts are halved: each power of two towards a singular place takes one or two. More is
-/// requested by rounding alone, which no halving takes away.
+/// The greatest number of parts. Each factor of two towards a singular point takes one or two. Only
+/// rounding requires more, and halving does not reduce it.
 const MOST: usize = 192;
 
-/// The integral over [a, b], halved where both halves are farthest off the whole until they agree to
-/// within rounding or to within `floor`, an absolute error that does not matter.
+/// The integral over [a, b]. The part with the greatest estimated error is halved until all agree
+/// with their halves to within rounding or `floor`, the absolute error allowed.
 pub fn adaptive<N: Float, const D: usize>(
     a: N,
     b: N,
@@ -156,14 +157,14 @@ fn halved<N: Float>([a, b]: [N; 2]) -> [[N; 2]; 2] {
     [[a, m], [m, b]]
 }
 
-/// At how many places f64 values are held to the function itself.
+/// The number of samples at which f64 values are compared with the function.
 const PLACES: usize = 5;
 
 impl<N: Float, const D: usize> Part<N, D> {
-    /// A part, whose integral by one rule may be known.
+    /// Integrates over a part; `whole` is the integral by one rule, if known.
     fn new(range: [N; 2], whole: Option<[N; D]>, floor: &[N; D], f: &impl Integrand<N, D>) -> Self {
-        let told = Self::to_f64(range, floor, f).or_else(|| Self::in_short(range, floor, f));
-        if let Some(part) = told {
+        let converged = Self::to_f64(range, floor, f).or_else(|| Self::in_short(range, floor, f));
+        if let Some(part) = converged {
             return part;
         }
         let over = |[a, b]: [N; 2]| integral(&N::rules().smooth, a, b, |t| f.at(t));
@@ -178,8 +179,8 @@ impl<N: Float, const D: usize> Part<N, D> {
         }
     }
 
-    /// The same by the short rules, where they agree: of a function that f64 values would tell, but for
-    /// their rounding, and that may come in many small pieces.
+    /// Integrates by the short rules; `None` if they disagree. For functions that f64 follows
+    /// except for rounding, and that may come in many small pieces.
     fn in_short([a, b]: [N; 2], floor: &[N; D], f: &impl Integrand<N, D>) -> Option<Self> {
         f.roughly(a.rounded())?;
         let [few, more] = &N::rules().short;
@@ -193,7 +194,7 @@ impl<N: Float, const D: usize> Part<N, D> {
         })
     }
 
-    /// The same by f64, where these are the function's values as far as matters.
+    /// Integrates in f64; `None` if f64 values are not accurate enough.
     fn to_f64(range: [N; 2], floor: &[N; D], f: &impl Integrand<N, D>) -> Option<Self> {
         let ends = range.map(N::rounded);
         f.roughly(ends[0])?;
@@ -224,7 +225,7 @@ impl<N: Float, const D: usize> Part<N, D> {
     }
 }
 
-/// The errors of the integrals over two halves that do not matter.
+/// The tolerances of the integrals, from those over two halves.
 fn matters<N: Float, const D: usize>(halves: [[N; D]; 2], floor: &[N; D]) -> [N; D] {
     std::array::from_fn(|i| {
         let scale = halves[0][i].abs() + halves[1][i].abs();
@@ -232,7 +233,7 @@ fn matters<N: Float, const D: usize>(halves: [[N; D]; 2], floor: &[N; D]) -> [N;
     })
 }
 
-/// How far two integrals are apart, in terms of what does not matter; nothing where it is less.
+/// The difference of two integrals relative to the tolerance; 0 if it is below.
 fn off<N: Float, const D: usize>(whole: [N; D], sum: [N; D], matters: &[N; D]) -> f64 {
     let off = |i: usize| {
         let off = (sum[i] - whole[i]).abs();
@@ -263,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_kink_anywhere_is_found() {
-        // Twice the height of a hyperbola over its asymptotes' corner.
+        // Twice the height of a hyperbola above the corner of its asymptotes.
         for gap in [1e-3_f64, 1e-6, 1e-9, 1e-12] {
             let (a, b) = (-0.3_f64, 1.7_f64);
             let antiderivative = |x: f64| 0.5 * (x * x.hypot(gap) + gap * gap * (x / gap).asinh());

@@ -1,4 +1,4 @@
-//! Exact rational numbers, from decimal text and from f64 values, and back to f64 values.
+//! Exact rational numbers, and conversions from decimal text, to decimal text, and from and to f64.
 
 use dashu::base::BitTest;
 use dashu::integer::{IBig, UBig};
@@ -6,10 +6,10 @@ use dashu::integer::{IBig, UBig};
 /// An exact rational number, always in lowest terms.
 pub type Rational = dashu::rational::RBig;
 
-/// The largest decimal exponent that is read: a larger one would only eat memory.
+/// The largest decimal exponent accepted. A larger one would only consume memory.
 pub const MAX_EXPONENT: i64 = 400;
 
-/// The largest number of digits that is read in one decimal literal.
+/// The largest number of digits accepted in a decimal literal.
 pub const MAX_DIGITS: usize = 1000;
 
 /// Why a text is not an exact number.
@@ -18,16 +18,16 @@ pub enum DecimalError {
     /// The text is not a decimal literal.
     #[error("not a decimal number")]
     Malformed,
-    /// The exponent, after the decimal point is moved to the end, is beyond [`MAX_EXPONENT`].
+    /// The exponent, after the decimal point is moved to the end, exceeds [`MAX_EXPONENT`].
     #[error("the exponent is beyond {MAX_EXPONENT}")]
     ExponentTooLarge,
-    /// There are more than [`MAX_DIGITS`] digits.
+    /// It has more than [`MAX_DIGITS`] digits.
     #[error("more than {MAX_DIGITS} digits")]
     TooManyDigits,
 }
 
-/// The exact value of a decimal literal: sign, digits, point, digits, exponent,
-/// of which the sign, the point, one of the runs of digits and the exponent may be absent.
+/// The exact value of a decimal literal: sign, digits, point, digits, exponent. The sign, the
+/// point, one of the runs of digits and the exponent may be absent.
 pub fn from_decimal(text: &str) -> Result<Rational, DecimalError> {
     let (negative, rest) = split_sign(text);
     let (mantissa, exponent) = match rest.find(['e', 'E']) {
@@ -71,23 +71,23 @@ fn parse_exponent(text: &str) -> Result<i64, DecimalError> {
     if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
         return Err(DecimalError::Malformed);
     }
-    // Digits only: what does not fit is too large, not malformed.
+    // The text has digits only, so a failure to parse means that it is too large, not malformed.
     let value: i64 = digits.parse().unwrap_or(i64::MAX);
     Ok(if negative { -value } else { value })
 }
 
-/// The exact value of a double; `None` for an infinity or a NaN.
+/// The exact value of an f64; `None` if it is infinite or NaN.
 pub fn from_f64(value: f64) -> Option<Rational> {
     Rational::try_from(value).ok()
 }
 
-/// The nearest double, ties to even; an infinity beyond the range of f64 values.
+/// The nearest f64, ties to even; infinite beyond the range of f64.
 pub fn to_f64(value: &Rational) -> f64 {
     value.to_f64().value()
 }
 
-/// The exact decimal of a number, without an exponent; `None` where it does not end, or has more
-/// than [`MAX_DIGITS`] digits.
+/// The exact decimal notation, without an exponent. `None` if it is infinite or has more than
+/// [`MAX_DIGITS`] digits.
 pub fn to_decimal(value: &Rational) -> Option<String> {
     // With a denominator of 2^a 5^b there are max(a, b) digits after the point.
     let mut rest = value.denominator().clone();
@@ -120,7 +120,7 @@ pub fn to_decimal(value: &Rational) -> Option<String> {
     Some(format!("{minus}{before}{point}{after}"))
 }
 
-/// Numbers in the same proportion, whole and without a common divisor; zeros stay zeros.
+/// Integers in the same proportion, without a common divisor. Zeros stay zeros.
 pub fn whole<const N: usize>(values: &[Rational; N]) -> [Rational; N] {
     use dashu::base::Gcd;
     let mut common = UBig::ONE;
@@ -146,12 +146,12 @@ pub fn whole<const N: usize>(values: &[Rational; N]) -> [Rational; N] {
     }
 }
 
-/// The length of the numerator and the denominator together, in bits: what a number costs.
+/// The total length of numerator and denominator in bits, a measure of cost.
 pub fn bits(value: &Rational) -> usize {
     value.numerator().bit_len() + value.denominator().bit_len()
 }
 
-/// The exact square root, where it is rational.
+/// The exact square root, if it is rational.
 pub fn exact_sqrt(value: &Rational) -> Option<Rational> {
     if value.sign() == dashu::base::Sign::Negative {
         return None;

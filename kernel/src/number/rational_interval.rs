@@ -1,7 +1,7 @@
-//! Intervals between rational numbers, to a chosen number of bits: the second filter of every sign.
+//! Intervals of rational numbers, to a chosen number of bits: the second filter of every predicate.
 //!
-//! Sums, products and quotients of exact numbers stay exact while they are short; what grows beyond
-//! the chosen number of bits, and square roots, are rounded outwards.
+//! Sums, products and quotients stay exact while they are short. Results longer than the chosen
+//! number of bits, and square roots, are rounded outwards.
 
 use super::float::Float;
 use super::rational::{Rational, bits as length, exact_sqrt, from_f64};
@@ -10,24 +10,24 @@ use dashu::integer::{IBig, UBig};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A closed interval that holds the exact value, or all that is known: nothing.
+/// A closed interval that contains the exact value, or no knowledge of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RationalInterval {
     ends: Option<[Rational; 2]>,
     bits: usize,
 }
 
-/// How a number is rounded.
+/// The direction of rounding.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Toward {
     Below,
     Above,
 }
 
-/// The least number of bits that is kept.
+/// The least precision, in bits.
 const LEAST: usize = 64;
 
-/// x times two to the power of `shift`, as an integer.
+/// x times 2^`shift`, rounded to an integer.
 fn scaled(x: &Rational, shift: isize, toward: Toward) -> IBig {
     let (mut numerator, mut denominator) = (x.numerator().clone(), x.denominator().clone());
     if shift >= 0 {
@@ -42,7 +42,7 @@ fn scaled(x: &Rational, shift: isize, toward: Toward) -> IBig {
     }
 }
 
-/// n divided by two to the power of `shift`.
+/// n divided by 2^`shift`.
 fn unscaled(n: IBig, shift: isize) -> Rational {
     if shift >= 0 {
         Rational::from_parts(n, UBig::ONE << shift.unsigned_abs())
@@ -51,7 +51,7 @@ fn unscaled(n: IBig, shift: isize) -> Rational {
     }
 }
 
-/// A number no longer than `bits` on one side of x; x itself where it is short.
+/// A bound of x of at most `bits` bits, below or above it; x itself if it is short.
 fn rounded(x: Rational, bits: usize, toward: Toward) -> Rational {
     if length(&x) <= 2 * bits {
         return x;
@@ -61,7 +61,7 @@ fn rounded(x: Rational, bits: usize, toward: Toward) -> Rational {
     unscaled(scaled(&x, shift, toward), shift)
 }
 
-/// The square root of a number that is not negative, rounded.
+/// The square root of a non-negative number, rounded.
 fn root(x: &Rational, bits: usize, toward: Toward) -> Rational {
     if let Some(exact) = exact_sqrt(x) {
         return exact;
@@ -77,7 +77,7 @@ fn root(x: &Rational, bits: usize, toward: Toward) -> Rational {
 }
 
 impl RationalInterval {
-    /// An exact number, to be computed with to so many bits.
+    /// An exact number, for computation to so many bits.
     pub fn exact(x: Rational, bits: usize) -> Self {
         Self {
             ends: Some([x.clone(), x]),
@@ -85,7 +85,7 @@ impl RationalInterval {
         }
     }
 
-    /// A double, exactly; nothing is known of an infinity.
+    /// An f64, exactly; unknown if it is not finite.
     pub fn of_double(x: f64) -> Self {
         Self {
             ends: from_f64(x).map(|x| [x.clone(), x]),
@@ -93,12 +93,12 @@ impl RationalInterval {
         }
     }
 
-    /// The two ends, where anything is known.
+    /// The two ends; `None` if nothing is known.
     pub fn ends(&self) -> Option<&[Rational; 2]> {
         self.ends.as_ref()
     }
 
-    /// The number next to the middle; not a number where nothing is known.
+    /// The number nearest to the midpoint; NaN if nothing is known.
     pub fn middle<N: Float>(&self) -> N {
         let middle = |[lo, hi]: &[Rational; 2]| N::nearest(&((lo + hi) / Rational::from(2)));
         self.ends.as_ref().map_or(N::NAN, middle)
@@ -234,7 +234,7 @@ mod tests {
 
         #[test]
         fn products_hold_the_product(a in -99i64..99, b in 1u64..99, k in 1usize..40) {
-            // (a/b)^k exactly, and rounded on the way.
+            // (a/b)^k exactly, and with rounding at every step.
             let x = ratio(a, b);
             let mut exact = Rational::ONE;
             let mut e = RationalInterval::exact(Rational::ONE, LEAST);

@@ -1,10 +1,10 @@
 //! Real roots of a smooth function on an interval, isolated with their multiplicity.
 //!
-//! The function is given as a jet over an interval: a certified range of its value and of two
-//! derivatives. Where the first derivative keeps its sign there is at most one root; where the
-//! second does, at most two, and the extremum between them determines which: outside the resolution by its
-//! certified sign, within it a tangency. Everything else is halved. The values are distances, so
-//! the resolution is the part's resolution.
+//! The function is given as a jet over an interval: certified ranges of its value and of two
+//! derivatives. Where the first derivative has no zero there is at most one root. Where the second
+//! has none there are at most two, and the extremum between them decides: outside the resolution by
+//! its certified sign, within it as a tangency. Other intervals are halved. The values are
+//! distances, so the resolution is the part's.
 
 use super::analytic::Analytic;
 use super::bisection::{bisect, bisect_newton};
@@ -16,43 +16,43 @@ use super::jet::Jet;
 use super::monotone_samples::MonotoneSamples;
 use super::predicates::CLOSE;
 
-/// How a function meets zero at a root.
+/// The multiplicity of a root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RootKind {
     /// A simple root.
     Simple,
-    /// An even number of roots within the resolution: the function touches zero.
+    /// An even number of roots within the resolution: the graph touches zero.
     Touching,
-    /// An odd number, more than one, within the resolution.
+    /// An odd number of roots, more than one, within the resolution.
     Inflected,
 }
 
 /// An isolated root, or a cluster of roots within the resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root<N: Float = f64> {
-    /// The best parameter.
+    /// The best estimate of the parameter.
     pub t: N,
     /// Where the cluster begins.
     pub lo: N,
     /// Where the cluster ends.
     pub hi: N,
-    /// How zero is met.
+    /// The multiplicity.
     pub contact: RootKind,
-    /// The least absolute value met next to the root where the answer was not plain.
+    /// The least absolute value found next to the root; `None` if the root is unambiguous.
     pub margin: Option<N>,
 }
 
 /// The zeros of a function on an interval.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Roots<N: Float = f64> {
-    /// The function is within the resolution throughout.
+    /// The function is within the resolution over the entire interval.
     Everywhere,
-    /// The roots, and what was found to be apart from zero by little.
+    /// The roots, and the near misses.
     At {
-        /// In increasing order.
+        /// The roots, in increasing order.
         roots: Vec<Root<N>>,
-        /// Where the function turns back next to zero: (parameter, value). What leads on to a root
-        /// is none of them, however slowly it does.
+        /// Local minima of the absolute value close to zero: (parameter, value). A slow descent to
+        /// a root is not one.
         misses: Vec<(N, N)>,
     },
 }
@@ -66,24 +66,24 @@ struct Cluster<N: Float = f64> {
     margin: Option<N>,
 }
 
-/// What is known of a cluster's best parameter.
+/// What is known of a cluster's best estimate.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// A root between opposite signs of a monotone function.
+    /// A root of a monotone function between opposite signs.
     Simple,
-    /// The function is monotone, and within the resolution.
+    /// The function is monotone and within the resolution.
     Level,
-    /// The extremum.
+    /// An extremum.
     Extremum,
-    /// Only that it lies in the cluster.
+    /// Some point of the cluster.
     Loose,
 }
 
-/// How far beyond its range, as a part of it, the function is requested its sign.
+/// How far beyond the range the function's sign is evaluated, as a fraction of the range.
 const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 
-/// A function that leaves the resolution by no more than this has not left it: next to the resolution's edge
-/// rounding takes it in and out.
+/// Hysteresis at the edge of the resolution: a function that exceeds the resolution by no more than
+/// this factor counts as within it. Otherwise rounding would break one cluster into several.
 const FRINGE: f64 = 1.0 + 1.0 / 64.0;
 
 /// A function whose roots are sought.
@@ -91,17 +91,17 @@ pub trait Function<N: Float = f64> {
     /// The certified ranges of the value and of two derivatives over an interval.
     fn over(&self, t: Interval<N>) -> Jet<Interval<N>>;
 
-    /// A certified range of the value alone, where it is had for less.
+    /// A certified range of the value alone, if it is cheaper.
     fn reach(&self, _t: Interval<N>) -> Interval<N> {
         Interval::ENTIRE
     }
 
-    /// The same in f64 over a piece, where it is one of more digits that f64 values follow.
+    /// An f64 filter over a piece, for a function in extended precision that f64 follows.
     fn roughly(&self, _piece: [N; 2]) -> Option<F64Filter<'_>> {
         None
     }
 
-    /// The value and two derivatives at a point, in f64.
+    /// The value and two derivatives at a point, uncertified.
     fn at(&self, t: N) -> Jet<N> {
         let j = self.over(Interval::point(t));
         Jet {
@@ -111,7 +111,7 @@ pub trait Function<N: Float = f64> {
         }
     }
 
-    /// The value at a point, in f64.
+    /// The value at a point, uncertified.
     fn value(&self, t: N) -> N {
         self.at(t).v
     }
@@ -123,48 +123,48 @@ impl<N: Float, F: Fn(Interval<N>) -> Jet<Interval<N>>> Function<N> for F {
     }
 }
 
-/// Most roots are isolated before a piece is halved to this part of it; next to a contact of high
-/// order halving goes on, and it is worth while to narrow more.
+/// The relative width from which on second-order Taylor bounds are used. Most roots are isolated
+/// before; next to a contact of high order halving continues, and tighter bounds pay.
 const SMALL: f64 = 1.0 / 16.0;
 
-/// More than twice the number of zeros that what is asked along any of the curves can have: what is
-/// within the resolution at that many places is so in between.
+/// The number of probes: more than twice the number of zeros that any function along the curves can
+/// have. A function that is within the resolution at so many probes is so in between.
 const PROBES: u32 = 67;
 
-/// Fractions of a range: the first few already lie far apart, by steps of the golden section.
+/// Fractions of a range by golden-section steps: the first few are already far from each other.
 pub fn probes<N: Float>() -> impl Iterator<Item = N> {
     (1..=PROBES).map(|k| (N::whole(k) * N::from_f64(0.618_033_988_749_895)).fract())
 }
 
-/// After so many halvings of a piece, and again after twice as many, a polynomial is tried for all that
-/// is left of it.
+/// The number of halvings after which, and after each doubling of which, a polynomial model of the
+/// rest of the piece is tried.
 const SOME: u32 = 8;
 
-/// From so many halvings of a piece on a polynomial is tried for each of its parts.
+/// The number of halvings from which on a polynomial model of each part is tried.
 const MANY: u32 = 64;
 
-/// How far a polynomial may be off, as a part of the resolution: less than half of the fringe, so that
-/// something is always told of what is level.
+/// The error of a polynomial model, relative to the resolution. It is less than half of the fringe,
+/// so that a function that is constant at the edge of the resolution can still be classified.
 const FINE: f64 = 1.0 / 256.0;
 
 struct Search<'a, F, N: Float> {
     f: &'a F,
     resolution: N,
-    /// What is no further from zero than this is told.
+    /// The largest absolute value that is reported as a near miss.
     reach: N,
     floor: N,
     clusters: Vec<Cluster<N>>,
     profile: MonotoneSamples<N>,
 }
 
-/// The roots of `f` on the pieces between consecutive `breaks`, where `f` is smooth; `resolution` is the
-/// resolution. A closed curve passes its whole period and is wrapped by the caller. No misses are
-/// sought.
+/// The roots of `f` on the pieces between consecutive `breaks`, on each of which `f` is smooth. For
+/// a closed curve the breaks span a whole period, and the caller identifies its ends. Near misses
+/// are not searched for.
 pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> Roots<N> {
     search(f, breaks, resolution, resolution)
 }
 
-/// The same, and all misses that are close calls.
+/// The roots, and all near misses that are close calls.
 pub fn isolate_closely<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> Roots<N> {
     search(f, breaks, resolution, N::from_f64(CLOSE) * resolution)
 }
@@ -207,8 +207,9 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         }
     }
 
-    /// The ranges over an interval, unless no value in it is near zero: the cheapest that tells,
-    /// narrowed by Taylor's sums about the middle, by the second only where the interval is `small`.
+    /// The ranges over an interval, or `None` if no value in it is close to zero. The cheapest
+    /// bound that suffices is used: the direct one, then Taylor forms about the middle, the
+    /// second-order one only for `small` intervals.
     fn unclear(&self, x: Interval<N>, small: bool) -> Option<Jet<Interval<N>>> {
         let unclear = |v: &Interval<N>| !self.is_clear(*v);
         Some(self.f.reach(x)).filter(unclear)?;
@@ -246,7 +247,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         });
     }
 
-    /// Works through [a, b] in order, by halving with a stack of its own.
+    /// Isolates the roots in [a, b] in order, by halving with an explicit stack.
     fn piece(&mut self, a: N, b: N) {
         let whole = (a, b);
         let rough = self.f.roughly([a, b]);
@@ -280,8 +281,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         }
     }
 
-    /// The same of a function that is a polynomial there within a small part of the resolution; false where
-    /// it is none.
+    /// Isolates the roots in [a, b] by a polynomial model with an error far below the resolution.
+    /// Returns false if there is no such model.
     fn interpolated(&mut self, a: N, b: N) -> bool {
         let Some(polynomial) =
             ChebyshevModel::new(self.f, [a, b], N::from_f64(FINE) * self.resolution)
@@ -300,8 +301,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         true
     }
 
-    /// Whether the ranges over an interval tell what is there, which is noted; there are none where
-    /// nothing is.
+    /// Whether the ranges over an interval classify it; the result is recorded. `jet` is `None`
+    /// where no value is close to zero.
     fn settles(&mut self, x: Interval<N>, jet: Option<Jet<Interval<N>>>) -> bool {
         let (a, b, m) = (x.lo, x.hi, x.mid());
         let Some(jet) = jet else {
@@ -310,9 +311,10 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         };
         let v = jet.v;
         let misses = v.lo > self.resolution || v.hi < -self.resolution;
-        // Beyond the reach, too: what is level at its edge would be halved without end.
+        // Also beyond the reach: a function that is constant at the edge of the reach would be
+        // halved without end.
         if misses && (v.magnitude() <= N::TWO * self.reach || b - a <= self.floor) {
-            self.beside(a, b);
+            self.mark_miss(a, b);
         } else if v.magnitude() <= N::from_f64(FRINGE) * self.resolution {
             let level = !jet.d.has_zero();
             let kind = if level { Kind::Level } else { Kind::Loose };
@@ -329,23 +331,23 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         true
     }
 
-    /// Whether what is known of the values is their rounding: halving tells no more.
+    /// Whether the range of the values is only their rounding, so that halving adds nothing.
     fn is_rounding(&self, middle: N, v: Interval<N>) -> bool {
         v.width() <= N::TWO * self.value_over(middle).width()
     }
 
-    /// Whether the function is within the resolution throughout, by its values at enough places. Halving
-    /// finds it, too, but one that is zero is halved down to the root of the resolution.
+    /// Whether the function is within the resolution over all of [a, b], by samples. Halving would
+    /// find it, too, but halves a function that is zero down to the square root of the resolution.
     fn vanishes(&self, a: N, b: N) -> bool {
         probes().all(|part| self.value(a + (b - a) * part).abs() <= self.resolution)
     }
 
-    /// Whether no value of a range is a root, or so near to one that it is to be told.
+    /// Whether no value of the range is a root or a near miss.
     fn is_clear(&self, v: Interval<N>) -> bool {
         v.lo > self.reach || v.hi < -self.reach
     }
 
-    /// -1, 0 (within the resolution) or 1.
+    /// The sign of a value: -1, 0 (within the resolution) or 1.
     fn sign(&self, value: N) -> i8 {
         if value.abs() <= self.resolution {
             0
@@ -356,8 +358,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         }
     }
 
-    /// Marks a stretch that lies next to zero, and has no root.
-    fn beside(&mut self, a: N, b: N) {
+    /// Records samples of an interval that is close to zero and has no root.
+    fn mark_miss(&mut self, a: N, b: N) {
         let (da, db) = (self.slope(a), self.slope(b));
         let inside = if da * db < N::ZERO {
             bisect(a, b, da, |t| self.slope(t))
@@ -414,7 +416,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         self.monotone(t, b);
     }
 
-    /// How far from an extremum or an end within the resolution towards `end` the function stays within it.
+    /// The point up to which the function stays within the resolution, from an extremum or an end
+    /// towards `end`.
     fn limit(&self, extremum: N, end: N) -> N {
         let sign = self.value(end).signum();
         let beyond = |t: N| sign * self.value(t) - self.resolution;
@@ -425,7 +428,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         bisect(a, b, beyond(a), beyond)
     }
 
-    /// The root in [a, b], where the function is monotone with opposite signs at the ends.
+    /// The root in [a, b], for a monotone function of opposite signs at the ends.
     fn refine(&self, a: N, b: N, fa: N) -> N {
         bisect_newton(a, b, fa, |t| {
             let j = self.f.at(t);
@@ -433,8 +436,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         })
     }
 
-    /// Whether two clusters are one: they touch, or rounding alone takes the function out of the
-    /// band between them.
+    /// Whether two clusters are one: they touch, or only rounding takes the function out of the
+    /// resolution between them.
     fn is_one(&self, before: &Cluster<N>, after: &Cluster<N>) -> bool {
         before.hi >= after.lo
             || self.value(N::HALF * (before.hi + after.lo)).abs()
@@ -460,7 +463,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
             .iter()
             .map(|g| (g[0].lo, g[g.len() - 1].hi))
             .collect();
-        // Between clusters the sign is plain; beyond the ends of the range the function goes on.
+        // The sign is unambiguous between clusters; beyond the ends of the range the function is
+        // evaluated, too.
         let step = (last - first) * N::from_f64(OUTSIDE);
         let sign_between = |i: usize| {
             let left = if i == 0 { None } else { Some(ends[i - 1].1) };
@@ -485,7 +489,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         Roots::At { roots, misses }
     }
 
-    /// One root from the clusters that touch one another.
+    /// The root of a group of adjacent clusters.
     fn root(&self, group: &[Cluster<N>], crosses: bool) -> Root<N> {
         let (lo, hi) = (group[0].lo, group[group.len() - 1].hi);
         let margin = group.iter().filter_map(|c| c.margin).reduce(N::min);
@@ -509,7 +513,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         found(t, RootKind::Touching)
     }
 
-    /// Whether the function is monotone over clusters that touch one another.
+    /// Whether the function is monotone over adjacent clusters.
     fn is_monotone(&self, group: &[Cluster<N>]) -> bool {
         let slope = |c: &Cluster<N>| self.slope(N::HALF * (c.lo + c.hi));
         let first = slope(&group[0]);
@@ -517,7 +521,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         group.iter().all(|c| known(c) && slope(c) * first > N::ZERO)
     }
 
-    /// The zero between the ends of a cluster; the end next to zero where there is none.
+    /// The zero between the ends of a cluster; if there is none, the end with the smaller value.
     fn crossing(&self, lo: N, hi: N) -> N {
         let (a, b) = (self.value(lo), self.value(hi));
         if a * b <= N::ZERO {
@@ -529,8 +533,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         }
     }
 
-    /// The best parameter where a function that is not monotone crosses zero in a cluster: where
-    /// its second derivative vanishes, if that is in the cluster.
+    /// The best estimate where a non-monotone function crosses zero in a cluster: the zero of its
+    /// second derivative, if it is in the cluster.
     fn inflection(&self, lo: N, hi: N) -> N {
         let t = self.balance(lo, hi, |j| j.dd);
         if (lo..=hi).contains(&t) {
@@ -539,7 +543,8 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         self.crossing(lo, hi)
     }
 
-    /// The zero of a derivative in or next to a cluster, or where it is least.
+    /// The zero of a derivative in or next to a cluster; if there is none, the point of its least
+    /// absolute value.
     fn balance(&self, lo: N, hi: N, part: impl Fn(Jet<N>) -> N) -> N {
         let g = |t: N| part(self.f.at(t));
         let middle = (N::HALF * (lo + hi), g(N::HALF * (lo + hi)));

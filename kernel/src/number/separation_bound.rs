@@ -1,8 +1,9 @@
-//! How near to zero an expression of rational numbers and square roots comes, if it is not zero.
+//! Separation bounds: how close to zero a non-zero expression of rational numbers and square roots
+//! can be.
 //!
-//! The bound of Burnikel, Funke, Mehlhorn, Schirra and Schmitt (2001): with u and l built along the
-//! expression and r different square roots in it, |E| ≥ 1 / (u^(2ʳ - 1) l), or E is zero. What is
-//! rational along the way is kept as the number that it is, so that it does not grow.
+//! The bound is that of Burnikel, Funke, Mehlhorn, Schirra and Schmitt (2001). With u and l built
+//! along the expression E, and r distinct square roots in it, |E| ≥ 1 / (u^(2ʳ - 1) l), or E is
+//! zero. Rational subexpressions are kept as numbers, so that their bounds do not grow.
 
 use super::enclosable::Enclosable;
 use super::rational::{Rational, exact_sqrt, from_f64};
@@ -12,17 +13,17 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// What is known of an expression.
 #[derive(Clone, Debug, PartialEq)]
 enum Known {
-    /// It is this number.
+    /// Its exact rational value.
     Rational(Rational),
-    /// It is irrational, perhaps: log₂ of u and of l.
+    /// Bounds of a value that may be irrational: log₂ of u and of l.
     Bounded { upper: f64, lower: f64 },
 }
 
-/// A bound for an expression, built like its value.
+/// The separation bound of an expression, built along with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeparationBound {
     known: Known,
-    /// What the different square roots are of, where that is rational.
+    /// The radicands of the distinct square roots, where rational.
     roots: Vec<Option<Rational>>,
 }
 
@@ -35,7 +36,7 @@ impl SeparationBound {
         }
     }
 
-    /// Nothing is known.
+    /// No bound.
     fn unknown() -> Self {
         let (upper, lower) = (f64::INFINITY, f64::INFINITY);
         Self {
@@ -44,8 +45,8 @@ impl SeparationBound {
         }
     }
 
-    /// The number of bits after the point from which on a value that is still zero is zero; none
-    /// where there is no bound.
+    /// The number of bits after the binary point that prove a value to be zero; `None` if there is
+    /// no bound.
     pub fn bits(&self) -> Option<usize> {
         let [upper, lower] = self.parts();
         let bits = upper * ((self.roots.len() as f64).exp2() - 1.0) + lower;

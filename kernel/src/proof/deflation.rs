@@ -1,5 +1,5 @@
-//! What more can be said of a point at which all of some polynomials vanish and too many of their
-//! gradients depend on one another: that they do (deflation: Leykin, Verschelde and Zhao 2006).
+//! Deflation (Leykin, Verschelde and Zhao 2006): at a common zero of polynomials whose gradients
+//! are linearly dependent, the dependence gives further polynomials that vanish there.
 
 use super::fixed::Place;
 use super::point::{FIRST, Form};
@@ -7,18 +7,19 @@ use super::polynomial::Polynomial;
 use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 
-/// Of how many polynomials, the simplest ones, gradients are compared.
+/// The number of polynomials, simplest first, whose gradients are compared.
 const FEW: usize = 6;
-/// No polynomial of a higher degree is made.
+/// The highest degree of a new polynomial.
 const HIGH: u32 = 12;
-/// The bits by which a gradient is longer than its rounding if it is one: next to the point, which
-/// is known to some hundred bits where surfaces touch, all are a little.
+/// The number of bits by which a gradient that is not zero exceeds its rounding. Where surfaces are
+/// tangent the point is known to some hundred bits, so every gradient there differs slightly from
+/// zero.
 const CLEAR: usize = FIRST - 74;
-/// Directions that are closer are one.
+/// The sine of the angle below which two directions are equal.
 const ONE: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// The polynomials that vanish at a point with the given ones because the gradients of these depend
-/// on one another there.
+/// Further polynomials that vanish at a point, because the gradients of the given ones are linearly
+/// dependent there.
 pub fn deflated<N: Float>(polynomials: &[Polynomial], p: &Point3<N>) -> Vec<Polynomial> {
     let Some(place) = Place::new(p, FIRST) else {
         return Vec::new();
@@ -34,8 +35,8 @@ pub fn deflated<N: Float>(polynomials: &[Polynomial], p: &Point3<N>) -> Vec<Poly
         .collect();
     let mut more: Vec<Polynomial> = Vec::new();
     for (i, (a, along)) in all.iter().enumerate() {
-        for (j, (b, beside)) in all.iter().enumerate().skip(i + 1) {
-            let across = along.zip(*beside).map(|(a, b)| a.cross(&b));
+        for (j, (b, other)) in all.iter().enumerate().skip(i + 1) {
+            let across = along.zip(*other).map(|(a, b)| a.cross(&b));
             let Some(across) = across.filter(|c| c.norm() > ONE) else {
                 more.extend(a.level.touching(&b.level));
                 continue;

@@ -1,4 +1,4 @@
-//! Places in fixed point: whole multiples of a power of two.
+//! Points in fixed-point coordinates: integer multiples of a power of two.
 
 use super::polynomial::Polynomial;
 use crate::number::float::Float;
@@ -7,7 +7,7 @@ use dashu::base::BitTest;
 use dashu::integer::IBig;
 use nalgebra::Point3;
 
-/// A place: `at` times 2 to the power of -`bits`.
+/// A point with the coordinates `at` times 2^-`bits`.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     pub bits: usize,
@@ -15,7 +15,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// A point, rounded to so many bits after the point; none where it is not finite.
+    /// A point rounded to so many bits after the binary point; `None` if it is not finite.
     pub fn new<N: Float>(p: &Point3<N>, bits: usize) -> Option<Self> {
         let one = Rational::from(IBig::ONE << bits);
         let mut at = [IBig::ZERO, IBig::ZERO, IBig::ZERO];
@@ -25,7 +25,7 @@ impl Place {
         Some(Self { bits, at })
     }
 
-    /// The same place with another number of bits.
+    /// The same point with another number of bits.
     pub fn with_bits(&self, bits: usize) -> Self {
         let at = self.at.each_ref();
         let at = at.map(|x| match bits >= self.bits {
@@ -35,7 +35,7 @@ impl Place {
         Self { bits, at }
     }
 
-    /// log₂ of the greatest coordinate or one, rounded up.
+    /// log₂ of the greatest coordinate or of one, rounded up.
     pub fn magnitude(&self) -> usize {
         let lengths = self
             .at
@@ -69,10 +69,10 @@ impl Place {
         sum
     }
 
-    /// log₂ of a bound of how far such a value is off, in the same unit.
+    /// log₂ of a bound of the rounding error of such a value, in the same unit.
     pub fn rounding(&self, p: &Polynomial) -> usize {
         let degree = p.degree() as usize;
-        // Every product is off by less than one, times the factors that follow.
+        // The error of every product is less than one, times the factors that follow.
         p.length() + degree * (self.magnitude() + 1) + 2
     }
 }

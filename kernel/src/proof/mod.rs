@@ -1,10 +1,10 @@
 //! Proofs that surfaces have a point in common.
 //!
-//! Numbers of many digits propose: a point, and the surfaces that seem to pass through it. A
-//! [`Polynomial`] is a surface without rounding, a [`AlgebraicPoint`] the exact common zero of three of them
-//! next to a proposed place, known to as many bits as are requested. Of any further polynomial it is
-//! then told whether it is zero there: a value that is smaller than the separation bound allows
-//! without being zero is zero.
+//! Extended-precision numbers propose a point and the surfaces that seem to pass through it. A
+//! [`Polynomial`] represents a surface without rounding. An [`AlgebraicPoint`] is the exact common
+//! zero of three of them close to a proposed point, known to as many bits as are requested. For any
+//! further polynomial it is then determined whether it is zero there: a value below the separation
+//! bound is zero.
 
 mod deflation;
 mod fixed;

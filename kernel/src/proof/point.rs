@@ -1,12 +1,12 @@
-//! The exact common zero of three polynomials next to a place.
+//! The exact common zero of three polynomials close to a given point.
 //!
-//! That there is one, and how far from the place, is Kantorovich's theorem (1948); its digits are
-//! Newton's. Whether a further polynomial h is zero there is told by a separation bound: let R(s, Z)
-//! be the resultant of the three, disturbed by s xᵈ, s yᵈ and s zᵈ, and of h - Z. Its lowest power
-//! of s has a coefficient that is a polynomial in Z with whole coefficients, not zero, and zero at
-//! the value of h at every isolated zero of the three (Canny 1990, on generalised characteristic
-//! polynomials). So that value is zero, or no less than one over that polynomial's greatest
-//! coefficient, which the heights and the degrees bound (Sombra 2004).
+//! Kantorovich's theorem (1948) proves its existence and bounds its distance; Newton's method gives
+//! its digits. A separation bound determines whether a further polynomial h is zero there. Let R(s,
+//! Z) be the resultant of h - Z and of the three polynomials, perturbed by s xᵈ, s yᵈ and s zᵈ. The
+//! coefficient of its lowest power of s is a non-zero polynomial in Z with integer coefficients. It
+//! vanishes at the value of h at every isolated zero of the three (Canny 1990, on generalised
+//! characteristic polynomials). So that value is zero, or at least one over that polynomial's
+//! greatest coefficient, which the heights and the degrees bound (Sombra 2004).
 
 use super::fixed::Place;
 use super::polynomial::Polynomial;
@@ -19,46 +19,47 @@ use nalgebra::{Point3, Vector3};
 /// Whether a polynomial is zero at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZeroTest {
-    /// It is, which is proven.
+    /// It is zero, which is proven.
     Zero,
-    /// It is not, which is proven.
+    /// It is not zero, which is proven.
     Apart,
-    /// It would take too many bits to tell.
+    /// A decision would take too many bits.
     Open,
 }
 
-/// An exact point: the zero of three polynomials next to a place.
+/// An exact point: the zero of three polynomials close to a given point.
 #[derive(Clone, Debug)]
 pub struct AlgebraicPoint {
     base: [Form; 3],
     place: Place,
-    /// log₂ of a bound of how far the place is off.
+    /// log₂ of a bound of the distance of the zero from `place`.
     off: f64,
 }
 
-/// The bits after the point with which a point is looked for first.
+/// The number of bits after the binary point at the start.
 pub(super) const FIRST: usize = 256;
-/// Newton's steps from a place that is known to some thirty digits to all of the first bits.
+/// The number of Newton steps from a point known to some thirty digits to all of the first bits.
 const STEPS: usize = 5;
-/// More bits than this are not computed with.
+/// The largest number of bits.
 const MOST: usize = 1 << 17;
-/// How far gradients must reach out of one another's span: clearly, or at all.
+/// The least sine between a gradient and the span of those before, tried in turn: from clearly to
+/// barely independent.
 const INDEPENDENT: [f64; 3] = [
     1.0 / (1 << 6) as f64,
     1.0 / (1 << 20) as f64,
     1.0 / (1u64 << 45) as f64,
 ];
-/// The bits by which a gradient must be longer than its rounding.
+/// The number of bits by which a gradient must exceed its rounding.
 const CLEAR: usize = 100;
-/// The bits by which bounds are generous.
+/// Guard bits of the bounds.
 const SPARE: usize = 64;
 
-/// log₂ of a number's absolute value, rounded up; of zero that of one.
+/// log₂ of a number's absolute value, rounded up; for zero that of one.
 fn log2(x: &IBig) -> f64 {
     x.bit_len() as f64
 }
 
-/// The determinant of three rows.
+/// The determinant of a matrix of three rows.
 fn determinant(m: &[[IBig; 3]; 3]) -> IBig {
     let minor = |i: usize, j: usize| &m[1][i] * &m[2][j] - &m[1][j] * &m[2][i];
     &m[0][0] * minor(1, 2) - &m[0][1] * minor(0, 2) + &m[0][2] * minor(0, 1)
@@ -83,8 +84,8 @@ impl Form {
         self.gradient.each_ref().map(|d| place.value(d))
     }
 
-    /// The direction of the gradient at a place; none where it is not `clear` bits longer than its
-    /// rounding.
+    /// The direction of the gradient at a point; `None` unless the gradient exceeds its rounding by
+    /// `clear` bits.
     pub fn direction(&self, place: &Place, clear: usize) -> Option<Vector3<f64>> {
         let slope = self.slope(place);
         let most = slope.iter().map(|x| x.clone().abs()).max()?;
@@ -99,8 +100,8 @@ impl Form {
 }
 
 impl AlgebraicPoint {
-    /// The point next to a place that is the zero of three of some polynomials, the first ones whose
-    /// gradients are independent; none where it is not proven that there is one, and one only.
+    /// The zero, close to a point, of the first three polynomials with independent gradients.
+    /// `None` unless its existence and uniqueness are proven.
     pub fn next_to<'p, N: Float>(
         polynomials: impl IntoIterator<Item = &'p Polynomial>,
         p: &Point3<N>,
@@ -129,14 +130,15 @@ impl AlgebraicPoint {
         Some(point)
     }
 
-    /// The way to it from another point, as far as numbers of a kind tell.
+    /// The vector to it from another point, to the precision of `N`.
     pub fn from<N: Float>(&self, p: &Point3<N>) -> Vector3<N> {
         let one = Rational::from(IBig::ONE << self.place.bits);
         let at = |i: usize| N::nearest(&(Rational::from(self.place.at[i].clone()) / &one));
         Vector3::new(at(0), at(1), at(2)) - p.coords
     }
 
-    /// log₂ of how far the zero is from the place; none where the theorem does not hold.
+    /// log₂ of a bound of the distance of the zero from `place`; `None` where the theorem does not
+    /// apply.
     fn kantorovich(&self) -> Option<f64> {
         let (place, bits) = (&self.place, self.place.bits as f64);
         let slopes = self.base.each_ref().map(|form| form.slope(place));
@@ -145,8 +147,8 @@ impl AlgebraicPoint {
             let most = slope.iter().map(log2).fold(0.0, f64::max);
             most - 1.0 - bits
         });
-        // Of directions of length one no minor is greater than one, and a gradient is no longer than
-        // four times what its size is rounded down to.
+        // No minor of unit vectors exceeds one, and no gradient is longer than four times its
+        // rounded-down size.
         let total: f64 = sizes.iter().map(|size| size + 2.0).sum();
         let inverse = 2.0 + total + 3.0 * bits - (log2(&determinant(&slopes)) - 1.0);
         if inverse > bits / 4.0 {
@@ -156,18 +158,18 @@ impl AlgebraicPoint {
         for (Form { level, gradient }, size) in self.base.iter().zip(sizes) {
             let off = place.value(level).bit_len().max(place.rounding(level)) + 1;
             value = value.max(off as f64 - bits - size);
-            // Of the second derivatives within one unit.
+            // The second derivatives within one unit.
             let around = level.degree().saturating_sub(2) as usize * (place.magnitude() + 1);
             let second = gradient.iter().flat_map(|d| d.gradient());
             let second = second.map(|d| d.length()).max().unwrap_or(0);
             bend = bend.max((second + around) as f64 + 4.0 - size);
         }
         let step = inverse + value + 1.0;
-        // h = β K η, less than a half; the zero lies within twice the step.
+        // h = β K η is less than a half, so the zero lies within twice the step.
         (step < -1.0 && inverse + bend + step < -2.0).then_some(step + 1.0)
     }
 
-    /// The bits after the point from which on a value of h that is still zero is zero.
+    /// The number of bits after the binary point that prove a value of h to be zero.
     fn separation(&self, h: &Polynomial) -> f64 {
         let [a, b, c] = self.base.each_ref().map(|form| &form.level);
         let all = [a, b, c, h];
@@ -180,12 +182,12 @@ impl AlgebraicPoint {
         all.iter().zip(&degrees).map(sum).sum::<f64>() + 1.0
     }
 
-    /// Whether a polynomial is one of the three that it is the zero of.
+    /// Whether a polynomial is one of the three that define the point.
     pub fn is_defined_by(&self, p: &Polynomial) -> bool {
         self.base.iter().any(|form| form.level == *p)
     }
 
-    /// Whether a polynomial is zero there.
+    /// Whether a polynomial is zero at the point.
     pub fn is_zero_of(&mut self, h: &Polynomial) -> ZeroTest {
         if self.is_defined_by(h) {
             return ZeroTest::Zero;
@@ -205,7 +207,7 @@ impl AlgebraicPoint {
             let rounding = self.place.rounding(h) as f64 - bits;
             let off = rounding.max(steep + self.off) + 1.0;
             let value = self.place.value(h);
-            // Of a number of n bits the least is two to the power of n - 1.
+            // A number of n bits is at least 2^(n - 1).
             if !value.is_zero() && log2(&value) - 1.0 - bits > off {
                 return ZeroTest::Apart;
             }
@@ -220,7 +222,7 @@ impl AlgebraicPoint {
         }
     }
 
-    /// Finds so many bits, and more where the point is not well conditioned.
+    /// Computes so many bits, or more if the point is ill-conditioned.
     fn refine(&mut self, wanted: usize) -> Option<()> {
         let loss = (self.off + self.place.bits as f64).max(0.0) as usize;
         let last = wanted.max(self.place.bits + 1) + 2 * loss;
@@ -243,8 +245,8 @@ impl AlgebraicPoint {
     }
 }
 
-/// The first three polynomials whose gradients' directions enclose a volume: each reaches out of the
-/// span of those before by `least`.
+/// The first three polynomials whose gradients are independent: the sine between each and the span
+/// of those before is at least `least`.
 fn independent(known: &[(Form, Vector3<f64>)], least: f64) -> Option<[Form; 3]> {
     let mut chosen: Vec<Form> = Vec::new();
     let mut span: Vec<Vector3<f64>> = Vec::new();
@@ -261,7 +263,7 @@ fn independent(known: &[(Form, Vector3<f64>)], least: f64) -> Option<[Form; 3]> 
     chosen.try_into().ok()
 }
 
-/// Newton's step from a place; none where the gradients are dependent.
+/// The Newton step from a point; `None` if the gradients are dependent.
 fn stepped(base: &[Form; 3], place: &Place) -> Option<Place> {
     let values = base.each_ref().map(|form| place.value(&form.level));
     let slopes = base.each_ref().map(|form| form.slope(place));

@@ -1,4 +1,4 @@
-//! Polynomials in x, y and z with whole coefficients: surfaces without rounding.
+//! Polynomials in x, y and z with integer coefficients, which represent surfaces without rounding.
 
 use crate::geometry::surface::Surface;
 use crate::geometry::surface_pair::Coefficients;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// The exponents of x, y and z.
 pub(super) type Exponents = [u8; 3];
 
-/// A polynomial in x, y and z; zero where it has no term.
+/// A polynomial in x, y and z; without terms it is zero.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Polynomial {
     terms: BTreeMap<Exponents, IBig>,
@@ -32,7 +32,7 @@ impl Polynomial {
         self.terms.iter()
     }
 
-    /// The degree; 0 of zero, too.
+    /// The degree; that of zero is 0.
     pub fn degree(&self) -> u32 {
         let of = |e: &Exponents| e.iter().map(|&n| u32::from(n)).sum();
         self.terms.keys().map(of).max().unwrap_or(0)
@@ -88,7 +88,7 @@ impl Polynomial {
         all
     }
 
-    /// The same zeros with coefficients that have no factor in common.
+    /// The same polynomial divided by the common factor of its coefficients.
     fn reduced(&self) -> Self {
         let common = |known: UBig, c: &IBig| {
             let size = UBig::try_from(if *c < IBig::ZERO { -c } else { c.clone() });
@@ -123,23 +123,25 @@ impl Polynomial {
         [0, 1, 2].map(|axis| self.derivative(axis))
     }
 
-    /// The components of the cross product of two gradients: zero where surfaces touch.
+    /// The components of the cross product of two gradients, which is zero where the surfaces are
+    /// tangent.
     pub fn touching(&self, o: &Self) -> Vector {
         cross(&self.gradient(), &o.gradient()).map(|p| p.reduced())
     }
 
-    /// The determinant of three gradients: zero where two surfaces' curve touches a third.
+    /// The determinant of three gradients, which is zero where the curve of two surfaces is tangent
+    /// to the third.
     pub fn dependence(&self, o: &Self, third: &Self) -> Self {
         dot(&cross(&self.gradient(), &o.gradient()), &third.gradient()).reduced()
     }
 
-    /// The plane through a point across a direction.
+    /// The plane through a point, perpendicular to a direction.
     pub fn plane(point: &[Rational; 3], direction: &[Rational; 3]) -> Self {
         let (away, _) = away(point);
         dot(&whole_vector(direction), &away).reduced()
     }
 
-    /// A surface, both nappes of a cone.
+    /// The polynomial of a surface; that of a cone has both nappes.
     pub fn new<N: Float>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
         let (v, q) = away(&exact.point);
         let d = whole_vector(&exact.direction);
@@ -162,7 +164,7 @@ impl Polynomial {
             }
             Surface::Torus(_) => {
                 let (c, e) = parts(&exact.tube);
-                // Both radii over one denominator.
+                // Both radii over a common denominator.
                 let (major, minor, m) = (&a * &e, &c * &b, &b * &e);
                 let squares = (&major * &major - &minor * &minor) * &q * &q;
                 let sum = vv.scaled(&(&m * &m)).plus(&Self::constant(squares));
@@ -179,7 +181,7 @@ fn parts(x: &Rational) -> (IBig, IBig) {
     (x.numerator().clone(), IBig::from(x.denominator().clone()))
 }
 
-/// Three numbers times the least that makes them whole, and that.
+/// Three numbers times the smallest factor that makes them integers, and that factor.
 fn whole(numbers: &[Rational; 3]) -> ([IBig; 3], IBig) {
     let [a, b, c] = numbers.each_ref().map(|x| x.denominator().clone());
     let least = |a: UBig, b: UBig| {
@@ -196,7 +198,7 @@ fn whole_vector(direction: &[Rational; 3]) -> Vector {
     numbers.map(Polynomial::constant)
 }
 
-/// q (x - p) with the least q that makes it whole, and q.
+/// q (x - p) with the smallest q that makes it integral, and q.
 fn away(point: &[Rational; 3]) -> (Vector, IBig) {
     let (p, q) = whole(point);
     let component = |axis: usize| {

@@ -1,4 +1,5 @@
-//! Planted points: what passes through them is proven to, what misses them by little is not.
+//! Constructed points: surfaces through them are proven to pass, surfaces that narrowly miss them
+//! are not.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use super::{AlgebraicPoint, Polynomial, ZeroTest};
@@ -66,7 +67,8 @@ fn a_rational_point_of_planes() {
 
 #[test]
 fn an_irrational_point() {
-    // x = y on the unit cylinder at z = 0, and on the unit sphere, and on a torus of 1 + 1 about y - x.
+    // x = y on the unit cylinder at z = 0, and on the unit sphere, and on a torus of 1 + 1 about y
+    // - x.
     let base = [
         surface(CYLINDER, origin(), [0, 0, 1], ratio(1, 1)),
         surface(PLANE, origin(), [1, -1, 0], ratio(0, 1)),
@@ -80,13 +82,13 @@ fn an_irrational_point() {
     assert_eq!(point.is_zero_of(&torus), ZeroTest::Zero);
     let tiny = ratio(1, 1 << 62);
     let tiny = &tiny * &tiny * &tiny;
-    let aside = surface(
+    let missed = surface(
         SPHERE,
         [tiny, ratio(0, 1), ratio(0, 1)],
         [0, 0, 1],
         ratio(1, 1),
     );
-    assert_eq!(point.is_zero_of(&aside), ZeroTest::Apart);
+    assert_eq!(point.is_zero_of(&missed), ZeroTest::Apart);
 }
 
 #[test]

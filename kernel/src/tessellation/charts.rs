@@ -1,9 +1,10 @@
-//! Faces laid out in a plane, where they can be triangulated.
+//! Charts: maps of faces to the plane, where they can be triangulated.
 //!
-//! A plane is its own chart. A cylinder and a cone are seen along their axis, the cylinder as if it
-//! widened; a sphere is seen from a point of it outside the face (stereographic projection), or from
-//! one inside, about which a cap is left out, where the face has no outside. A torus is cut along a parallel and a circle of the tube, the seams, and unrolled: the seams exist in
-//! the chart only, and are put away from vertices and from where edges turn back.
+//! A plane is its own chart. A cylinder and a cone are projected along their axis, the cylinder as
+//! if it widened. A sphere is projected stereographically from a point outside the face. If the
+//! face has no outside, the centre is a point of the face, and a cap about it is left out. A torus
+//! is cut along a parallel and a circle of the tube, the seams, and unrolled. The seams exist in
+//! the chart only, and are placed away from vertices and from points where edges turn back.
 
 use super::Accuracy;
 use super::edges::{Polylines, STEEPEST, off_chord};
@@ -24,10 +25,10 @@ pub(super) enum Chart {
     Cylinder(Cylinder, [f64; 2]),
     /// Polar coordinates: the angle, and the distance from the axis.
     Cone(Frame, f64),
-    /// Stereographic: z points to the centre of the projection. If that is a point of the face, a cap
-    /// about it, as wide from there as this angle, is not in the chart.
+    /// Stereographic projection; z points to its centre. If the centre is a point of the face, a
+    /// cap about it, whose angular radius is given last, is not in the chart.
     Sphere(Frame, f64, Option<f64>),
-    /// Lengths along the parallels and the tube, from the seams.
+    /// Lengths along the parallels and the tube, measured from the seams.
     Torus(Torus, Seams),
 }
 
@@ -36,7 +37,7 @@ pub(super) enum Chart {
 pub(super) struct Seams {
     /// The two angles.
     pub at: [f64; 2],
-    /// Into how many steps each of the two angles is divided along the other's seam.
+    /// The number of steps into which each angle is divided along the other's seam.
     pub steps: [u32; 2],
 }
 
@@ -65,7 +66,8 @@ impl Chart {
             }
             Surface::Torus(s) => {
                 let at = Seams::angles(brep, face, lines);
-                // They may be nearly half as long again next to an edge, and triangles need room.
+                // The steps may be nearly half as long again close to an edge, and triangles need
+                // room.
                 let fine = accuracy.part(0.25);
                 let steps = [s.major + s.minor, s.minor].map(|r| steps_round(r, &fine));
                 Self::Torus(s, Seams { at, steps })
@@ -73,7 +75,7 @@ impl Chart {
         }
     }
 
-    /// Where a point of the surface lies in the chart; on a torus from the seams on.
+    /// The position of a point of the surface in the chart; on a torus measured from the seams.
     pub fn map(&self, p: &Point3<f64>) -> Point2<f64> {
         match self {
             Self::Plane(f) | Self::Cone(f, _) => f.coordinates(p).xy().into(),
@@ -94,7 +96,7 @@ impl Chart {
         }
     }
 
-    /// The point of the surface at a place of the chart.
+    /// The point of the surface at a position in the chart.
     pub fn lift(&self, x: &Point2<f64>) -> Point3<f64> {
         match self {
             Self::Plane(f) => f.point(x.x, x.y, 0.0),
@@ -116,8 +118,9 @@ impl Chart {
         }
     }
 
-    /// Where a side comes nearest to the middle of a chart that has one, between its ends. Far out a
-    /// long side of the chart is a short one of the surface, but not there.
+    /// The point of a side, between its ends, that is closest to the middle of a chart that has
+    /// one. Far from the middle a long side of the chart is a short one of the surface, close to it
+    /// it is not.
     pub fn nearest_to_middle(&self, [a, b]: [Point2<f64>; 2]) -> Option<Point2<f64>> {
         let away = b - a;
         let part = -a.coords.dot(&away) / away.norm_squared();
@@ -129,7 +132,7 @@ impl Chart {
         }
     }
 
-    /// Whether what runs counterclockwise in the chart runs clockwise as seen from outside.
+    /// Whether counterclockwise in the chart is clockwise as seen from outside.
     pub fn is_mirrored(&self, outward: Sense) -> bool {
         let own = match self {
             Self::Plane(_) | Self::Torus(..) => false,
@@ -151,7 +154,7 @@ fn points_of<'a>(
     })
 }
 
-/// What the centre of a face's stereographic projection has to keep away from.
+/// The points that the centre of a face's stereographic projection must avoid.
 struct Around<'a> {
     brep: &'a Brep,
     face: FaceId,
@@ -174,8 +177,9 @@ impl<'a> Around<'a> {
         }
     }
 
-    /// The centre of the projection: a direction out of the face if there is one; else one in it,
-    /// and how wide a cap about it is clear of the edges and flat within the accuracy.
+    /// The centre of the projection: a direction outside the face if there is one. Otherwise a
+    /// direction in the face, and the angular radius of a cap about it that contains no edge and is
+    /// flat within the accuracy.
     fn centre(&self, accuracy: &Accuracy, resolution: f64) -> (Vector3<f64>, Option<f64>) {
         let outside = self.outside(resolution);
         if let Some(z) = outside {
@@ -188,8 +192,7 @@ impl<'a> Around<'a> {
         (z, Some(flat.min(clear)))
     }
 
-    /// The direction of a point of the sphere that is outside the face, well away from it if there
-    /// is such a one.
+    /// The direction of a point of the sphere outside the face, far from the face if possible.
     fn outside(&self, resolution: f64) -> Option<Vector3<f64>> {
         if self.chords.is_empty() {
             return None;
@@ -199,30 +202,30 @@ impl<'a> Around<'a> {
         let outside = |d: &Vector3<f64>| {
             locator.place(&(frame.origin + d * *radius)) == PointLocation::Outside
         };
-        // Next to the boundary, to the right of it, for faces that cover all but a little.
-        let beside = locator.arcs().iter().flat_map(|a| {
+        // Points close to the boundary, to its right, for faces that cover almost the whole sphere.
+        let nearby = locator.arcs().iter().flat_map(|a| {
             let t = 0.5 * (a.range[0] + a.range[1]);
             let p = a.curve.point(t);
             let out = self.brep.outward(self.face, &p);
             let right = a.curve.tangent(t).cross(&out) * a.sense.sign::<f64>();
             let size = (a.curve.point(a.range[0]) - p).norm();
             (1..NEAREST).map(move |k| {
-                let beside = p + right * (size / f64::from(1 << k));
-                (beside - frame.origin).normalize()
+                let nearby = p + right * (size / f64::from(1 << k));
+                (nearby - frame.origin).normalize()
             })
         });
         self.farthest(&mut spread().filter(outside))
-            .or_else(|| self.farthest(&mut beside.filter(outside)))
+            .or_else(|| self.farthest(&mut nearby.filter(outside)))
     }
 
-    /// The direction of these that is farthest from the edges.
+    /// The direction that is farthest from the edges.
     fn farthest(&self, all: &mut dyn Iterator<Item = Vector3<f64>>) -> Option<Vector3<f64>> {
         all.map(|d| (self.away(&d), d))
             .max_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, d)| d)
     }
 
-    /// How far the point of the sphere in a direction is from the edges.
+    /// The distance of the sphere's point in a direction from the edges.
     fn away(&self, d: &Vector3<f64>) -> f64 {
         let p = self.sphere.frame.origin + d * self.sphere.radius;
         let apart = self.chords.iter().map(|[a, b]| off_chord(&p, a, b));
@@ -230,7 +233,7 @@ impl<'a> Around<'a> {
     }
 }
 
-/// Directions all around.
+/// Directions spread over the sphere.
 fn spread() -> impl Iterator<Item = Vector3<f64>> {
     (0..SPREAD).map(|k| {
         let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(SPREAD);
@@ -240,17 +243,18 @@ fn spread() -> impl Iterator<Item = Vector3<f64>> {
     })
 }
 
-/// How many directions are tried as the centre of a projection.
+/// The number of directions tried as the centre of a projection.
 const SPREAD: u32 = 64;
 
-/// How many powers of two nearer than an arc is long they are tried next to it.
+/// The number of halvings of the distance, starting at an arc's length, at which points close to
+/// the arc are tried.
 const NEAREST: u32 = 16;
 
-/// The golden angle: its multiples spread over the circle.
+/// The golden angle, whose multiples are spread over the circle.
 const GOLDEN: f64 = 2.399_963_229_728_653;
 
 impl Seams {
-    /// The angles near the middle of the widest gaps between the vertices of a face and the nodes
+    /// Angles close to the middle of the widest gaps between the vertices of a face and the nodes
     /// at which its edges turn back.
     fn angles(brep: &Brep, face: FaceId, lines: &Polylines) -> [f64; 2] {
         let surface = brep.surface(face);
@@ -279,23 +283,24 @@ impl Seams {
     }
 }
 
-/// Into how many chords a circle of this radius is divided.
+/// The number of chords into which a circle of this radius is divided.
 pub(super) fn steps_round(radius: f64, accuracy: &Accuracy) -> u32 {
     let sagitta = (1.0 - accuracy.deviation / radius).clamp(-1.0, 1.0);
     let step = (2.0 * sagitta.acos()).min(accuracy.angle).min(STEEPEST);
     (TAU / step).ceil() as u32
 }
 
-/// An angle brought between -pi and pi.
+/// The angle modulo 2 pi, between -pi and pi.
 pub(super) fn signed_turn(angle: f64) -> f64 {
     let a = turn(angle);
     if a > 0.5 * TAU { a - TAU } else { a }
 }
 
-/// A seam is put at this part of a gap: near its middle, where symmetric parts have other points.
-const ASIDE: f64 = 0.47;
+/// The fraction of a gap at which a seam is placed: close to the middle, but not there, where
+/// symmetric parts have points.
+const SEAM_POSITION: f64 = 0.47;
 
-/// The angle near the middle of the widest gap between angles.
+/// The angle close to the middle of the widest gap between angles.
 fn widest_gap(angles: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = angles.iter().map(|&a| turn(a)).collect();
     sorted.sort_by(f64::total_cmp);
@@ -306,5 +311,5 @@ fn widest_gap(angles: &[f64]) -> f64 {
     let widest = sorted
         .windows(2)
         .max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
-    widest.map_or(0.0, |w| turn(w[0] + ASIDE * (w[1] - w[0])))
+    widest.map_or(0.0, |w| turn(w[0] + SEAM_POSITION * (w[1] - w[0])))
 }

@@ -1,27 +1,28 @@
-//! Whether flat pieces follow a surface.
+//! Tests whether flat pieces approximate a surface.
 
 use super::Accuracy;
 use super::charts::Chart;
 use crate::geometry::surface::Surface;
 use nalgebra::{Point2, Point3};
 
-/// Asks whether sides and triangles follow a surface.
+/// The test whether sides and triangles approximate a surface.
 pub(super) struct ChordTest<'a> {
     /// The surface.
     pub surface: &'a Surface,
-    /// Where it is laid out.
+    /// Its chart.
     pub chart: &'a Chart,
-    /// How near they have to be.
+    /// The accuracy required.
     pub accuracy: &'a Accuracy,
 }
 
-/// A vertex this near to an apex, as a part of the deviation or of a triangle, is at the apex.
+/// The distance from an apex, relative to the deviation or to the triangle, within which a vertex
+/// is at the apex.
 pub(super) const APEX: f64 = 1.0 / (1 << 16) as f64;
 
 impl ChordTest<'_> {
-    /// Whether a side or a triangle with these corners is within the accuracy of the surface at the
-    /// point of it that its middle in the chart stands for: the corners lie in the plane that is
-    /// tangent there, and the normal turns little from there to them.
+    /// Whether a side or a triangle with these corners is within the accuracy of the surface.
+    /// `middle` is the position in the chart of the surface point tested. The corners must lie
+    /// close to the tangent plane there, and the normal must turn little between it and them.
     pub fn contains(&self, middle: &Point2<f64>, corners: &[Point3<f64>]) -> bool {
         let on = self.chart.lift(middle);
         let normal = self.surface.normal(&on);
@@ -32,8 +33,9 @@ impl ChordTest<'_> {
         })
     }
 
-    /// Where a side between two places of the chart, which stand for these points, leaves the
-    /// surface: at its middle, or where it comes nearest to the middle of the chart.
+    /// The position at which a side between two chart positions, which stand for `points`, leaves
+    /// the surface: its middle, or the point closest to the middle of the chart. `None` if it does
+    /// not.
     pub fn leaves(&self, ends: [Point2<f64>; 2], points: &[Point3<f64>; 2]) -> Option<Point2<f64>> {
         let middle = nalgebra::center(&ends[0], &ends[1]);
         if !self.contains(&middle, points) {
@@ -51,7 +53,7 @@ impl ChordTest<'_> {
     }
 }
 
-/// How far a point is from a segment.
+/// The distance of a point from a segment.
 fn from_segment(p: &Point3<f64>, [a, b]: &[Point3<f64>; 2]) -> f64 {
     let (along, away) = (b - a, p - a);
     let part = away.dot(&along) / along.norm_squared();

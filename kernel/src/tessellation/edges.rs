@@ -1,4 +1,4 @@
-//! Edges divided into chords, once for all faces.
+//! Division of edges into chords, once for all faces.
 
 use super::Accuracy;
 use super::face_triangulation::Division;
@@ -18,21 +18,21 @@ pub(super) struct Node {
 /// All edges, divided.
 #[derive(Debug)]
 pub(super) struct Polylines {
-    /// The points, those of the vertices first.
+    /// The points, starting with those of the vertices.
     pub points: Vec<Point3<f64>>,
-    /// The nodes of each edge, in increasing order of the parameter; the first and the last of a
-    /// closed edge are one point.
+    /// The nodes of each edge, in increasing order of the parameter. The first and the last of a
+    /// closed edge are the same point.
     nodes: Vec<Vec<Node>>,
 }
 
-/// A chord is never divided into less than this part of its edge.
+/// The smallest fraction of an edge into which a chord is divided.
 const FINEST: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Tangents and normals turn by no more than this, in radians, from one node to the next.
+/// The largest angle, in radians, by which tangents and normals may turn between consecutive nodes.
 pub(super) const STEEPEST: f64 = 0.6;
 
 impl Polylines {
-    /// The edges divided so that every chord is within the accuracy of its curve.
+    /// Divides the edges so that every chord is within the accuracy of its curve.
     pub fn new(brep: &Brep, accuracy: &Accuracy) -> Self {
         let mut lines = Self {
             points: brep.geometry.points.clone(),
@@ -50,13 +50,13 @@ impl Polylines {
         &self.nodes[edge.index()]
     }
 
-    /// How many nodes the edges of a face have, as its loops run along them.
+    /// The number of nodes on the edges of a face, counted along its loops.
     pub fn nodes_of(&self, brep: &Brep, face: FaceId) -> usize {
         let edges = brep.topology.edges_of(face);
         edges.map(|e| self.nodes(e).len()).sum()
     }
 
-    /// A new point.
+    /// Adds a point.
     pub fn add(&mut self, p: Point3<f64>) -> u32 {
         self.points.push(p);
         self.points.len() as u32 - 1
@@ -66,17 +66,18 @@ impl Polylines {
         let curve = brep.curve(edge);
         let [lo, hi] = brep.range(edge);
         let mut breaks = curve.breaks(lo, hi);
-        // A break that is an end but for rounding is none.
+        // A break that coincides with an end except for rounding is ignored.
         let least = (hi - lo) * FINEST.sqrt();
         breaks.retain(|&t| t == lo || t == hi || (t - lo > least && hi - t > least));
-        // Where four faces meet, two and two of them may be given points of their own: between the ends.
+        // At an edge of four faces, pairs of them may get points of their own, so one is needed
+        // between the ends.
         if breaks.len() == 2 && brep.topology.edge(edge).coedges.len() > 2 {
             breaks.insert(1, 0.5 * (lo + hi));
         }
         let chord = Chord::new(brep, edge, accuracy);
         let mut at = vec![lo];
         for piece in breaks.windows(2) {
-            // Depth first, the later half waits.
+            // Depth first: the second half is pushed and the first is handled now.
             let mut waiting = vec![[piece[0], piece[1]]];
             while let Some([a, b]) = waiting.pop() {
                 let middle = 0.5 * (a + b);
@@ -102,7 +103,7 @@ impl Polylines {
         nodes
     }
 
-    /// A node at a parameter within the edge's range.
+    /// Adds a node at a parameter inside the edge's range.
     pub fn insert(&mut self, brep: &Brep, edge: EdgeId, t: f64) {
         let at = self.nodes[edge.index()].partition_point(|n| n.t < t);
         let point = self.add(brep.curve(edge).point(t));
@@ -140,7 +141,7 @@ impl Polylines {
     }
 }
 
-/// Whether the chord between two parameters of an edge follows it.
+/// A chord between two parameters of an edge, to be tested against it.
 struct Chord<'a> {
     brep: &'a Brep,
     edge: EdgeId,
@@ -162,7 +163,7 @@ impl<'a> Chord<'a> {
         let inner = [0.25, 0.5, 0.75].map(|part| a + part * (b - a));
         let on = |t: f64| off_chord(&curve.point(t), &p, &q) <= self.accuracy.deviation;
         let greatest = self.accuracy.angle.min(STEEPEST);
-        // An end may be a cusp, without a tangent, or an apex, without a normal.
+        // An end may be a cusp, which has no tangent, or an apex, which has no normal.
         let bends = [a, inner[0], inner[1], inner[2], b].map(|t| t + (inner[1] - t) / 64.0);
         let flat = |directions: [Vector3<f64>; 5]| {
             let turned = |m: &Vector3<f64>, n: &Vector3<f64>| m.angle(n) > greatest;
@@ -178,7 +179,7 @@ impl<'a> Chord<'a> {
     }
 }
 
-/// How far a point is from the chord between two others.
+/// The distance of a point from the chord between two others.
 pub(super) fn off_chord(x: &Point3<f64>, p: &Point3<f64>, q: &Point3<f64>) -> f64 {
     let along = q - p;
     let length = along.norm_squared();

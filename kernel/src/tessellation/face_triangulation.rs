@@ -1,4 +1,5 @@
-//! A face in its chart: the chords of its edges as the constraints of a Delaunay triangulation.
+//! The constrained Delaunay triangulation of a face in its chart, with the chords of its edges as
+//! constraints.
 
 use super::Accuracy;
 use super::charts::{Chart, Seams, signed_turn};
@@ -16,14 +17,14 @@ use spade::{
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
-/// A chord of an edge: from the node at this place to the next.
+/// A chord of an edge, from the node with this index to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Chord {
     edge: EdgeId,
     first: usize,
 }
 
-/// Where an edge has to be divided, because a chord of it is in the way of another.
+/// A parameter at which an edge must be divided, because one of its chords crosses another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Division {
     /// The edge.
@@ -35,14 +36,14 @@ pub(super) struct Division {
 /// A point in the chart.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
-    /// Where it is.
+    /// The position.
     pub at: Point2<f64>,
     /// The index of its point.
     pub point: u32,
 }
 
 impl Corner {
-    /// A corner; coordinates too small for the triangulation are zero.
+    /// A corner; coordinates that are too small for the triangulation become zero.
     pub fn new(at: Point2<f64>, point: u32) -> Self {
         let at = spade::mitigate_underflow(spade::Point2::new(at.x, at.y));
         Self {
@@ -59,31 +60,32 @@ impl HasPosition for Corner {
     }
 }
 
-/// A side from one corner to another, by their places in the triangulation.
+/// A side from one corner to another, by their indices in the triangulation.
 pub(super) type Side = (usize, usize);
 
 /// A face in its chart.
 pub(super) struct FaceTriangulation {
     /// The triangulation.
     pub net: ConstrainedDelaunayTriangulation<Corner>,
-    /// The sides that the face lies to the left of, as its loops run.
+    /// The boundary sides, with the face to their left.
     pub bounding: HashSet<Side>,
-    /// Sides along a seam, and the same sides beyond it, both with the chart to their left.
+    /// Sides along a seam, each mapped to the identical side across it; both have the chart to
+    /// their left.
     pub glued: HashMap<Side, Side>,
-    /// Triangles that are not in the chart, counterclockwise as it is, by their points.
+    /// Triangles outside the chart, counterclockwise as the chart is, by their points.
     pub cap: Vec<[u32; 3]>,
-    /// How many nodes each of its edges had.
+    /// The number of nodes that each of its edges had.
     built_of: Vec<(EdgeId, usize)>,
 }
 
 impl FaceTriangulation {
-    /// Whether no edge of the face was divided since.
+    /// Whether no edge of the face has been divided since.
     pub fn is_current(&self, lines: &Polylines) -> bool {
         let mut edges = self.built_of.iter();
         edges.all(|&(edge, count)| lines.nodes(edge).len() == count)
     }
 
-    /// The face in its chart, or where its edges have to be divided first.
+    /// The triangulation of the face, or the divisions of edges needed first.
     pub fn new(
         brep: &Brep,
         face: FaceId,
@@ -94,7 +96,7 @@ impl FaceTriangulation {
         if let Chart::Torus(torus, seams) = chart {
             cut_at_seams(brep, face, &Surface::Torus(*torus), seams, lines);
         }
-        // The triangles next to a chord need room.
+        // The triangles adjacent to a chord need room.
         let fit = ChordTest {
             surface: brep.surface(face),
             chart,
@@ -108,7 +110,7 @@ impl FaceTriangulation {
     }
 }
 
-/// The edges of a face as its loops run along them.
+/// The edges of a face, in the order of its loops.
 fn runs(brep: &Brep, face: FaceId) -> Vec<(EdgeId, Sense)> {
     let t = &brep.topology;
     t.coedges_of(face)
@@ -116,12 +118,12 @@ fn runs(brep: &Brep, face: FaceId) -> Vec<(EdgeId, Sense)> {
         .collect()
 }
 
-/// The corners of longer edges are inserted in a spread order: along a circle every point in order
-/// would flip all triangles of the ones before.
+/// The number of nodes from which the corners of an edge are inserted in a spread order. Along a
+/// circle, each point in order would flip all triangles of the points before it.
 const MANY_NODES: usize = 1 << 11;
 
-/// The numbers below `count`, in an order in which each is far from those just before: by their bits
-/// reversed.
+/// The numbers below `count` by their reversed bits: an order in which each is far from those just
+/// before.
 fn spread(count: usize) -> impl Iterator<Item = usize> {
     let bits = usize::BITS - count.leading_zeros();
     let reversed = move |k: usize| k.reverse_bits() >> (usize::BITS - bits);
@@ -130,10 +132,10 @@ fn spread(count: usize) -> impl Iterator<Item = usize> {
         .filter(move |&k| k < count)
 }
 
-/// An angle this near to a seam is on it.
+/// The distance from a seam, in radians, within which an angle is on it.
 const ON_SEAM: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// Gives every edge of a face a node where it crosses a seam.
+/// Adds a node to every edge of a face where it crosses a seam.
 fn cut_at_seams(
     brep: &Brep,
     face: FaceId,
@@ -151,7 +153,7 @@ fn cut_at_seams(
                 let (a, b) = (pair[0].t, pair[1].t);
                 let (x, y) = (from_seam(i, a), from_seam(i, b));
                 let on = x.abs() < ON_SEAM || y.abs() < ON_SEAM;
-                // Opposite signs on the far side are no crossing.
+                // Opposite signs on the far side are not a crossing.
                 if !on && x * y < 0.0 && (x - y).abs() < 0.5 * TAU {
                     let t = bisect(a, b, x, |t| from_seam(i, t));
                     lines.insert(brep, edge, t);
@@ -166,12 +168,13 @@ struct Builder<'a> {
     brep: &'a Brep,
     lines: &'a mut Polylines,
     domain: FaceTriangulation,
-    /// The corners by their coordinates' bits: the triangulation would replace what is known there.
+    /// The corners by the bits of their coordinates. Inserting the same position again would
+    /// replace the corner.
     corners: HashMap<[u64; 2], FixedVertexHandle>,
-    /// The chords by their sides, either way.
+    /// The chords by their sides, in either direction.
     chords: HashMap<Side, Chord>,
     divisions: Vec<Division>,
-    /// Whether a seam runs through a node of another point.
+    /// Whether a seam passes through the node of another point.
     crowded: bool,
 }
 
@@ -197,7 +200,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the chords of an edge, run in a sense.
+    /// Adds the chords of an edge in the given direction.
     fn add(&mut self, edge: EdgeId, sense: Sense) {
         let nodes = self.lines.nodes(edge).to_vec();
         if nodes.len() > MANY_NODES {
@@ -224,40 +227,40 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the corners of an edge in a spread order, each next to one that is known.
+    /// Adds the corners of an edge in a spread order, each searched from a known neighbour.
     fn add_corners(&mut self, edge: EdgeId, nodes: &[Node]) {
         let mut known: Vec<Option<FixedVertexHandle>> = vec![None; nodes.len()];
         for first in spread(nodes.len() - 1) {
             let pair = [nodes[first], nodes[first + 1]];
-            // The one before that was inserted last: its number lacks the lowest bit.
+            // The nearest earlier node that is inserted: its number lacks the lowest bit.
             let mut hint = known[first & first.wrapping_sub(1)];
             for (at, node) in self.places(edge, pair).into_iter().zip(pair) {
-                hint = self.corner_beside(at, node.point, hint).or(hint);
+                hint = self.corner_near(at, node.point, hint).or(hint);
             }
             known[first] = hint;
         }
     }
 
-    /// Where the ends of a chord lie; on a torus as one sees them from its middle.
+    /// The positions of a chord's ends; on a torus continued from the chord's middle.
     fn places(&self, edge: EdgeId, nodes: [Node; 2]) -> [Point2<f64>; 2] {
         let mut ends = nodes.map(|n| self.fit.chart.map(&self.lines.points[n.point as usize]));
         if let Chart::Torus(torus, _) = self.fit.chart {
             let middle = 0.5 * (nodes[0].t + nodes[1].t);
             let middle = self.fit.chart.map(&self.brep.curve(edge).point(middle));
             for end in &mut ends {
-                *end = beside(torus, *end, &middle);
+                *end = continued_from(torus, *end, &middle);
             }
         }
         ends
     }
 
-    /// The corner at a place of the chart; none where it is another point's.
+    /// The corner at a position of the chart; `None` if it belongs to another point.
     fn corner(&mut self, at: Point2<f64>, point: u32) -> Option<FixedVertexHandle> {
-        self.corner_beside(at, point, None)
+        self.corner_near(at, point, None)
     }
 
     /// The same, searched from a corner next to it.
-    fn corner_beside(
+    fn corner_near(
         &mut self,
         at: Point2<f64>,
         point: u32,
@@ -277,12 +280,12 @@ impl<'a> Builder<'a> {
         Some(corner)
     }
 
-    /// Makes a chord a constraint, or notes what is in its way.
+    /// Makes a chord a constraint, or records what is in its way.
     fn constrain(&mut self, from: FixedVertexHandle, to: FixedVertexHandle, chord: Chord) {
         let side = |a: usize, b: usize| (a.min(b), a.max(b));
         let key = side(from.index(), to.index());
         match self.chords.get(&key) {
-            // Both faces of a slit.
+            // A slit: both faces have the chord.
             Some(known) if *known == chord => return,
             Some(&known) => {
                 self.halve(known);
@@ -300,7 +303,7 @@ impl<'a> Builder<'a> {
             for crossed in crossed {
                 match self.chords.get(&crossed) {
                     Some(&other) => self.part(chord, other),
-                    // A part of a chord that runs through a corner.
+                    // A part of a chord that passes through a corner.
                     None => self.halve(chord),
                 }
             }
@@ -310,7 +313,7 @@ impl<'a> Builder<'a> {
         if self.domain.net.exists_constraint(from, to) {
             self.chords.insert(key, chord);
         } else {
-            // It runs through a corner.
+            // The chord passes through a corner.
             self.halve(chord);
         }
     }
@@ -327,14 +330,14 @@ impl<'a> Builder<'a> {
         self.divisions.push(Division { edge, t });
     }
 
-    /// Divides two chords that cross where the nodes of the other are: edges that run close
-    /// together part when their nodes are side by side.
+    /// Divides two crossing chords, each at the parameters of the other's nodes. Chords of edges
+    /// that run close to each other separate when their nodes are opposite.
     fn part(&mut self, a: Chord, b: Chord) {
         let before = self.divisions.len();
         for (chord, other) in [(a, b), (b, a)] {
             let curve = self.brep.curve(chord.edge);
             let [start, end] = self.ends(chord).map(|n| n.t);
-            let margin = BESIDE * (end - start);
+            let margin = END_MARGIN * (end - start);
             for node in self.ends(other) {
                 let t = curve.parameter(&self.lines.points[node.point as usize]);
                 let t = curve.in_cycle(t, start);
@@ -369,8 +372,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the apex; or what lies opposite to the centre of the projection, lest triangles that are
-    /// small reach around the sphere. A chord through it serves as well.
+    /// Adds the apex, or the point opposite to the centre of the projection, which prevents small
+    /// triangles from reaching around the sphere. A chord through that point serves as well.
     fn add_middle(&mut self) {
         let net = &self.domain.net;
         let at_middle = |c: &Corner| {
@@ -409,7 +412,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Divides the chords that a corner added later lies on: the triangulation split them.
+    /// Divides the chords that the triangulation split because a corner was added on them.
     fn divide_split(&mut self) {
         let vertex = FixedVertexHandle::from_index;
         let net = &self.domain.net;
@@ -426,8 +429,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Divides the chords between which and their edges a corner lies: it would be on the wrong side
-    /// of the edge.
+    /// Divides chords where a corner lies between the chord and its edge, because the corner would
+    /// be on the wrong side of the edge.
     fn divide_around_corners(&mut self) {
         let mut chords: Vec<(Side, Chord)> = self.chords.iter().map(|(s, c)| (*s, *c)).collect();
         chords.sort_unstable_by_key(|(side, _)| *side);
@@ -438,8 +441,8 @@ impl<'a> Builder<'a> {
                 continue;
             };
             let ends = [run.from().data().at, run.to().data().at];
-            let beside = [run, run.rev()].map(|side| Some(*side.opposite_vertex()?.data()));
-            for corner in beside.into_iter().flatten() {
+            let opposite = [run, run.rev()].map(|side| Some(*side.opposite_vertex()?.data()));
+            for corner in opposite.into_iter().flatten() {
                 self.divide_around(chord, ends, &corner);
             }
         }
@@ -455,12 +458,12 @@ impl<'a> Builder<'a> {
         }
         let mut on = self.fit.chart.map(&curve.point(t));
         if let Chart::Torus(torus, _) = self.fit.chart {
-            on = beside(torus, on, &nalgebra::center(&ends[0], &ends[1]));
+            on = continued_from(torus, on, &nalgebra::center(&ends[0], &ends[1]));
         }
         let height = |x: &Point2<f64>| (ends[1] - ends[0]).perp(&(x - ends[0]));
         let (of_corner, of_edge) = (height(&corner.at), height(&on));
         if of_corner * of_edge > 0.0 && of_corner.abs() < of_edge.abs() {
-            let margin = BESIDE * (end - start);
+            let margin = END_MARGIN * (end - start);
             let apart = start + margin < t && t < end - margin;
             let t = if apart { t } else { 0.5 * (start + end) };
             let edge = chord.edge;
@@ -468,13 +471,13 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the corners along both seams, and determines which sides beyond them are the same.
+    /// Adds the corners along both seams, and identifies the sides across them.
     fn add_seams(&mut self, torus: &Torus, seams: &Seams) {
         let lengths = [TAU * torus.major, TAU * torus.minor];
         let origin = Surface::Torus(*torus).point(seams.at[0], seams.at[1]);
         let origin = self.lines.add(origin);
         for i in 0..2 {
-            // Along the seam of the angle i the other angle runs.
+            // Along the seam of angle i the other angle varies.
             let other = 1 - i;
             let at = |along: f64, beyond: f64| {
                 let mut p = Point2::origin();
@@ -501,7 +504,7 @@ impl<'a> Builder<'a> {
             }
             let [near, far] = ends;
             for (a, b) in near.windows(2).zip(far.windows(2)) {
-                // The chart lies to the left of what runs counterclockwise around it.
+                // Going counterclockwise, the chart is to the left.
                 let (up, down) = ((b[0], b[1]), (a[1], a[0]));
                 let (left, right) = if i == 0 {
                     (up, down)
@@ -514,7 +517,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// How far along a seam its points are, in order: those of edges that cross it, and steps between.
+    /// The positions of points along a seam, in order: those of edges that cross it, and steps in
+    /// between.
     fn marks_along(&self, seam: usize, length: f64, steps: u32) -> Vec<(f64, Option<u32>)> {
         let other = 1 - seam;
         let corners = self.domain.net.vertices();
@@ -533,17 +537,18 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// How many sides a cap has: its triangles have equal ones.
+/// The number of sides of a cap, whose triangles are congruent.
 const RIM: u32 = 6;
 
-/// Nodes this near to the end of a chord, as a part of it, are next to that end.
-const BESIDE: f64 = 1.0 / 16.0;
+/// The distance from the end of a chord, relative to its length, within which a node is at that
+/// end.
+const END_MARGIN: f64 = 1.0 / 16.0;
 
-/// A step along a seam this part of a step from a point of it is left out.
+/// A step along a seam is omitted if it is closer than this fraction of a step to a point.
 const CROWDED: f64 = 0.4;
 
-/// A place of a torus's chart as seen from another next to it; on a seam exactly.
-fn beside(torus: &Torus, mut at: Point2<f64>, from: &Point2<f64>) -> Point2<f64> {
+/// The position in a torus's chart as continued from a neighbouring one; on a seam exactly.
+fn continued_from(torus: &Torus, mut at: Point2<f64>, from: &Point2<f64>) -> Point2<f64> {
     for (i, radius) in [torus.major, torus.minor].into_iter().enumerate() {
         let length = TAU * radius;
         if at[i] < ON_SEAM * radius || length - at[i] < ON_SEAM * radius {

@@ -1,11 +1,11 @@
-//! A mesh of triangles that follows a boundary: watertight, and within a stated distance of it.
+//! A triangle mesh of a boundary, watertight and within a stated distance of it.
 //!
 //! Every edge is divided once (`edges`), so that the faces on its sides share its points. Each face
-//! is laid out in a plane (`charts`), where the divided edges are the constraints of a Delaunay
-//! triangulation (`domain`); where their chords cross there, the edges are divided further. Points
-//! are then added inside until the triangles follow the surface (`refine`).
+//! is mapped to a plane (`charts`), where the divided edges are the constraints of a Delaunay
+//! triangulation (`face_triangulation`). Where their chords cross there, the edges are divided
+//! further. Points are then added inside until the triangles approximate the surface (`refine`).
 //!
-//! A mesh is made for looking, for other programs and for checks. No result of ours rests on it.
+//! A mesh serves for display, for other programs and for checks. No other result depends on it.
 
 mod charts;
 mod chord_test;
@@ -23,7 +23,7 @@ use nalgebra::{Point3, Vector3};
 use refine::Refiner;
 use std::collections::HashMap;
 
-/// How near a mesh comes to the boundary.
+/// The accuracy of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// The greatest distance from a triangle to the surface, in the part's unit.
@@ -33,8 +33,8 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// What a part of a circle's step that has this accuracy comes up to: the deviation goes with
-    /// the square of the angle.
+    /// The accuracy for a fraction of this deviation. The deviation is proportional to the square
+    /// of the angle.
     fn part(&self, part: f64) -> Self {
         Self {
             deviation: self.deviation * part,
@@ -52,55 +52,55 @@ pub struct Triangle {
     pub face: FaceId,
 }
 
-/// A mesh of triangles. Every side of a triangle is a side of exactly one other, run the other way,
-/// but along an edge of more than two faces.
+/// A mesh of triangles. Every side of a triangle is a side of exactly one other in the opposite
+/// direction, except along an edge of more than two faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// The corners.
     pub points: Vec<Point3<f64>>,
     /// The triangles, face by face.
     pub triangles: Vec<Triangle>,
-    /// The points along each edge of the boundary, in increasing order of its parameter; the first and
-    /// the last of a closed edge are one.
+    /// The points along each edge of the boundary, in increasing order of its parameter. The first
+    /// and the last of a closed edge are the same.
     pub lines: Vec<Vec<u32>>,
 }
 
-/// Why a boundary cannot be followed by triangles.
+/// Why a boundary cannot be tessellated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TessellationError {
-    /// However finely they are divided, the chords of a face's edges cross.
+    /// The chords of a face's edges cross, however finely the edges are divided.
     #[error("the edges of face {} are too close to one another for triangles", face.0)]
     Crossing {
         /// The face.
         face: FaceId,
     },
-    /// The edges of a face do not tell its inside from its outside.
-    #[error("the edges of face {} do not tell inside from outside", face.0)]
+    /// The edges of a face do not determine its inside.
+    #[error("the edges of face {} do not determine which side is inside", face.0)]
     Sides {
         /// The face.
         face: FaceId,
     },
-    /// The accuracy asks for too many triangles.
+    /// The accuracy requires too many triangles.
     #[error("face {} takes more than {limit} points", face.0)]
     TooMany {
         /// The face.
         face: FaceId,
-        /// How many points a face may have.
+        /// The largest number of points of a face.
         limit: usize,
     },
 }
 
-/// How many points a face may have.
+/// The largest number of points of a face.
 const LIMIT: usize = 1 << 20;
 
-/// How many nodes the edges of a face may get where their chords cross: with more they are too close to
-/// one another.
+/// The number of nodes that the edges of a face may get where their chords cross. With more they are
+/// too close to one another.
 const DIVISIONS: usize = 1 << 16;
 
-/// How often the edges are divided further.
+/// The number of times that the edges are divided further.
 const ROUNDS: usize = 40;
 
-/// The mesh of a boundary; `resolution` is the part's resolution.
+/// The mesh of a boundary; `resolution` is the part's.
 pub fn tessellate(
     brep: &Brep,
     accuracy: &Accuracy,
@@ -154,7 +154,7 @@ pub fn tessellate(
 }
 
 impl Mesh {
-    /// Drops the points that no triangle and no edge has.
+    /// Removes the points that no triangle and no edge uses.
     fn drop_unused(&mut self) {
         let mut used = vec![false; self.points.len()];
         let corners = self.triangles.iter().flat_map(|t| t.corners);
@@ -174,8 +174,8 @@ impl Mesh {
         self.points = kept;
     }
 
-    /// The outward normals of the face at the corners of a triangle, as long as 1; at a cone's apex
-    /// that of the ruling through the middle of the side across.
+    /// The outward unit normals of the face at the corners of a triangle. At a cone's apex, that of
+    /// the ruling through the middle of the opposite side.
     pub fn normals(&self, brep: &Brep, triangle: &Triangle) -> [Vector3<f64>; 3] {
         let corners = triangle.corners.map(|c| self.points[c as usize]);
         [0, 1, 2].map(|k: usize| {
@@ -202,7 +202,7 @@ impl Mesh {
         six.sum::<f64>() / 6.0
     }
 
-    /// Whether every side of a triangle is a side of another, run the other way.
+    /// Whether every side of a triangle is a side of another in the opposite direction.
     pub fn is_watertight(&self) -> bool {
         let mut open: HashMap<[u32; 2], i32> = HashMap::new();
         for t in &self.triangles {

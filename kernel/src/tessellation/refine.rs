@@ -1,4 +1,5 @@
-//! The triangles of a face: points are added inside until they follow the surface.
+//! Refinement of a face's triangulation: points are added inside until the triangles approximate
+//! the surface.
 
 use super::charts::Chart;
 use super::chord_test::ChordTest;
@@ -13,20 +14,20 @@ use spade::Triangulation;
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use std::collections::HashSet;
 
-/// A mesh as its faces are added.
+/// A mesh to which faces are added.
 pub(super) struct Refiner<'a> {
     brep: &'a Brep,
     accuracy: &'a Accuracy,
-    /// What is there of it.
+    /// The mesh so far.
     pub mesh: Mesh,
-    /// Points from this one on are of one face only.
+    /// The first point that belongs to one face only.
     shared: u32,
-    /// The sides between shared points: chords of edges, and sides inside faces that were added.
+    /// The sides between shared points: chords of edges, and inner sides of the faces added so far.
     taken: HashSet<[u32; 2]>,
 }
 
 impl<'a> Refiner<'a> {
-    /// The points of the divided edges, and no triangle.
+    /// A mesh with the points of the divided edges and no triangle.
     pub fn new(brep: &'a Brep, accuracy: &'a Accuracy, lines: Polylines) -> Self {
         let along = |edge| lines.nodes(edge).iter().map(|n| n.point).collect();
         let mesh = Mesh {
@@ -89,18 +90,17 @@ impl<'a> Refiner<'a> {
                 return Err(TessellationError::Sides { face });
             }
         }
-        // What is missing is there: the f64 values of the chart are too coarse.
+        // The points to be added exist already: the f64 resolution of the chart is exhausted.
         if domain.net.num_vertices() == before {
             return Err(TessellationError::Crossing { face });
         }
         Ok(())
     }
 
-    /// Points in the middle of the sides that are there already, of an edge, of another face or on
-    /// the other side of a seam: four triangles would have one side, as they do at the tip of a wedge
-    /// of two faces.
+    /// The middles of sides that already exist, on an edge, on another face or across a seam.
+    /// Otherwise four triangles would share one side, as at the tip of a wedge of two faces.
     fn doubled(&self, domain: &FaceTriangulation, inside: &[Inner]) -> Vec<Point2<f64>> {
-        // Without seams a point of the face has one place in its chart.
+        // Except at seams, a point of the face has one position in its chart.
         let mut own: HashSet<[u32; 2]> = on_seams(domain).collect();
         let has_seams = !domain.glued.is_empty();
         let sides = free_sides(domain, inside).into_iter();
@@ -110,7 +110,7 @@ impl<'a> Refiner<'a> {
         middles.collect()
     }
 
-    /// Notes the sides between points that other faces may have, too.
+    /// Records the sides between points that other faces may share.
     fn take(&mut self, domain: &FaceTriangulation, inside: &[Inner]) {
         let free = free_sides(domain, inside).into_iter().map(|(side, _)| side);
         let all = free.chain(on_seams(domain));
@@ -118,7 +118,7 @@ impl<'a> Refiner<'a> {
         self.taken.extend(all.filter(|[_, last]| *last < shared));
     }
 
-    /// Adds triangles that follow a face.
+    /// Adds the triangles of a finished face.
     fn finish(
         &mut self,
         face: FaceId,
@@ -144,7 +144,7 @@ fn unordered([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The sides inside a face that may be divided, with the places of their ends.
+/// The inner sides of a face that may be divided, with the positions of their ends.
 fn free_sides(domain: &FaceTriangulation, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])> {
     let free = inside.iter().flat_map(|&triangle| {
         let edges = domain.net.face(triangle).adjacent_edges();
@@ -172,19 +172,19 @@ fn on_seams(domain: &FaceTriangulation) -> impl Iterator<Item = [u32; 2]> {
 
 type Inner = FixedFaceHandle<InnerTag>;
 
-/// The triangles inside a face, in order; none where its edges contradict one another. A region
-/// that no edge bounds is inside.
+/// The triangles inside a face, in order; `None` if its edges contradict each other. A region that
+/// no edge bounds is inside.
 fn inside(domain: &FaceTriangulation, mirrored: bool) -> Option<Vec<Inner>> {
     let net = &domain.net;
     let count = net.num_all_faces();
     let mut region = vec![usize::MAX; count];
-    let mut told: Vec<Option<bool>> = Vec::new();
+    let mut sides: Vec<Option<bool>> = Vec::new();
     for start in net.fixed_inner_faces() {
         if region[start.index()] != usize::MAX {
             continue;
         }
-        let number = told.len();
-        told.push(None);
+        let number = sides.len();
+        sides.push(None);
         region[start.index()] = number;
         let mut waiting = vec![start];
         while let Some(triangle) = waiting.pop() {
@@ -197,9 +197,9 @@ fn inside(domain: &FaceTriangulation, mirrored: bool) -> Option<Vec<Inner>> {
                 if on_left || on_right {
                     // A slit has the face on both sides.
                     let here = on_left;
-                    match told[number] {
+                    match sides[number] {
                         Some(known) if known != here => return None,
-                        _ => told[number] = Some(here),
+                        _ => sides[number] = Some(here),
                     }
                     continue;
                 }
@@ -220,16 +220,16 @@ fn inside(domain: &FaceTriangulation, mirrored: bool) -> Option<Vec<Inner>> {
             }
         }
     }
-    let holds = |t: &Inner| told[region[t.index()]].unwrap_or(domain.bounding.is_empty());
+    let holds = |t: &Inner| sides[region[t.index()]].unwrap_or(domain.bounding.is_empty());
     Some(net.fixed_inner_faces().filter(holds).collect())
 }
 
-/// A side may be this part of the accuracy off: the middle of a triangle between three such sides
-/// is off by four thirds of it.
+/// The accuracy of sides relative to that of triangles. The middle of a triangle deviates four
+/// thirds as much as its three sides.
 const OF_SIDES: f64 = 0.75;
 
-/// Where points are missing: where the longest side that leaves the surface does, of each triangle,
-/// or in the middle of the triangle where only that does.
+/// The positions where points are missing: for each triangle, on the longest side that leaves the
+/// surface; if only its middle leaves the surface, there.
 fn missing(
     surface: &Surface,
     chart: &Chart,

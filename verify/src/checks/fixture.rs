@@ -1,4 +1,4 @@
-//! A part seen from the front, for the tests of checks.
+//! A part with its front view, for the tests of checks.
 
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

@@ -1,5 +1,5 @@
-//! Which pieces of contours pass close to a point of the image: found by halving, with no formula
-//! for the image of a curve.
+//! Finds the pieces of contours that pass close to an image point. Curves are subdivided; no
+//! formula for the image of a curve is used.
 
 use super::window::{Seen, Window};
 use premio_drawing::Layer;
@@ -8,29 +8,29 @@ use premio_visibility::Contours;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-/// Into how many parts each smooth stretch of a curve is cut before anything is asked.
+/// The number of parts into which each smooth piece of a curve is divided initially.
 const PARTS: usize = 16;
 
 /// The images of the pieces of a view.
 #[derive(Debug)]
 pub(super) struct Images<'a> {
     window: &'a Window,
-    /// The cells with boxes that hold them, and in them what may come near.
+    /// The cells with enclosing boxes, for candidates.
     cells: RTree<GeomWithData<Rectangle<[f64; 2]>, Cell<'a>>>,
 }
 
-/// What passes close to a point of the image.
+/// A piece that passes close to an image point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Passing {
     /// The least and the greatest depth of the piece there.
     pub depth: [f64; 2],
     /// Whether the piece is visible.
     pub visible: bool,
-    /// What a drawing shows it as.
+    /// The layer in which a drawing shows it.
     pub layer: Layer,
 }
 
-/// A stretch of a curve with the images of its ends and of its middle.
+/// A part of a curve, with the images of its ends and its middle.
 #[derive(Clone, Copy, Debug)]
 struct Cell<'a> {
     curve: &'a Curve,
@@ -41,7 +41,7 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    /// The longer side of the box around the three points.
+    /// The longer side of the bounding box of the three points.
     fn size(&self) -> f64 {
         let [a, b] = self.corners();
         (b[0] - a[0]).max(b[1] - a[1])
@@ -55,8 +55,8 @@ impl<'a> Cell<'a> {
         [over(f64::min), over(f64::max)]
     }
 
-    /// Whether the stretch may come closer to `at` than `near`: it leaves the box of its three
-    /// points by less than the box's size.
+    /// Whether the part may come closer to `at` than `near`. It leaves the box of its three points
+    /// by less than the size of the box.
     fn may_pass(&self, at: [f64; 2], near: f64) -> bool {
         let reach = near + self.size();
         let [lo, hi] = self.corners();
@@ -93,7 +93,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// A box that the stretch does not leave.
+    /// A box that contains the part.
     fn hull(&self) -> Rectangle<[f64; 2]> {
         let ([lo, hi], grown) = (self.corners(), self.size());
         Rectangle::from_corners(lo.map(|x| x - grown), hi.map(|x| x + grown))
@@ -131,7 +131,7 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// Whether a piece that suits passes `at` closer than `near` (up to a factor of about four).
+    /// Whether a suitable piece passes `at` closer than `near`, to a factor of about four.
     pub fn any(&self, at: [f64; 2], near: f64, suits: impl Fn(&Passing) -> bool) -> bool {
         let mut todo: Vec<Cell<'_>> = Vec::new();
         let around = AABB::from_corners(at.map(|x| x - near), at.map(|x| x + near));

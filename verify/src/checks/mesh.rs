@@ -1,5 +1,6 @@
-//! The meshes of a part as their files hold them, in the precision of each: closed, oriented, no
-//! triangle without an area, and of one volume with the boundary but for the deviation.
+//! Checks the meshes of a part as written to files, in the precision of each format. They must be
+//! closed and oriented, have no triangle of zero area, and have the volume of the boundary up to
+//! the deviation.
 
 use super::{Check, CheckSubject, Checker, Finding};
 use nalgebra::{Point3, Vector3};
@@ -7,29 +8,29 @@ use premio_exchange::mesh::{self, Facets, MeshError, obj, stl};
 use premio_kernel::tessellation::Accuracy;
 use std::collections::HashMap;
 
-/// A mesh as it is read back.
+/// A mesh that was read back.
 #[derive(Clone, Debug, Default)]
 struct Read {
     points: Vec<Point3<f64>>,
     triangles: Vec<[usize; 3]>,
-    /// Whether points in one place are one point, whatever solid or piece they are of.
+    /// Whether points with equal coordinates are one point, whatever solid or piece they belong to.
     is_by_place: bool,
 }
 
-/// What the boundary says of its mesh.
+/// What is known of the mesh from the boundary.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     volume: f64,
-    /// How far the volume may be off.
+    /// The volume error allowed.
     allowed: f64,
-    /// Whether the boundary meets itself, so that one place has several points.
+    /// Whether the boundary touches itself, so that several points may coincide.
     is_crowded: bool,
 }
 
 impl Checker<'_> {
-    /// Writes meshes, reads them back and holds them against the rules.
+    /// Writes meshes, reads them back and checks them.
     pub fn mesh(&self) -> Check {
-        let told = |finding, detail| Check {
+        let check = |finding, detail| Check {
             subject: CheckSubject::Mesh,
             finding,
             detail,
@@ -37,16 +38,16 @@ impl Checker<'_> {
         let evaluation = self.evaluation;
         let topology = &evaluation.brep.topology;
         if topology.solids.is_empty() {
-            return told(Finding::Passes, "nothing to write".to_owned());
+            return check(Finding::Passes, "nothing to write".to_owned());
         }
         let accuracy = Accuracy {
-            deviation: mesh::DEVIATION * self.told.diagonal(),
+            deviation: mesh::DEVIATION * self.bounds.diagonal(),
             angle: mesh::ANGLE.to_radians(),
         };
         let resolution = evaluation.f64_resolution();
         let facets = match Facets::new(&evaluation.brep, &accuracy, resolution) {
             Ok(facets) => facets,
-            Err(error) => return told(Finding::Passes, format!("refused: {error}")),
+            Err(error) => return check(Finding::Passes, format!("refused: {error}")),
         };
         let mass = evaluation.mass();
         let known = Known {
@@ -71,8 +72,8 @@ impl Checker<'_> {
             }
         }
         match wrong.is_empty() {
-            true => told(Finding::Passes, right.join(", ")),
-            false => told(Finding::Fails, wrong.join("; ")),
+            true => check(Finding::Passes, right.join(", ")),
+            false => check(Finding::Fails, wrong.join("; ")),
         }
     }
 }
@@ -109,12 +110,12 @@ fn from_obj(text: &str) -> Option<Read> {
         .then_some(read)
 }
 
-/// How long the parts of a binary STL are: the header, a triangle, a number.
+/// The lengths in bytes of a binary STL's header, triangle and number.
 const HEADER: usize = 80;
 const TRIANGLE: usize = 50;
 const NUMBER: usize = 4;
 
-/// The triangles of a binary STL file; what has one place is one point.
+/// The triangles of a binary STL file; points with equal coordinates are merged.
 fn from_stl(bytes: &[u8]) -> Option<Read> {
     let number =
         |at: usize| -> Option<[u8; NUMBER]> { bytes.get(at..at + NUMBER)?.try_into().ok() };
@@ -131,11 +132,11 @@ fn from_stl(bytes: &[u8]) -> Option<Read> {
     for triangle in 0..count {
         let mut corners = [0; 3];
         for (k, corner) in corners.iter_mut().enumerate() {
-            // After the normal.
+            // The normal comes first.
             let at = start + triangle * TRIANGLE + 3 * NUMBER * (k + 1);
             let mut place = [0.0f32; 3];
             for (i, x) in place.iter_mut().enumerate() {
-                // No negative zero, which is the same place.
+                // A negative zero is the same coordinate.
                 *x = f32::from_le_bytes(number(at + i * NUMBER)?) + 0.0;
             }
             *corner = *known.entry(place.map(f32::to_bits)).or_insert_with(|| {
@@ -174,7 +175,7 @@ fn flaw(read: &Read, known: &Known) -> Option<String> {
     if let Some((side, _)) = sides.iter().find(|(_, count)| **count > most) {
         return Some(format!("a side of many triangles {}", place(side[0])));
     }
-    // About a corner, so that where the part lies costs no digits.
+    // Relative to a corner, so that the part's position costs no digits.
     let origin = read.points.first()?;
     let mut volume = 0.0;
     for triangle in &read.triangles {

@@ -1,5 +1,5 @@
-//! The self-checks that cross crates: the boundary and the contours against the tree, which rays
-//! ask directly.
+//! The self-checks across crates: the boundary and the contours are compared with the tree by ray
+//! casting.
 
 #[cfg(test)]
 mod fixture;
@@ -29,23 +29,23 @@ use premio_visibility::camera::projection::Projection;
 use premio_visibility::{Contours, ViewCamera, contours};
 use std::fmt;
 
-/// How many standard errors a measured volume may be off.
+/// The allowed deviation of a measured volume, in standard errors.
 pub const DEVIATIONS: f64 = 5.0;
 
-/// How many times more rays decide where few rays disagree.
+/// The factor by which more rays are cast if the first ones disagree.
 const AGAIN: usize = 16;
 
-/// How many rays look for material outside the box.
+/// The number of rays that look for material outside the box.
 const AROUND: usize = 2000;
 
-/// What a check is about.
+/// The subject of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckSubject {
     /// The rules of the boundary representation.
     Topology,
     /// The volume of the boundary against the tree's by rays.
     Volume,
-    /// The box of the boundary against the places where rays meet the tree.
+    /// The bounding box of the boundary against the points where rays hit the tree.
     Bounds,
     /// The quantitative invisibility of every piece of a view against rays on the tree.
     View(String),
@@ -61,51 +61,51 @@ pub enum CheckSubject {
     Mesh,
 }
 
-/// What a check finds.
+/// The result of a check.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Finding {
-    /// It holds.
+    /// The check passed.
     Passes,
-    /// Something is wrong.
+    /// The check failed.
     Fails,
-    /// Too little could be looked at to tell, and nothing of that is wrong.
+    /// Too little could be examined for a decision, and nothing of that is wrong.
     Undetermined,
 }
 
 /// The outcome of one check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// What it is about.
+    /// The subject.
     pub subject: CheckSubject,
-    /// What it finds.
+    /// The result.
     pub finding: Finding,
-    /// The figures, or what is wrong.
+    /// The measured values, or what is wrong.
     pub detail: String,
 }
 
 /// The outcome of all checks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CheckReport {
-    /// In the order made.
+    /// The checks, in the order in which they were made.
     pub checks: Vec<Check>,
 }
 
-/// Which checks of a view are made.
+/// The checks to be made of a view.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewChecks {
-    /// The pieces of its contours are counted again, and missing contours looked for.
+    /// Whether the pieces of its contours are recounted and missing contours are searched for.
     pub contours: bool,
-    /// Its outline is followed, and its sheet read back.
+    /// Whether its outline is followed and its sheet is read back.
     pub drawing: bool,
 }
 
 impl ViewChecks {
-    /// All of them.
+    /// All checks.
     pub const ALL: Self = Self {
         contours: true,
         drawing: true,
     };
-    /// Those of the contours.
+    /// The checks of contours only.
     pub const CONTOURS: Self = Self {
         contours: true,
         drawing: false,
@@ -117,8 +117,8 @@ impl ViewChecks {
 pub struct Checker<'a> {
     material: RayOracle,
     evaluation: &'a Evaluation,
-    /// The box of the boundary, as it is told.
-    told: Aabb,
+    /// The bounding box of the boundary.
+    bounds: Aabb,
 }
 
 impl CheckReport {
@@ -127,26 +127,26 @@ impl CheckReport {
         self.checks.iter().all(Check::passes)
     }
 
-    /// The checks that find one thing.
+    /// The checks with a given result.
     pub fn checks_with(&self, finding: Finding) -> impl Iterator<Item = &Check> {
         self.checks.iter().filter(move |c| c.finding == finding)
     }
 
-    /// The checks that do not pass: they fail or are undecided.
+    /// The checks that do not pass: those that fail and those that are undetermined.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
         self.checks.iter().filter(|c| !c.passes())
     }
 }
 
 impl Check {
-    /// Whether it passes.
+    /// Whether the result is that the check passed.
     pub fn passes(&self) -> bool {
         self.finding == Finding::Passes
     }
 }
 
 impl Finding {
-    /// The finding of a check that always decides.
+    /// The result of a check that always decides.
     fn new(passes: bool) -> Self {
         match passes {
             true => Self::Passes,
@@ -161,11 +161,11 @@ impl<'a> Checker<'a> {
         Self {
             material: RayOracle::new(tree),
             evaluation,
-            told: evaluation.tight_bounds(),
+            bounds: evaluation.tight_bounds(),
         }
     }
 
-    /// Every check there is: the boundary's rules, the volume by `rays` rays, the files, and the views.
+    /// All checks: the boundary's rules, the volume by `rays` rays, the files, and the views.
     pub fn all(&self, rays: usize) -> CheckReport {
         let mut report = self.solid(rays);
         report.checks.extend([self.step(), self.mesh()]);
@@ -201,10 +201,10 @@ impl<'a> Checker<'a> {
         let volume = self.evaluation.mass().volume;
         let mut estimate = self.material.volume(rays, 1);
         let mut off = self.deviation(&estimate, volume);
-        // Chance alone exceeds the bound now and then, or misses a small part: fresh rays decide.
+        // Chance alone sometimes exceeds the bound or misses a small part, so new rays decide.
         if off > DEVIATIONS {
             let more = rays.saturating_mul(AGAIN);
-            estimate = self.material.volume_about(&self.told, more, 2);
+            estimate = self.material.volume_about(&self.bounds, more, 2);
             off = self.deviation(&estimate, volume);
         }
         let Estimate {
@@ -222,14 +222,14 @@ impl<'a> Checker<'a> {
 
     fn bounds(&self) -> Check {
         let slack = self.clearance().sliver;
-        let (given, met) = (&self.told, self.material.extent(AROUND, slack));
-        let beyond = |i: usize| (given.min[i] - met.min[i]).max(met.max[i] - given.max[i]);
-        // Of nothing met by rays the box is empty, and no difference a number or positive.
+        let (given, hit) = (&self.bounds, self.material.extent(AROUND, slack));
+        let beyond = |i: usize| (given.min[i] - hit.min[i]).max(hit.max[i] - given.max[i]);
+        // If no ray hits anything the box is empty, and the differences are NaN or negative.
         let off = (0..3).map(beyond).fold(f64::NEG_INFINITY, f64::max);
         Check {
             subject: CheckSubject::Bounds,
-            finding: Finding::new(off <= slack || met == Aabb::EMPTY),
-            detail: if off <= slack || met == Aabb::EMPTY {
+            finding: Finding::new(off <= slack || hit == Aabb::EMPTY),
+            detail: if off <= slack || hit == Aabb::EMPTY {
                 format!("{AROUND} rays meet nothing outside the box")
             } else {
                 format!("rays meet material {off:e} outside the box")
@@ -239,13 +239,13 @@ impl<'a> Checker<'a> {
 
     fn deviation(&self, estimate: &Estimate, volume: f64) -> f64 {
         let size = self.evaluation.bounds.diagonal();
-        // What lies within the resolution over the whole surface is no difference.
+        // A shell of the resolution's thickness over the entire surface is not a difference.
         let surface = size * size * 6.0;
         let rounding = surface * (self.evaluation.resolution + ROUNDING * size);
         estimate.deviation(volume, if rounding.is_finite() { rounding } else { 0.0 })
     }
 
-    /// Counts the faces before every piece that a camera sees, and looks for missing contours.
+    /// Counts the faces in front of every piece that a camera sees, and looks for missing contours.
     pub fn view(&self, name: &str, camera: &ViewCamera) -> Vec<Check> {
         self.view_with(name, camera, ViewChecks::CONTOURS)
     }
@@ -261,7 +261,7 @@ impl<'a> Checker<'a> {
             }]
         };
         let Some(resolution) = self.evaluation.view_resolution() else {
-            let refused = "refused: surfaces lie closer together than doubles tell";
+            let refused = "refused: surfaces are closer to each other than f64 resolves";
             return failed(Finding::Passes, refused.to_owned());
         };
         let seen = match contours(&self.evaluation.brep, camera, resolution) {
@@ -278,7 +278,7 @@ impl<'a> Checker<'a> {
         made
     }
 
-    /// Counts the faces before every piece, and looks for missing contours.
+    /// Counts the faces in front of every piece, and looks for missing contours.
     fn contours(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
         let counted = Recount::telling(&self.material, seen, &clearance);
@@ -297,13 +297,13 @@ impl<'a> Checker<'a> {
         ]
     }
 
-    /// Draws contours, follows the boundary of the shadow, and reads the sheet back.
+    /// Draws the contours, follows the boundary of the shadow, and reads the sheet back.
     fn drawing(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
         let projection = Projection::new(&seen.camera, clearance.size);
         let drawing = Drawing::new(seen, &premio_drawing::DrawingOptions::default());
         let size = (drawing.extent[1] - drawing.extent[0]).norm();
-        // In the image lengths are as many times greater as the part is.
+        // Lengths in the image are larger by the ratio of its size to the part's.
         let near = clearance.shift * size / clearance.size;
         let tolerance = shadow::Tolerance {
             image: near + drawing.tolerance + 2.0 * drawing.distance,
@@ -328,13 +328,14 @@ impl<'a> Checker<'a> {
     fn clearance(&self) -> Clearance {
         let size = self.evaluation.bounds.diagonal();
         let known = self.evaluation;
-        // Rays are f64 values, however finely the boundary was evaluated.
+        // Rays are f64, however finely the boundary was evaluated.
         let resolution = known.f64_resolution();
         Clearance {
             sliver: 100.0 * resolution,
-            // Between the resolution and the size, nearer the former.
+            // Between the resolution and the size, closer to the former.
             lateral: (size * ROUNDING.sqrt()).max(1000.0 * resolution),
-            // What rises by the coincidence over a radius of half the size.
+            // The distance over which a surface of half the size as radius rises by the coincidence
+            // distance.
             shift: (size * known.greatest_coincidence()).sqrt(),
             size,
         }
@@ -379,7 +380,10 @@ impl fmt::Display for CheckReport {
         match (failed, untold) {
             (0, 0) => writeln!(f, "all {all} checks hold"),
             (_, 0) => writeln!(f, "{failed} of {all} checks failed"),
-            _ => writeln!(f, "{failed} of {all} checks failed, {untold} do not tell"),
+            _ => writeln!(
+                f,
+                "{failed} of {all} checks failed, {untold} are undetermined"
+            ),
         }
     }
 }

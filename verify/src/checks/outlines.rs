@@ -1,9 +1,9 @@
-//! Whether contours are missing: what lines of sight meet in the tree changes at contours only.
+//! Finds missing contours: the surfaces along a line of sight change at contours only.
 //!
 //! Lines are drawn across the image, and lines of sight are followed along them. Where two
-//! neighbours cross different surfaces of the tree, halving finds the place of the change; some
-//! contour must pass there, at the depth of the change, and a visible one where it is the nearest
-//! surface that changes.
+//! neighbours cross different surfaces of the tree, bisection finds the position of the change. A
+//! contour must pass there at the depth of the change, and a visible one if the closest surface
+//! changes.
 
 use super::images::{Images, Passing};
 use super::window::Window;
@@ -14,56 +14,57 @@ use premio_visibility::camera::projection::Projection;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// How many lines are drawn across the image.
+/// The number of lines drawn across the image.
 const LINES: usize = 24;
-/// How many lines of sight are followed along each.
+/// The number of lines of sight along each.
 const SIGHTS: usize = 32;
-/// The powers of the plastic number, by which Roberts's sequence steps through the unit square.
+/// Powers of the plastic number, the steps of Roberts's sequence in the unit square.
 const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
-/// How many changes are looked for between two neighbouring lines of sight.
+/// The number of changes searched for between two neighbouring lines of sight.
 const CHANGES: usize = 8;
-/// How often the place of a change is halved: to less than a millionth of the window.
+/// The number of bisections: to less than a millionth of the window.
 const HALVINGS: usize = 17;
-/// How near a contour must pass, in multiples of the interval that is left.
+/// The distance within which a contour must pass, in multiples of the remaining interval.
 const NEAR: f64 = 4.0;
-/// How many times the depth of a round surface next to its limb a contour may be off in depth.
+/// The allowed depth error of a contour, in multiples of a curved surface's depth close to its
+/// limb.
 const DEEP: f64 = 16.0;
-/// How many missing contours are named.
+/// The number of missing contours that are reported individually.
 const NAMED: usize = 5;
 
-/// What is amiss at a place of the image.
+/// What is missing at a position in the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
     /// No contour passes.
     Contour,
     /// Contours pass, but none at the depth of the change.
     Depth,
-    /// What passes is said to be hidden, but nothing lies before it.
+    /// The contour there is marked as hidden, but nothing is in front of it.
     Visible,
 }
 
-/// A change in what lines of sight meet that no contour explains.
+/// A change of the surfaces along lines of sight that no contour explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missing {
-    /// What is amiss.
+    /// What is missing.
     pub lack: Lack,
-    /// The place of the change in the part's frame.
+    /// The position of the change in the part's frame.
     pub place: [f64; 3],
 }
 
-/// The changes that were found along lines across an image.
+/// The changes found along lines across an image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outlines {
-    /// How many changes have their contour.
+    /// The number of changes with a contour.
     pub explained: usize,
-    /// How many lie too close to something else.
+    /// The number of changes too close to something else.
     pub ambiguous: usize,
-    /// Those that lack one.
+    /// The changes without a contour.
     pub missing: Vec<Missing>,
 }
 
-/// What a line of sight meets; none next to where surfaces touch.
-type Met = Option<Vec<SurfaceCrossing>>;
+/// The surfaces that a line of sight hits; `None` close to where surfaces touch.
+type Hits = Option<Vec<SurfaceCrossing>>;
 
 struct Search<'a> {
     surfaces: Surfaces<'a>,
@@ -71,14 +72,14 @@ struct Search<'a> {
     clearance: &'a Clearance,
 }
 
-/// Two neighbouring lines of sight that meet different surfaces.
+/// Two neighbouring lines of sight that hit different surfaces.
 struct Change {
     at: [[f64; 2]; 2],
-    met: [Vec<SurfaceCrossing>; 2],
+    hits: [Vec<SurfaceCrossing>; 2],
 }
 
 impl Outlines {
-    /// Looks for the contours of a view.
+    /// Searches for the contours of a view.
     pub fn new(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let window = Window::around(&projection, material.bounds());
@@ -91,9 +92,9 @@ impl Outlines {
         let mut outlines = Self::default();
         for line in 0..LINES {
             let places = search.places(line);
-            let met = places.map(|at| search.met(at));
+            let hits = places.map(|at| search.hits(at));
             for k in 1..SIGHTS {
-                if let (Some(a), Some(b)) = (&met[k - 1], &met[k]) {
+                if let (Some(a), Some(b)) = (&hits[k - 1], &hits[k]) {
                     let at = [places[k - 1], places[k]];
                     outlines.between(&search, &images, at, [a, b]);
                 }
@@ -102,23 +103,23 @@ impl Outlines {
         outlines
     }
 
-    /// Takes up the changes between two lines of sight, one after the other.
+    /// Records the changes between two lines of sight, one after the other.
     fn between(
         &mut self,
         search: &Search<'_>,
         images: &Images<'_>,
         at: [[f64; 2]; 2],
-        met: [&[SurfaceCrossing]; 2],
+        hits: [&[SurfaceCrossing]; 2],
     ) {
         let mut from = at[0];
-        let mut met_from = met[0].to_vec();
+        let mut hits_from = hits[0].to_vec();
         for _ in 0..CHANGES {
-            if same(&met_from, met[1]) {
+            if same(&hits_from, hits[1]) {
                 return;
             }
             let pair = Change {
                 at: [from, at[1]],
-                met: [met_from, met[1].to_vec()],
+                hits: [hits_from, hits[1].to_vec()],
             };
             let Some(change) = search.narrowed(pair) else {
                 self.ambiguous += 1;
@@ -130,15 +131,15 @@ impl Outlines {
             }
             let Change {
                 at: [_, beyond],
-                met: [_, met_beyond],
+                hits: [_, hits_beyond],
             } = change;
-            (from, met_from) = (beyond, met_beyond);
+            (from, hits_from) = (beyond, hits_beyond);
         }
         self.ambiguous += 1;
     }
 }
 
-/// Whether two lines of sight meet the same surfaces from the same sides.
+/// Whether two lines of sight hit the same surfaces from the same sides.
 fn same(a: &[SurfaceCrossing], b: &[SurfaceCrossing]) -> bool {
     let one = |(a, b): (&SurfaceCrossing, &SurfaceCrossing)| {
         a.surface == b.surface && a.outwards == b.outwards
@@ -147,7 +148,7 @@ fn same(a: &[SurfaceCrossing], b: &[SurfaceCrossing]) -> bool {
 }
 
 impl Search<'_> {
-    /// Places along a line across the window, at random: a chord of the circle around the image.
+    /// Points along a random line across the window: a chord of the circle around the image.
     fn places(&self, line: usize) -> [[f64; 2]; SIGHTS] {
         let part = |i: usize| ((line as f64 + 0.5) * STEPS[i]).fract();
         let (sin, cos) = (PI * part(0)).sin_cos();
@@ -163,92 +164,92 @@ impl Search<'_> {
         })
     }
 
-    /// What the line of sight of an image point meets beyond the near plane.
-    fn met(&self, at: [f64; 2]) -> Met {
+    /// The surfaces that the line of sight of an image point hits beyond the near plane.
+    fn hits(&self, at: [f64; 2]) -> Hits {
         let ray = self.window.ray(at);
         let length = ray.direction.norm();
         let least = self.clearance.size * ROUNDING / length;
-        let mut met = self.surfaces.crossings(&ray, least)?;
-        let nearer = met.iter().filter(|c| c.at <= self.window.near).count();
+        let mut hits = self.surfaces.crossings(&ray, least)?;
+        let nearer = hits.iter().filter(|c| c.at <= self.window.near).count();
         // Where the near plane cuts material there is a face that the tree does not have.
         if nearer % 2 == 1 {
             return None;
         }
-        met.drain(..nearer);
+        hits.drain(..nearer);
         let short = |w: &[SurfaceCrossing]| (w[1].at - w[0].at) * length <= self.clearance.sliver;
-        (!met.windows(2).any(short)).then_some(met)
+        (!hits.windows(2).any(short)).then_some(hits)
     }
 
-    /// The place of one change between two lines of sight.
+    /// The position of one change between two lines of sight.
     fn narrowed(&self, pair: Change) -> Option<Change> {
         let Change {
             at: [mut a, mut b],
-            met: [mut met_a, mut met_b],
+            hits: [mut hits_a, mut hits_b],
         } = pair;
         for _ in 0..HALVINGS {
             let middle = [0, 1].map(|i| 0.5 * (a[i] + b[i]));
-            let met = self.met(middle)?;
-            if same(&met, &met_a) {
-                (a, met_a) = (middle, met);
+            let hits = self.hits(middle)?;
+            if same(&hits, &hits_a) {
+                (a, hits_a) = (middle, hits);
             } else {
-                (b, met_b) = (middle, met);
+                (b, hits_b) = (middle, hits);
             }
         }
         Some(Change {
             at: [a, b],
-            met: [met_a, met_b],
+            hits: [hits_a, hits_b],
         })
     }
 
-    /// Where the surface that a change begins with falls so steeply to its edge that from one line of
-    /// sight to the next it is more than `deep`: the depth down to which the edge may be. That is of
-    /// what is met instead, or of the far side of what ends there.
+    /// The depth down to which the edge of a surface may lie, if the surface that a change begins
+    /// with is steep: if its depth changes by more than `deep` between the two lines of sight. It
+    /// is the depth of what is hit instead, or of the far side of what ends there.
     fn steep_until(&self, change: &Change, index: usize, deep: f64) -> Option<f64> {
-        let [first, second] = &change.met;
+        let [first, second] = &change.hits;
         let [a, b] = change.at;
-        let at = |met: &[SurfaceCrossing]| met.get(index).map_or(f64::INFINITY, |c| c.at);
+        let at = |hits: &[SurfaceCrossing]| hits.get(index).map_or(f64::INFINITY, |c| c.at);
         let ((own, from), (instead, other)) = match at(first) <= at(second) {
             true => ((first, a), (second, b)),
             false => ((second, b), (first, a)),
         };
         let near = own.get(index)?;
-        // What ends there has a far side of its own.
+        // A body that ends there has a far side of its own.
         let until = match own.len() > instead.len() {
             true => own.get(index + 1)?.at,
             false => instead.get(index)?.at,
         };
-        // The face may be narrower than the interval: its own slope tells.
+        // The face may be narrower than the interval, so its own slope is used.
         let slope = self.slope([from, other], near);
-        // A limb lies about twice as far as the slope next to it says.
+        // A limb is about twice as far as the slope close to it indicates.
         let is_steep = slope.is_nan() || NEAR * slope.abs() > deep;
         is_steep.then_some(until.max(near.at))
     }
 
-    /// How much deeper a surface is met by the second of two lines of sight than by the first, as far
-    /// as its slope there tells.
+    /// The depth difference of a surface between the second of two lines of sight and the first,
+    /// extrapolated from its slope at the first.
     fn slope(&self, [from, other]: [[f64; 2]; 2], near: &SurfaceCrossing) -> f64 {
-        let (ray, beside) = (self.window.ray(from), self.window.ray(other));
-        let step = beside.origin - ray.origin + (beside.direction - ray.direction) * near.at;
+        let (ray, second) = (self.window.ray(from), self.window.ray(other));
+        let step = second.origin - ray.origin + (second.direction - ray.direction) * near.at;
         self.surfaces.slope(&ray, near, &step)
     }
 
-    /// Whether two lines of sight meet one surface at depths that a fall of it does not explain.
+    /// Whether two lines of sight hit one surface at depths that its slope does not explain.
     fn leaps(&self, between: [[f64; 2]; 2], [a, b]: [&SurfaceCrossing; 2], deep: f64) -> bool {
         let fall = (a.at - b.at).abs();
         let slope = || self.slope(between, a).abs();
         fall > deep && fall > NEAR * slope()
     }
 
-    /// What a change lacks; none where a contour explains it.
+    /// What is missing at a change; `None` if a contour explains it.
     fn lack(&self, change: &Change, images: &Images<'_>) -> Option<Missing> {
         let [a, b] = change.at;
         let width = (b[0] - a[0]).hypot(b[1] - a[1]);
-        // A round surface lies this much deeper than its limb.
+        // The depth of a curved surface relative to its limb.
         let deep = |depth: f64| {
-            let beside = NEAR * width * self.window.scale(depth);
-            DEEP * (beside * self.clearance.size).sqrt()
+            let lateral = NEAR * width * self.window.scale(depth);
+            DEEP * (lateral * self.clearance.size).sqrt()
         };
-        let [first, second] = &change.met;
+        let [first, second] = &change.hits;
         let unlike = |(a, b): (&SurfaceCrossing, &SurfaceCrossing)| {
             !same(std::slice::from_ref(a), std::slice::from_ref(b))
                 || self.leaps(change.at, [a, b], deep(a.at))
@@ -257,7 +258,7 @@ impl Search<'_> {
         let index = common.unwrap_or(first.len().min(second.len()));
         let depth = [first, second]
             .into_iter()
-            .filter_map(|met| met.get(index))
+            .filter_map(|hits| hits.get(index))
             .fold(f64::INFINITY, |least, c| c.at.min(least));
         let deep = deep(depth);
         let near = NEAR * width + self.clearance.shift / self.window.scale(depth);

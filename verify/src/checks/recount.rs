@@ -1,4 +1,4 @@
-//! The quantitative invisibility of pieces, counted again by rays on the tree.
+//! Recounts the quantitative invisibility of pieces by ray casting on the tree.
 
 use super::Finding;
 use nalgebra::{Point3, Vector3};
@@ -9,56 +9,57 @@ use premio_visibility::camera::projection::{Projection, ViewRay};
 use premio_visibility::contours::{ContourKind, ImageCurve};
 use std::fmt;
 
-/// Where in a piece samples are taken, as parts of its range: not in the middle, where a contour of
-/// a symmetric part may touch another face.
+/// The fractions of a piece's range at which samples are taken. The middle is avoided: there a
+/// contour of a symmetric part may touch another face.
 const SAMPLES: [f64; 3] = [0.21, 0.53, 0.83];
 
-/// How many times the clearance a sample is away from the ends of its piece.
+/// The distance of a sample from the ends of its piece, in multiples of the clearance.
 const NEAR: f64 = 10.0;
 
-/// What disagrees is looked at again with rays that run closer and closer by this.
+/// The factor by which rays are moved closer where counts disagree.
 const CLOSER: f64 = 1.0 / 16.0;
 
-/// The least share of samples that must be counted, where not many are.
+/// The least fraction of samples that must be counted, if only few are.
 const COUNTED: f64 = 1.0 / 8.0;
 
-/// So many counted samples tell something of any view; of fewer in all no share is asked.
+/// The number of counted samples that suffices for any view. Views with fewer samples in all need
+/// no minimum fraction.
 const FEW: usize = 24;
 
-/// A piece whose invisibility is not what rays say.
+/// A piece whose invisibility differs from the count by rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrongPiece {
     /// The contour.
     pub contour: u32,
-    /// What kind it is of.
+    /// Its kind.
     pub kind: ContourKind,
-    /// The place of the piece in the contour.
+    /// The index of the piece in the contour.
     pub piece: usize,
-    /// The sample.
+    /// The position of the sample.
     pub place: [f64; 3],
     /// The range of the piece.
     pub t: [f64; 2],
-    /// What the piece says.
+    /// The invisibility of the piece.
     pub given: u32,
-    /// What the rays say.
+    /// The count by rays.
     pub counted: u32,
 }
 
-/// The pieces of a view, counted again.
+/// The recount of a view's pieces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recount {
-    /// How many pieces there are.
+    /// The number of pieces.
     pub pieces: usize,
-    /// How many samples agree.
+    /// The number of samples that agree.
     pub agreed: usize,
-    /// How many samples lie too close to something else to be counted.
+    /// The number of samples too close to something else to be counted.
     pub ambiguous: usize,
-    /// The pieces that say something else than the rays.
+    /// The pieces that disagree with the rays.
     pub wrong: Vec<WrongPiece>,
 }
 
 impl Recount {
-    /// Whether none is wrong, of enough samples that could be counted.
+    /// Fails if a piece is wrong, and is undetermined if too few samples could be counted.
     pub fn finding(&self) -> Finding {
         match (self.wrong.is_empty(), self.suffices()) {
             (false, _) => Finding::Fails,
@@ -67,34 +68,35 @@ impl Recount {
         }
     }
 
-    /// Whether the samples that could be counted say something about the view.
+    /// Whether enough samples could be counted to judge the view.
     fn suffices(&self) -> bool {
         let samples = self.pieces * SAMPLES.len();
         let counted = samples.saturating_sub(self.ambiguous);
-        // Along its axis a part may fall on itself almost everywhere; then many samples are few of
-        // them, and still tell.
+        // Seen along its axis a part may coincide with itself almost everywhere. Then many samples
+        // are a small fraction, and still suffice.
         samples < FEW || counted >= FEW || counted as f64 >= COUNTED * samples as f64
     }
 
-    /// Counts every piece again, by lines of sight that run closer where too few tell something: in
-    /// the image of a part that nearly falls on itself contours lie next to one another everywhere.
+    /// Recounts every piece. If too few samples could be counted, the lines of sight are moved
+    /// closer: in the image of a part that nearly coincides with itself, contours are close to one
+    /// another everywhere.
     pub fn telling(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let first = Self::new(material, seen, clearance);
-        let tells = |recount: &Self| recount.suffices() || !recount.wrong.is_empty();
-        if tells(&first) {
+        let is_conclusive = |recount: &Self| recount.suffices() || !recount.wrong.is_empty();
+        if is_conclusive(&first) {
             return first;
         }
         let closer = closer(clearance).into_iter();
         let mut again = closer.map(|c| Self::new(material, seen, &c));
-        again.find(tells).unwrap_or(first)
+        again.find(is_conclusive).unwrap_or(first)
     }
 
-    /// Counts every piece again.
+    /// Recounts every piece.
     fn new(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
         let projection = Projection::new(&seen.camera, clearance.size);
         let sight = |p: &_| line_of_sight(&projection, p);
         let closer = closer(clearance);
-        // No line of sight may tell anything else, however close it runs.
+        // All lines of sight must give the same count, however close they are.
         let holds = |p: &_, counted: u32| {
             closer
                 .iter()
@@ -115,7 +117,7 @@ impl Recount {
                 let mut wrong = None;
                 for part in SAMPLES {
                     let place = contour.curve3.point(lo + part * (hi - lo));
-                    // Where a piece ends in the image, another contour is near.
+                    // Where a piece ends in the image, another contour is close.
                     let (towards, _) = sight(&place);
                     let lateral = ends.map(|e| (e - place).cross(&towards).norm());
                     let short = lateral.map(|lateral| lateral < NEAR * clearance.lateral);
@@ -133,8 +135,8 @@ impl Recount {
                         }
                     };
                     match counted {
-                        // Seen end-on it has no two sides; the rays next to it may all miss what
-                        // covers a narrow angle of its surroundings.
+                        // Seen end-on, it has no two sides. All neighbouring rays may miss
+                        // something that covers a narrow angle around it.
                         _ if end_on && counted != piece.qi => recount.ambiguous += 1,
                         _ if counted == piece.qi && piece.visible == (counted == 0) => {
                             recount.agreed += 1;
@@ -142,7 +144,7 @@ impl Recount {
                         _ if folds && piece.qi == counted + 1 && !piece.visible => {
                             recount.ambiguous += 1;
                         }
-                        // Depends on how far next to the rays run.
+                        // The count depends on the distance of the rays.
                         _ if !holds(&place, counted) => recount.ambiguous += 1,
                         _ => {
                             wrong = Some(WrongPiece {
@@ -164,14 +166,14 @@ impl Recount {
     }
 }
 
-/// Closer and closer clearances, down to half-way between the resolution and rounding.
+/// Smaller and smaller clearances, down to half-way between the resolution and rounding.
 fn closer(clearance: &Clearance) -> Vec<Clearance> {
     let finest = (clearance.sliver * CLOSER * CLOSER * clearance.size * ROUNDING).sqrt();
     let all = (1..).map(|k| clearance.closer(CLOSER.powi(k)));
     all.take_while(|c| c.lateral >= finest).collect()
 }
 
-/// The direction from a point to the eye, and how far it is to the eye or the near plane.
+/// The direction from a point to the eye, and the distance to the eye or the near plane.
 fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64) {
     let (towards, length) = projection.towards_eye(p);
     let depth = projection.depth(p);
@@ -183,7 +185,7 @@ fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64
     (towards, reach)
 }
 
-/// How many wrong pieces are named.
+/// The number of wrong pieces that are reported individually.
 const NAMED: usize = 5;
 
 impl fmt::Display for Recount {
@@ -199,7 +201,7 @@ impl fmt::Display for Recount {
             "{pieces} pieces, {agreed} samples agree, {ambiguous} too close to another contour"
         )?;
         if !self.suffices() {
-            f.write_str(", too few to tell")?;
+            f.write_str(", too few to decide")?;
         }
         if !wrong.is_empty() {
             write!(f, ", {} pieces wrong", wrong.len())?;
@@ -228,12 +230,16 @@ mod tests {
             ambiguous,
             wrong: Vec::new(),
         };
-        for told in [Recount::default(), of(7, 21), of(40, 80), of(216, 588)] {
-            assert_eq!(told.finding(), Finding::Passes, "{told}");
+        for conclusive in [Recount::default(), of(7, 21), of(40, 80), of(216, 588)] {
+            assert_eq!(conclusive.finding(), Finding::Passes, "{conclusive}");
         }
-        for untold in [of(40, 120), of(40, 106)] {
-            assert_eq!(untold.finding(), Finding::Undetermined, "{untold}");
+        for inconclusive in [of(40, 120), of(40, 106)] {
+            assert_eq!(
+                inconclusive.finding(),
+                Finding::Undetermined,
+                "{inconclusive}"
+            );
         }
-        assert!(of(40, 120).to_string().ends_with("too few to tell"));
+        assert!(of(40, 120).to_string().ends_with("too few to decide"));
     }
 }

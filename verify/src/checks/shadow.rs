@@ -1,8 +1,9 @@
-//! Whether the outline is drawn: the boundary of the part's shadow lies on visible strokes.
+//! Checks that the outline is drawn: the boundary of the part's shadow must lie on visible strokes.
 //!
-//! The shadow is where lines of sight meet material, which rays on the tree tell. Lines are drawn
-//! across the image, and a small circle around every end of a visible stroke; where one of them
-//! enters or leaves the shadow a visible stroke must pass, and no smooth edge.
+//! The shadow is the region in which lines of sight hit material, which ray casting on the tree
+//! determines. Lines are drawn across the image, and a small circle around every end of a visible
+//! stroke. Where one of them enters or leaves the shadow, a visible stroke must pass that is not a
+//! smooth edge.
 
 use super::Finding;
 use super::strokes::{Strokes, is_outline, point};
@@ -14,35 +15,35 @@ use premio_visibility::camera::projection::{Projection, ViewRay};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// How many lines are drawn across the image, and into how many steps each is cut.
+/// The number of lines drawn across the image, and of steps into which each is divided.
 const LINES: usize = 48;
 const STEPS: usize = 96;
-/// Around how many ends of strokes the outline is followed, and in how many steps.
+/// The number of ends of strokes around which the outline is followed, and of steps.
 const ENDS: usize = 64;
 const AROUND: usize = 24;
-/// The radius of these circles, as a part of the drawing's size.
+/// The radius of these circles, relative to the drawing's size.
 const RADIUS: f64 = 1.0 / 512.0;
-/// How often the place of a change is halved.
+/// The number of bisections of the position of a change.
 const HALVINGS: u32 = 40;
-/// The powers of the plastic number, by which Roberts's sequence steps through the unit square.
+/// Powers of the plastic number, the steps of Roberts's sequence in the unit square.
 const SPREAD: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
-/// How far rays place surfaces that coincide from one another, in roundings of the part's size.
+/// The error of a ray's intersections, in roundings of the part's size.
 const ROUNDINGS: f64 = 64.0;
-/// How many places are named.
+/// The number of positions that are reported individually.
 const NAMED: usize = 5;
 
-/// What was found of the outline.
+/// The result for the outline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadowOutline {
-    /// How many places of the shadow's boundary lie on a visible stroke.
+    /// The number of points of the shadow's boundary on a visible stroke.
     pub drawn: usize,
-    /// How many places lie where the material is too thin to say where the shadow ends.
+    /// The number of points where the material is too thin to locate the boundary.
     pub unclear: usize,
-    /// The places that do not, in the image.
+    /// The points in the image without a visible stroke.
     pub missing: Vec<[f64; 2]>,
 }
 
-/// The shadow of a part, by lines of sight.
+/// The shadow of a part, determined by lines of sight.
 struct Shadow<'a> {
     material: &'a RayOracle,
     projection: &'a Projection,
@@ -51,25 +52,25 @@ struct Shadow<'a> {
     rounding: f64,
 }
 
-/// Where a course across the image crosses the boundary of the shadow: between the place up to which
-/// material is thicker than a sliver, and the place from which on there is none.
+/// A crossing of a path in the image with the boundary of the shadow: between the last point with
+/// material thicker than a sliver and the first point without material.
 struct Crossing {
     thick: Point2<f64>,
-    /// None where thin material goes on beyond the next step.
+    /// None if thin material continues beyond the next step.
     none: Option<Point2<f64>>,
 }
 
-/// How far a stroke may pass from where rays find the outline.
+/// The allowed distance of a stroke from the outline found by rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// In the image.
     pub image: f64,
-    /// Slivers of material up to this length are none.
+    /// Slivers of material up to this length are ignored.
     pub sliver: f64,
 }
 
 impl Shadow<'_> {
-    /// Whether the line of sight of a point of the drawing meets material thicker than `least`.
+    /// Whether the line of sight of a drawing's point hits material thicker than `least`.
     fn covers(&self, p: &Point2<f64>, least: f64) -> bool {
         let (origin, direction) = self.projection.line_of_sight_y_up(p);
         let ray = Ray { origin, direction };
@@ -77,13 +78,13 @@ impl Shadow<'_> {
             ViewRay::Eye(_) => self.projection.near / direction.dot(&self.projection.axis()),
             ViewRay::Direction(_) => f64::NEG_INFINITY,
         };
-        let met = self.material.intervals(&ray, least);
-        met.iter().any(|[_, hi]| *hi > near)
+        let hit = self.material.intervals(&ray, least);
+        hit.iter().any(|[_, hi]| *hi > near)
     }
 }
 
 impl ShadowOutline {
-    /// Nothing is found where most places are unclear.
+    /// Undetermined if most points are unclear.
     pub fn finding(&self) -> Finding {
         match (self.missing.is_empty(), self.unclear > self.drawn) {
             (false, _) => Finding::Fails,
@@ -151,7 +152,7 @@ impl ShadowOutline {
 }
 
 impl Shadow<'_> {
-    /// Where a course over [0, 1] enters or leaves the shadow.
+    /// The crossings of a path over [0, 1] with the boundary of the shadow.
     fn crossings(&self, course: &dyn Fn(f64) -> Point2<f64>, steps: usize) -> Vec<Crossing> {
         let t = |k: usize| k as f64 / steps as f64;
         let is_thick = |t: f64| self.covers(&course(t), self.sliver);
@@ -173,7 +174,8 @@ impl Shadow<'_> {
     }
 }
 
-/// The last parameter on the way from one at which something holds to one at which it does not.
+/// The last parameter at which a condition is true, between one at which it is true and one at
+/// which it is false.
 fn last(mut from: f64, mut to: f64, holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (from + to);

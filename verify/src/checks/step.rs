@@ -1,7 +1,7 @@
-//! The STEP file of a part, read back by a reader of our own and held against rules that need no
-//! other kernel: edges are longer than the resolution and lie on their surfaces within what is
-//! stated, loops close in space and in the parameters of the surface, every edge is used twice with
-//! opposite senses, and the volume by the file's own curves and surfaces is the boundary's.
+//! Reads the STEP file of a part back with a reader of its own, and checks it by rules that need no
+//! other kernel. Edges are longer than the resolution and lie on their surfaces within the stated
+//! accuracy. Loops close in space and in the parameters of the surface. Every edge is used twice
+//! with opposite senses. The volume by the file's own curves and surfaces is the boundary's.
 
 mod curve;
 mod part21;
@@ -15,37 +15,37 @@ use premio_kernel::unit::Unit;
 use rules::{Known, Measured};
 use shape::StepShape;
 
-/// So many broken rules are told.
-const TOLD: usize = 3;
+/// The number of broken rules that are reported.
+const REPORTED: usize = 3;
 
 impl Checker<'_> {
-    /// Writes the STEP file, reads it back and holds it against the rules.
+    /// Writes the STEP file, reads it back and checks it.
     pub fn step(&self) -> Check {
         let subject = CheckSubject::Step;
-        let told = |finding, detail| Check {
+        let check = |finding, detail| Check {
             subject,
             finding,
             detail,
         };
         let evaluation = self.evaluation;
         if evaluation.brep.topology.solids.is_empty() {
-            return told(Finding::Passes, "nothing to write".to_owned());
+            return check(Finding::Passes, "nothing to write".to_owned());
         }
         let options = StepOptions {
             name: "part".to_owned(),
             protocol: Protocol::default(),
             unit: Unit::default(),
-            accuracy: step::ACCURACY * self.told.diagonal(),
+            accuracy: step::ACCURACY * self.bounds.diagonal(),
             resolution: evaluation.f64_resolution(),
         };
         let text = match step::write(&evaluation.brep, &options) {
             Ok(text) => text,
-            Err(error) => return told(Finding::Passes, format!("refused: {error}")),
+            Err(error) => return check(Finding::Passes, format!("refused: {error}")),
         };
         let shape = part21::read(&text).and_then(|instances| StepShape::new(&instances));
         let shape = match shape {
             Ok(shape) => shape,
-            Err(error) => return told(Finding::Fails, error.to_string()),
+            Err(error) => return check(Finding::Fails, error.to_string()),
         };
         let mass = evaluation.mass();
         let measured = rules::measure(
@@ -53,8 +53,8 @@ impl Checker<'_> {
             &Known {
                 resolution: options.resolution,
                 accuracy: options.accuracy,
-                size: self.told.diagonal(),
-                middle: self.told.centre(),
+                size: self.bounds.diagonal(),
+                middle: self.bounds.centre(),
                 volume: mass.volume,
                 area: mass.area,
             },
@@ -69,8 +69,8 @@ fn told_of(measured: &Measured, (solids, known): (usize, usize), volume: f64) ->
     if solids != known {
         wrong.insert(0, format!("{solids} solids, not {known}"));
     }
-    let more = wrong.len().saturating_sub(TOLD);
-    wrong.truncate(TOLD);
+    let more = wrong.len().saturating_sub(REPORTED);
+    wrong.truncate(REPORTED);
     if more > 0 {
         wrong.push(format!("{more} more"));
     }
@@ -85,7 +85,7 @@ fn told_of(measured: &Measured, (solids, known): (usize, usize), volume: f64) ->
         ),
         (true, None) => (
             Finding::Passes,
-            format!("{figures}; an edge through a pole leaves the volume untold"),
+            format!("{figures}; the volume is undetermined, as an edge passes through a pole"),
         ),
         (false, _) => (Finding::Fails, wrong.join("; ")),
     };
@@ -146,27 +146,27 @@ mod tests {
         "A = (SPH(R=4) DIF SPH(R=3) DIF CYL(R=1, H=9)) AT (ROTX=40)",
         "A = BLO(X=9, Y=9, Z=9) DIF SPH(R=2) AT (MOVX=4, MOVY=4, MOVZ=4)",
         "A = (CYL(R=2, H=9) UN CYL(R=1, H=9) AT (ROTX=80, MOVZ=4)) AT (ROTX=40)",
-        // A face of the ball goes around a pole next to an edge along a meridian.
+        // A face of the ball surrounds a pole close to an edge along a meridian.
         "A = ((CYL(R=0.5, H=3) AT (ROTX=-180, MOVY=1.5, MOVZ=-0.5)
             DIF CON(R=1.5, H=1.5, R2=2)
             DIF CYL(R=2, H=1.5) AT (ROTY=17, MOVX=2, MOVY=-1, MOVZ=1))
           UN BLO(X=2.5, Y=1.5, Z=4)
           UN (SPH(R=1.5) DIF BLO(X=3.5, Y=3, Z=3) AT (MOVX=1, MOVY=-2, MOVZ=-1)))",
-        // A circle runs from a vertex to another one in the same place.
+        // A circle runs from a vertex to another one at the same point.
         "A = ((WED(X=1.5, Y=2.5, Z=2) AT (ROTX=30, MOVZ=-0.5)
               UN CYL(R=2, H=1) AT (MOVX=1, MOVY=-2, MOVZ=-1)
               UN CON(R=1, H=1, R2=2) AT (MOVX=-1, MOVY=-0.5, MOVZ=-0.5)
               UN CYL(R=0.5, H=0.5) AT (MOVX=0.5, MOVY=-1.5, MOVZ=-2))
             DIF CYL(R=0.5, H=1) AT (ROTZ=180, MOVX=-2, MOVY=-1.5)
             DIF CYL(R=2, H=1)) AT (ROTX=-90, MOVX=2, MOVY=1.5, MOVZ=2)",
-        // A cone's face goes around its apex, which is a vertex of a notch.
+        // The face of the cone surrounds its apex, which is a vertex of a notch.
         "A = (WED(X=0.5, Y=3.5, Z=0.5)
             UN CON(R=1.5, H=1) AT (ROTY=-17, MOVX=1.5, MOVZ=-0.5)
             UN BLO(X=2.5, Y=2, Z=1.5) AT (ROTX=180, MOVX=-1.5, MOVY=2, MOVZ=-1)
             UN WED(X=3.5, Y=4, Z=3.5)
             UN TOR(RMAJ=2.5, RMIN=1) AT (ROTX=-45, MOVY=-2)
             UN CYL(R=0.5, H=0.5)) AT (ROTZ=180, MOVX=1, MOVY=-0.5, MOVZ=-1)",
-        // A ball touches a ring's tube from inside, so that its seam ends twice in one place.
+        // A ball touches a ring's tube from inside, so its seam ends twice at the same point.
         "A = (TOR(RMAJ=1, RMIN=0.5) AT (MOVX=-0.75, MOVZ=-0.4330127018922193, ROTY=30)
             DIF SPH(R=0.5) AT (MOVZ=-0.5)) AT (ROTZ=45)",
         // A parabola on a cone.
@@ -183,7 +183,7 @@ mod tests {
             let measured = measured(&file, &known);
             assert_eq!(measured.broken, [], "{text}");
             let off = (measured.volume.unwrap() - known.volume).abs();
-            // Splines are nearer than they have to be.
+            // Splines are closer than required.
             assert!(off < 1e-3 * ACCURACY * known.area, "{text}: {off:e}");
         }
     }

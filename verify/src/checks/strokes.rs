@@ -1,4 +1,4 @@
-//! The strokes of a drawing, found by place.
+//! The strokes of a drawing, found by position.
 
 use nalgebra::{Point2, Vector2};
 use premio_drawing::{Layer, Stroke, StrokeShape};
@@ -6,14 +6,14 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::f64::consts::TAU;
 
-/// Strokes with their boxes.
+/// Strokes with their bounding boxes.
 pub(super) struct Strokes<'a> {
     list: &'a [Stroke],
     tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
 }
 
 impl<'a> Strokes<'a> {
-    /// Those of a drawing.
+    /// The strokes of a drawing.
     pub fn new(list: &'a [Stroke]) -> Self {
         let leaf = |(i, stroke): (usize, &Stroke)| {
             let [lo, hi] = bounds(&stroke.shape);
@@ -26,7 +26,7 @@ impl<'a> Strokes<'a> {
         }
     }
 
-    /// The strokes that pass a point of the image no farther away than `near`.
+    /// The strokes within `near` of a point of the image.
     pub fn passing(&self, p: &Point2<f64>, near: f64) -> impl Iterator<Item = (usize, &'a Stroke)> {
         let around = AABB::from_corners([p.x - near, p.y - near], [p.x + near, p.y + near]);
         let found = self.tree.locate_in_envelope_intersecting(around);
@@ -36,12 +36,12 @@ impl<'a> Strokes<'a> {
     }
 }
 
-/// Whether a stroke is part of the picture of the surface: what is seen, and no smooth edge.
+/// Whether a stroke is part of the outline: visible, and not a smooth edge.
 pub(super) fn is_outline(stroke: &Stroke) -> bool {
     stroke.visible && stroke.layer != Layer::Smooth
 }
 
-/// The point of a shape at a part of its course, from 0 to 1.
+/// The point of a shape at a fraction of its length, from 0 to 1.
 pub(super) fn point(shape: &StrokeShape, part: f64) -> Point2<f64> {
     match shape {
         StrokeShape::Line([a, b]) => a + (b - a) * part,
@@ -76,7 +76,7 @@ fn on_ellipse(shape: &StrokeShape, s: f64) -> Point2<f64> {
     }
 }
 
-/// The corners of a box that holds a shape.
+/// The corners of the bounding box of a shape.
 fn bounds(shape: &StrokeShape) -> [Point2<f64>; 2] {
     match shape {
         StrokeShape::Line([a, b]) => [a.inf(b), a.sup(b)],
@@ -109,7 +109,7 @@ fn from_segment(p: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
     (a + d * t.clamp(0.0, 1.0) - p).norm()
 }
 
-/// How far a point is from a shape; from an ellipse to first order.
+/// The distance of a point from a shape; for an ellipse to first order.
 pub(super) fn distance(shape: &StrokeShape, p: &Point2<f64>) -> f64 {
     match shape {
         StrokeShape::Line([a, b]) => from_segment(p, a, b),

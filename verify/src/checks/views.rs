@@ -8,20 +8,20 @@ use std::f64::consts::{PI, SQRT_2};
 /// A camera with a name for messages.
 #[derive(Clone, Debug)]
 pub struct CheckedView {
-    /// What messages call it.
+    /// The name in messages.
     pub name: String,
     /// The camera.
     pub camera: ViewCamera,
 }
 
-/// How many perspective views in general position there are.
+/// The number of perspective views in general position.
 const PERSPECTIVE: usize = 8;
 
-/// How many orthographic ones.
+/// The number of orthographic views.
 const ORTHOGRAPHIC: usize = 2;
 
-/// Eight perspective and two orthographic views in general position, and one along each axis.
-/// None of an empty box.
+/// Eight perspective and two orthographic views in general position, and one along each axis. Empty
+/// for an empty box.
 pub fn around(bounds: &Aabb) -> Vec<CheckedView> {
     let size = bounds.diagonal();
     if !size.is_finite() || size <= 0.0 {
@@ -51,8 +51,8 @@ fn view(name: String, camera: ViewCamera) -> CheckedView {
     CheckedView { name, camera }
 }
 
-/// The k-th of n unit directions spread over the sphere, none parallel to an axis or a plane of a
-/// common turn.
+/// The k-th of n unit directions spread over the sphere. None is parallel to an axis or to a plane
+/// of a common rotation.
 fn general(k: usize, n: usize) -> Vector3<f64> {
     let z = 1.0 - (2.0 * k as f64 + SQRT_2 / 2.0) / (n as f64 + 0.5);
     let (sin, cos) = (1.0 + PI * SQRT_2 * k as f64).sin_cos();
@@ -60,7 +60,7 @@ fn general(k: usize, n: usize) -> Vector3<f64> {
     Vector3::new(r * cos, r * sin, z).normalize()
 }
 
-/// A target near the middle, but not in it.
+/// A target close to the centre, but not at it.
 fn aim(centre: &Point3<f64>, size: f64, k: usize) -> Point3<f64> {
     centre + general(k + 3, PERSPECTIVE + 3) * (0.03 * size)
 }

@@ -1,7 +1,7 @@
-//! The lines of sight of a camera, and the image they make, without the projection's own formulas.
+//! The lines of sight of a camera, and the image they form, without the projection's own formulas.
 //!
 //! Image coordinates are those in the plane at depth one (in the part's unit for an orthographic
-//! camera), in any turn about the optical axis: enough to tell what is near what.
+//! camera), up to a rotation about the optical axis. That suffices to find neighbouring points.
 
 use nalgebra::{Point2, Point3};
 use premio_csg::ray_casting::Ray;
@@ -9,7 +9,7 @@ use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::frame::Frame;
 use premio_visibility::camera::projection::{Projection, ViewRay};
 
-/// How far from the optical axis, in multiples of the depth, a perspective image reaches at most.
+/// The largest distance of a perspective image from the optical axis, in multiples of the depth.
 const WIDEST: f64 = 2.0;
 
 /// A point of the image with its depth along the optical axis.
@@ -19,16 +19,16 @@ pub(super) struct Seen {
     pub depth: f64,
 }
 
-/// A round window of the image that the whole part is behind.
+/// A round window of the image that covers the whole part.
 #[derive(Debug)]
 pub(super) struct Window {
     frame: Frame,
     central: bool,
-    /// The least depth that is seen.
+    /// The least visible depth.
     pub near: f64,
     /// A length of the order of the part's depth.
     depth: f64,
-    /// The middle.
+    /// The centre.
     pub centre: [f64; 2],
     /// The radius.
     pub radius: f64,
@@ -50,7 +50,7 @@ impl Window {
             let pick = |i: usize| [bounds.min[i], bounds.max[i]][corner >> i & 1];
             let seen = window.image(&Point3::new(pick(0), pick(1), pick(2)));
             if window.central && seen.depth <= window.near.max(0.0) {
-                // The box reaches round the eye: a cone about the optical axis is looked at.
+                // The box surrounds the eye; a cone about the optical axis is used.
                 return window;
             }
             for i in 0..2 {
@@ -72,10 +72,10 @@ impl Window {
         Seen { at, depth }
     }
 
-    /// The place of a point of a drawing, whose y is up.
+    /// The image position of a point of a drawing, whose y points up.
     pub fn of_drawing(&self, projection: &Projection, p: &Point2<f64>) -> [f64; 2] {
         let (origin, into) = projection.line_of_sight_y_up(p);
-        // Far enough from the eye that its own coordinates cost no digits.
+        // Far enough from the eye that its coordinates cost no digits.
         self.image(&(origin + into * self.depth)).at
     }
 
@@ -95,7 +95,7 @@ impl Window {
         }
     }
 
-    /// What turns a distance in the image into one in space, at some depth.
+    /// The factor from a distance in the image to one in space, at a given depth.
     pub fn scale(&self, depth: f64) -> f64 {
         if self.central { depth.abs() } else { 1.0 }
     }

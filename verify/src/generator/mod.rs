@@ -1,5 +1,5 @@
-//! Random and realistic parts: a [`profile`] makes a [`model`] of a seed, [`mod@write`] turns it into a
-//! description, and [`mod@shrink`] makes one that fails smaller.
+//! Random and realistic parts. A [`profile`] makes a [`model`] from a seed, [`mod@write`] converts
+//! it to a description, and [`mod@shrink`] reduces a failing one.
 
 pub mod model;
 pub mod profile;

@@ -1,7 +1,7 @@
 //! A model: a tree of operations on primitives as a description writes it, in f64.
 //!
-//! It lies in one arena, children before their parents and the root last, so that models of any
-//! depth can be made, walked, changed and dropped without recursion.
+//! The nodes lie in one arena, children before their parents and the root last, so that models of
+//! any depth can be created, traversed, changed and dropped without recursion.
 
 use super::random::RandomChoices;
 use serde::{Deserialize, Serialize};
@@ -51,30 +51,30 @@ pub enum ModelAxis {
     Z,
 }
 
-/// A step of a transform, in the frame around the node.
+/// A step of a transform, in the frame of the surroundings.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub enum ModelStep {
-    /// A shift along x, y and z.
+    /// A translation along x, y and z.
     Shift([f64; 3]),
-    /// A turn about an axis through the origin, in degrees.
+    /// A rotation about an axis through the origin, in degrees.
     Turn(ModelAxis, f64),
 }
 
 /// A regularised set operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum ModelOperation {
-    /// What is in any child.
+    /// The points in any child.
     Union,
-    /// What is in every child.
+    /// The points in every child.
     Intersection,
-    /// What is in the first child and in no later one.
+    /// The points in the first child and in no later one.
     Difference,
 }
 
 /// The index of a node in its model.
 pub type ModelNodeId = usize;
 
-/// What a node is.
+/// The kind of a node.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub enum ModelNodeKind {
     /// A primitive.
@@ -86,19 +86,19 @@ pub enum ModelNodeKind {
 /// A node.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ModelNode {
-    /// What it is.
+    /// The kind.
     pub kind: ModelNodeKind,
-    /// Where it is put: steps in the order in which they are made.
+    /// Its placement: steps in order.
     pub steps: Vec<ModelStep>,
 }
 
-/// Which exact number a length or an angle of a model stands for.
+/// The exact number that a length or an angle of a model represents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Notation {
-    /// The value of the f64.
+    /// The exact value of the f64.
     #[default]
     Binary,
-    /// The shortest decimal that is read as the f64, as a person writes it.
+    /// The shortest decimal that is read as the f64, as a person would write it.
     Decimal,
 }
 
@@ -106,12 +106,12 @@ pub enum Notation {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct PartModel {
     nodes: Vec<ModelNode>,
-    /// What its numbers stand for.
+    /// The meaning of its numbers.
     #[serde(default)]
     pub notation: Notation,
 }
 
-/// What is met on the way through a model.
+/// An event in the traversal of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visit {
     /// A node, before its children.
@@ -131,12 +131,12 @@ impl ModelAxis {
     /// The axes.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// One of them.
+    /// A random one.
     pub fn any(random: &mut RandomChoices) -> Self {
         random.choose(&Self::ALL)
     }
 
-    /// Its number, from 0.
+    /// Its index, from 0.
     pub fn index(self) -> usize {
         match self {
             Self::X => 0,
@@ -159,7 +159,7 @@ impl PartModel {
         model
     }
 
-    /// A model without nodes.
+    /// An empty model.
     pub fn with_notation(notation: Notation) -> Self {
         let nodes = Vec::new();
         Self { nodes, notation }
@@ -172,7 +172,7 @@ impl PartModel {
         self.nodes.len() - 1
     }
 
-    /// Adds an operation on nodes that are there already, and have no parent yet.
+    /// Adds an operation on existing nodes that have no parent yet.
     pub fn operation(
         &mut self,
         op: ModelOperation,
@@ -196,7 +196,7 @@ impl PartModel {
         all
     }
 
-    /// Adds the nodes of another model; its root's index here.
+    /// Adds the nodes of another model and returns the new index of its root.
     fn take_in(&mut self, other: &Self) -> ModelNodeId {
         let before = self.nodes.len();
         self.nodes.extend(other.nodes.iter().cloned());
@@ -213,12 +213,12 @@ impl PartModel {
         &self.nodes
     }
 
-    /// A node to be changed in place; its children must stay what they are.
+    /// A node for modification; its children must not change.
     pub fn node_mut(&mut self, id: ModelNodeId) -> Option<&mut ModelNode> {
         self.nodes.get_mut(id)
     }
 
-    /// The root; none of a model without nodes.
+    /// The root; `None` for an empty model.
     pub fn root(&self) -> Option<ModelNodeId> {
         self.nodes.len().checked_sub(1)
     }
@@ -229,7 +229,7 @@ impl PartModel {
         (0..self.nodes.len()).filter(is_leaf)
     }
 
-    /// The subtrees below the root; none of a primitive.
+    /// The subtrees below the root; empty for a primitive.
     pub fn children(&self) -> Vec<Self> {
         match self.nodes.last().map(|root| &root.kind) {
             Some(ModelNodeKind::Operation(_, children)) => {
@@ -239,7 +239,7 @@ impl PartModel {
         }
     }
 
-    /// What hangs on a node.
+    /// The subtree below a node.
     pub fn subtree(&self, root: ModelNodeId) -> Self {
         let mut wanted = vec![false; self.nodes.len()];
         wanted[root] = true;
@@ -265,8 +265,8 @@ impl PartModel {
         part
     }
 
-    /// The model without some of its primitives. Operations that have no child left go, too, and
-    /// those with one child become that child.
+    /// The model without some of its primitives. Operations without children are removed, too, and
+    /// those with one child are replaced by it.
     pub fn without(&self, gone: impl Fn(ModelNodeId) -> bool) -> Self {
         let mut fewer = Self::with_notation(self.notation);
         let mut new_id: Vec<Option<ModelNodeId>> = vec![None; self.nodes.len()];
@@ -292,7 +292,7 @@ impl PartModel {
         fewer
     }
 
-    /// Goes through the model from the root, as a description is written.
+    /// Traverses the model from the root, in the order in which a description is written.
     pub fn walk(&self, mut visit: impl FnMut(Visit)) {
         let mut ahead: Vec<Visit> = self.root().map(Visit::Enter).into_iter().collect();
         while let Some(next) = ahead.pop() {
@@ -324,8 +324,8 @@ mod tests {
 
     #[test]
     fn a_walk_meets_everything_in_order() {
-        let mut met = Vec::new();
-        three().walk(|visit| met.push(visit));
+        let mut visited = Vec::new();
+        three().walk(|visit| visited.push(visit));
         use Visit::{Between, Enter, Leave};
         let order = [
             Enter(4),
@@ -338,7 +338,7 @@ mod tests {
             Enter(3),
             Leave(4),
         ];
-        assert_eq!(met, order);
+        assert_eq!(visited, order);
         PartModel::default().walk(|visit| panic!("{visit:?}"));
     }
 
@@ -349,7 +349,7 @@ mod tests {
         assert_eq!((two.nodes().len(), ball.nodes().len()), (3, 1));
         assert_eq!(model.subtree(2), two);
         assert_eq!(model.leaves().collect::<Vec<_>>(), [0, 1, 3]);
-        // An operation on one child is that child, one on none is nothing.
+        // An operation on one child is that child; one without children is removed.
         let fewer = model.without(|id| id == 0);
         assert_eq!((fewer.nodes().len(), fewer.leaves().count()), (3, 2));
         let fewer = model.without(|id| id < 2);

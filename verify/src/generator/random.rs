@@ -1,45 +1,46 @@
-//! Random numbers: the same ones for a seed, everywhere and always.
+//! Random choices, reproducible from a seed on every platform.
 
 use premio_kernel::random::Random as Bits;
 
-/// Choices out of random bits.
+/// Choices made from random bits.
 #[derive(Clone, Debug)]
 pub struct RandomChoices(Bits);
 
 impl RandomChoices {
-    /// The numbers of a seed.
+    /// The sequence of a seed.
     pub fn new(seed: u64) -> Self {
         Self(Bits::new(seed))
     }
 
-    /// The numbers of a seed for one purpose: other ones than for every other purpose.
+    /// The sequence of a seed for one purpose; it differs from those for other purposes.
     pub fn apart(seed: u64, purpose: u64) -> Self {
-        // The states of seeds in a row are the outputs of a generator, so that they are far apart.
+        // The states for consecutive purposes are outputs of a generator, so they are far from each
+        // other.
         let mixed = seed ^ Bits::new(purpose).bits();
         Self::new(Bits::new(mixed).bits())
     }
 
-    /// A whole number from 0 to `n` - 1; `n` must be positive.
+    /// An integer from 0 to `n` - 1; `n` must be positive.
     pub fn below(&mut self, n: usize) -> usize {
         (self.0.bits() % n.max(1) as u64) as usize
     }
 
-    /// A whole number from `least` to `most`, both included.
+    /// An integer from `least` to `most`, inclusive.
     pub fn between(&mut self, least: usize, most: usize) -> usize {
         least + self.below(most - least + 1)
     }
 
-    /// A number of halves from `least` to `most`.
+    /// A multiple of one half, from `least` to `most` halves.
     pub fn half(&mut self, least: usize, most: usize) -> f64 {
         halves(self.between(least, most))
     }
 
-    /// True once in `n` times.
+    /// True with probability 1/n.
     pub fn once_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
 
-    /// One of some values.
+    /// A random element.
     pub fn choose<T: Copy>(&mut self, from: &[T]) -> T {
         from[self.below(from.len())]
     }
@@ -50,7 +51,7 @@ impl RandomChoices {
     }
 }
 
-/// So many halves.
+/// `n` halves.
 pub fn halves(n: usize) -> f64 {
     n as f64 / 2.0
 }

@@ -1,10 +1,10 @@
-//! Making a failing tree as small as it still fails.
+//! Reduces a failing tree to a minimal one that still fails.
 
 use super::model::{ModelNodeId, ModelNodeKind, ModelPrimitive, ModelStep, PartModel};
 use std::iter;
 
-/// A smaller tree for which `fails` holds as it does for this one; after `tries` questions the
-/// smallest so far.
+/// A smaller tree for which `fails` is still true; after `tries` attempts the smallest one found so
+/// far.
 pub fn shrink(
     model: &PartModel,
     tries: usize,
@@ -24,8 +24,9 @@ pub fn shrink(
     }
 }
 
-/// The trees that are simpler than this one, large steps first: without half of its primitives, a
-/// quarter, and so on down to one; with a step of a transform less; with rounder numbers.
+/// The trees that are simpler than this one, large reductions first: without half of its
+/// primitives, a quarter, and so on down to one; with one transform step less; with rounder
+/// numbers.
 pub fn simpler(model: &PartModel) -> impl Iterator<Item = PartModel> {
     let leaves: Vec<ModelNodeId> = model.leaves().collect();
     let halves = iter::successors(Some(leaves.len() / 2), |n| (*n > 1).then_some(n / 2));
@@ -47,7 +48,7 @@ pub fn simpler(model: &PartModel) -> impl Iterator<Item = PartModel> {
     all.filter(move |tree| tree.root().is_some() && self::weight(tree) < weight)
 }
 
-/// What grows less with every step: primitives, operations, steps, and digits.
+/// A measure that decreases with every step: primitives, operations, steps, and digits.
 fn weight(model: &PartModel) -> [usize; 4] {
     let steps = model.nodes().iter().map(|node| node.steps.len()).sum();
     let digits = model.nodes().iter().map(digits).sum();
@@ -72,7 +73,7 @@ fn digits(node: &super::model::ModelNode) -> usize {
     lengths + steps.sum::<usize>()
 }
 
-/// The tree with one node's steps gone: all of them, or one.
+/// The tree without one node's steps: all of them, or one.
 fn without_steps(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
     let steps = &model.nodes()[id].steps;
     let mut found = Vec::new();
@@ -87,7 +88,8 @@ fn without_steps(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
     found
 }
 
-/// The tree with simpler numbers in one node's steps: a coordinate zero or whole, two shifts as one.
+/// The tree with simpler numbers in one node's steps: a coordinate zero or integral, or two
+/// translations merged.
 fn rounder_steps(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
     let steps = &model.nodes()[id].steps;
     let mut found = Vec::new();
@@ -161,7 +163,7 @@ fn lengths(primitive: &ModelPrimitive) -> Vec<f64> {
     }
 }
 
-/// The same primitive with other lengths; none where these make no solid.
+/// The same primitive with other lengths; `None` if these are invalid.
 fn with_lengths(primitive: &ModelPrimitive, lengths: &[f64]) -> Option<ModelPrimitive> {
     let changed = match (primitive, lengths) {
         (ModelPrimitive::Block(_), &[x, y, z]) => ModelPrimitive::Block([x, y, z]),
@@ -204,16 +206,16 @@ mod tests {
     #[test]
     fn a_planted_failure_is_all_that_stays() {
         let planted = |model: &PartModel| model.nodes().iter().any(is_ball);
-        let mut asked = 0;
+        let mut tries = 0;
         let seeds = (0..60).filter(|&seed| planted(&Profile::Grid.model(seed)));
         for seed in seeds {
             let small = shrink(&Profile::Grid.model(seed), 10_000, |model| {
-                asked += 1;
+                tries += 1;
                 planted(model)
             });
             assert_eq!(write(&small, Format::Padl), "PART = SPH(R=1)\n");
         }
-        assert!(asked > 0);
+        assert!(tries > 0);
     }
 
     #[test]
@@ -228,26 +230,26 @@ mod tests {
             };
             balls.count() >= 2 && model.nodes().iter().any(|node| less(&node.kind))
         };
-        let mut asked = 0;
+        let mut tries = 0;
         let small = shrink(&Profile::Deep.model(5), 2000, |model| {
-            asked += 1;
+            tries += 1;
             planted(model)
         });
         assert_eq!(
             write(&small, Format::Padl),
             "PART = (\n  SPH(R=1)\n  DIF SPH(R=1)\n)\n"
         );
-        assert!(asked < 400, "{asked}");
+        assert!(tries < 400, "{tries}");
     }
 
     #[test]
     fn questions_end() {
-        let mut asked = 0;
+        let mut tries = 0;
         let model = Profile::Wide.model(0);
         let same = shrink(&model, 10, |_| {
-            asked += 1;
+            tries += 1;
             false
         });
-        assert!(same == model && asked < 10);
+        assert!(same == model && tries < 10);
     }
 }

@@ -15,12 +15,12 @@ pub use premio_csg::reader::Format;
 
 /// A model's description.
 ///
-/// What is read from padl and json is the same tree. A csg has matrices, which the reader makes
-/// turns by whole quarters of a degree where that explains their digits, and else rigid to the
-/// last digits: other turns are read as near as f64 values are.
+/// Text in padl and json is read as the same tree. A csg has matrices. The reader converts them to
+/// rotations by whole quarters of a degree if that explains their digits. It reads other rotations
+/// as rigid ones to f64 precision.
 pub fn write(model: &PartModel, format: Format) -> String {
     let (builder, part) = built(model);
-    // A model is small, and made of primitives.
+    // A model is small, and consists of primitives.
     writer::write(&builder, part, format).unwrap_or_default()
 }
 
@@ -35,7 +35,7 @@ fn built(model: &PartModel) -> (Builder, SolidId) {
     let exact = |value: f64| number(value, model.notation);
     for node in model.nodes() {
         let part = match &node.kind {
-            // A length that makes no solid makes nothing.
+            // A primitive with an invalid length is omitted.
             ModelNodeKind::Leaf(primitive) => match solid(primitive, &exact) {
                 Ok(primitive) => builder.primitive(primitive),
                 Err(_) => SolidId::EMPTY,
@@ -50,7 +50,7 @@ fn built(model: &PartModel) -> (Builder, SolidId) {
     (builder, parts.last().copied().unwrap_or(SolidId::EMPTY))
 }
 
-/// The exact number that an f64 of a model stands for, which is finite.
+/// The exact number that a finite f64 of a model represents.
 fn number(value: f64, notation: Notation) -> Rational {
     let exact = match notation {
         Notation::Binary => from_f64(value),

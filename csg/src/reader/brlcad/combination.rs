@@ -24,7 +24,7 @@ pub(super) enum Item<'a> {
     Operator(Operator),
 }
 
-/// What a combination is made of: an operator comes after its two operands.
+/// The components of a combination in postfix order: an operator follows its two operands.
 #[derive(Debug, Default)]
 pub(super) struct Combination<'a> {
     pub(super) items: Vec<Item<'a>>,
@@ -34,14 +34,14 @@ pub(super) struct Combination<'a> {
 struct Open<'a> {
     start: usize,
     words: Vec<Word<'a>>,
-    /// How many operands are in it.
+    /// The number of its operands.
     operands: usize,
 }
 
 const EXPECTED: &str = "a member `l NAME` or an operation: `u`, `n`, `-` or `^` and two operands";
 
 impl<'a> Combination<'a> {
-    /// The tree of an object; without one it holds nothing.
+    /// The tree of an object; without a tree it is empty.
     pub(super) fn new(object: &Object<'a>) -> Result<Self, SpannedError> {
         let mut combination = Self::default();
         let Some(tree) = object.attribute("tree") else {

@@ -1,6 +1,6 @@
-//! The words of Tcl, as far as a database in text has them: bare, in braces, in quotes.
+//! The words of Tcl as far as a text database uses them: bare, in braces, in quotes.
 //!
-//! A list in braces has words again, so that trees and vectors are read by the same rules.
+//! A list in braces consists of words again, so trees and vectors are read by the same rules.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use winnow::token::{take_till, take_while};
 use super::super::error::SpannedError;
 use premio_text::escape::quote;
 
-/// A word without its braces or quotes, and its place.
+/// A word without its braces or quotes, and its span.
 #[derive(Debug, Clone)]
 pub(super) struct Word<'a> {
     pub(super) text: &'a str,
@@ -20,12 +20,12 @@ pub(super) struct Word<'a> {
 }
 
 impl<'a> Word<'a> {
-    /// The error that something else should stand here.
+    /// The error that something else is expected here.
     pub(super) fn unexpected(&self, expected: impl Into<String>) -> SpannedError {
         SpannedError::input(self.span.clone(), quote(self.text), expected)
     }
 
-    /// What stands at a place in it, which is counted as its own is.
+    /// A part of it, with its span in the text.
     pub(super) fn part(&self, span: Range<usize>) -> Self {
         let start = self.span.start;
         let text = self.text.get(span.start - start..span.end - start);
@@ -80,7 +80,7 @@ enum Next<'a> {
     EndOfText,
 }
 
-/// What is met in a list of lists.
+/// A mark in a nested list.
 pub(super) enum Mark<'a> {
     /// A brace; the list begins after it.
     Open(usize),
@@ -90,7 +90,7 @@ pub(super) enum Mark<'a> {
     End,
 }
 
-/// A way through a list of lists, of any depth.
+/// Iterates over the marks of a list of lists, of any depth.
 pub(super) struct Marks<'a> {
     words: Words<'a>,
 }
@@ -124,10 +124,10 @@ impl<'a> Marks<'a> {
     }
 }
 
-/// A place in a text of words.
+/// A position in a text of words.
 struct Words<'a> {
     rest: &'a str,
-    /// The place of the end of the text.
+    /// The position of the end of the text.
     end: usize,
 }
 
@@ -158,7 +158,7 @@ impl<'a> Words<'a> {
         self.end - self.rest.len()
     }
 
-    /// Passes over comments, which stand where a command could begin.
+    /// Skips comments, which may stand where a command could begin.
     fn skip_comments(&mut self) {
         loop {
             self.rest = self
@@ -192,7 +192,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Takes a number of bytes as a word, with what stands before and after it.
+    /// Takes a number of bytes as a word, and skips the delimiters before and after it.
     fn take(&mut self, before: usize, length: usize, after: usize) -> Word<'a> {
         let start = self.at() + before;
         let text = &self.rest[before..before + length];
@@ -245,7 +245,7 @@ impl<'a> Words<'a> {
 
     fn bare(&mut self) -> Result<Word<'a>, SpannedError> {
         let mut ahead = self.rest;
-        // There is a character, so that it takes one at least.
+        // There is a character, so it takes at least one.
         let _ = bare(&mut ahead);
         let length = self.rest.len() - ahead.len();
         let word = self.take(0, length, 0);
@@ -270,7 +270,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Refuses what Tcl would replace: a database in text holds words as they are.
+/// Refuses Tcl's substitutions: words in a text database are literal.
 fn literal(word: Word<'_>) -> Result<Word<'_>, SpannedError> {
     match word.text.find(['$', '[', '\\']) {
         None => Ok(word),

@@ -1,4 +1,4 @@
-//! The matrix of a member: rigid, perhaps mirrored, perhaps the same scale in all directions.
+//! The matrix of a member: a rigid motion, possibly with a mirror and a uniform scale.
 
 use premio_kernel::motion::RationalMatrix;
 use premio_kernel::number::rational::Rational;
@@ -10,18 +10,18 @@ use super::keywords::Word;
 use super::number;
 use crate::transform::Transform;
 
-/// `p -> M S k p`, with `M` the moves, `S` the mirror `y -> -y` or the identity, `k` the factor.
+/// `p -> M S k p`, with `M` the motion, `S` the mirror `y -> -y` or the identity, `k` the factor.
 #[derive(Debug)]
 pub(super) struct Placed {
     pub(super) moves: Transform,
     pub(super) mirrored: bool,
     pub(super) factor: Rational,
-    /// How far entries are from those written.
+    /// The largest difference between the entries used and those written.
     pub(super) residual: f64,
 }
 
 impl Placed {
-    /// The placement of sixteen numbers by rows; the last divides all others.
+    /// The placement of sixteen numbers by rows; the last number divides all others.
     pub(super) fn new(word: &Word<'_>) -> Result<Self, SpannedError> {
         let numbers: Result<Vec<Rational>, SpannedError> =
             word.list()?.iter().map(number).collect();
@@ -54,7 +54,7 @@ impl Placed {
     }
 }
 
-/// The factor by which a matrix makes larger, and what is left of it.
+/// The scale factor of a matrix, and the matrix without it.
 fn scaled(
     matrix: &RationalMatrix,
     offset: [Rational; 3],

@@ -1,7 +1,7 @@
-//! `.asc`: BRL-CAD's database as text, of version 5: Tcl commands that put solids and
-//! combinations of them. Lengths are in millimetres.
+//! `.asc`: BRL-CAD's text database, version 5: Tcl commands that define solids and combinations of
+//! them. Lengths are in millimetres.
 //!
-//! What the part is not made of is not looked at, but for its name.
+//! Objects that are not part of the requested part are not examined, except for their names.
 
 mod combination;
 mod keywords;
@@ -37,7 +37,7 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
     let mut reader = Reader {
         database: &database,
         builder: Builder::new(),
-        // Numbers of all the digits of a double are replaced by exact ones.
+        // Only numbers with all digits of an f64 are replaced by exact ones.
         notes: Notes::of_digits(0.0),
         parts: HashMap::new(),
     };
@@ -56,12 +56,12 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
     })
 }
 
-/// What is put by a name.
+/// An object defined under a name.
 #[derive(Debug)]
 struct Object<'a> {
     name: Word<'a>,
     kind: Word<'a>,
-    /// Names of attributes and their values, in turn.
+    /// Alternating attribute names and values.
     attributes: Vec<Word<'a>>,
 }
 
@@ -126,7 +126,7 @@ impl<'a> Database<'a> {
         for command in commands(source)? {
             match command[0].text {
                 "put" => database.put(source, &command)?,
-                // What is told of colours and units changes no solid: lengths are millimetres.
+                // Colours and units do not change a solid: lengths are millimetres.
                 "title" | "units" | "attr" | "color" => {}
                 word => {
                     let found = format!("the unknown command {}", quote(word));
@@ -174,14 +174,14 @@ impl<'a> Database<'a> {
         })
     }
 
-    /// All names in their order, so that of several near ones the same is always proposed.
+    /// All names, sorted, so that the same one of several similar names is always proposed.
     fn sorted(&self) -> Vec<&'a str> {
         let mut names: Vec<&str> = self.names.keys().copied().collect();
         names.sort_unstable();
         names
     }
 
-    /// The one object that no other holds: a combination, if there are any at the top.
+    /// The only object that no other contains: a combination, if there is one at the top.
     fn top(&self, source: &str, notes: &mut Notes) -> Result<usize, SpannedError> {
         let mut held = vec![false; self.objects.len()];
         for object in self.objects.iter().filter(|object| object.is_combination()) {
@@ -200,14 +200,14 @@ impl<'a> Database<'a> {
             (&[top], left @ [first, ..]) => {
                 let name = quote(self.objects[top].name.text);
                 let rest = self.list(left);
-                let text = format!("{name} is read, which does not hold {rest}");
+                let text = format!("{name} is read; it does not contain {rest}");
                 notes.add(text, self.objects[*first].name.span.clone());
                 Ok(top)
             }
             (&[], &[]) => Err(self.no_top(source)),
             (several @ [_, second, ..], _) | ([], several @ [_, second, ..]) => {
                 let found = format!(
-                    "several objects that no other holds: {}",
+                    "several objects that no other contains: {}",
                     self.list(several)
                 );
                 let span = self.objects[*second].name.span.clone();
@@ -222,8 +222,8 @@ impl<'a> Database<'a> {
         match self.objects.first() {
             None => SpannedError::input(end..end, "no object in the file", "a `put` of a solid"),
             Some(first) => {
-                let found = "combinations that hold one another";
-                let expected = "an object that no other holds";
+                let found = "combinations that contain one another";
+                let expected = "an object that no other contains";
                 SpannedError::input(first.name.span.clone(), found, expected)
             }
         }
@@ -244,20 +244,20 @@ impl<'a> Database<'a> {
     }
 }
 
-/// Makes parts of objects, each once.
+/// Creates the part of each object once.
 struct Reader<'a> {
     database: &'a Database<'a>,
     builder: Builder,
     notes: Notes,
-    /// The parts made, and none for a combination whose members are being made.
+    /// The parts created; `None` for a combination whose members are being created.
     parts: HashMap<usize, Option<SolidId>>,
 }
 
-/// What is left to do.
+/// A pending task.
 enum Task<'a> {
-    /// To make an object.
+    /// Create an object.
     Enter(usize),
-    /// To combine the members of one, which are made.
+    /// Combine the members of one, which exist.
     Combine(usize, Combination<'a>),
 }
 
@@ -295,11 +295,11 @@ impl<'a> Reader<'a> {
         for leaf in combination.leaves() {
             let member = self.member(leaf)?;
             if self.parts.get(&member) == Some(&None) {
-                let found = format!("{}, which holds what it is in", quote(leaf.text));
+                let found = format!("{}, which contains itself", quote(leaf.text));
                 return Err(SpannedError::input(
                     leaf.span.clone(),
                     found,
-                    "no ring of combinations",
+                    "no cycle of combinations",
                 ));
             }
             members.push(member);
@@ -327,7 +327,7 @@ impl<'a> Reader<'a> {
             match item {
                 Item::Leaf { name, matrix } => {
                     let part = self.parts.get(&self.member(name)?).copied().flatten();
-                    // Members are made before what they are in.
+                    // Members are created before the combination that contains them.
                     let part = part.unwrap_or(SolidId::EMPTY);
                     parts.push(match matrix {
                         Some(word) => self.placed(part, word)?,
@@ -355,7 +355,7 @@ impl<'a> Reader<'a> {
         Ok(self.builder.moved(part, matrix.moves))
     }
 
-    /// Tells that vectors or a matrix were replaced, unless by the rounding of f64 values only.
+    /// Notes that vectors or a matrix were replaced, unless only by f64 rounding.
     fn replaced(&mut self, residual: f64, span: Range<usize>) {
         if residual > F64_DIGITS {
             self.notes.snapped(residual, span);
@@ -408,7 +408,7 @@ impl combination::Operator {
             Self::Union => builder.operation(Operation::Union, &pair),
             Self::Intersection => builder.operation(Operation::Intersection, &pair),
             Self::Difference => builder.operation(Operation::Difference, &pair),
-            // What is in one of the two, and not in both.
+            // The points in exactly one of the two.
             Self::Exclusive => {
                 let one = builder.operation(Operation::Difference, &pair);
                 let other = builder.operation(Operation::Difference, &[right, left]);

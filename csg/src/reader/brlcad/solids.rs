@@ -1,5 +1,5 @@
-//! BRL-CAD's solids as primitives: spheres among ellipsoids, right circular cylinders and cones
-//! among truncated general cones, tori, blocks and wedges among polyhedra of eight corners.
+//! Converts BRL-CAD's solids to primitives: ellipsoids to spheres, truncated general cones to right
+//! circular cylinders and cones, tori, and polyhedra of eight corners to blocks and wedges.
 
 use premio_kernel::number::rational::{Rational, to_f64};
 
@@ -7,29 +7,29 @@ use super::super::frame::{Axis, Frame, Vector, cross, difference, dot, length, s
 use crate::primitive::{Primitive, PrimitiveError};
 use crate::transform::Transform;
 
-/// A primitive at its place.
+/// A primitive in its position.
 #[derive(Debug, Clone)]
 pub(super) struct Solid {
     pub(super) primitive: Primitive,
     pub(super) moves: Transform,
-    /// How far the vectors are from those of the solid, relative to their length.
+    /// The largest difference between the vectors used and those written, relative to their length.
     pub(super) residual: f64,
 }
 
-/// Why a solid is none of ours.
+/// Why a solid has no exact counterpart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unsupported {
-    /// Its axes are not equal and at right angles.
+    /// Its axes are not equal and perpendicular.
     Ellipsoid,
-    /// A cone whose ends are no circles.
+    /// A cone whose ends are not circles.
     Elliptical,
-    /// A cone whose axis is not at right angles to its ends.
+    /// A cone whose axis is not perpendicular to its ends.
     Oblique,
-    /// Eight corners, but of no block and no right-angled wedge.
+    /// Eight corners that form neither a block nor a right-angled wedge.
     Polyhedron,
-    /// A vector of no length, or beyond the range of f64 values.
+    /// A vector of length zero, or beyond the range of f64.
     NoDirection,
-    /// A length that makes no solid.
+    /// A length that is invalid for a solid.
     Size(PrimitiveError),
 }
 
@@ -57,10 +57,10 @@ impl Unsupported {
     }
 }
 
-/// How far, relative to their length, vectors may be from those of a solid.
+/// The tolerance on vectors, relative to their length.
 const MOST: f64 = 1e-6;
 
-/// How far a is from being at right angles to b, and from being as long: sines and ratios.
+/// The deviation of a from being perpendicular to b and equally long: sines and ratios.
 fn slant(a: &Vector, b: &Vector) -> f64 {
     let [ab, aa, bb] = [(a, b), (a, a), (b, b)].map(|(x, y)| to_f64(&dot(x, y)));
     match aa > 0.0 && bb > 0.0 {
@@ -69,7 +69,7 @@ fn slant(a: &Vector, b: &Vector) -> f64 {
     }
 }
 
-/// How far two lengths are from being the same, relative to the greater.
+/// The difference of two lengths, relative to the larger.
 fn unlike(a: &Rational, b: &Rational) -> f64 {
     let [a, b] = [to_f64(a), to_f64(b)];
     (a - b).abs() / a.max(b).max(f64::MIN_POSITIVE)
@@ -80,7 +80,7 @@ fn extent(vector: &Vector) -> Rational {
     length(vector).unwrap_or(Rational::ZERO)
 }
 
-/// An ellipsoid: its middle and three half axes.
+/// An ellipsoid: its centre and three half axes.
 pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, Unsupported> {
     let [la, lb, lc] = [&a, &b, &c].map(extent);
     let slants = [slant(&a, &b), slant(&b, &c), slant(&c, &a)];
@@ -100,8 +100,8 @@ pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, Unsupported>
     })
 }
 
-/// A truncated general cone: the middle of its base, its height, two half axes of the base and two
-/// of the top.
+/// A truncated general cone: the centre of its base, its height vector, two half axes of the base
+/// and two of the top.
 pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, Unsupported> {
     let [la, lb, lc, ld] = [&a, &b, &c, &d].map(extent);
     let round = [
@@ -127,7 +127,7 @@ pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, Unsupported
     })
 }
 
-/// A torus: its middle, its axis, the radius of the circle that the tube runs along, and the tube's.
+/// A torus: its centre, its axis, the radius of the spine circle, and the radius of the tube.
 pub(super) fn torus(
     [v, h]: [Vector; 2],
     major: Rational,
@@ -142,7 +142,7 @@ pub(super) fn torus(
     })
 }
 
-/// The faces of a polyhedron of eight corners, each run around.
+/// The faces of a polyhedron of eight corners, each as a cycle of corners.
 const FACES: [[usize; 4]; 6] = [
     [0, 1, 2, 3],
     [4, 5, 6, 7],
@@ -152,7 +152,7 @@ const FACES: [[usize; 4]; 6] = [
     [3, 0, 4, 7],
 ];
 
-/// A polyhedron of eight corners, some of which may be in one place.
+/// A polyhedron of eight corners, some of which may coincide.
 pub(super) fn polyhedron(corners: &[Vector; 8]) -> Result<Solid, Unsupported> {
     let distinct = Distinct::new(corners);
     let solid = match distinct.points.len() {
@@ -163,10 +163,10 @@ pub(super) fn polyhedron(corners: &[Vector; 8]) -> Result<Solid, Unsupported> {
     solid.ok_or(Unsupported::Polyhedron)
 }
 
-/// The corners that are in places of their own.
+/// The distinct corners.
 struct Distinct {
     points: Vec<Vector>,
-    /// Which of the points each corner is.
+    /// The index of the distinct point for each corner.
     which: [usize; 8],
 }
 
@@ -188,14 +188,14 @@ impl Distinct {
     }
 }
 
-/// Corners nearer than this part of the polyhedron's size are in one place.
+/// The distance, relative to the polyhedron's size, within which corners coincide.
 const SAME: f64 = 1e-9;
 
 fn distance(a: &Vector, b: &Vector) -> f64 {
     to_f64(&extent(&difference(a, b)))
 }
 
-/// The edges from a corner, run so that they are right-handed.
+/// The edges from a corner, in right-handed order.
 fn right_handed([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     match dot(&cross(&a, &b), &c) < Rational::ZERO {
         true => [c, b, a],
@@ -203,8 +203,8 @@ fn right_handed([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     }
 }
 
-/// How far points are from where they should be, relative to the shortest of three edges; `None`
-/// where that is too far.
+/// The largest distance of points from where they should be, relative to the shortest of three
+/// edges; `None` if that exceeds the tolerance.
 fn misplaced<const N: usize>(pairs: [(&Vector, Vector); N], edges: &[Vector; 3]) -> Option<f64> {
     let shortest = edges
         .iter()
@@ -240,7 +240,7 @@ fn block(corners: &[Vector; 8]) -> Option<Solid> {
     })
 }
 
-/// Two right-angled triangles, and what lies between them.
+/// A wedge: two right-angled triangles, and the prism between them.
 fn wedge(distinct: &Distinct) -> Option<Solid> {
     let points = &distinct.points;
     let others = |taken: &[usize]| {
@@ -273,15 +273,15 @@ fn wedge(distinct: &Distinct) -> Option<Solid> {
     None
 }
 
-/// Which of six points are what of a wedge.
+/// The roles of six points in a wedge.
 struct Prism {
-    /// Where the right angle is.
+    /// The corner with the right angle.
     corner: usize,
-    /// The same, across.
+    /// The opposite corner with the right angle, at the other triangle.
     across: usize,
     x: usize,
     z: usize,
-    /// Across from x and z.
+    /// The corners at the other triangle opposite to x and z.
     ends: [usize; 2],
 }
 
@@ -302,7 +302,7 @@ impl Prism {
         })
     }
 
-    /// Whether every face of the eight corners lies in one of the wedge.
+    /// Whether every face of the eight corners lies in a face of the wedge.
     fn has_faces(&self, distinct: &Distinct) -> bool {
         let Self {
             corner,

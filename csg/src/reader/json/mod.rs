@@ -1,4 +1,4 @@
-//! `.json`: the tree as it is.
+//! `.json`: the tree itself.
 
 mod value;
 
@@ -51,7 +51,7 @@ const PRIMITIVES: [(&str, &[&str]); 7] = [
     ("torus", &["R", "r"]),
 ];
 
-/// What is left to do; the solids made so far wait on a stack.
+/// A pending step; the solids created so far are on a stack.
 enum Step {
     Enter(ValueId),
     Combine {
@@ -87,7 +87,7 @@ impl<'a> Reader<'a> {
         Ok(parts.pop().unwrap_or(SolidId::EMPTY))
     }
 
-    /// Makes a primitive, or plans the children of an operation.
+    /// Creates a primitive, or schedules the children of an operation.
     fn enter(
         &mut self,
         id: ValueId,
@@ -163,13 +163,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A number and its place.
+/// A number and its span.
 struct Length {
     value: Rational,
     span: Range<usize>,
 }
 
-/// The primitive of a name, from its numbers in the order of its keys.
+/// The primitive with this name, from its numbers in the order of its keys.
 fn make(name: &str, lengths: &[Length]) -> Result<Primitive, PrimitiveError> {
     let n = |index: usize| {
         lengths
@@ -187,7 +187,7 @@ fn make(name: &str, lengths: &[Length]) -> Result<Primitive, PrimitiveError> {
     }
 }
 
-/// Which of a primitive's numbers a length is.
+/// The index of the number of a primitive to which an error refers.
 fn length_index(dimension: Dimension, count: usize) -> usize {
     let last = count.saturating_sub(1);
     match dimension {
@@ -197,7 +197,7 @@ fn length_index(dimension: Dimension, count: usize) -> usize {
     }
 }
 
-/// The meaning of a text that is one of a few.
+/// The value of a text that is one of several choices.
 fn choice<T: Copy>(value: &Value, known: &[(&'static str, T)]) -> Result<T, SpannedError> {
     let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
     let expected = format!("one of \"{}\"", names.join("\", \""));
@@ -308,7 +308,7 @@ impl<'a> Fields<'a> {
         Ok(moves)
     }
 
-    /// A step, and the value that says about what it turns.
+    /// A step, and the value of its axis.
     fn step(&self, id: ValueId) -> Result<(transform::TransformStep, ValueId), SpannedError> {
         let value = self.document.value(id);
         let expected = "a step: {\"translate\":[x,y,z]}, {\"rotate\":[[x,y,z],degrees]} or \
@@ -392,7 +392,7 @@ fn number(document: &Document, id: ValueId) -> Result<Length, SpannedError> {
     }
 }
 
-/// What three coordinates are expected as.
+/// What is expected for three coordinates.
 const TRIPLE: &str = "an array of three numbers";
 
 fn lengths<const N: usize>(

@@ -1,6 +1,6 @@
-//! A JSON text as values that keep their places and their exact decimals.
+//! A JSON text as values with their spans and exact decimals.
 //!
-//! Read without recursion, into an arena: depth is limited by memory alone.
+//! It is read without recursion into an arena; depth is limited by memory only.
 
 use std::ops::Range;
 
@@ -100,7 +100,7 @@ impl Parser<'_> {
             let Some(mut done) = self.begin_value()? else {
                 continue;
             };
-            // The value may be the last of what is around it, and that of what is around it.
+            // The value may be the last of its container, and that the last of its own.
             loop {
                 match self.after_value(done)? {
                     After::Next => break,
@@ -116,7 +116,7 @@ impl Parser<'_> {
         self.values.len() - 1
     }
 
-    /// Reads a whole value, or the beginning of an array or an object that is not empty.
+    /// Reads a whole value, or the beginning of a non-empty array or object.
     fn begin_value(&mut self) -> Result<Option<ValueId>, SpannedError> {
         let lexeme = self.cursor.next();
         let span = lexeme.span();
@@ -258,7 +258,7 @@ enum After {
     End,
 }
 
-/// Whether a number that other languages would take is also one of JSON's.
+/// Whether a number accepted by other languages is also valid in JSON.
 fn is_json_number(text: &str) -> bool {
     let text = text.strip_prefix('-').unwrap_or(text);
     let digit_at = |at: usize| text.as_bytes().get(at).is_some_and(u8::is_ascii_digit);

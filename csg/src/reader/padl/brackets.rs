@@ -1,4 +1,5 @@
-//! What a bracket of `.padl` is for: grouping, the arguments of a primitive, the motions of `AT`.
+//! The meaning of a bracket in `.padl`: grouping, the arguments of a primitive, or the motions of
+//! `AT`.
 
 use std::ops::Range;
 
@@ -14,7 +15,7 @@ use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::{Transform, TransformStep, along};
 use premio_text::escape::quote;
 
-/// What is around an expression.
+/// The context of an expression.
 pub(super) enum Bracket<'a> {
     Statement,
     Group { open: Lexeme },
@@ -75,7 +76,7 @@ impl<'a> Bracket<'a> {
         }
     }
 
-    /// The solid that the bracket gives, and where it starts.
+    /// The solid of the bracket, and its start.
     pub(super) fn end(
         self,
         close: Lexeme,
@@ -180,7 +181,7 @@ impl<'a> Call<'a> {
         })
     }
 
-    /// The cone's optional radius was not given: point at the one that was.
+    /// The cone's optional radius was omitted: point at the one that was given.
     fn without_apex_radius(&self, error: PrimitiveError) -> SpannedError {
         match &self.values[0] {
             Some((value, span)) => bad_length(error, Some(value), span.clone()),
@@ -201,13 +202,13 @@ fn make(shape: Shape, value: impl Fn(usize) -> Rational) -> Result<Primitive, Pr
     }
 }
 
-/// Which of a shape's arguments a length is.
+/// The index of a shape's argument to which an error refers.
 fn argument_index(shape: Shape, dimension: Dimension) -> usize {
     match dimension {
         Dimension::X | Dimension::Radius | Dimension::Base | Dimension::Major => 0,
         Dimension::Y | Dimension::Height | Dimension::Minor => 1,
         Dimension::Z => 2,
-        // Equal radii make a cone a cylinder.
+        // A cone with equal radii is a cylinder.
         Dimension::Top => {
             if shape == Shape::Cone {
                 2

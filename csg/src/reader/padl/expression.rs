@@ -1,4 +1,4 @@
-//! Values and operators of `.padl`, and what an operator does with its operands.
+//! Values and operators of `.padl`, and the evaluation of operators.
 
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ impl Value {
     }
 }
 
-/// A value and where it stands.
+/// A value and its span.
 #[derive(Debug, Clone)]
 pub(super) struct Operand {
     pub(super) value: Value,
@@ -68,7 +68,7 @@ pub(super) enum Operator {
 }
 
 impl Operator {
-    /// Which operators go first; those of equal rank go from left to right.
+    /// The precedence; operators of equal precedence are applied from left to right.
     fn rank(self) -> u8 {
         match self {
             Self::Set(_) => 0,
@@ -91,12 +91,12 @@ impl Operator {
     }
 }
 
-/// An expression between two brackets, as far as it has been read.
+/// The part of an expression between two brackets that has been read.
 #[derive(Debug, Default)]
 pub(super) struct Expression {
     operands: Vec<Operand>,
     operators: Vec<Operator>,
-    /// Whether the last thing read is a whole operand.
+    /// Whether the last item read is a whole operand.
     pub(super) complete: bool,
 }
 
@@ -106,7 +106,7 @@ impl Expression {
         self.complete = true;
     }
 
-    /// Takes the last operand back, to put something else in its place.
+    /// Takes the last operand back, to replace it.
     pub(super) fn take_operand(&mut self) -> Option<Operand> {
         self.complete = false;
         self.operands.pop()
@@ -133,7 +133,7 @@ impl Expression {
         Ok(self.operands.pop())
     }
 
-    /// Applies the operators that go before one of the given rank.
+    /// Applies the operators of higher precedence than the given rank.
     fn reduce(&mut self, rank: u8, builder: &mut Builder) -> Result<(), SpannedError> {
         while let Some(operator) = self.operators.pop_if(|last| last.rank() >= rank) {
             let Some(right) = self.operands.pop() else {

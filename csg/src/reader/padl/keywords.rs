@@ -45,7 +45,7 @@ impl Shape {
     }
 }
 
-/// The names of the motions; three shifts, three turns.
+/// The names of the motions: three translations, three rotations.
 pub(super) const MOTIONS: [&str; 6] = ["MOVX", "MOVY", "MOVZ", "ROTX", "ROTY", "ROTZ"];
 
 /// A reserved word.

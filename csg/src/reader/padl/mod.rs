@@ -1,7 +1,7 @@
-//! `.padl`: named numbers and solids, one a line.
+//! `.padl`: named numbers and solids, one per line.
 //!
-//! Brackets of all kinds are frames on one explicit stack, so that their depth is not limited by
-//! the program's own stack.
+//! Brackets of all kinds are frames on an explicit stack, so their depth is not limited by the
+//! program's stack.
 
 mod brackets;
 mod expression;
@@ -34,7 +34,7 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
     })
 }
 
-/// A name's value and where it was set.
+/// The value of a name, and where it was set.
 struct Definition {
     value: Value,
     span: Range<usize>,
@@ -151,7 +151,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Reads a value or the beginning of one.
+    /// Reads a value or the start of one.
     fn operand(&mut self) -> Result<(), SpannedError> {
         let lexeme = self.cursor.next();
         match lexeme.token {
@@ -199,13 +199,13 @@ impl<'a> Parser<'a> {
             format!("the unknown name {}", quote(text)),
             "a name set on an earlier line",
         );
-        // Of several near names the same one is always proposed.
+        // Sorted, so that the same one of several similar names is always proposed.
         let mut known: Vec<&str> = self.names.keys().copied().collect();
         known.sort_unstable();
         Err(fault.suggest(text, known.into_iter().chain(KEYWORDS)))
     }
 
-    /// Reads what follows a value; gives the statement's value at its end.
+    /// Reads what follows a value; returns the statement's value at its end.
     fn operator(&mut self) -> Result<Option<Value>, SpannedError> {
         let lexeme = self.cursor.next();
         let operator = match lexeme.token {
@@ -244,7 +244,7 @@ impl<'a> Parser<'a> {
         self.first_argument()
     }
 
-    /// Reads the name of the first argument, if the bracket is not closed at once.
+    /// Reads the name of the first argument, unless the bracket is closed at once.
     fn first_argument(&mut self) -> Result<(), SpannedError> {
         self.cursor.skip_newlines();
         if self.cursor.peek().is(')') {
@@ -341,7 +341,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// The error at a word, with the bracket that is open there if the text ends.
+    /// The error at a token, naming the open bracket if the text ends.
     fn unclosed(&self, lexeme: Lexeme, expected: &str) -> SpannedError {
         let fault = self.cursor.unexpected(lexeme, expected);
         let open = self.frames.last().and_then(|frame| frame.bracket.open());
@@ -354,7 +354,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The part requested, or the last solid, and where it was set.
+    /// The requested part or the last solid, and where it was set.
     fn part(&self, wanted: Option<&str>) -> Result<(SolidId, Range<usize>), SpannedError> {
         let end = self.cursor.source().len();
         let Some(wanted) = wanted else {

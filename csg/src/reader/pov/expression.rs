@@ -1,4 +1,4 @@
-//! Numbers and vectors, and the arithmetic of both: exact, component by component.
+//! Numbers and vectors, with exact component-wise arithmetic.
 
 use std::ops::Range;
 
@@ -13,13 +13,13 @@ use super::{Reader, Value};
 use crate::transform::along;
 use premio_text::escape::quote;
 
-/// Brackets are nested at most so deep, and with them this recursion.
+/// The maximum depth of brackets, which bounds the recursion.
 const MAX_DEPTH: usize = 100;
 
-/// A vector has at most so many components.
+/// The maximum number of components of a vector.
 const MAX_COMPONENTS: usize = 12;
 
-/// The value of an expression: one component of a number, more of a vector.
+/// The value of an expression: one component for a number, more for a vector.
 #[derive(Debug, Clone)]
 pub(super) struct Operand {
     components: Vec<Rational>,
@@ -34,7 +34,7 @@ impl Operand {
         }
     }
 
-    /// A number, and where it stands.
+    /// A number and its span.
     pub(super) fn number(self) -> Result<(Rational, Range<usize>), SpannedError> {
         match self.components.as_slice() {
             [number] => Ok((number.clone(), self.span)),
@@ -42,8 +42,8 @@ impl Operand {
         }
     }
 
-    /// A vector of three, and where it stands; a number stands for three of it, and of two numbers
-    /// the third is zero.
+    /// A vector of three components, and its span. A number stands for three equal components; a
+    /// vector of two gets a zero as its third.
     pub(super) fn vector(self) -> Result<(Vector, Range<usize>), SpannedError> {
         match self.components.as_slice() {
             [n] => Ok(([n.clone(), n.clone(), n.clone()], self.span)),
@@ -101,7 +101,7 @@ impl Reader<'_> {
         self.expression()?.vector()
     }
 
-    /// Sums and differences.
+    /// A sum or difference.
     pub(super) fn expression(&mut self) -> Result<Operand, SpannedError> {
         self.sum(0)
     }
@@ -122,7 +122,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Operands with operators of one rank between them, from left to right.
+    /// Operands separated by operators of one precedence, from left to right.
     fn chain(
         &mut self,
         depth: usize,

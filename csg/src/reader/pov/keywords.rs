@@ -1,7 +1,6 @@
-//! The words of the scene description language that mean something here, and those that may be
-//! passed over.
+//! The keywords of the scene description language that are interpreted, and those that are skipped.
 
-/// Solids that are exact here.
+/// The solids that are represented exactly.
 pub(super) const SOLIDS: [&str; 10] = [
     "box",
     "sphere",
@@ -15,7 +14,7 @@ pub(super) const SOLIDS: [&str; 10] = [
     "object",
 ];
 
-/// Objects that are not: no primitives of ours, or no solids.
+/// Objects that are not: other primitives, or no solids.
 pub(super) const NOT_OURS: [&str; 27] = [
     "bicubic_patch",
     "blob",
@@ -46,7 +45,7 @@ pub(super) const NOT_OURS: [&str; 27] = [
     "triangle",
 ];
 
-/// What stands in a scene, or is declared, with braces, and changes no solid.
+/// Statements and declarations with braces that do not change a solid.
 pub(super) const PASSED_OVER: [&str; 22] = [
     "background",
     "camera",
@@ -72,7 +71,7 @@ pub(super) const PASSED_OVER: [&str; 22] = [
     "texture",
 ];
 
-/// Modifiers of an object with braces that change no solid. What is bounded is all there.
+/// Modifiers with braces that do not change a solid. A bounded object is used as a whole.
 pub(super) const SURFACES: [&str; 10] = [
     "bounded_by",
     "finish",
@@ -86,7 +85,7 @@ pub(super) const SURFACES: [&str; 10] = [
     "texture",
 ];
 
-/// Modifiers that change no solid, each perhaps with `on` or `off` after it.
+/// Modifiers that do not change a solid, each optionally followed by `on` or `off`.
 pub(super) const FLAGS: [&str; 10] = [
     "cutaway_textures",
     "double_illuminate",
@@ -100,10 +99,10 @@ pub(super) const FLAGS: [&str; 10] = [
     "uv_mapping",
 ];
 
-/// Modifiers that make no solid of ours.
+/// Modifiers that are not supported.
 pub(super) const REFUSED: [&str; 4] = ["clipped_by", "matrix", "open", "transform"];
 
-/// Words for truth and numbers.
+/// The keywords of Boolean values.
 pub(super) fn truth(word: &str) -> Option<bool> {
     match word {
         "on" | "true" | "yes" => Some(true),
@@ -112,12 +111,12 @@ pub(super) fn truth(word: &str) -> Option<bool> {
     }
 }
 
-/// Whether a word begins an object.
+/// Whether a keyword starts an object.
 pub(super) fn is_object(word: &str) -> bool {
     is_solid(word) || NOT_OURS.contains(&word)
 }
 
-/// Whether a word begins a solid that is exact here.
+/// Whether a keyword starts a solid that is represented exactly.
 pub(super) fn is_solid(word: &str) -> bool {
     SOLIDS.contains(&word)
 }

@@ -1,8 +1,8 @@
-//! `.pov`: POV-Ray's scene description language, as far as it has declared numbers, vectors and
-//! objects, and solids that are exact here.
+//! `.pov`: POV-Ray's scene description language, limited to declared numbers, vectors and objects,
+//! and to solids that are represented exactly.
 //!
-//! Coordinates are kept as they are written. What is no solid of ours is told where the part is
-//! made of it, and not where it is only declared.
+//! Coordinates are kept as written. An unsupported object is an error if the part uses it, but not
+//! if it is only declared.
 
 mod expression;
 mod keywords;
@@ -25,7 +25,7 @@ use crate::tree::Operation;
 use premio_text::LineColumn;
 use premio_text::escape::quote;
 
-/// What is told of every scene.
+/// A remark on every scene.
 const LEFT_HANDED: &str = "POV-Ray's axes are left-handed: coordinates are kept as they are \
     written, so that the solid is the mirror image of what POV-Ray shows";
 
@@ -55,16 +55,16 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
     })
 }
 
-/// What helps where a macro is used.
+/// The help text where a macro is used.
 const NO_MACROS: &str = "macros are not read";
 
-/// What a name stands for.
+/// The value of a name.
 #[derive(Debug, Clone)]
 enum Value {
     Number(Rational),
     Vector(Vec<Rational>),
     Object(Object, Range<usize>),
-    /// Nothing that is understood here; told where it is used.
+    /// Something unsupported, reported where it is used.
     Refused(Box<SpannedError>),
     /// A texture, a colour, a camera.
     Other,
@@ -87,9 +87,9 @@ struct Reader<'a> {
     names: HashMap<&'a str, Value>,
     scene: Vec<(Object, Range<usize>)>,
     notes: Notes,
-    /// The files that are not read.
+    /// The included files, which are not read.
     included: Vec<&'a str>,
-    /// How many objects are being read, each inside the one before by a declaration.
+    /// The nesting depth of declared objects being read.
     inside: usize,
 }
 
@@ -157,7 +157,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The text of `#debug` and the like.
+    /// Skips the text of `#debug` and similar directives.
     fn pass_over_message(&mut self) -> Result<(), SpannedError> {
         let text = self.cursor.next();
         match text.token {
@@ -170,7 +170,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A name and its value; the old value is gone.
+    /// Declares a name; its previous value is dropped.
     fn declare(&mut self) -> Result<(), SpannedError> {
         let name = self.cursor.next();
         if name.token != Token::Name {
@@ -210,7 +210,7 @@ impl<'a> Reader<'a> {
             || keywords::truth(text).is_some()
             || self.names.contains_key(text);
         if !number && !known {
-            // A colour, a function, a text, or a name of a file that is not read.
+            // A colour, a function, a text, or a name from a file that is not read.
             let fault = self.unknown(first);
             self.pass_over_value();
             return Ok(Value::Refused(Box::new(fault)));
@@ -229,7 +229,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The error at a name that stands for nothing here.
+    /// The error at an unknown name.
     fn unknown(&self, lexeme: Lexeme) -> SpannedError {
         let text = self.cursor.text(lexeme);
         let found = match lexeme.token {
@@ -250,7 +250,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Passes over a value to its `;`, or to what cannot be part of it.
+    /// Skips a value to its `;`, or to a token that cannot be part of it.
     fn pass_over_value(&mut self) {
         let mut depth = 0usize;
         loop {
@@ -269,14 +269,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Passes over a block in braces.
+    /// Skips a block in braces.
     fn pass_over_block(&mut self, word: Lexeme) -> Result<(), SpannedError> {
         let what_for = format!("after `{}`", self.cursor.text(word));
         let open = self.cursor.expect('{', &what_for)?;
         self.pass_over_to_end_of(open)
     }
 
-    /// Passes over all to the bracket that closes one.
+    /// Skips to the bracket that closes `open`.
     fn pass_over_to_end_of(&mut self, open: Lexeme) -> Result<(), SpannedError> {
         let mut depth = 1usize;
         while depth > 0 {
@@ -298,14 +298,14 @@ impl<'a> Reader<'a> {
         fault.help(format!("the bracket opened on line {line} is not closed"))
     }
 
-    /// A comma, which may be left out.
+    /// An optional comma.
     fn comma(&mut self) {
         if self.cursor.peek().is(',') {
             self.cursor.next();
         }
     }
 
-    /// An object by the name that it is declared with, and its place.
+    /// The object declared with a name, and its span.
     fn declared(&mut self, name: &str) -> Result<(SolidId, Range<usize>), SpannedError> {
         let end = self.cursor.source().len();
         match self.names.get(name).cloned() {
@@ -330,7 +330,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The names of objects, in their order.
+    /// The names of objects, sorted.
     fn objects(&self) -> Vec<&'a str> {
         let objects = self.names.iter();
         let objects = objects.filter(|(_, value)| matches!(value, Value::Object(..)));
@@ -358,7 +358,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Whether a word cannot be part of a value.
+/// Whether a keyword cannot be part of a value.
 fn begins_statement(word: &str) -> bool {
     keywords::is_object(word) || PASSED_OVER.contains(&word)
 }

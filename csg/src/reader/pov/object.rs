@@ -1,4 +1,4 @@
-//! Objects as they stand in a text: a word, braces, what the object is made of, and modifiers.
+//! Parses objects: a keyword, braces with components, and modifiers.
 
 use super::super::error::SpannedError;
 use super::super::lexer::{Lexeme, Token};
@@ -9,29 +9,29 @@ use crate::builder::SolidId;
 use crate::tree::Operation;
 use premio_text::escape::quote;
 
-/// Objects are declared inside objects at most so deep.
+/// The maximum nesting depth of declared objects.
 const MAX_INSIDE: usize = 100;
 
-/// An object whose brace is not closed yet.
+/// An object whose brace is still open.
 struct Frame {
-    /// The word that it begins with.
+    /// Its keyword.
     word: Lexeme,
     kind: Kind,
-    /// What is combined, as far as it has been read.
+    /// The operands read so far.
     children: Vec<Object>,
-    /// The object itself, when all that it is made of has been read.
+    /// The object itself, once all its components have been read.
     object: Option<Object>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Operation(Operation),
-    /// One object, by its name or as it is.
+    /// One object, by its name or directly.
     Single,
 }
 
 impl Reader<'_> {
-    /// Reads an object from after its first word.
+    /// Reads an object, starting after its keyword.
     pub(super) fn object(&mut self, first: Lexeme) -> Result<Object, SpannedError> {
         if self.inside == MAX_INSIDE {
             let found = "declarations of objects inside objects";
@@ -52,7 +52,7 @@ impl Reader<'_> {
         Ok(object)
     }
 
-    /// Reads the beginning of an object; gives it where it is whole.
+    /// Reads the start of an object; returns the object if it is complete.
     fn begin(
         &mut self,
         word: Lexeme,
@@ -99,7 +99,7 @@ impl Reader<'_> {
         Ok(None)
     }
 
-    /// The error at a name that stands for no object, to be told where that is used.
+    /// The error at a name that is not an object, to be reported where the name is used.
     fn no_object(&mut self, name: Lexeme) -> Result<SpannedError, SpannedError> {
         self.cursor.next();
         let text = self.cursor.text(name);
@@ -153,11 +153,11 @@ impl Reader<'_> {
                 solid::cone(&mut self.builder, [base, top], radii, span)
             }
         };
-        // A wrong length is told where the object is used.
+        // An invalid length is reported where the object is used.
         Ok(made.unwrap_or_else(Object::from))
     }
 
-    /// Reads what comes next in the innermost object; gives one that is whole.
+    /// Reads the next item of the innermost object; returns the object if it is complete.
     fn inner(&mut self, frames: &mut Vec<Frame>) -> Result<Option<Object>, SpannedError> {
         let Some(frame) = frames.last_mut() else {
             return Ok(Some(SolidId::EMPTY.into()));
@@ -179,7 +179,7 @@ impl Reader<'_> {
                     false => self.begin(lexeme, frames),
                 }
             }
-            // A lamp among solids.
+            // A light source among solids is skipped.
             Token::Name if text == "light_source" => self.pass_over_block(lexeme).map(|()| None),
             Token::Name => {
                 let object = self.made(frame);
@@ -193,7 +193,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What a frame's object is, now that all that it is made of has been read.
+    /// The object of a frame, after all its components have been read.
     fn made(&mut self, frame: &mut Frame) -> Object {
         if let Some(object) = frame.object.take() {
             return object;
@@ -251,7 +251,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What stands after a modifier that is refused.
+    /// Skips the argument of a modifier that is refused.
     fn pass_over_argument(&mut self, modifier: &str) -> Result<(), SpannedError> {
         let next = self.cursor.peek();
         match (modifier, next.token) {

@@ -1,4 +1,4 @@
-//! Objects: primitives, operations on them, and where they are put.
+//! Objects: primitives, operations on them, and their placement.
 
 use std::ops::Range;
 
@@ -13,18 +13,18 @@ use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 use premio_text::escape::quote;
 
-/// What an object is.
+/// The shape of an object.
 #[derive(Debug, Clone)]
 pub(super) enum Shape {
-    /// A box along the axes, from its least corner to its greatest: it may be scaled differently
-    /// along them.
+    /// An axis-aligned box, by its minimum and maximum corners. It may be scaled differently along
+    /// the axes.
     Box(Box<[Vector; 2]>),
     Part(SolidId),
-    /// Nothing that is exact here; told where it is used.
+    /// Something unsupported, reported where it is used.
     Refused(Box<SpannedError>),
 }
 
-/// An object, or what is outside it.
+/// An object, or its complement.
 #[derive(Debug, Clone)]
 pub(super) struct Object {
     pub(super) shape: Shape,
@@ -50,7 +50,7 @@ impl From<SpannedError> for Object {
     }
 }
 
-/// A primitive with its place, or why its lengths, of which `last` is the last, make none.
+/// A placed primitive, or the error that its lengths, of which `last` is the last, are invalid.
 fn placed(
     builder: &mut Builder,
     made: Result<Primitive, PrimitiveError>,
@@ -62,7 +62,7 @@ fn placed(
     Ok(builder.moved(part, moves))
 }
 
-/// A box between two opposite corners.
+/// A box with two opposite corners.
 pub(super) fn block(a: Vector, b: Vector, span: Range<usize>) -> Result<Object, SpannedError> {
     let (mut least, mut greatest) = (a, b);
     for (x, y) in least.iter_mut().zip(&mut greatest) {
@@ -87,7 +87,7 @@ pub(super) fn sphere(
     placed(builder, made, (Some(&radius), &span), moves).map(Object::from)
 }
 
-/// A cone from the middle of its base to that of its top; a cylinder where the radii are equal.
+/// A cone from the centre of its base to that of its top; a cylinder if the radii are equal.
 pub(super) fn cone(
     builder: &mut Builder,
     [base, top]: [Vector; 2],
@@ -120,7 +120,7 @@ pub(super) fn torus(
 }
 
 impl Object {
-    /// The solid of an object that is not turned inside out.
+    /// The solid of an object that is not inverted.
     pub(super) fn solid(
         self,
         builder: &mut Builder,
@@ -137,7 +137,7 @@ impl Object {
         self.shape.part(builder)
     }
 
-    /// Changes the object where it is one of ours.
+    /// Applies a change unless the object is unsupported.
     fn changed(self, change: impl FnOnce(Shape) -> Object) -> Self {
         match self.shape {
             Shape::Refused(_) => self,
@@ -158,7 +158,7 @@ impl Object {
         })
     }
 
-    /// Turned about x, then about y, then about z, by degrees.
+    /// Rotated about x, then about y, then about z, by degrees.
     pub(super) fn rotated(self, builder: &mut Builder, degrees: Vector) -> Self {
         let mut moves = Transform::new();
         for (axis, degrees) in degrees.into_iter().enumerate() {
@@ -196,7 +196,7 @@ fn moved(builder: &mut Builder, shape: Shape, moves: Transform) -> Object {
     }
 }
 
-/// The same scale in all directions, along some of them perhaps mirrored.
+/// A uniform scale, possibly with mirrors.
 fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usize>) -> Object {
     let size = |x: &Rational| if *x < Rational::ZERO { -x } else { x.clone() };
     let factor = size(&by[0]);
@@ -222,7 +222,7 @@ fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usi
     if mirrored {
         signs[1] = -signs[1];
     }
-    // Two of three signs are a half turn about the third axis.
+    // Two negative signs of three are a half turn about the third axis.
     let turn = std::array::from_fn(|i| {
         std::array::from_fn(|j| Rational::from(if i == j { signs[i] } else { 0 }))
     });
@@ -244,7 +244,7 @@ impl Shape {
     }
 }
 
-/// An operation on objects, of which some may be turned inside out.
+/// An operation on objects, some of which may be inverted.
 pub(super) fn combined(
     builder: &mut Builder,
     op: Operation,
@@ -263,7 +263,7 @@ fn operation(
     let mut kept = Vec::new();
     let mut taken = Vec::new();
     for (index, object) in objects.into_iter().enumerate() {
-        // What is taken from the first is kept of it where it is inside out.
+        // Subtracting an inverted object means intersecting with the object.
         let subtracted = op == Operation::Difference && index > 0;
         let part = object.shape.part(builder)?;
         match object.inverse != subtracted {

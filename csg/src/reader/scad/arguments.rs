@@ -9,10 +9,10 @@ use super::super::lexer::{Cursor, Lexeme, Token};
 use super::super::number::{literal, show};
 use premio_text::escape::quote;
 
-/// Nothing in a flattened file is nested deeper: a matrix is a list of lists.
+/// The maximum depth of lists in a flattened file: a matrix is a list of lists.
 const MAX_DEPTH: usize = 4;
 
-/// What an argument is.
+/// The value of an argument.
 #[derive(Debug, Clone)]
 pub(super) enum Value {
     Number(Rational),
@@ -23,7 +23,7 @@ pub(super) enum Value {
     NotFinite,
 }
 
-/// A value, its place, and its name if it has one.
+/// A value, its span, and its name if it has one.
 #[derive(Debug, Clone)]
 pub(super) struct Argument {
     name: Option<Name>,
@@ -49,7 +49,7 @@ impl Argument {
         }
     }
 
-    /// The error that something else should stand here.
+    /// The error that something else is expected here.
     pub(super) fn wrong(&self, expected: impl Into<String>) -> SpannedError {
         SpannedError::input(self.span.clone(), self.describe(), expected)
     }
@@ -68,7 +68,7 @@ impl Argument {
         }
     }
 
-    /// The items of a list of `N`.
+    /// The items of a list of length `N`.
     pub(super) fn list<const N: usize>(
         &self,
         expected: &str,
@@ -96,7 +96,7 @@ impl Argument {
 #[derive(Debug)]
 pub(super) struct Arguments {
     arguments: Vec<Argument>,
-    /// From the node's name to the closing bracket.
+    /// The span from the node's name to the closing bracket.
     pub(super) span: Range<usize>,
     node: String,
 }
@@ -126,8 +126,8 @@ impl Arguments {
         })
     }
 
-    /// Gives the arguments without a name their names, in order; refuses names that are not
-    /// known and names given twice. What only tells how finely to approximate is passed over.
+    /// Assigns names to positional arguments, in order. Refuses unknown and repeated names.
+    /// Arguments that only control the fineness of approximation are skipped.
     pub(super) fn bind(&mut self, known: &[&str]) -> Result<(), SpannedError> {
         const PASSED_OVER: [&str; 8] = [
             "$fn",
@@ -168,7 +168,7 @@ impl Arguments {
         Ok(())
     }
 
-    /// An argument by its name; `undef` is the same as none.
+    /// An argument by its name; `undef` counts as absent.
     pub(super) fn find(&self, name: &str) -> Option<&Argument> {
         self.arguments.iter().find(|argument| {
             let named = argument.name.as_ref().is_some_and(|n| n.text == name);

@@ -1,6 +1,6 @@
-//! Plane figures that `linear_extrude` raises to solids.
+//! Plane figures that `linear_extrude` extrudes to solids.
 //!
-//! Raising a figure commutes with moving it in its plane and with set operations, so each figure
+//! Extruding a figure commutes with motions in its plane and with set operations, so each figure
 //! becomes a solid by itself.
 
 use premio_kernel::number::rational::Rational;
@@ -11,7 +11,7 @@ use super::shapes::{Shape, check_smooth, checked, length, radius};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 
-/// How high a figure is raised, and from where.
+/// The height of an extrusion and its start.
 #[derive(Debug, Clone)]
 pub(super) struct Raise {
     height: Rational,
@@ -23,7 +23,7 @@ pub(super) fn half(value: &Rational) -> Rational {
 }
 
 impl Raise {
-    /// What the arguments of `linear_extrude` say. A height of zero makes every figure empty.
+    /// Reads the arguments of `linear_extrude`. A height of zero makes every figure empty.
     pub(super) fn new(arguments: &mut Arguments) -> Result<Self, SpannedError> {
         arguments.bind(&["height", "center", "scale", "twist", "v", "h"])?;
         let height = match arguments.find("h") {
@@ -44,7 +44,7 @@ impl Raise {
     }
 }
 
-/// Refuses what would make the sides of an extrusion anything but straight up.
+/// Refuses arguments that would make the sides of an extrusion not vertical.
 fn check_straight(arguments: &Arguments) -> Result<(), SpannedError> {
     let one = Rational::ONE;
     if let Some(scale) = arguments.find("scale") {
@@ -133,7 +133,7 @@ pub(super) fn polygon(arguments: &mut Arguments, raise: &Raise) -> Result<Shape,
         [b, a, c],
         [c, b, a],
     ];
-    // The corner with the right angle, then the ends of the legs along x and along y.
+    // The corner with the right angle, followed by the ends of the legs along x and y.
     let right = turns
         .into_iter()
         .find(|[o, p, q]| o[1] == p[1] && o[0] == q[0]);
@@ -155,7 +155,7 @@ fn point(argument: &Argument) -> Result<Point, SpannedError> {
     Ok([x.number()?.clone(), y.number()?.clone()])
 }
 
-/// The points in the order of the one path, if a path is given.
+/// The points in the order of the single path, if a path is given.
 fn chosen(arguments: &Arguments, points: &[Argument]) -> Result<Vec<Point>, SpannedError> {
     let Some(paths) = arguments.find("paths") else {
         return points.iter().map(point).collect();
@@ -172,9 +172,9 @@ fn chosen(arguments: &Arguments, points: &[Argument]) -> Result<Vec<Point>, Span
         .collect()
 }
 
-/// Our wedge has its right angle between x and z and is as long as its y.
-/// With u along the one leg, v along the other and w up, it is put with its x along u, its z
-/// along v and its y along w or against it, whichever makes the turn right-handed.
+/// The wedge of an extruded triangle. The primitive's right angle lies between x and z, and its
+/// length is along y. With u along one leg, v along the other and w upwards, its x is placed along
+/// u, its z along v, and its y along w or -w, whichever gives a right-handed rotation.
 fn wedge(
     arguments: &Arguments,
     raise: &Raise,
@@ -188,7 +188,7 @@ fn wedge(
     let w = -u * v;
     let matrix = [[u, 0, 0], [0, 0, v], [0, w, 0]].map(|row| row.map(Rational::from));
     let height = raise.height.clone();
-    // Against w the wedge lies below its plane: lift it by its length.
+    // Along -w the wedge lies below its plane and is lifted by its length.
     let lift = if w < 0 {
         height.clone()
     } else {

@@ -1,7 +1,7 @@
 //! `.csg`: OpenSCAD's flattened output.
 //!
-//! Blocks are frames on one explicit stack. A plane figure becomes a solid where it stands, by
-//! the extrusion around it, so that there are only solids to combine.
+//! Blocks are frames on an explicit stack. A plane figure becomes a solid at once, by the extrusion
+//! around it, so only solids are combined.
 
 mod arguments;
 mod extrusion;
@@ -31,10 +31,10 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
     })
 }
 
-/// The rounding of the six digits that OpenSCAD writes.
+/// The relative rounding of the six digits that OpenSCAD writes.
 const SIX_DIGITS: f64 = 1e-6;
 
-/// A block that is not closed yet.
+/// A block that is still open.
 struct Frame {
     kind: Kind,
     around: Around,
@@ -42,7 +42,7 @@ struct Frame {
     open: Lexeme,
     /// The child is one statement, without braces.
     single: bool,
-    /// Whether the block is part of the solid at all.
+    /// Whether the block contributes to the solid.
     live: bool,
     /// Whether this is the subtree marked with `!`.
     root: bool,
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
     }
 
     fn file(&mut self) -> Result<SolidId, SpannedError> {
-        // With a subtree marked `!` all that is outside it counts for nothing.
+        // If a subtree is marked `!`, everything outside it is ignored.
         let live = !self.cursor.contains('!');
         let open = self.cursor.peek();
         self.frames.push(Frame {
@@ -132,7 +132,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// `;` alone: an empty statement, which is also the whole of a block without braces.
+    /// A single `;`: an empty statement, which may also be the whole of a block without braces.
     fn stray_semicolon(&mut self) {
         self.close_singles();
     }
@@ -154,7 +154,7 @@ impl<'a> Reader<'a> {
         self.give(part, frame.root);
     }
 
-    /// Adds a finished part to the block around it.
+    /// Adds a finished part to the surrounding block.
     fn give(&mut self, part: SolidId, root: bool) {
         if root {
             self.marked_root.get_or_insert(part);
@@ -176,7 +176,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads one node, up to the beginning of its block.
+    /// Reads one node, up to the start of its block.
     fn statement(&mut self, first: Lexeme) -> Result<(), SpannedError> {
         let (marks, name) = self.marks(first);
         if name.token != Token::Name {

@@ -1,4 +1,4 @@
-//! What each node of OpenSCAD means.
+//! The meaning of OpenSCAD's nodes.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 use premio_text::escape::quote;
 
-/// What becomes of the children of a block.
+/// How the children of a block are combined.
 pub(super) enum Kind {
     Union,
     Intersection,
@@ -43,12 +43,12 @@ impl Kind {
     }
 }
 
-/// The extrusion around a node, which says what a plane figure becomes.
+/// The extrusion around a node, which determines what a plane figure becomes.
 #[derive(Clone)]
 pub(super) enum Around {
     Nothing,
     Raised(Box<Raise>),
-    /// Turned about an axis; with the placement in the plane so far.
+    /// Revolved about an axis, with the placement in the plane so far.
     Revolved(Box<Placement>),
 }
 
@@ -61,7 +61,7 @@ fn solid(shape: Shape) -> Node {
     Node::Shape(Box::new(shape))
 }
 
-/// The nodes that are read.
+/// The supported nodes.
 const KNOWN: [&str; 15] = [
     "group",
     "union",
@@ -80,7 +80,7 @@ const KNOWN: [&str; 15] = [
     "polygon",
 ];
 
-/// The meaning of a node, with the extrusion around it.
+/// The meaning of a node inside the given extrusion.
 pub(super) fn node(
     name: &str,
     place: Lexeme,
@@ -153,7 +153,7 @@ fn not_in_revolution(place: Lexeme, name: &str) -> SpannedError {
     SpannedError::input(
         place.span(),
         found,
-        "a circle beside the axis, which makes a torus",
+        "a circle away from the axis, which makes a torus",
     )
 }
 
@@ -193,7 +193,7 @@ fn revolve(arguments: &mut Arguments, smooth: bool) -> Result<Node, SpannedError
     })
 }
 
-/// The rows of a matrix of 4 by 4.
+/// The rows of a 4 by 4 matrix.
 fn rows(argument: &Argument) -> Result<[[Rational; 4]; 4], SpannedError> {
     let mut matrix: [[Rational; 4]; 4] = Default::default();
     let rows: &[Argument; 4] = argument.list("a matrix of four rows")?;
@@ -239,7 +239,7 @@ fn matrix(
         }
         Around::Revolved(outer) => {
             check_plane(&placement, &argument.span)?;
-            // A circle is its own mirror image: only where its centre goes counts.
+            // A circle is its own mirror image, so only its centre matters.
             let around = Around::Revolved(Box::new(placement.then(outer)));
             Ok(Node::Block {
                 kind: Kind::Union,
@@ -249,7 +249,7 @@ fn matrix(
     }
 }
 
-/// In an extrusion only motions in the plane make sense.
+/// Inside an extrusion only motions in the plane are supported.
 fn check_plane(placement: &Placement, span: &Range<usize>) -> Result<(), SpannedError> {
     let motion = placement.moves.motion();
     let matrix = motion.rotation_matrix();

@@ -1,4 +1,4 @@
-//! OpenSCAD's primitives as ours.
+//! OpenSCAD's primitives as primitives of the tree.
 
 use std::ops::Range;
 
@@ -12,10 +12,10 @@ use super::extrusion::half;
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::Transform;
 
-/// A primitive at its place; `None` for one of size zero, which adds nothing.
+/// A primitive in its position; `None` for one of size zero, which adds nothing.
 pub(super) type Shape = Option<(Primitive, Transform)>;
 
-/// A length of zero or more.
+/// A non-negative length.
 pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, SpannedError> {
     let value = argument.number()?;
     if *value < Rational::ZERO {
@@ -33,7 +33,7 @@ fn shift_z(z: Rational) -> Transform {
     Transform::shift([Rational::ZERO, Rational::ZERO, z])
 }
 
-/// Lengths that were checked already: an error here points at the whole node.
+/// Lengths that were checked already, so an error points at the whole node.
 pub(super) fn checked(
     made: Result<Primitive, PrimitiveError>,
     span: &Range<usize>,
@@ -41,7 +41,8 @@ pub(super) fn checked(
     made.map_err(|error| bad_length(error, None, span.clone()))
 }
 
-/// Whether a node's `$fn` asks for a polygon in place of a circle, and is not to be overridden.
+/// Refuses a node whose `$fn` requests a polygon in place of a circle, unless `smooth` overrides
+/// it.
 pub(super) fn check_smooth(arguments: &Arguments, smooth: bool) -> Result<(), SpannedError> {
     const FEWEST_SMOOTH: i32 = 16;
     let Some(argument) = arguments.find("$fn") else {
@@ -86,7 +87,7 @@ pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, SpannedError> {
     )))
 }
 
-/// A radius, or half of a diameter.
+/// A radius, or half a diameter.
 pub(super) fn radius(
     arguments: &Arguments,
     radius: &str,
@@ -148,7 +149,7 @@ pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape,
     Ok(Some((frustum, shift_z(lift))))
 }
 
-/// A circle turned about the y axis of its plane, which becomes z: a torus.
+/// A circle revolved about the y axis of its plane, which becomes z: a torus.
 pub(super) fn revolved_circle(
     arguments: &mut Arguments,
     placing: &Motion,

@@ -7,7 +7,7 @@ fn asc(text: &str) -> String {
     message(text, Format::Asc)
 }
 
-/// The one primitive of a solid, and its place.
+/// The only primitive of a solid, and its position.
 fn solid(put: &str) -> PlacedPrimitive {
     let tree = tree(&format!("put {{s}} {put}\n"), Format::Asc);
     let (_, placed) = tree.leaves().next().unwrap();
@@ -41,7 +41,7 @@ fn round_solids() {
     assert_eq!(ring.motion.apply_vector(&n([0, 0, 1])), n([0, 1, 0]));
 }
 
-/// Whether a solid of eight corners holds the points that a test says.
+/// Whether a solid of eight corners contains exactly the points of a given test.
 fn check(corners: [[i32; 3]; 8], inside: impl Fn([f64; 3]) -> bool) {
     let names = (1..=8).zip(corners);
     let vectors = names.map(|(k, [x, y, z])| format!("V{k} {{{x} {y} {z}}}"));
@@ -56,7 +56,7 @@ fn blocks() {
     let within = |v: f64, least: f64, greatest: f64| v > least && v < greatest;
     let inside = |[x, y, z]: [f64; 3]| within(x, 1., 5.) && within(y, 2., 5.) && within(z, 3., 4.);
     check([low, high].concat().try_into().unwrap(), inside);
-    // Run the other way round.
+    // In the opposite order.
     check([high, low].concat().try_into().unwrap(), inside);
     let turned = [[0, 0, 0], [4, 3, 0], [1, 7, 0], [-3, 4, 0]];
     let high = turned.map(|[x, y, _]| [x, y, 2]);
@@ -133,11 +133,11 @@ fn matrices() {
     let origin = mirrored.motion.apply_point(&n([0, 0, 0]));
     let least: [Rational; 3] = std::array::from_fn(|i| corner[i].clone().min(origin[i].clone()));
     assert_eq!(least, n([-1, 0, 0]));
-    // Six digits are read as the turn that they stand for, and that is told.
+    // Six digits are read as the rotation that they represent, with a remark.
     let turned = with("0.866025 -0.5 0 0 0.5 0.866025 0 0 0 0 1 0 0 0 0 1").unwrap();
     assert_eq!(turned.notes.len(), 1);
     assert!(turned.digits.is_some());
-    // All digits of a double are no reason for a note.
+    // All digits of an f64 give no remark.
     let turned =
         with("0.8660254037844386468 -0.5 0 0 0.5 0.8660254037844386468 0 0 0 0 1 0 0 0 0 1")
             .unwrap();
@@ -154,11 +154,11 @@ fn what_is_not_ours() {
     assert_snapshot!(asc("put h half N {0 0 1} d 5"), @"part:1:7: found `h`, an object of type `half`, expected `comb` or a solid that is exact here: arb8, ell, sph, tgc, rec, tor");
     assert_snapshot!(asc("put b ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\nput c comb tree {l b {2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1}}"), @"part:2:23: found a matrix that changes proportions or angles, expected a rigid motion, perhaps mirrored, perhaps the same scale in all directions");
     assert_snapshot!(asc("I 1 v4\nA title\n"), @"part:1:1: found a database of BRL-CAD's version 4, expected one of version 5 (`asc2g` and then `g2asc` of a newer BRL-CAD make one of the other)");
-    // What the part does not hold may be anything.
+    // Objects outside the part may be anything.
     let text = "put h half N {0 0 1} d 5\nput b ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\nput c comb tree {l b}";
     let read = read_text(text, Format::Asc).unwrap();
     assert_eq!(read.tree.leaves().count(), 1);
-    assert_eq!(read.notes[0].text, "`c` is read, which does not hold `h`");
+    assert_eq!(read.notes[0].text, "`c` is read; it does not contain `h`");
 }
 
 #[test]
@@ -167,11 +167,11 @@ fn messages() {
     assert_snapshot!(asc("put a"), @"part:1:5: found `a`, expected `put NAME TYPE`, and the attributes of the object");
     assert_snapshot!(asc("puts a"), @"part:1:1: found the unknown command `puts`, expected one of `put`, `title`, `units`, `attr`, `color` (did you mean `put`?)");
     assert_snapshot!(asc("put a comb tree {l b}"), @"part:1:20: found the unknown name `b`, expected the name of an object in the file");
-    assert_snapshot!(asc("put ab comb tree {l bb}\nput bb comb tree {l ab}"), @"part:1:5: found combinations that hold one another, expected an object that no other holds");
-    assert_snapshot!(asc("put top comb tree {l ab}\nput ab comb tree {l bb}\nput bb comb tree {l ab}"), @"part:3:21: found `ab`, which holds what it is in, expected no ring of combinations");
+    assert_snapshot!(asc("put ab comb tree {l bb}\nput bb comb tree {l ab}"), @"part:1:5: found combinations that contain one another, expected an object that no other contains");
+    assert_snapshot!(asc("put top comb tree {l ab}\nput ab comb tree {l bb}\nput bb comb tree {l ab}"), @"part:3:21: found `ab`, which contains itself, expected no cycle of combinations");
     assert_snapshot!(asc("put a ell V {0 0 0} A {1 0 0} B {0 1 0}"), @"part:1:5: found the ell `a` without `C`, expected the attribute `C`");
     assert_snapshot!(asc("put a ell V {0 0} A {1 0 0} B {0 1 0} C {0 0 1}"), @"part:1:14: found `0 0`, expected three numbers");
-    assert_snapshot!(asc("put a ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\nput b tor"), @"part:2:5: found several objects that no other holds: `a`, `b`, expected one, or `--part` and the name of the one to read");
+    assert_snapshot!(asc("put a ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\nput b tor"), @"part:2:5: found several objects that no other contains: `a`, `b`, expected one, or `--part` and the name of the one to read");
     assert_snapshot!(asc("put a comb tree {u {l b}}"), @"part:1:18: found `u {l b}`, expected an operator and its two operands");
     assert_snapshot!(asc("put a comb tree {x {l b} {l c}}"), @"part:1:18: found `x`, expected a member `l NAME` or an operation: `u`, `n`, `-` or `^` and two operands");
     assert_snapshot!(asc("put a comb tree {l b"), @"part:1:17: found a brace without an end, expected a closing `}`");

@@ -59,7 +59,7 @@ fn mirrors_become_motions() {
     let inner = format!(
         "multmatrix([[0,-1,0,1],[1,0,0,0],[0,0,1,0.5],[0,0,0,1]]) {{ {wedge} cube(size = [1, 2, 3]); }}"
     );
-    let plain = csg(&inner);
+    let unmoved = csg(&inner);
     for mirror in [
         [-1.0, 1.0, 1.0],
         [1.0, -1.0, 1.0],
@@ -70,7 +70,7 @@ fn mirrors_become_motions() {
         let text =
             format!("multmatrix([[{a},0,0,0.5],[0,{b},0,0],[0,0,{c},0],[0,0,0,1]]) {{ {inner} }}");
         assert_same_points(&csg(&text), |[x, y, z]| {
-            inside(&plain, [a * (x - 0.5), b * y, c * z])
+            inside(&unmoved, [a * (x - 0.5), b * y, c * z])
         });
     }
 }

@@ -1,4 +1,4 @@
-//! What the readers say.
+//! The messages of the readers.
 
 use super::*;
 use insta::assert_snapshot;

@@ -29,7 +29,7 @@ fn message(text: &str, format: Format) -> String {
     read_text(text, format).unwrap_err().to_string()
 }
 
-/// Whether a primitive, in its own frame, holds a point.
+/// Whether a primitive, in its own frame, contains a point.
 fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
     let f = to_f64;
     let within = |value: f64, size: &Rational| (0.0..=f(size)).contains(&value);
@@ -48,7 +48,7 @@ fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
     }
 }
 
-/// Whether a tree holds a point, by classifying it with every primitive.
+/// Whether a tree contains a point, by classifying it with every primitive.
 fn inside(tree: &Tree, point: [f64; 3]) -> bool {
     let mut held = vec![false; tree.nodes().len()];
     for (index, node) in tree.nodes().iter().enumerate().rev() {
@@ -71,7 +71,7 @@ fn inside(tree: &Tree, point: [f64; 3]) -> bool {
     held.first().copied().unwrap_or(false)
 }
 
-/// Asserts that two trees hold the same points of a grid that avoids round numbers.
+/// Asserts that two trees contain the same points of a grid that avoids round numbers.
 fn assert_same_points(a: &Tree, b: impl Fn([f64; 3]) -> bool) {
     let steps = || (-9..=9).map(|i| f64::from(i) * 0.61 + 0.0137);
     for x in steps() {

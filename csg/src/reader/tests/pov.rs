@@ -15,7 +15,7 @@ fn n<const N: usize>(values: [i32; N]) -> [Rational; N] {
     values.map(Rational::from)
 }
 
-/// The one primitive of a scene.
+/// The only primitive of a scene.
 fn only(text: &str) -> PlacedPrimitive {
     let tree = tree(text, Format::Pov);
     let (_, placed) = tree.leaves().next().unwrap();
@@ -77,7 +77,7 @@ difference {
 
 #[test]
 fn placements() {
-    // Turned about x, then about z.
+    // Rotated about x, then about z.
     let turned = only("cylinder { 0, 4*y, 1 rotate <90, 0, 90> translate 1 }");
     assert_eq!(turned.motion.apply_point(&n([0, 0, 4])), n([1, 1, 5]));
     let larger = only("sphere { <1, 2, 3>, 2 scale 3 }");
@@ -87,7 +87,7 @@ fn placements() {
     assert_eq!(mirrored.motion.apply_point(&n([0, 0, 8])), n([-2, 4, -14]));
     let mirrored = only("cylinder { <1, 2, 3>, <1, 2, 7>, 2 scale <-1, 1, 1> }");
     assert_eq!(mirrored.motion.apply_point(&n([0, 0, 4])), n([-1, 2, 7]));
-    // A box may be scaled differently along the axes, as long as it lies along them.
+    // A box may be scaled differently along the axes while it is axis-aligned.
     let scaled = only("box { 0, 1 translate -1/2 scale <2, -4, 6> rotate 90*y }");
     assert_eq!(scaled.primitive, Primitive::block(n([2, 4, 6])).unwrap());
 }

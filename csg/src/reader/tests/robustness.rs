@@ -26,7 +26,7 @@ const SEEDS: [(&str, Format); 5] = [
     ),
 ];
 
-/// Reads, and checks that an error's place is in the text.
+/// Reads, and checks that an error's span is in the text.
 fn check(bytes: &[u8], format: Format) {
     if let Err(error) = read("part", bytes, format, &ReadOptions::default()) {
         assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());

@@ -20,28 +20,28 @@ use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
-/// What a face is measured by.
+/// The data for integration over a face.
 pub(super) struct Density<'a, N: Float = f64> {
     pub ground: Ground<N>,
-    /// The same in f64, where these may tell.
+    /// The surface rounded to f64, where f64 may be accurate enough.
     pub rounded_f64: Option<Ground>,
     pub amid: &'a Amid<N>,
-    /// The errors that do not matter.
+    /// The errors that may be ignored.
     pub floor: Moments<N>,
 }
 
 impl<N: Float> Density<'_, N> {
-    /// Where the integral along v starts for a loop: amid its edges, so that what is the same on all
-    /// of them does not have to cancel.
+    /// The v from which the integral along v starts for a loop. It is amid the loop's edges, so
+    /// that what they have in common need not cancel.
     pub fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
         match &self.ground.surface {
-            // At the apex u leaps, where nothing may be between.
+            // At the apex u jumps, so there may be nothing in between.
             Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => self.ground.base,
             _ => amid_edges(brep, &self.ground, coedges),
         }
     }
 
-    /// The integral over all that lies between two v.
+    /// The integral over the whole surface between two v.
     pub fn between(&self, from: N, to: N) -> Moments<N> {
         self.over([N::ZERO, N::TAU], [from, to])
     }
@@ -93,26 +93,26 @@ pub(super) fn moments<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) ->
     }
 }
 
-/// The same surface in a frame by which it is well measured: its origin next to the reference, where
-/// it may be anywhere, so that a thin strip is not a difference of large coordinates; its poles clear
-/// of the edges.
+/// The surface in a frame suitable for integration. Its origin is close to the reference where it
+/// is arbitrary, so that a thin strip is no difference of large coordinates. Its poles are away
+/// from the edges.
 fn convenient<N: Float>(
     brep: &Brep<N>,
     surface: &Surface<N>,
     coedges: &[CoedgeId],
     reference: &Point3<N>,
 ) -> Surface<N> {
-    let beside = |f: &Frame<N>, axes: &[Vector3<N>]| {
+    let next_to_reference = |f: &Frame<N>, axes: &[Vector3<N>]| {
         let along = |axis: &Vector3<N>| axis * axis.dot(&(reference - f.origin));
         f.at(axes.iter().fold(f.origin, |o, axis| o + along(axis)))
     };
     match *surface {
         Surface::Plane(s) => {
-            let frame = beside(&s.frame, &[s.frame.x, s.frame.y]);
+            let frame = next_to_reference(&s.frame, &[s.frame.x, s.frame.y]);
             Surface::Plane(Plane { frame })
         }
         Surface::Cylinder(s) => {
-            let frame = beside(&s.frame, &[s.frame.z]);
+            let frame = next_to_reference(&s.frame, &[s.frame.z]);
             Surface::Cylinder(Cylinder { frame, ..s })
         }
         Surface::Sphere(s) => {
@@ -132,7 +132,7 @@ fn reaches<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId], p: &Point3<N>) -> boo
     })
 }
 
-/// A v amid edges of a face.
+/// A v amid the edges of a face.
 fn amid_edges<N: Float>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId]) -> N {
     let middle = |&c: &CoedgeId| {
         let e = brep.topology.coedge(c).edge;
@@ -146,9 +146,9 @@ fn amid_edges<N: Float>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId]
     }
 }
 
-/// Whether a face of a closed surface holds what is farthest from the base, where no edge comes: of
-/// the face's part of the whole surface all or nothing is missing, so its sign tells, unless next to
-/// nothing is left. Then walks do.
+/// Whether a face of a closed surface contains the point farthest from the base, which no edge
+/// comes close to. The boundary sum is the face's area, or that less the whole surface, so its sign
+/// decides. If it is close to zero, paths on the surface decide.
 fn holds_far<N: Float>(
     brep: &Brep<N>,
     face: FaceId,
@@ -169,14 +169,15 @@ fn holds_far<N: Float>(
     }
 }
 
-/// Of areas below this part of the whole surface, in terms of rounding, the sign may be rounding.
+/// The multiple of rounding, relative to the whole surface, below which the sign of an area may be
+/// rounding.
 const FEW: f64 = 256.0;
 
 pub(super) fn add<N: Float>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// Points of the edges of a face, in f64.
+/// Points on the edges of a face, in f64.
 fn samples<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId]) -> Vec<Point3<f64>> {
     let of_edge = |&c: &CoedgeId| {
         let edge = brep.topology.coedge(c).edge;
@@ -187,13 +188,13 @@ fn samples<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId]) -> Vec<Point3<f64>> {
     coedges.iter().flat_map(of_edge).collect()
 }
 
-/// Into how many pieces an edge is divided for its points.
+/// The number of pieces into which an edge is divided for its sample points.
 const SAMPLES: u32 = 16;
 
-/// How many ways of cutting a face's surface open are compared.
+/// The number of candidates for cutting a face's surface open.
 const WAYS: u32 = 12;
 
-/// The first of what is farthest from all the points of a face's edges.
+/// The first candidate with the greatest distance from the points of a face's edges.
 fn clearest<T>(ways: impl Iterator<Item = T>, clearance: impl Fn(&T) -> f64) -> Option<T> {
     let ways = ways.map(|way| (clearance(&way), way));
     let best = ways.reduce(|best, other| match other.0.is_beyond(best.0) {
@@ -203,7 +204,7 @@ fn clearest<T>(ways: impl Iterator<Item = T>, clearance: impl Fn(&T) -> f64) -> 
     best.map(|(_, way)| way)
 }
 
-/// A frame of a sphere whose poles keep clear of the edges.
+/// A frame of a sphere whose poles are away from the edges.
 fn clear_axis<N: Float>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> Frame<N> {
     let o: Point3<f64> = rounded(&s.frame.origin).into();
     let points = samples(brep, coedges);
@@ -225,9 +226,9 @@ fn clear_axis<N: Float>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> 
     }
 }
 
-/// The v opposite to a parallel of a torus that keeps clear of the edges, as far as one may. Unless
-/// they are all on the other side that is not near the top or the bottom, where the parallel's plane
-/// touches the torus.
+/// The v opposite to a parallel of a torus that is away from the edges, if there is one. It avoids
+/// the top and the bottom, where the parallel's plane is tangent to the torus, unless all edges are
+/// on the other side.
 fn opposite_parallel<N: Float>(brep: &Brep<N>, t: &Torus<N>, coedges: &[CoedgeId]) -> N {
     let torus = Surface::Torus(*t).to_f64();
     let points = samples(brep, coedges).into_iter();
@@ -250,8 +251,8 @@ fn opposite_parallel<N: Float>(brep: &Brep<N>, t: &Torus<N>, coedges: &[CoedgeId
     N::from_f64(clearest(opposites, clearance).unwrap_or(step))
 }
 
-/// A torus is cut open along the parallel of its base: what of it lies in the face is part of the
-/// boundary of the opened face.
+/// The moments of a face of a torus, which is cut open along the parallel of its base. The part of
+/// that parallel inside the face is part of the boundary of the opened face.
 fn torus_moments<N: Float>(
     brep: &Brep<N>,
     face: FaceId,
@@ -268,7 +269,8 @@ fn torus_moments<N: Float>(
     let mut sum = boundary_sum(brep, face, d, &|c| {
         roots.get(&c).cloned().unwrap_or_default()
     });
-    // Where edges pass the parallel: the u, and 1 where the face lies ahead, −1 where it lies behind.
+    // The u at which edges cross the parallel, with 1 if the face lies ahead and −1 if it lies
+    // behind.
     let mut passes: Vec<(N, N)> = Vec::new();
     for (&c, at) in &roots {
         let coedge = brep.topology.coedge(c);
@@ -281,15 +283,15 @@ fn torus_moments<N: Float>(
         }
     }
     let along = [base, base + N::TAU];
-    // What lies ahead of each up to one of them, whole turns apart: no order is asked, which edges on
-    // both of whose sides the face lies have none of.
+    // The parts ahead of each crossing are summed up to one of them, modulo whole turns. This needs
+    // no order of the crossings, which is undefined for edges with the face on both sides.
     if let Some(&(first, _)) = passes.first() {
         for &(u, sign) in &passes {
             sum = add(sum, d.over([u, first], along).map(|m| m * sign));
         }
         let turns: N = passes.iter().map(|&(_, sign)| sign).sum();
         if !turns.is_exactly(N::ZERO) {
-            // A pass was not seen: nothing is known.
+            // A crossing was missed; the result is unknown.
             return [N::NAN; 5];
         }
     }
@@ -300,8 +302,8 @@ fn torus_moments<N: Float>(
     with_far(sum, whole, holds)
 }
 
-/// What the edges of a face of a closed surface tell, with the whole of that where the face holds what
-/// is far from them; no number where that is not known.
+/// The boundary sum of a face of a closed surface, plus the whole surface if the face contains the
+/// far point. NaN if that is unknown.
 fn with_far<N: Float>(sum: Moments<N>, whole: Moments<N>, holds: Option<bool>) -> Moments<N> {
     match holds {
         Some(true) => add(sum, whole),
@@ -310,8 +312,8 @@ fn with_far<N: Float>(sum: Moments<N>, whole: Moments<N>, holds: Option<bool>) -
     }
 }
 
-/// Where the edges of a torus's face pass the parallel at which it is opened: by coedge, the
-/// parameters; none where one does not clearly cross it.
+/// The crossings of a torus's face's edges with the parallel at which it is opened, as parameters
+/// by coedge; `None` if one is not clearly transversal.
 fn opening_passes<N: Float>(
     brep: &Brep<N>,
     coedges: &[CoedgeId],
@@ -326,11 +328,11 @@ fn opening_passes<N: Float>(
     let opening = SurfacePath::parallel(&d.ground.surface, &start, Sense::Along, N::ZERO)?;
     let directed = coedges.iter().map(|&c| DirectedArc::new(brep, c));
     let arcs = Arcs::new(directed.collect(), N::ZERO);
-    // The plane meets the torus in another parallel, too, where most edges may lie: what runs along
-    // that is distinguished from it to rounding, or to the finest resolution.
+    // The plane intersects the torus in a second parallel, too, on which most edges may lie. Such
+    // edges are distinguished from it to rounding, or to the finest resolution.
     let resolution = N::ROUNDING.max(N::from_f64(FINEST_RESOLUTION)) * d.amid.size;
     let mut passes: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
-    let mut plain = true;
+    let mut all_cross = true;
     for (i, &c) in coedges.iter().enumerate() {
         let curve = arcs.all[i].curve;
         for range in arcs.ranges(&opening, i, N::ZERO) {
@@ -338,16 +340,16 @@ fn opening_passes<N: Float>(
                 let q = t.frame.coordinates(&curve.point(s));
                 let outward = (q.x.hypot(q.y) - t.major) * cos;
                 if outward.is_above_zero() {
-                    plain &= crosses;
+                    all_cross &= crosses;
                     passes.entry(c).or_default().push(s);
                 }
             });
         }
     }
-    plain.then_some(passes)
+    all_cross.then_some(passes)
 }
 
-/// An angle amid the widest gap between angles.
+/// An angle in the middle of the widest gap between angles.
 fn amid_gap<N: Float>(mut angles: Vec<N>) -> N {
     angles.sort_by(N::total_cmp);
     let Some(&first) = angles.first() else {

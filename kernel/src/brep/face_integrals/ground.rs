@@ -1,5 +1,5 @@
-//! What is integrated for a face: along its edges, and between two v; in f64, too, where these may
-//! tell.
+//! The integrands of a face: along its edges and between two v, also in f64 where that may be
+//! accurate enough.
 
 use super::Moments;
 use super::strip::strip;
@@ -11,17 +11,18 @@ use crate::number::predicates::Compare;
 use crate::number::quadrature::Integrand;
 use nalgebra::{Point3, Vector3};
 
-/// A surface with what its integrals along v start from.
+/// A surface with the origins of its integrals along v.
 pub(super) struct Ground<N: Float = f64> {
     pub surface: Surface<N>,
     pub reference: Point3<N>,
-    /// The v at which the surface is cut open, or has a pole.
+    /// The v at which the surface is cut open or has a pole.
     pub base: N,
-    /// From where the angle about a torus's tube is counted.
+    /// The angle about a torus's tube relative to which angles are measured.
     pub middle: Middle<N>,
 }
 
-/// An angle about a torus's tube, amid a face; a thin strip there is no difference of large angles.
+/// An angle about a torus's tube amid a face. Relative to it a thin strip is no difference of large
+/// angles.
 #[derive(Clone, Copy)]
 pub(super) struct Middle<N: Float = f64> {
     pub angle: N,
@@ -45,7 +46,7 @@ impl<N: Float> Middle<N> {
 }
 
 impl<N: Float> Ground<N> {
-    /// The same in f64.
+    /// The surface rounded to f64.
     pub fn to_f64(&self) -> Ground {
         Ground {
             surface: self.surface.to_f64(),
@@ -55,8 +56,8 @@ impl<N: Float> Ground<N> {
         }
     }
 
-    /// The parameters of a point on the surface, the angle about a torus's tube between half a turn
-    /// before the middle and half a turn after it.
+    /// The parameters of a point on the surface. The angle about a torus's tube lies within half a
+    /// turn of the middle.
     pub fn parameters(&self, p: &Point3<N>) -> [N; 2] {
         let mut parameters = self.surface.parameters(p);
         if let Surface::Torus(s) = &self.surface {
@@ -73,7 +74,7 @@ impl<N: Float> Ground<N> {
         strip(&self.surface, &self.reference, u, self.middle.angle, range)
     }
 
-    /// G du/dt and du/dt on an edge; G starts at `start`, and v is that next to `near`.
+    /// G du/dt and du/dt on an edge. G starts at `start`, and v is the one closest to `near`.
     fn on_edge(&self, curve: &Curve<N>, t: N, [start, near]: [N; 2]) -> [N; 6] {
         let j = curve.jet(t);
         let p = Point3::new(j[0].v, j[1].v, j[2].v);
@@ -96,11 +97,11 @@ impl<N: Float> Ground<N> {
     }
 }
 
-/// What is integrated along an edge.
+/// The integrand along an edge.
 pub(super) struct OnEdge<'a, N: Float> {
     pub ground: &'a Ground<N>,
     pub curve: &'a Curve<N>,
-    /// Where G starts, and a v on the edge.
+    /// The v at which G starts, and a v on the edge.
     pub from: [N; 2],
     pub rounded_f64: Option<(&'a Ground, &'a Curve)>,
 }
@@ -116,7 +117,7 @@ impl<N: Float> Integrand<N, 6> for OnEdge<'_, N> {
     }
 }
 
-/// What is integrated over u between two v.
+/// The integrand over u, between two v.
 pub(super) struct Between<'a, N: Float> {
     pub ground: &'a Ground<N>,
     pub range: [N; 2],

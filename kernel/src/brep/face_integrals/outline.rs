@@ -1,4 +1,4 @@
-//! Sums around the outline of a face, by Green's theorem.
+//! Sums around the boundary of a face, by Green's theorem.
 
 use super::Moments;
 use super::face::{Density, add};
@@ -10,7 +10,7 @@ use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use crate::number::quadrature::adaptive;
 
-/// −∮ G du over the boundary of a face, each edge broken where `marks` says, and G counted from the
+/// −∮ G du over the boundary of a face. Each edge is split at `marks`, and G is measured from the
 /// base.
 pub(super) fn boundary_sum<N: Float>(
     brep: &Brep<N>,
@@ -30,8 +30,8 @@ pub(super) fn boundary_sum<N: Float>(
             total = add(total, density.between(from, to).map(|k| k * turns));
         }
     };
-    // From where the first of them starts: between loops that go round a thin strip to and fro the
-    // base is far, and would cancel.
+    // G starts at the first loop. Loops that go round a thin strip in both directions would cancel
+    // relative to the base, which is far away.
     if let Some(first) = round().next() {
         for s in round().skip(1) {
             count(s.turns, first.start, s.start);
@@ -46,14 +46,14 @@ pub(super) fn boundary_sum<N: Float>(
 /// ∮ G du over a loop.
 struct LoopSum<N: Float> {
     sum: Moments<N>,
-    /// The v from which G is counted.
+    /// The v at which G starts.
     start: N,
-    /// How often the loop goes round: so often what lies between the base and the start is to be
-    /// added.
+    /// The winding number of the loop: the number of times that the part between base and start is
+    /// to be added.
     turns: N,
 }
 
-/// ∮ G du over a loop, G counted from amid its edges.
+/// ∮ G du over a loop, with G starting amid its edges.
 fn loop_sum<N: Float>(
     brep: &Brep<N>,
     coedges: &[CoedgeId],
@@ -76,13 +76,13 @@ fn loop_sum<N: Float>(
         breaks.extend(marks(c));
         breaks.sort_by(N::total_cmp);
         let sign = coedge.sense.sign::<N>();
-        // What does not matter is shared by the pieces; to f64 values it is their rounding.
+        // The tolerance is shared among the pieces; for f64 it is their rounding.
         let floor = match N::IS_DOUBLE {
             true => floor,
             false => floor.map(|f| f / N::from_f64(breaks.len() as f64)),
         };
         for pair in breaks.windows(2) {
-            // The middle tells on which side of a cut the piece lies.
+            // The midpoint determines on which side of a cut the piece lies.
             let middle = curve.point(N::HALF * (pair[0] + pair[1]));
             let [_, near] = density.ground.parameters(&middle);
             let on_edge = OnEdge {

@@ -1,9 +1,9 @@
 //! The moments of a strip of a surface between two v at one u, in closed form.
 //!
 //! Notation: P relative to the reference point, N the normal, h = P·N, J = |P_u × P_v|, all at one
-//! u; e is the radial direction there, Z the axis, c the frame's origin. With the middle m and half
-//! the length d of the strip, every integral is a product with d, or with sin d: nothing cancels in
-//! a thin strip.
+//! u; e is the radial direction there, Z the axis, c the frame's origin; m and d are the middle and
+//! half the length of the strip. Every integral is a product with d, or with sin d, so nothing
+//! cancels in a thin strip.
 //!
 //! - Plane, cylinder, cone: P = p + q v, J = j + k v, and h does not depend on v.
 //! - Sphere, torus: P, h and J are a + b cos v + c sin v.
@@ -14,7 +14,7 @@ use crate::geometry::trigonometric::{Trig1, product};
 use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 
-/// ∫ J dv, ∫ h J dv and ∫ h J P dv between two v, counted from a middle.
+/// ∫ J dv, ∫ h J dv and ∫ h J P dv between two v, measured from a middle.
 pub(super) fn strip<N: Float>(
     surface: &Surface<N>,
     reference: &Point3<N>,
@@ -82,13 +82,13 @@ fn round<N: Float>(
     let (one, [[c1, s1], [c2, s2], [c3, s3]]) = waves(m, d);
     let [k0, kc, ks, kc2, ks2] = product(&height, &jacobian);
     let half = N::HALF;
-    // Of h J, and of its products with cos v and sin v.
-    let plain = k0 * one + kc * c1 + ks * s1 + kc2 * c2 + ks2 * s2;
+    // The integrals of h J, and of its products with cos v and sin v.
+    let volume = k0 * one + kc * c1 + ks * s1 + kc2 * c2 + ks2 * s2;
     let along = k0 * c1 + half * (kc * (one + c2) + ks * s2 + kc2 * (c1 + c3) + ks2 * (s1 + s3));
     let across = k0 * s1 + half * (kc * s2 + ks * (one - c2) + kc2 * (s3 - s1) + ks2 * (c1 - c3));
-    let at = place[0] * plain + place[1] * along + place[2] * across;
+    let at = place[0] * volume + place[1] * along + place[2] * across;
     let area = jacobian[0] * one + jacobian[1] * c1 + jacobian[2] * s1;
-    [area, plain, at.x, at.y, at.z]
+    [area, volume, at.x, at.y, at.z]
 }
 
 /// The integrals of 1, and of cos kv and sin kv for k = 1, 2, 3, between m - d and m + d.

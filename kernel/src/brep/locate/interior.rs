@@ -1,7 +1,7 @@
-//! A point inside a face.
+//! Finds a point inside a face.
 //!
-//! From a point of the boundary a walk goes into the face, up to where it clearly leaves it: on the
-//! way it is inside. Half way symmetric parts touch themselves.
+//! A path leads from a boundary point into the face, up to where it clearly leaves it. Its points
+//! in between are inside. The midpoint is avoided, because symmetric parts touch themselves there.
 
 use super::FaceLocator;
 use crate::brep::surface_path::{CrossingSense, DirectedArc, SurfacePath};
@@ -11,27 +11,29 @@ use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 
-/// Where on an arc a walk starts.
+/// The fractions of an arc at which paths start.
 const STARTS: [f64; 3] = [0.47, 0.21, 0.83];
 
-/// From how many arcs walks start.
+/// The number of arcs from which paths start.
 const ARCS: usize = 6;
 
-/// How far on a walk the point is, as a part of its length.
+/// The fraction of the path at which the interior point is taken.
 const INSIDE: f64 = 0.381_966;
 
-/// The least sine of the angle under which a walk leaves its arc.
+/// The least sine of the angle between a path and its arc.
 const SLANT: f64 = 0.1;
 
-/// As far as this from its start, in bands, a walk may meet its own arc.
+/// The distance from its start, in multiples of the resolution, within which a path may intersect
+/// its own arc.
 const NEXT: f64 = 64.0;
 
-/// A point as far as this from the boundary, in bands, is well away from it: no other is looked for.
+/// The distance from the boundary, in multiples of the resolution, that is large enough to end the
+/// search.
 const LONG: f64 = (1 << 20) as f64;
 
 impl<N: Float> FaceLocator<'_, N> {
-    /// A point inside the face, at least `away` along a walk from its boundary; none of a face
-    /// without a boundary, and where no walk tells one.
+    /// A point inside the face, at least `away` from its boundary along a path. `None` for a face
+    /// without a boundary, and if no path finds one.
     pub fn interior(&self, away: N) -> Option<Point3<N>> {
         let step = (self.arcs.all.len() / ARCS).max(1);
         let starts = STARTS.into_iter().flat_map(|part| {
@@ -43,7 +45,7 @@ impl<N: Float> FaceLocator<'_, N> {
             if best.as_ref().is_none_or(|b| length.is_beyond(b.0)) {
                 best = Some((length, point));
             }
-            // Mostly the first one is.
+            // Usually the first one is.
             if length.is_beyond(N::from_f64(LONG) * self.resolution) {
                 break;
             }
@@ -52,7 +54,7 @@ impl<N: Float> FaceLocator<'_, N> {
         Some(point)
     }
 
-    /// The walks from a point of an arc into the face: how far along each, and the point.
+    /// The paths from a point of an arc into the face: the distance along each, and the point.
     fn ways_from(&self, arc: &DirectedArc<'_, N>, part: N) -> Vec<(N, Point3<N>)> {
         let t = arc.range[0] + part * (arc.range[1] - arc.range[0]);
         let p = arc.curve.point(t);
@@ -71,7 +73,7 @@ impl<N: Float> FaceLocator<'_, N> {
         ways
     }
 
-    /// The walks of the surface's own kinds through a point of it.
+    /// The paths of the surface's standard kinds through a point of it.
     fn walks_through(&self, p: &Point3<N>, towards: Vector3<N>) -> Vec<SurfacePath<N>> {
         let parallel = || SurfacePath::parallel(self.surface, p, Sense::Along, self.resolution);
         let mut walks = Vec::new();
@@ -94,7 +96,8 @@ impl<N: Float> FaceLocator<'_, N> {
         walks
     }
 
-    /// Where a walk from the boundary clearly leaves the face, before it meets anything else.
+    /// The length at which a path from the boundary clearly leaves the face, without any other
+    /// crossing before.
     fn left_at(&self, walk: &SurfacePath<N>) -> Option<N> {
         let start = N::from_f64(NEXT) * self.resolution;
         let mut first: Option<(N, CrossingSense)> = None;
@@ -116,7 +119,7 @@ impl<N: Float> FaceLocator<'_, N> {
             );
         });
         first
-            .filter(|met| met.1 == CrossingSense::Leaving)
-            .map(|met| met.0)
+            .filter(|crossing| crossing.1 == CrossingSense::Leaving)
+            .map(|crossing| crossing.0)
     }
 }

@@ -18,7 +18,7 @@ fn circle_at(f: &Frame, z: f64, radius: f64) -> Curve {
     Curve::Circle(Circle { frame, radius })
 }
 
-/// The circle about the tube of a torus at the angle theta, its parameter the tube's angle.
+/// The circle about the tube of a torus at the angle theta, parameterised by the tube's angle.
 fn tube(s: &Torus, theta: f64) -> Curve {
     let radial = s.frame.x * theta.cos() + s.frame.y * theta.sin();
     let frame = Frame {
@@ -84,7 +84,7 @@ proptest! {
         let p = surface.point(u, v);
         let locator = FaceLocator::new(&surface, Sense::Along, whole.clone(), BAND);
         prop_assert_eq!(locator.place(&p), expect(v > 0.0 && v < 2.0));
-        // The inside of a bore: the normal and all senses turned over.
+        // The inside of a bore: the normal and all senses are reversed.
         let bore = whole.iter().map(|a| DirectedArc { sense: a.sense.reversed(), ..*a });
         let locator = FaceLocator::new(&surface, Sense::Against, bore.collect(), BAND);
         prop_assert_eq!(locator.place(&p), expect(v > 0.0 && v < 2.0));
@@ -155,8 +155,8 @@ proptest! {
 
 #[test]
 fn on_a_torus_no_order_of_the_arcs_hides_a_way() {
-    // A piece between two equators and two circles of the tube, seen from a point of an equator
-    // next to it: along the equator every walk runs into an arc.
+    // A piece between two equators and two circles of the tube, and a point of one equator close to
+    // the piece: every path along the equator runs into an arc.
     let f = tilted();
     let torus = Torus {
         frame: f,
@@ -185,7 +185,7 @@ fn on_a_torus_no_order_of_the_arcs_hides_a_way() {
 
 #[test]
 fn a_slit_along_the_top_of_a_torus_hides_nothing() {
-    // Every point of the boundary lies where a plane across the axis touches the torus.
+    // At every point of the boundary a plane perpendicular to the axis is tangent to the torus.
     let f = tilted();
     let surface = Surface::Torus(Torus {
         frame: f,
@@ -216,7 +216,7 @@ fn a_slit_along_the_top_of_a_torus_hides_nothing() {
     );
 }
 
-/// A hemisphere next to its rim: great circles to points of the rim run along it.
+/// A hemisphere, and points close to its rim: great circles to points of the rim run along it.
 #[test]
 fn next_to_a_great_circle_a_side_is_told() {
     let f = tilted();
@@ -238,7 +238,7 @@ fn next_to_a_great_circle_a_side_is_told() {
     }
 }
 
-/// A ball that touches both walls of a groove: two slits on one great circle.
+/// A ball that touches both walls of a groove has two slits on one great circle.
 #[test]
 fn slits_on_a_great_circle_hide_nothing() {
     let f = tilted();

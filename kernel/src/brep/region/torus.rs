@@ -1,4 +1,5 @@
-//! Walks between the loops of a torus: both circles through each loop, then ways to the first one.
+//! Paths between the loops of a torus: both circles through each loop, then paths to the first
+//! loop.
 
 use super::{STARTS, Sorter};
 use crate::brep::surface_path::{DirectedArc, SurfacePath};
@@ -11,7 +12,7 @@ use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 
 impl<N: Float> Sorter<'_, N> {
-    /// Both circles through a loop's point, and a way to the first loop.
+    /// Both circles through a point of the loop, and a path to the first loop.
     pub(super) fn walk_torus(
         &mut self,
         t: Torus<N>,
@@ -28,8 +29,8 @@ impl<N: Float> Sorter<'_, N> {
                 rounds |= self.follow(ring, arc, p, left, &[round], None);
             }
         }
-        // A loop that winds around the axis is met by every circle of the tube, one that winds
-        // around the tube by every parallel: then no other way is needed.
+        // Every circle of the tube crosses a loop that winds around the axis, and every parallel
+        // one that winds around the tube. Then no other path is needed.
         let [around, along] = self.winding;
         if around || along {
             let direct = (around && tubes) || (along && rounds);
@@ -38,8 +39,8 @@ impl<N: Float> Sorter<'_, N> {
         (tubes || rounds) && (ring == 0 || self.way_to_first(t, ring, arc, p, left))
     }
 
-    /// Along one circle to another that meets the winding loops, where those through the point
-    /// itself run along edges.
+    /// A path along one circle to another that crosses the winding loops, for where the circles
+    /// through the point itself run along edges.
     fn turn_to_winding(
         &mut self,
         t: &Torus<N>,
@@ -75,7 +76,7 @@ impl<N: Float> Sorter<'_, N> {
         false
     }
 
-    /// A way around the axis, then around the tube, to a point of the first loop.
+    /// A path around the axis, then around the tube, to a point of the first loop.
     fn way_to_first(
         &mut self,
         t: Torus<N>,
@@ -94,8 +95,8 @@ impl<N: Float> Sorter<'_, N> {
         for &fraction in &STARTS {
             for goal in 0..self.firsts[1] {
                 let q = self.start_on(goal, N::from_f64(fraction));
-                // The way ends just before the first loop: within its face, or on the other side
-                // of it, where the face of the same edge is another loop's.
+                // The path ends just before the first loop: within its face, or on its other side,
+                // where the face at the same edge belongs to another loop.
                 for height in heights {
                     let Some(legs) = self.legs(&t, p, &q.point, height) else {
                         continue;
@@ -115,8 +116,8 @@ impl<N: Float> Sorter<'_, N> {
         false
     }
 
-    /// A way from `p` almost to `q` along a circle of the tube, a parallel and a circle of the tube;
-    /// the parallel at one of their angles about the tube, or at another.
+    /// A path from `p` almost to `q`: along a circle of the tube, a parallel and a circle of the
+    /// tube. The parallel lies at the tube angle of one of the two points, or at another one.
     fn legs(
         &self,
         t: &Torus<N>,
@@ -158,7 +159,7 @@ impl<N: Float> Sorter<'_, N> {
         Some(legs.into_iter().map(cut).collect())
     }
 
-    /// How a loop runs in the two angles of a torus.
+    /// The winding of a loop in the two angles of a torus.
     pub(super) fn turns(&self, ring: &[DirectedArc<'_, N>]) -> Turns<N> {
         let mut at = [N::ZERO; 2];
         let mut runs = Vec::with_capacity(ring.len());
@@ -180,7 +181,7 @@ impl<N: Float> Sorter<'_, N> {
         }
     }
 
-    /// The angles of points along an arc, its ends among them.
+    /// The angles of points along an arc, including its ends.
     fn angles_along(&self, arc: &DirectedArc<'_, N>) -> [[N; 2]; 33] {
         let [from, to] = match arc.sense {
             Sense::Along => arc.range,
@@ -194,10 +195,11 @@ impl<N: Float> Sorter<'_, N> {
     }
 }
 
-/// How an arc of a loop runs in the two angles of a torus, without a jump from the loop's start on.
+/// The course of an arc in the two angles of a torus, continued without jumps from the loop's
+/// start.
 struct Run<N> {
     ends: [[N; 2]; 2],
-    /// Twice the area between it and the loop's start.
+    /// Twice the area between the arc and the loop's start.
     swept: N,
 }
 
@@ -217,8 +219,9 @@ impl<N: Float> Run<N> {
         }
     }
 
-    /// Half of what the two ways over an arc sweep: nothing, but for whole turns of the loop between
-    /// them. Summed up each for itself, rounding would leave an area of either sign.
+    /// Half of the area swept by two opposite runs over one arc. It is zero except for whole turns
+    /// of the loop between them. If they were summed separately, rounding would leave an area of
+    /// either sign.
     fn swept_with(&self, back: &Self) -> N {
         let [from, to] = self.ends;
         let apart = |i: usize| ((from[i] - back.ends[1][i]) / N::TAU).round() * N::TAU;
@@ -227,21 +230,21 @@ impl<N: Float> Run<N> {
     }
 }
 
-/// The angle about the tube at which a way on a torus goes around the axis.
+/// The tube angle at which a path on a torus goes around the axis.
 #[derive(Clone, Copy)]
 enum Height<N: Float = f64> {
-    /// Where the way starts.
+    /// That of the path's start.
     First,
-    /// Where it ends.
+    /// That of the path's end.
     Last,
     At(N),
 }
 
-/// How a loop runs around a torus.
+/// The winding of a loop on a torus.
 pub(super) struct Turns<N: Float = f64> {
-    /// Around the axis, and around the tube.
+    /// Whether it winds around the axis, and around the tube.
     pub winds: [bool; 2],
-    /// Positive for one that runs counterclockwise, if it does not wind.
+    /// For a loop that does not wind: positive if it is counterclockwise.
     pub area: N,
 }
 
@@ -297,8 +300,8 @@ mod tests {
         Curve::Circle(Circle { frame, radius })
     }
 
-    /// The loops of all but a part of the torus between two angles about its axis, and the hole with
-    /// these angles.
+    /// The loops of a torus without the part between two angles about its axis, and those of the
+    /// hole between these angles.
     #[test]
     fn a_hole_in_a_torus_that_is_cut_through_belongs_to_what_is_left() {
         let arc = |curve, range, sense| DirectedArc {

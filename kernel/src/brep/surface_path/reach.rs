@@ -1,5 +1,5 @@
-//! Which boxes a walk may pass through, in f64 for walks of any precision: what is next to by
-//! more than the resolution and rounding is passed over.
+//! Tests which boxes a path may pass through, in f64 for paths of any precision. A box is excluded
+//! if it is farther away than the resolution and rounding.
 
 use super::{Branch, Track};
 use crate::geometry::bounds::Aabb;
@@ -8,35 +8,35 @@ use crate::number::float::Float;
 use crate::number::predicates::{Compare, ROUNDING};
 use nalgebra::{Point3, Vector3};
 
-/// A half-space: what lies above a plane through a point, by its unit normal.
+/// A half-space: the part above a plane, given by a point and the unit normal.
 #[derive(Clone, Copy, Debug)]
 struct Above {
     origin: Point3<f64>,
     normal: Vector3<f64>,
 }
 
-/// The side of a torus's middle circle on which a walk is.
+/// The side of a torus's middle circle on which a path lies.
 #[derive(Clone, Copy, Debug)]
-struct Beside {
+struct SideOfTorus {
     axis: Above,
     major: f64,
     side: f64,
 }
 
-/// What holds a walk.
+/// A region that contains a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// The plane that the walk lies in.
+    /// The plane in which the path lies.
     plane: Above,
     half: Option<Above>,
-    beside: Option<Beside>,
-    /// A straight walk's start and direction, and its length.
+    side_of_torus: Option<SideOfTorus>,
+    /// The start, direction and length of a straight path.
     line: Option<(Above, f64)>,
-    /// The box of a straight walk of a given length; else without bounds.
+    /// The box of a straight path of finite length; otherwise unbounded.
     extent: Aabb,
 }
 
-/// A box by its middle and half of its sides.
+/// A box by its centre and half its sides.
 struct Middle {
     centre: Point3<f64>,
     half: Vector3<f64>,
@@ -50,7 +50,8 @@ impl Above {
         }
     }
 
-    /// How far above the plane the middle of a box is, and by how much its corners may be nearer.
+    /// The height of a box's centre above the plane, and the amount by which its corners may be
+    /// lower.
     fn span(&self, b: &Middle) -> [f64; 2] {
         let (n, h) = (self.normal.abs(), b.half);
         let half = n.x * h.x + n.y * h.y + n.z * h.z;
@@ -63,7 +64,7 @@ impl Above {
 }
 
 impl Reach {
-    /// What holds a walk in the plane through its start with the given normal.
+    /// The region of a path in the plane through its start with the given normal.
     pub fn new<N: Float>(
         (start, normal): (&Point3<N>, &Vector3<N>),
         track: &Track<N>,
@@ -75,8 +76,8 @@ impl Reach {
             Branch::Level(c, side) => Some(Above::new(&c.frame.origin, &(c.frame.z * *side))),
             Branch::Whole | Branch::Parallel(..) => None,
         };
-        let beside = match branch {
-            Branch::Parallel(t, side) => Some(Beside {
+        let side_of_torus = match branch {
+            Branch::Parallel(t, side) => Some(SideOfTorus {
                 axis: Above::new(&t.frame.origin, &t.frame.z),
                 major: t.major.rounded(),
                 side: side.rounded(),
@@ -94,13 +95,13 @@ impl Reach {
         Self {
             plane: Above::new(start, normal),
             half,
-            beside,
+            side_of_torus,
             line,
             extent,
         }
     }
 
-    /// Whether the walk may pass through a box, or by it within the resolution.
+    /// Whether the path may pass through a box, or within the resolution of it.
     pub fn may_intersect(&self, lo: &[f64; 3], hi: &[f64; 3], resolution: f64) -> bool {
         let Aabb { min, max } = &self.extent;
         let is_aside = |i: usize| {
@@ -122,8 +123,10 @@ impl Reach {
             let [mid, half] = plane.span(&b);
             mid.is_short_of(-half - resolution)
         };
-        let is_off = |beside: &Beside| beside.is_off(&b, resolution);
-        if self.half.as_ref().is_some_and(is_below) || self.beside.as_ref().is_some_and(is_off) {
+        let is_off = |side_of_torus: &SideOfTorus| side_of_torus.is_off(&b, resolution);
+        if self.half.as_ref().is_some_and(is_below)
+            || self.side_of_torus.as_ref().is_some_and(is_off)
+        {
             return false;
         }
         self.line.as_ref().is_none_or(|(along, length)| {
@@ -133,7 +136,7 @@ impl Reach {
     }
 }
 
-impl Beside {
+impl SideOfTorus {
     /// Whether a box is clearly on the other side.
     fn is_off(&self, b: &Middle, resolution: f64) -> bool {
         let arm = b.centre - self.axis.origin;
@@ -204,10 +207,10 @@ mod tests {
                     walk.may_intersect_box(&Aabb::new(&p), N::ZERO),
                     "{walk:?} at {p:?}"
                 );
-                // Aside by more than the box is wide.
-                let aside = p.map(|x| x + N::from_f64(0.1));
+                // Farther to the side than the box is wide.
+                let lateral = p.map(|x| x + N::from_f64(0.1));
                 passed_over +=
-                    u32::from(!walk.may_intersect_box(&Aabb::new(&aside), N::from_f64(1e-3)));
+                    u32::from(!walk.may_intersect_box(&Aabb::new(&lateral), N::from_f64(1e-3)));
             }
             assert!(passed_over > 20, "{walk:?}");
         }

@@ -1,16 +1,15 @@
-//! Bounds of the third derivatives over a cell of the two angles: near to where a function of one
-//! angle vanishes they are far smaller than over the whole torus.
+//! Bounds of the third derivatives over a cell of the two angles. Close to a zero of a function of
+//! one angle they are far smaller than over the entire torus.
 
 use super::{BivariateTrigPoly, Partials, basis, partials};
 use crate::number::float::Float;
 
-/// The degrees of the five functions.
+/// The degree of each of the five functions.
 fn degree<N: Float>() -> [N; 5] {
     [N::ZERO, N::ONE, N::ONE, N::TWO, N::TWO]
 }
 
-/// Bounds, over all angles, of each row's derivatives by the second angle: by their order, from
-/// none to four.
+/// Bounds, over all angles, of each row's derivatives by the second angle, of orders 0 to 4.
 #[derive(Clone, Debug)]
 pub struct Reaches<N: Float = f64>([[N; 5]; 5]);
 
@@ -18,7 +17,7 @@ pub struct Reaches<N: Float = f64>([[N; 5]; 5]);
 #[derive(Clone, Copy, Debug)]
 pub struct Thirds<N: Float = f64>(pub [N; 4]);
 
-/// The five functions' derivatives of the orders none to three.
+/// The derivatives of the five functions, of orders 0 to 3.
 fn to_third<N: Float>(basis: &[[N; 5]; 3]) -> [[N; 5]; 4] {
     let [_, c, s, c2, s2] = basis[1];
     let four = N::from_f64(4.0);
@@ -26,8 +25,8 @@ fn to_third<N: Float>(basis: &[[N; 5]; 3]) -> [[N; 5]; 4] {
     [basis[0], basis[1], basis[2], third]
 }
 
-/// Bounds of derivatives of the five functions within `half` of where they are given; `order` is
-/// theirs.
+/// Bounds of derivatives of order `order` of the five functions within `half` of the angle at which
+/// they are given.
 fn within<N: Float>(row: &[N; 5], order: usize, half: N) -> [N; 5] {
     let degree = degree::<N>();
     std::array::from_fn(|i| {
@@ -49,8 +48,8 @@ impl<N: Float> BivariateTrigPoly<N> {
         Reaches([0, 1, 2, 3, 4].map(of))
     }
 
-    /// The value with its partial derivatives at the centre of a cell, and bounds of the third ones
-    /// over it; `half` are half its sides.
+    /// The value with its partial derivatives at the centre of a cell, and bounds of the third
+    /// derivatives over the cell. `half` are half its sides.
     pub fn partials_about(
         &self,
         centre: [N; 2],
@@ -60,7 +59,7 @@ impl<N: Float> BivariateTrigPoly<N> {
         let [bx, by] = centre.map(basis);
         let (across, along) = (to_third(&bx), to_third(&by));
         let rows: [[N; 5]; 4] = std::array::from_fn(|order| within(&across[order], order, half[0]));
-        // The terms of a row come together before their bound is taken: there most cancels.
+        // The terms of a row are summed before the bound is taken, because they cancel most.
         let row = |order: usize, i: usize| {
             let sum: N = (0..5).map(|j| self.0[i][j] * along[order][j]).sum();
             let near = sum.abs() + half[1] * reaches.0[order + 1][i];
@@ -73,14 +72,14 @@ impl<N: Float> BivariateTrigPoly<N> {
 }
 
 impl<N: Float> Reaches<N> {
-    /// The same in f64.
+    /// The bounds rounded to f64.
     pub fn to_f64(&self) -> Reaches {
         Reaches(self.0.map(|row| row.map(N::rounded)))
     }
 }
 
 impl<N: Float> Thirds<N> {
-    /// Bounds of |f_xx|, |f_xy| and |f_yy|'s changes over offsets of up to (hx, hy).
+    /// Bounds of the changes of |f_xx|, |f_xy| and |f_yy| over offsets of up to (hx, hy).
     pub fn seconds(&self, [hx, hy]: [N; 2]) -> [N; 3] {
         let [yyy, xyy, xxy, xxx] = self.0;
         [

@@ -1,8 +1,10 @@
-//! The circles along which a torus and another surface touch: a tube's meridian, where a sphere in
-//! the tube, a straight pipe, another bend or a ring in or around the tube does, and the ring's rim.
+//! The circles along which a torus and another surface are tangent.
 //!
-//! The other surface as a function of the torus's angles has a double zero along each, which is
-//! divided out before what is left is traced.
+//! A meridian is one where a sphere lies in the tube, where a straight pipe or another bend
+//! continues the tube, or where a ring lies in or around it. A rim of the ring is the other case.
+//!
+//! Along each such circle the other surface, as a function of the torus's angles, has a double
+//! zero. It is divided out before the remaining factor is traced.
 
 use super::place;
 use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
@@ -19,12 +21,12 @@ use crate::number::predicates::Predicates;
 use crate::number::roots::{Roots, isolate};
 use nalgebra::{Point3, Vector3};
 
-/// A circle of a torus along which another surface touches it.
+/// A circle of a torus along which another surface is tangent to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Contact<N: Float> {
-    /// Round the tube, at this θ.
+    /// A circle of the tube, at this θ.
     Meridian(N),
-    /// The outer or the inner rim, at this φ.
+    /// The outer or the inner equator, at this φ.
     Rim(N),
 }
 
@@ -93,7 +95,7 @@ impl<N: Float> Contact<N> {
         once.map(|r| angles(r.t)).collect()
     }
 
-    /// The angles of the point in which a meridian crosses a rim.
+    /// The angles of the intersection of a meridian and a rim.
     pub fn crossing(&self, other: &Self) -> Option<[N; 2]> {
         match (*self, *other) {
             (Self::Meridian(theta), Self::Rim(phi)) => Some([theta, phi]),
@@ -102,7 +104,7 @@ impl<N: Float> Contact<N> {
     }
 }
 
-/// The circle around the axis, `up` along it, with the given radius.
+/// The circle about the axis with the given radius, at the height `up`.
 pub(super) fn parallel<N: Float>(t: &Torus<N>, up: N, radius: N) -> Circle<N> {
     let frame = t.frame.at(t.frame.origin + t.frame.z * up);
     Circle { frame, radius }
@@ -124,7 +126,7 @@ pub(super) fn meridian<N: Float>(t: &Torus<N>, theta: N) -> Circle<N> {
     }
 }
 
-/// All circles of a torus, the pair's first, along which the other surface touches it.
+/// All circles of a torus, the first of the pair, along which the other surface is tangent to it.
 pub(super) fn contacts<N: Float>(
     t: &Torus<N>,
     pair: &SurfacePair<'_, N>,
@@ -144,8 +146,8 @@ pub(super) fn contacts<N: Float>(
     all
 }
 
-/// Whether a torus, the second, touches the tube of the first with its outer (`true`) or its inner
-/// rim all round.
+/// Whether a torus, the second of the pair, is tangent to the tube of the first along its entire
+/// outer (`true`) or inner rim.
 fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) -> Option<bool> {
     let at = place(&pair.b.surface.frame().origin);
     let coincide = |question, relation| predicates.coincide(question, pair.how(relation), at);
@@ -157,8 +159,8 @@ fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) ->
     on.then_some(outer)
 }
 
-/// The angle θ of a meridian circle along which the other surface touches the torus: a sphere in
-/// the tube, a straight pipe or another bend that continues it.
+/// The angle θ of a meridian circle along which the other surface is tangent to the torus: a sphere
+/// in the tube, or a straight pipe or another bend that continues it.
 fn equal_tubes<N: Float>(
     t: &Torus<N>,
     pair: &SurfacePair<'_, N>,
@@ -205,15 +207,16 @@ fn equal_tubes<N: Float>(
         .then_some(theta)
 }
 
-/// A point of both spines, where two tori's spine circles touch.
+/// A common point of both spines, where the spine circles of two tori are tangent.
 fn common_spine_point<N: Float>(
     t: &Torus<N>,
     u: &Torus<N>,
     away: &Vector3<N>,
     predicates: &Predicates,
 ) -> Option<Point3<N>> {
-    // Touching circles: the common tangent is perpendicular to both radii, so the point lies on
-    // the line through both centres' feet; try the points of t's spine in u's plane and back.
+    // The common tangent of tangent circles is perpendicular to both radii, so the point lies on
+    // the line through the feet of both centres. The points of t's spine in u's plane are tried,
+    // and the converse.
     let normal = t.frame.z.cross(&u.frame.z);
     let candidates: Vec<Point3<N>> = if predicates.within(normal.length() * t.major) {
         let d = away - t.frame.z * t.frame.z.dot(away);
@@ -222,7 +225,8 @@ fn common_spine_point<N: Float>(
             .map(|s| t.frame.origin + dir * (s * t.major))
             .into()
     } else {
-        // The tangent lies in both planes: along their common line; the radii are across it.
+        // The tangent lies in both planes, along their common line; the radii are perpendicular to
+        // it.
         let line = normal.unit();
         let out = t.frame.z.cross(&line);
         [N::ONE, -N::ONE]

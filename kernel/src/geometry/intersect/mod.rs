@@ -1,7 +1,7 @@
-//! The curves in which two surfaces meet: all components, with their singular points.
+//! Surface-surface intersection: all components of the curve, with their singular points.
 //!
-//! Whether two surfaces are parallel, coaxial, tangent or equal in radius is asked as a distance
-//! over the part's extent and decided by the [`Predicates`]; the constructions then take the answer.
+//! Whether two surfaces are parallel, coaxial, tangent or equal in radius is measured as a distance
+//! over the part's extent and decided by the [`Predicates`]. The constructions use the decisions.
 
 mod contact;
 mod plane;
@@ -24,7 +24,7 @@ use crate::number::predicates::Predicates;
 use crate::number::roots::{Function, Roots, isolate};
 use nalgebra::Point3;
 
-/// A ball that holds the part: what lies outside is not requested.
+/// The ball that contains the part. Intersections outside it are not computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionOfInterest<N: Float = f64> {
     /// The centre.
@@ -42,20 +42,20 @@ pub struct Branch<N: Float = f64> {
     pub range: [N; 2],
     /// Whether the range is one whole period of a closed curve.
     pub closed: bool,
-    /// Whether the surfaces are tangent all along it.
+    /// Whether the surfaces are tangent along all of it.
     pub tangent: bool,
 }
 
-/// A singular point of an intersection: where it crosses or ends on itself.
+/// A singular point of an intersection: a self-crossing, a cusp or an isolated point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node<N: Float = f64> {
-    /// The place.
+    /// The location.
     pub point: Point3<N>,
-    /// Where the branches pass: (index of the branch, parameter); empty for an isolated point.
+    /// The branches through it, as (index of the branch, parameter); empty for an isolated point.
     pub on: Vec<(usize, N)>,
 }
 
-/// Where two surfaces meet.
+/// The intersection of two surfaces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceIntersection<N: Float = f64> {
     /// The curves.
@@ -67,13 +67,13 @@ pub struct SurfaceIntersection<N: Float = f64> {
 /// Why an intersection is refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum IntersectionError {
-    /// The curve has a singular point of a kind that is not known.
-    #[error("two surfaces meet in a curve with a singular point of an unknown kind, {0}")]
+    /// The curve has a singular point of an unknown kind.
+    #[error("two surfaces intersect in a curve with a singular point of an unknown kind, {0}")]
     Toric(#[from] Unresolved),
-    /// Two quadrics meet in a curve with a cusp.
-    #[error("two quadrics meet in a curve with a cusp near ({:.6}, {:.6}, {:.6})", place[0], place[1], place[2])]
+    /// Two quadrics intersect in a curve with a cusp.
+    #[error("two quadrics intersect in a curve with a cusp near ({:.6}, {:.6}, {:.6})", place[0], place[1], place[2])]
     Cusp {
-        /// Near where.
+        /// The approximate location of the cusp.
         place: [f64; 3],
     },
 }
@@ -93,7 +93,7 @@ impl<N: Float> SurfaceIntersection<N> {
         }
     }
 
-    /// Adds the whole of a curve, as far as it lies within the extent.
+    /// Adds a whole curve, clipped to the extent.
     fn add(&mut self, curve: Curve<N>, tangent: bool, extent: &RegionOfInterest<N>) {
         if let Some(range) = curve.range_within(&extent.centre, extent.radius) {
             let closed = curve.period().is_some();
@@ -106,7 +106,7 @@ impl<N: Float> SurfaceIntersection<N> {
         }
     }
 
-    /// Adds a node at a point, with its parameter on each branch that passes it.
+    /// Adds a singular point, with its parameter on each branch through it.
     fn cross_at(&mut self, point: Point3<N>, predicates: &Predicates) {
         let on = self.branches.iter().enumerate();
         let on = on.map(|(i, branch)| (i, branch.curve.parameter(&point)));
@@ -118,7 +118,7 @@ impl<N: Float> SurfaceIntersection<N> {
     }
 }
 
-/// The curves in which two distinct surfaces meet within the extent.
+/// The intersection curves of two distinct surfaces within the extent.
 pub fn intersect<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,
@@ -144,7 +144,7 @@ pub fn intersect<N: Float>(
     })
 }
 
-/// Whether the axes of two carriers are one line within the resolution.
+/// Whether the axes of two carriers coincide within the resolution.
 fn same_line<N: Float>(
     pair: &SurfacePair<'_, N>,
     place: [f64; 3],
@@ -154,8 +154,8 @@ fn same_line<N: Float>(
         && predicates.coincide("axis on axis", pair.how(PairMeasure::OffLine), place)
 }
 
-/// Whether two surfaces coincide over the extent: `Along` with the same side inside, `Against`
-/// with opposite sides, which only planes can be.
+/// Whether two surfaces coincide over the extent: `Along` with the same side inside, `Against` with
+/// opposite sides, which is possible for planes only.
 pub fn coincidence<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,
@@ -168,7 +168,7 @@ pub fn coincidence<N: Float>(
         return None;
     }
     let pair = SurfacePair::new(a, b, extent);
-    // Most pairs are far apart: only what could matter is put to the predicates.
+    // Most pairs are far from each other. Only those that could matter reach the predicates.
     if pair.estimate(PairMeasure::Apart) > N::TWO * predicates.reach() {
         return None;
     }
@@ -205,7 +205,7 @@ fn positive_parts<N: Float>(
     }
     let mut marks: Vec<N> = roots.iter().map(|r| r.t).collect();
     if curve.period() == Some(range[1] - range[0]) {
-        // A closed curve is opened at a root.
+        // A closed curve is cut open at a root.
         let (first, period) = (marks[0], range[1] - range[0]);
         marks.push(first + period);
     } else {
@@ -220,7 +220,7 @@ fn positive_parts<N: Float>(
         .collect()
 }
 
-/// The parts of a curve that lie on a surface's own nappe, where it is a cone.
+/// The parts of a curve that lie on the surface; for a cone, on its one nappe.
 fn nappe_parts<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
@@ -233,7 +233,7 @@ fn nappe_parts<N: Float>(
     positive_parts(curve, range, &AboveApex { curve, cone: c }, resolution)
 }
 
-/// How far along a cone's axis from its apex a curve runs.
+/// The height of a curve above a cone's apex, along the axis.
 struct AboveApex<'a, N: Float = f64> {
     curve: &'a Curve<N>,
     cone: &'a Cone<N>,

@@ -1,4 +1,4 @@
-//! A plane and another surface: lines and conics in closed form.
+//! Intersection of a plane with another surface: lines and conics in closed form.
 
 use super::{Branch, Node, RegionOfInterest, SurfaceIntersection, place};
 use crate::geometry::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
@@ -10,7 +10,7 @@ use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
 use nalgebra::{Point3, Vector3};
 
-/// The signed height of a point over a plane.
+/// The signed height of a point above a plane.
 fn height<N: Float>(p: &Plane<N>, x: &Point3<N>) -> N {
     (x - p.frame.origin).dot(&p.frame.z)
 }
@@ -28,13 +28,13 @@ pub(super) fn plane_plane<N: Float>(
         return meeting;
     }
     let direction = across.unit();
-    // The point of both planes next to the extent's centre.
+    // The point of both planes closest to the extent's centre.
     let c = pair.extent.centre;
     let (hp, hq) = (height(p, &c), height(q, &c));
     let cos = p.frame.z.dot(&q.frame.z);
     let sin2 = across.length_squared();
     let origin = c + p.frame.z * ((hq * cos - hp) / sin2) + q.frame.z * ((hp * cos - hq) / sin2);
-    // Once more from there: the first step loses digits where the planes are nearly parallel.
+    // Second iteration: the first step loses digits where the planes are nearly parallel.
     let (hp, hq) = (height(p, &origin), height(q, &origin));
     let origin =
         origin + p.frame.z * ((hq * cos - hp) / sin2) + q.frame.z * ((hp * cos - hq) / sin2);
@@ -67,11 +67,12 @@ pub(super) fn plane_sphere<N: Float>(
     }
 }
 
-/// How many times as far as what is asked about lies the centre of a conic that is distinguished from a
-/// point of it.
+/// The ratio of the centre's distance to the extent above which a conic is represented about a
+/// point.
 const FAR: f64 = 256.0;
 
-/// How many times as far as what is asked about lies a vertex that a long ellipse is distinguished from.
+/// The ratio of the vertex's distance to the extent up to which a long ellipse is represented about
+/// its vertex.
 const NEAR: f64 = 16.0;
 
 pub(super) fn plane_cylinder<N: Float>(
@@ -137,11 +138,11 @@ pub(super) fn plane_cylinder<N: Float>(
     meeting
 }
 
-/// A plane nearly along a cylinder's axis: as much of the ellipse as can lie in the extent.
+/// The ellipse of a plane nearly parallel to a cylinder's axis, as far as it can lie in the extent.
 ///
-/// With X along the plane's steepest line from the point next to the extent's centre, and Y across,
-/// the points at X have the distance h + c X from the axis in the direction of the plane's normal:
-/// (h + c X)² + Y² = r².
+/// Let X run along the plane's steepest line from the point closest to the extent's centre, and Y
+/// across it. The points at X have the distance h + c X from the axis in the direction of the
+/// plane's normal, so (h + c X)² + Y² = r².
 fn add_long_section<N: Float>(
     p: &Plane<N>,
     s: &Cylinder<N>,
@@ -207,7 +208,7 @@ fn plane_through_apex<N: Float>(
     let apex = c.frame.origin;
     let n = c.frame.components(&p.frame.z);
     let across = n.x.hypot(n.y);
-    // The rulings (sin cos u, sin sin u, cos) in the plane: across cos(u - u0) = -n_z cot.
+    // The rulings (sin cos u, sin sin u, cos) in the plane satisfy across · cos(u - u0) = -n_z cot.
     let u0 = n.y.atan2(n.x);
     let ruling = |u: N| {
         let local = Vector3::new(c.sin * u.cos(), c.sin * u.sin(), c.cos);
@@ -267,7 +268,7 @@ fn plane_beside_apex<N: Float>(
     let cos = n.dot(&z);
     let mut meeting = SurfaceIntersection::nothing();
     let tan = c.sin / c.cos;
-    // The semi-latus rectum of every section is the apex's distance times tan.
+    // The semi-latus rectum of every section is the apex's distance from the plane times tan.
     let rectum = h.abs() * tan;
     let at = place(&c.frame.origin);
     if predicates.coincide("plane across axis", pair.how(PairMeasure::Drift), at) {
@@ -285,7 +286,7 @@ fn plane_beside_apex<N: Float>(
         }
         return meeting;
     }
-    // The two rulings in the plane of symmetry, and how fast they approach the plane.
+    // The two rulings in the plane of symmetry, and the rates at which they approach the plane.
     let w = (n - z * cos).unit();
     let rulings = [z * c.cos + w * c.sin, z * c.cos - w * c.sin];
     let rates = rulings.map(|r| n.dot(&r));
@@ -307,13 +308,14 @@ fn plane_beside_apex<N: Float>(
     }
     let ahead = rates.map(|r| -h / r > N::ZERO);
     let near = match ahead {
-        // The vertex that is closer to the apex.
+        // The vertex closer to the apex.
         [true, true] => usize::from(rates[1].abs() > rates[0].abs()),
         [true, false] => 0,
         [false, true] => 1,
         [false, false] => return meeting,
     };
-    // From vertex to vertex without the apex's coordinates: next to it they would take its digits.
+    // The distance between the vertices, computed without the apex's coordinates, which would lose
+    // digits close to it.
     let product = rates[0] * rates[1];
     let a = h.abs() * c.sin * c.cos / product.abs();
     let b = (rectum * a).sqrt();

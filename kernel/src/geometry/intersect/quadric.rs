@@ -1,4 +1,5 @@
-//! Two quadrics, neither a plane: which of them carries the curve, and what needs no rulings.
+//! Intersection of two quadrics, neither of which is a plane: the choice of the one whose rulings
+//! carry the curve, and the cases that need no rulings.
 
 use super::rulings::Rulings;
 use super::{Branch, IntersectionError, RegionOfInterest, SurfaceIntersection, place};
@@ -102,7 +103,7 @@ fn cones<N: Float>(
     over_rulings(pair, predicates)
 }
 
-/// Two cones with one apex meet in common rulings.
+/// Two cones with a common apex intersect in common rulings.
 fn common_apex<N: Float>(
     c: &Cone<N>,
     other: &Surface<N>,
@@ -111,7 +112,7 @@ fn common_apex<N: Float>(
 ) -> SurfaceIntersection<N> {
     let mut meeting = SurfaceIntersection::touch(c.frame.origin);
     let m = c.sin / c.cos;
-    // The distance from the other cone, a part's radius away from the apex, along each ruling.
+    // The distance from the other cone along each ruling, at the extent's radius from the apex.
     let along = |u: Jet<Interval<N>>| {
         let (s, k) = u.sin_cos();
         let r = extent.radius;
@@ -161,8 +162,9 @@ fn common_apex<N: Float>(
     meeting
 }
 
-/// Over the rulings of the pair's first; where the curve has a cusp over these, at the apex of the
-/// second, over the second's, each of which has one point of the curve but the apex.
+/// The curve over the rulings of the first surface. If the curve has a cusp over these, at the apex
+/// of the second surface, the rulings of the second are used: each has one point of the curve
+/// besides the apex.
 fn over_rulings<N: Float>(
     pair: &SurfacePair<'_, N>,
     predicates: &Predicates,
@@ -175,7 +177,7 @@ fn over_rulings<N: Float>(
     }
 }
 
-/// Whether the pair's second is a cone whose apex lies on the first.
+/// Whether the second surface is a cone whose apex lies on the first.
 fn holds_apex<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) -> bool {
     let Surface::Cone(cone) = pair.b.surface else {
         return false;
@@ -200,8 +202,9 @@ fn over_first<N: Float>(
     };
     let rulings = Rulings::new(base, pair);
     let is_single = match base {
-        // The other surface holds the direction of the rulings: a cone with a ruling along them. The
-        // axis of a cylinder is not parallel to them, however little.
+        // The rulings are a direction of the other surface: a cone with a ruling parallel to them.
+        // Two cylinders that reach this place have axes that are not parallel, however small the
+        // angle.
         Ruled::Cylinder(_) => {
             let along = predicates.within(rulings.lead * pair.extent.radius);
             along && !matches!(pair.b.surface, Surface::Cylinder(_))

@@ -1,4 +1,4 @@
-//! Two spheres.
+//! Intersection of two spheres.
 
 use super::{SurfaceIntersection, place};
 use crate::geometry::curve::{Circle, Curve};
@@ -25,16 +25,17 @@ pub(super) fn sphere_sphere<N: Float>(
     let axis = away / d;
     let x = N::HALF * (d + (r - q) * (r + q) / d);
     let foot = s.frame.origin + axis * x;
-    // Apart outside, or one within the other: both gaps are negative where they meet.
-    let beside = s.frame.origin + axis * r;
+    // The gap outside one another, and the gap of one inside the other: both are negative where the
+    // spheres intersect.
+    let outermost = s.frame.origin + axis * r;
     let within = s.frame.origin + axis * r.copysign(r - q);
     let side = |gap, at| predicates.classify_at_point("sphere on sphere", pair.how(gap), place(at));
-    let outer = side(PairMeasure::AdjacentSpheres, &beside);
+    let outer = side(PairMeasure::AdjacentSpheres, &outermost);
     match (outer, side(PairMeasure::SphereInSphere, &within)) {
-        (Side::On, _) => SurfaceIntersection::touch(beside),
+        (Side::On, _) => SurfaceIntersection::touch(outermost),
         (_, Side::On) => SurfaceIntersection::touch(within),
         (Side::Inside, Side::Inside) => {
-            // Heron: the product of the four gaps, none of which cancels.
+            // Heron's formula: the product of four gaps, none of which cancels.
             let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
             let radius = area.max(N::ZERO).sqrt() / (N::TWO * d);
             let mut meeting = SurfaceIntersection::nothing();

@@ -1,5 +1,5 @@
-//! A torus and another surface: circles where they are coaxial, along a meridian, or Villarceau's;
-//! otherwise the curve through the torus's angles.
+//! Intersection of a torus with another surface: circles if they are coaxial, along a meridian, or
+//! Villarceau circles; otherwise a curve in the torus's angles.
 
 use super::contact::{contacts, meridian, parallel};
 use super::{Branch, IntersectionError, Node, SurfaceIntersection, nappe_parts, place, same_line};
@@ -14,8 +14,8 @@ use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
 use nalgebra::{Point3, Vector2};
 
-/// Through the angles of the smaller one: on the other, far from the curve, the form is large, and
-/// its rounding with it.
+/// Two tori: the curve in the angles of the smaller one. On the larger one the form is large far
+/// from the curve, and so is its rounding error.
 pub(super) fn torus_torus<N: Float>(
     t: &Torus<N>,
     o: &Torus<N>,
@@ -29,7 +29,7 @@ pub(super) fn torus_torus<N: Float>(
     }
 }
 
-/// The torus is the pair's first.
+/// A torus, the first of the pair, with another surface.
 pub(super) fn torus_with<N: Float>(
     t: &Torus<N>,
     pair: &SurfacePair<'_, N>,
@@ -49,7 +49,7 @@ pub(super) fn torus_with<N: Float>(
     let rest = contacts.iter().fold(whole, |f, c| c.divided_out(&f));
     let mut meeting = traced(t, other, &rest, predicates)?;
     for contact in &contacts {
-        // What else lies on the contact circle is a singular point of the whole.
+        // Other common points on the contact circle are singular points of the whole curve.
         let shared = contacts.iter().filter_map(|c| contact.crossing(c));
         let all = contact.zeros(&rest).into_iter().chain(shared);
         meeting.nodes.extend(all.map(|[theta, phi]| Node {
@@ -61,7 +61,7 @@ pub(super) fn torus_with<N: Float>(
     Ok(meeting)
 }
 
-/// The other surface as a function of the torus's angles: a distance to first order.
+/// The other surface as a function of the torus's angles, scaled to a distance to first order.
 pub(super) fn form<N: Float>(t: &Torus<N>, other: &Surface<N>) -> BivariateTrigPoly<N> {
     let surface = Surface::Torus(*t);
     BivariateTrigPoly::interpolate(|theta, phi| {
@@ -70,7 +70,7 @@ pub(super) fn form<N: Float>(t: &Torus<N>, other: &Surface<N>) -> BivariateTrigP
     })
 }
 
-/// The polynomial that vanishes on a surface, scaled to be the distance near to it.
+/// A polynomial that vanishes on a surface, scaled to the distance close to it.
 fn polynomial_level<N: Float>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N {
     let slope = match s {
         Surface::Plane(_) => N::ONE,
@@ -97,7 +97,7 @@ fn traced<N: Float>(
         let p = Surface::Torus(*t).point(*theta, *phi);
         predicates.classify_at_point("torus touches surface", other.distance(&p), place(&p));
     }
-    // The form knows both nappes of a cone: each branch is cut to the one that is meant.
+    // The form vanishes on both nappes of a cone. Each branch is clipped to the cone's own nappe.
     let mut parts: Vec<Vec<(usize, [N; 2])>> = Vec::new();
     let mut singular = traced.singular;
     for (b, branch) in traced.branches.into_iter().enumerate() {
@@ -137,7 +137,7 @@ fn traced<N: Float>(
         let mut on = Vec::new();
         for (b, at) in s.on {
             for &(i, [lo, hi]) in &parts[b] {
-                // Parts run on beyond the turn in which they start.
+                // A part may extend beyond the period in which it starts.
                 let cycle = meeting.branches[i].curve.period().unwrap_or(N::ZERO);
                 let whole = meeting.branches[i].closed;
                 let passes = [at, at + cycle].into_iter().take(2 - usize::from(whole));
@@ -157,8 +157,8 @@ fn traced<N: Float>(
     Ok(meeting)
 }
 
-/// The circle that a branch is, where it is one: a sphere across a torus's spine meets it in circles
-/// of the tube, a cone about a tangent of the spine in one.
+/// The circle that a branch is, if it is one. A sphere centred on a torus's spine intersects it in
+/// circles of the tube, a cone about a tangent of the spine in one circle.
 fn circle_of<N: Float>(
     branch: &Curve<N>,
     t: &Torus<N>,
@@ -173,8 +173,8 @@ fn circle_of<N: Float>(
     (on(&Surface::Torus(*t)) && on(other)).then_some(circle)
 }
 
-/// The end of a part of a closed curve, or the singular point there: next to one, rounding is all
-/// that determines where the curve leaves a nappe.
+/// The end of a part of a closed curve, moved to the singular point close to it if there is one.
+/// Next to a singular point only rounding determines where the curve leaves a nappe.
 fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], predicates: &Predicates) -> N {
     let there = curve.point(end);
     let near = passes.iter().map(|&at| {
@@ -188,7 +188,8 @@ fn at_pass<N: Float>(curve: &Curve<N>, end: N, passes: &[N], predicates: &Predic
         .unwrap_or(end)
 }
 
-/// What is coaxial meets in parallel circles: points of the two profiles in a half plane.
+/// A coaxial surface: it intersects the torus in parallel circles, which are the common points of
+/// the two profiles in a half plane.
 fn coaxial<N: Float>(
     t: &Torus<N>,
     pair: &SurfacePair<'_, N>,
@@ -239,9 +240,9 @@ fn coaxial<N: Float>(
     Some(meeting)
 }
 
-/// The circle of the tube in a half plane from the axis, and what is coaxial to the torus.
+/// The profile of the tube in a half plane bounded by the axis, and the coaxial surface.
 struct Profile<'a, N: Float = f64> {
-    /// The centre of the tube: its distance from the axis, and its height.
+    /// The centre of the tube: its distance from the axis and its height.
     tube: Vector2<N>,
     radius: N,
     pair: &'a SurfacePair<'a, N>,
@@ -256,7 +257,8 @@ impl<N: Float> Profile<'_, N> {
             .classify(question, self.pair.how(relation), place(&at))
     }
 
-    /// Where the line of a plane, a cylinder or a cone meets the circle, and whether it touches.
+    /// The intersections of the circle with the line of a plane, a cylinder or a cone, and whether
+    /// it is tangent.
     fn line(&self, o: &Vector2<N>, d: &Vector2<N>) -> Vec<(Vector2<N>, bool)> {
         let foot = o + d * (self.tube - o).dot(d);
         let (h, r) = ((self.tube - foot).length(), self.radius);
@@ -274,7 +276,8 @@ impl<N: Float> Profile<'_, N> {
         }
     }
 
-    /// Where the circle of a sphere or of another tube meets it, and whether it touches.
+    /// The intersections of the circle with that of a sphere or another tube, and whether they are
+    /// tangent.
     fn circle(&self, a: &Vector2<N>, r: N) -> Vec<(Vector2<N>, bool)> {
         let away = self.tube - a;
         let (d, q) = (away.length(), self.radius);
@@ -299,7 +302,8 @@ impl<N: Float> Profile<'_, N> {
     }
 }
 
-/// A plane through the centre that holds the axis, or touches the tube twice (Villarceau).
+/// A plane through the torus's centre that contains the axis, or is tangent to the tube twice
+/// (Villarceau).
 fn central_plane<N: Float>(
     t: &Torus<N>,
     p: &Plane<N>,

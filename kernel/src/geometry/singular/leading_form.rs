@@ -1,18 +1,19 @@
-//! The branches through a singular point, by the leading terms of F there (Arnold, Gusein-Zade and
-//! Varchenko, Singularities of Differentiable Maps I, 1985).
+//! The branches through a singular point, from the leading terms of F there (Arnold, Gusein-Zade
+//! and Varchenko, Singularities of Differentiable Maps I, 1985).
 //!
 //! Notation: s and y are the offsets of the running and of the other angle, F = Σ k_ij sⁱ yʲ.
 //!
-//! - Where all terms of a degree below n vanish, the leading form is that of degree n. Where its
-//!   real roots are simple, a smooth branch leaves in the direction of each: two for a node (A1),
-//!   one or three for D4, up to four for X9, none where the point stands alone.
-//! - Where the Hessian has rank one, F bends across one direction only. Along the curve y = Y(s) on
-//!   which F_y vanishes F is h(s), and F = k₀₂ (y - Y)² + h_k sᵏ to the least order: A_(k-1). For an
-//!   odd k a cusp, for an even one two branches that touch, or a single point.
+//! - If all terms of a degree below n vanish, the leading form is that of degree n. If its real
+//!   roots are simple, one smooth branch leaves in the direction of each: two for a node (A1), one
+//!   or three for D4, up to four for X9, none if the point is isolated.
+//! - If the Hessian has rank one, F has curvature in one direction only. On the curve y = Y(s),
+//!   where F_y vanishes, F equals h(s), and F = k₀₂ (y - Y)² + h_k sᵏ to lowest order: A_(k-1). An
+//!   odd k is a cusp; an even one is two tangent branches, or an isolated point.
 //!
-//! What vanishes is what stays within the resolution as far as the leading terms do. In the coordinates
-//! of a [`Chart`] these are G(0, κ), and the zone of the point is as far as G and G_κ are nowhere
-//! zero both: then every zero of G belongs to a branch that runs on to σ = 0.
+//! A term counts as vanishing if it stays within the resolution as far as the leading terms do. In
+//! the coordinates of a [`Chart`] the leading terms are G(0, κ). The zone of a point extends as far
+//! as G and G_κ have no common zero; there every zero of G belongs to a branch that continues to σ
+//! = 0.
 
 use super::{BranchTangent, SingularPoint, ZONE};
 use crate::geometry::bivariate_trig_poly::{BivariateTrigPoly, Partials};
@@ -25,22 +26,23 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{RootKind, Roots, isolate};
 
-/// The orders of forms whose roots are told.
+/// The degrees of the leading forms whose roots are computed.
 const FORMS: [usize; 2] = [3, 4];
-/// The orders k to which F may vanish along the curve Y: beyond, the resolution is too wide.
+/// The orders k of F along the curve Y. For higher orders the resolution is too coarse.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
-/// How far the leading terms lie above what is neglected where they leave the resolution.
+/// The factor by which the leading terms must exceed the neglected ones where they leave the
+/// resolution.
 const LEAD: f64 = 4.0;
-/// How far the resolution lies above what Taylor's polynomials neglect.
+/// The factor by which the resolution must exceed the remainder of the Taylor polynomials.
 const WHOLE: f64 = 16.0;
-/// Newton's steps towards a degenerate point.
+/// The number of Newton steps towards a degenerate point.
 const STEPS: usize = 12;
-/// The same from the digits of f64 values on.
+/// The number of further steps from the f64 result, in extended precision.
 const MORE_STEPS: usize = 4;
-/// How much farther off Taylor's terms may be in f64 than a form's value.
+/// The ratio of the f64 error of Taylor terms to that of the form's value.
 const OFF: f64 = 1024.0;
 
-/// A critical point with a Hessian of rank two; none where no zone is plain.
+/// A critical point with a Hessian of rank two; `None` if no zone is unambiguous.
 pub(super) fn simple<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option<SingularPoint<N>> {
     let at = tracer.form.partials(angles[0], angles[1]);
     let crosses = at.xx * at.yy < at.xy * at.xy;
@@ -52,7 +54,7 @@ pub(super) fn simple<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option
     fold(tracer, angles, 2, directions)
 }
 
-/// The degenerate point next to `start`, and how far from it F is within the resolution.
+/// The degenerate point close to `start`, and the distance up to which F is within the resolution.
 pub(super) fn degenerate<N: Float>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
@@ -65,7 +67,7 @@ pub(super) fn degenerate<N: Float>(
 /// The directions in which an indefinite quadratic form vanishes.
 fn tangents<N: Float>(at: &Partials<N>) -> [[N; 2]; 2] {
     let root = (at.xy * at.xy - at.xx * at.yy).max(N::ZERO).sqrt();
-    // a x² + 2 b x y + c y² = 0, in the form that does not cancel.
+    // a x² + 2 b x y + c y² = 0, solved without cancellation.
     let q = if at.xy >= N::ZERO {
         -at.xy - root
     } else {
@@ -80,9 +82,9 @@ fn tangents<N: Float>(at: &Partials<N>) -> [[N; 2]; 2] {
 /// A kind of degenerate point.
 #[derive(Clone, Copy)]
 enum Kind {
-    /// All terms of a degree below this vanish.
+    /// All terms of a degree below this one vanish.
     Multiple(usize),
-    /// The Hessian is of rank one, and F vanishes to this order along Y.
+    /// The Hessian has rank one, and F vanishes to this order along Y.
     RankOne(usize),
 }
 
@@ -95,7 +97,7 @@ impl Kind {
         }
     }
 
-    /// Whether p is one as far as `resolution` tells.
+    /// Whether p is such a point within `resolution`.
     fn is_at(self, form: &BivariateTrigPoly, p: [f64; 2], resolution: f64) -> bool {
         match self {
             Self::Multiple(n) => {
@@ -105,8 +107,9 @@ impl Kind {
         }
     }
 
-    /// The place next to `start` where a point of the kind may be. Of a form of more digits it is
-    /// found in f64 first: what is none there, within what these are off, is none.
+    /// A candidate for a point of this kind close to `start`. For a form in extended precision it
+    /// is found in f64 first. A candidate that fails the test there, within the f64 error, is
+    /// rejected.
     fn near<N: Float>(self, tracer: &Tracer<'_, N>, start: [N; 2]) -> Option<[N; 2]> {
         let exactly = |p| self.step(tracer.form, p);
         let Some((form, slop)) = tracer.f64_form() else {
@@ -119,7 +122,7 @@ impl Kind {
     }
 }
 
-/// Where a number of steps leads, unless that is far.
+/// The point after a number of steps; `None` if it moves too far from the start.
 fn walk<N: Float>(
     start: [N; 2],
     steps: usize,
@@ -136,7 +139,7 @@ fn walk<N: Float>(
     Some(p)
 }
 
-/// The point at which all terms of a degree below n vanish, next to `start`.
+/// The point close to `start` at which all terms of a degree below n vanish.
 fn multiple<N: Float>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
@@ -158,14 +161,15 @@ fn size<N: Float>(k: &Taylor<N>, degree: usize) -> N {
     (0..=degree).map(|j| k[degree - j][j].abs()).sum()
 }
 
-/// Where the terms of degree n leave the resolution, if none of a lower degree does within that.
+/// The distance at which the terms of degree n leave the resolution; `None` if terms of a lower
+/// degree leave it before.
 fn terms_vanish<N: Float>(k: &Taylor<N>, n: usize, resolution: N) -> Option<N> {
     let reach = (resolution / size(k, n)).approximate_root(n as u32);
     let vanish = (0..n).all(|d| size(k, d) * reach.powi(d as i32) <= resolution);
     vanish.then_some(reach)
 }
 
-/// Gauss and Newton's step towards the point at which the terms of degree n - 1 vanish.
+/// The Gauss-Newton step towards the point at which the terms of degree n - 1 vanish.
 fn toward_multiple<N: Float>(k: &Taylor<N>, n: usize) -> Option<[N; 2]> {
     let (mut a, mut b, mut c) = (N::ZERO, N::ZERO, N::ZERO);
     let mut right = [N::ZERO; 2];
@@ -189,7 +193,7 @@ fn toward_multiple<N: Float>(k: &Taylor<N>, n: usize) -> Option<[N; 2]> {
     step.iter().all(|s| s.is_finite()).then_some(step)
 }
 
-/// The directions in which the terms of degree n vanish; none where two are one.
+/// The directions in which the terms of degree n vanish; `None` if two coincide.
 fn roots_of_form<N: Float>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
     let form = |angle: Interval<N>| {
         let turn = Jet {
@@ -198,7 +202,7 @@ fn roots_of_form<N: Float>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
             dd: Interval::point(N::ZERO),
         };
         let (sin, cos) = turn.sin_cos();
-        // Horner's scheme, homogeneous.
+        // Horner's scheme in homogeneous form.
         let mut power = Jet::constant(N::ONE);
         let mut sum = Jet::constant(N::ZERO);
         for i in 0..=n {
@@ -208,7 +212,7 @@ fn roots_of_form<N: Float>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
         sum
     };
     let size: N = (0..=n).map(|j| k[n - j][j].abs()).sum();
-    // Half a turn, from where no simple slope is.
+    // Half a turn, starting at an angle that is not a simple slope.
     let [from, to] = [N::from_f64(ZONE), N::from_f64(ZONE) + N::PI];
     let Roots::At { roots, .. } = isolate(&form, &[from, to], size * N::ROUNDING) else {
         return None;
@@ -221,7 +225,7 @@ fn roots_of_form<N: Float>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
     simple.then(|| roots.iter().map(|r| direction(r.t)).collect())
 }
 
-/// A point at which branches of different directions cross; none where no zone is plain.
+/// A point at which branches of different directions cross; `None` if no zone is unambiguous.
 fn fold<N: Float>(
     tracer: &Tracer<'_, N>,
     angles: [N; 2],
@@ -253,18 +257,19 @@ fn fold<N: Float>(
     })
 }
 
-/// The greatest zone of which something holds.
+/// The largest zone for which a condition is true.
 fn zone<N: Float>(holds: impl Fn(N) -> bool) -> Option<N> {
     let zones = (0..deepest::<N>() as i32).map(|n| N::from_f64(ZONE) * N::HALF.powi(n));
     zones.into_iter().find(|&z| holds(z))
 }
 
-/// Whether Taylor's polynomial is F well within the resolution, for |σ| and |κ| up to the given ones.
+/// Whether the Taylor remainder of F is well below the resolution, for |σ| and |κ| up to the given
+/// values.
 fn is_whole<N: Float>(chart: &Chart<N>, resolution: N, sigma: N, kappa: N) -> bool {
     N::from_f64(WHOLE) * chart.left(sigma, kappa) <= resolution
 }
 
-/// Whether G and G_κ are nowhere zero both, for |σ| and |κ| up to the given ones.
+/// Whether G and G_κ have no common zero, for |σ| and |κ| up to the given values.
 fn is_plain<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
     let run = Interval::new(-sigma, sigma);
     let mut stack = vec![(Interval::new(-kappa, kappa), 0)];
@@ -273,7 +278,7 @@ fn is_plain<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
         if !(g.f.has_zero() && g.y.has_zero()) {
             continue;
         }
-        // Branches may be as close in κ as the digits tell.
+        // Branches may be as close in κ as the precision can separate.
         if depth >= deepest::<N>() / 2 {
             return false;
         }
@@ -284,19 +289,20 @@ fn is_plain<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
     true
 }
 
-/// F next to a point at which it bends along the other angle more than along the running one.
+/// F close to a point at which its second derivative along the other angle exceeds that along the
+/// running one.
 struct Sheet<N: Float = f64> {
     axis: TorusParameter,
-    /// Y by the powers of s.
+    /// The coefficients of Y by the powers of s.
     trend: Vec<N>,
     /// k₀₂ of F by the powers of s and y - Y(s).
     bend: N,
-    /// h by the powers of s.
+    /// The coefficients of h by the powers of s.
     along: Vec<N>,
 }
 
 impl<N: Float> Sheet<N> {
-    /// The sheet at a point next to which F_y vanishes; none where it nowhere does.
+    /// The sheet at a point close to which F_y vanishes; it is meaningless if F_y does not.
     fn at(form: &BivariateTrigPoly<N>, p: [N; 2]) -> Self {
         let at = form.partials(p[0], p[1]);
         let axis = match at.yy.abs() >= at.xx.abs() {
@@ -306,7 +312,7 @@ impl<N: Float> Sheet<N> {
         let mut k = taylor(form, p, axis);
         let bend = k[0][2];
         let mut trend = vec![N::ZERO; DEGREE];
-        // Each power of s is left in F_y by one term, which the shear by its own takes away.
+        // Each power of s remains in F_y in one term, which a shear with its coefficient removes.
         for (i, y) in trend.iter_mut().enumerate().skip(1) {
             let c = -N::HALF * k[i][1] / bend;
             k = sheared(&k, i, c);
@@ -321,7 +327,8 @@ impl<N: Float> Sheet<N> {
         }
     }
 
-    /// Newton's step towards the point at which F vanishes to the order k along Y; the sheet is at p.
+    /// The Newton step towards the point at which F vanishes to the order k along Y; the sheet is
+    /// that at p.
     fn step(&self, form: &BivariateTrigPoly<N>, p: [N; 2], k: usize) -> [N; 2] {
         let at = form.partials(p[0], p[1]);
         let across = match self.axis {
@@ -336,7 +343,8 @@ impl<N: Float> Sheet<N> {
         }
     }
 
-    /// Where the term of order k leaves the resolution, if none of a lower order does within that.
+    /// The distance at which the term of order k leaves the resolution; `None` if one of a lower
+    /// order leaves it before.
     fn vanishes(&self, k: usize, resolution: N) -> Option<N> {
         let reach = (resolution / self.along[k].abs()).approximate_root(k as u32);
         let vanish = (0..k).all(|j| self.along[j].abs() * reach.powi(j as i32) <= resolution);
@@ -344,7 +352,7 @@ impl<N: Float> Sheet<N> {
     }
 }
 
-/// The point of rank one next to `start` at which F vanishes to the order k along Y.
+/// The point of rank one close to `start` at which F vanishes to the order k along Y.
 fn rank_one<N: Float>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
@@ -360,7 +368,7 @@ fn rank_one<N: Float>(
     Some((rank_one_branches(tracer, p, &sheet, k)?, reach))
 }
 
-/// The branches through a point of rank one; none where no zone is plain.
+/// The branches through a point of rank one; `None` if no zone is unambiguous.
 fn rank_one_branches<N: Float>(
     tracer: &Tracer<'_, N>,
     angles: [N; 2],
@@ -383,10 +391,11 @@ fn rank_one_branches<N: Float>(
     };
     let ratio = sheet.along[k] / sheet.bend;
     let kappa = ratio.abs().sqrt();
-    // Y as far as its terms weigh no more than κ.
+    // Y up to the terms whose weight does not exceed that of κ.
     let trend = &sheet.trend[1..=k / 2];
     let chart = |side: N| Chart::new(form, angles, sheet.axis, trend, side, weights);
-    // A cusp lies where the second term has the other sign, and two branches do on both sides.
+    // A cusp lies on the side where the second term has the opposite sign; two branches lie on both
+    // sides.
     let side = if odd { -ratio.signum() } else { N::ONE };
     let own = chart(side);
     let other = odd.then(|| chart(-side));
@@ -417,7 +426,7 @@ fn rank_one_branches<N: Float>(
     })
 }
 
-/// Whether all that a function of one bend has of zeros over |σ| lies at less than |κ|, each on a
+/// Whether, over |σ|, all zeros of a function with one change of slope lie within |κ|, each on a
 /// branch through the point.
 fn holds_both<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
     let run = Interval::new(-sigma, sigma);

@@ -1,4 +1,4 @@
-//! Singular points of every kind, whose branches are known by hand.
+//! Singular points of every kind, with branches derived by hand.
 
 use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::frame::Frame;
@@ -18,7 +18,7 @@ const TORUS: Torus = Torus {
     minor: 1.0,
 };
 
-/// Of a function of the angles: whole, with every point on it.
+/// The zero set of a function of the angles; every branch must be complete, with every point on it.
 fn traced(f: impl Fn(f64, f64) -> f64) -> Traced {
     let form = BivariateTrigPoly::interpolate(&f);
     let traced = trace(&TORUS, &form, 1e-11).unwrap();
@@ -31,8 +31,8 @@ fn traced(f: impl Fn(f64, f64) -> f64) -> Traced {
     traced
 }
 
-/// The number of branches, of times that they pass each singular point, and of those that turn back
-/// there.
+/// The number of branches, and for each singular point the number of passages through it and of
+/// those with a cusp there.
 fn kinds(traced: &Traced) -> (usize, Vec<(usize, usize)>) {
     let kind = |s: &crate::geometry::trace::Singular| {
         let turns =
@@ -47,9 +47,9 @@ fn kinds(traced: &Traced) -> (usize, Vec<(usize, usize)>) {
 }
 
 /// With X = 1 - cos x and T = sin y the curve T = X runs from (0, 0) through (±π/2, π/2) to (0, π).
-/// There X is x²/2 to the least order, so that (T - X)² + c Tᵃ Xᵇ (sin x)ᵈ is e² + c' x^(2a + 2b + d)
-/// at both ends.
-fn beside(c: f64, [a, b, d]: [i32; 3]) -> impl Fn(f64, f64) -> f64 {
+/// There X is x²/2 to lowest order, so (T - X)² + c Tᵃ Xᵇ (sin x)ᵈ is e² + c' x^(2a + 2b + d) at
+/// both ends.
+fn perturbed(c: f64, [a, b, d]: [i32; 3]) -> impl Fn(f64, f64) -> f64 {
     move |x, y| {
         let (t, v) = (y.sin(), 1.0 - x.cos());
         (t - v).powi(2) + c * t.powi(a) * v.powi(b) * x.sin().powi(d)
@@ -58,34 +58,34 @@ fn beside(c: f64, [a, b, d]: [i32; 3]) -> impl Fn(f64, f64) -> f64 {
 
 #[test]
 fn branches_touch_or_end_in_a_cusp_to_any_order() {
-    // x⁵ (A4): where x is negative two arcs run from one cusp to the other.
+    // x⁵ (A4): for negative x two arcs run from one cusp to the other.
     assert_eq!(
-        kinds(&traced(beside(0.5, [1, 1, 1]))),
+        kinds(&traced(perturbed(0.5, [1, 1, 1]))),
         (1, vec![(1, 1), (1, 1)])
     );
     assert_eq!(
-        kinds(&traced(beside(-0.5, [1, 1, 1]))),
+        kinds(&traced(perturbed(-0.5, [1, 1, 1]))),
         (1, vec![(1, 1), (1, 1)])
     );
-    // x⁶ (A5): with c = -4 it is T - X = ±2 √T X, which for the upper sign turns back at T = 1, and
-    // for the lower one runs on over x = π, where T is (√6 - 2)². What lies above on one side of
-    // x = 0 lies below on the other, so that all of it is one branch.
+    // x⁶ (A5): with c = -4 it is T - X = ±2 √T X. For the upper sign it turns back at T = 1; for
+    // the lower one it crosses x = π, where T is (√6 - 2)². What is above on one side of x = 0 is
+    // below on the other, so all of it is one branch.
     assert_eq!(
-        kinds(&traced(beside(-4.0, [1, 2, 0]))),
+        kinds(&traced(perturbed(-4.0, [1, 2, 0]))),
         (1, vec![(2, 0), (2, 0)])
     );
-    // Where the sum is definite the points stand alone.
+    // Where the sum is definite the points are isolated.
     assert_eq!(
-        kinds(&traced(beside(0.2, [1, 2, 0]))),
+        kinds(&traced(perturbed(0.2, [1, 2, 0]))),
         (0, vec![(0, 0), (0, 0)])
     );
 }
 
-/// A cone that touches the torus (2, 1) from inside in its top (0, 2, 1), along a ruling that runs
-/// on in x. With its apex at the distance l from there its curvature is 1/(l tan α), and 1 is that
-/// of the tube: for l = cot α only terms of degree three are left. With u = x and v = y - 2 the
-/// torus is z = 1 - (v + u²/4)²/2 and the cone z = 1 - v² (1 - u/l)/2 to that degree: they differ by
-/// u v (u/4 + v/(2 l)).
+/// A cone that is tangent to the torus (2, 1) from inside at its top (0, 2, 1), along a ruling in
+/// the direction of x. With its apex at the distance l from there its curvature is 1/(l tan α);
+/// that of the tube is 1. For l = cot α only terms of degree three remain. With u = x and v = y - 2
+/// the torus is z = 1 - (v + u²/4)²/2 and the cone z = 1 - v² (1 - u/l)/2 to that degree, so they
+/// differ by u v (u/4 + v/(2 l)).
 #[test]
 fn a_cone_of_the_curvature_of_the_tube_meets_it_in_three_branches() {
     let (sin, cos) = (0.6, 0.8);
@@ -122,8 +122,9 @@ fn a_cone_of_the_curvature_of_the_tube_meets_it_in_three_branches() {
     }
 }
 
-/// The apex of a cone on the torus, to whose normal its axis has the cosine 4/9 and its rulings
-/// have one of 1/√5 at most: two of these lie in the tangent plane, close to each other.
+/// The apex of a cone on the torus. The cosine between the torus's normal and the axis is 4/9, that
+/// between the normal and a ruling at most 1/√5. Two rulings lie in the tangent plane, close to
+/// each other.
 #[test]
 fn branches_of_nearly_one_direction_cross() {
     let torus = Surface::Torus(Torus {
@@ -143,8 +144,8 @@ fn branches_of_nearly_one_direction_cross() {
     assert_eq!(passes, [2]);
 }
 
-/// sin x sin y (1 + cos x - 2 cos y) is x y (y² - x²/2) next to (0, 0). The third curve turns back at
-/// (π, ±π/2), on the line x = π; the lines cross in three more points.
+/// sin x sin y (1 + cos x - 2 cos y) is x y (y² - x²/2) close to (0, 0). The third curve turns back
+/// at (π, ±π/2), on the line x = π; the lines cross in three more points.
 #[test]
 fn four_branches_cross_in_a_point() {
     let traced = traced(|x, y| x.sin() * y.sin() * (1.0 + x.cos() - 2.0 * y.cos()));
@@ -153,8 +154,8 @@ fn four_branches_cross_in_a_point() {
     assert_eq!(passes, [2, 2, 2, 2, 2, 4]);
 }
 
-/// sin x sin y (cos x - cos y) is x y (y² - x²)/2 next to (0, 0), and the same at (π, π): branches
-/// that run along the diagonals of every even grid.
+/// sin x sin y (cos x - cos y) is x y (y² - x²)/2 close to (0, 0), and the same at (π, π): branches
+/// along the diagonals of every evenly spaced grid.
 #[test]
 fn four_branches_cross_on_diagonals() {
     let traced = traced(|x, y| x.sin() * y.sin() * (x.cos() - y.cos()));

@@ -1,9 +1,9 @@
-//! Where a curve on a torus crosses the torus's own circles.
+//! Intersections of a curve on a torus with the torus's own circles.
 //!
-//! On a circle one angle is fixed, and F is a trigonometric polynomial of the other: its zeros are
-//! the points of all branches, and each is one root of the segment that passes it. Along the curve
-//! the same is asked of points that are themselves solved for, and where it runs nearly along the
-//! circle, of very many.
+//! On such a circle one angle is fixed, and F is a trigonometric polynomial of the other. Its zeros
+//! are the points of all branches on the circle, and each is found on one segment. The general
+//! method along the curve needs points that are themselves solved for; where the curve runs nearly
+//! along the circle it needs very many.
 
 use super::{TorusCurve, TorusCurveSegment, TorusParameter, arrange, wrap};
 use crate::geometry::curve::Circle;
@@ -13,27 +13,27 @@ use crate::geometry::trigonometric::simple_zeros;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 
-/// What lies so many times farther from a curve than it may be off is clearly next to it.
+/// The ratio of a point's distance to its error above which it is certainly not on the curve.
 const CLEARLY_APART: f64 = (1 << 20) as f64;
 
-/// Where on a curve, in parts of its length, its other surface is requested.
+/// The fractions of a curve's length at which its other surface is tested.
 const PARTS: [f64; 3] = [0.13, 0.47, 0.86];
 
-/// How far a curve may be off its own surface, in roundings.
+/// The error of a curve relative to its own surface, in roundings.
 const ROUNDINGS: f64 = 16.0;
 
-/// Where a point lies with respect to a segment.
+/// The position of a point relative to a segment.
 enum Place<N: Float> {
-    /// On it, at this part of its length.
+    /// On the segment, at this fraction of its length.
     On(N),
-    Beside,
+    NotOn,
     Unclear,
 }
 
 impl<N: Float> TorusCurve<N> {
-    /// The parameters, next to the curve's own, at which it crosses the circle of the points with
-    /// one angle. None where that is not plain: where some branch touches the circle or runs along
-    /// it, and next to singular points. `resolution` is the resolution.
+    /// The parameters, near the curve's own, at which it crosses the circle of points with one
+    /// angle fixed. `None` if the result is ambiguous: if some branch is tangent to the circle or
+    /// runs along it, or next to singular points.
     pub fn across(&self, fixed: TorusParameter, angle: N, resolution: N) -> Option<Vec<N>> {
         let section = self.form.section(fixed == TorusParameter::Around, angle);
         let zeros = simple_zeros(&section.0, self.form.bound() * N::ROUNDING)?;
@@ -45,9 +45,10 @@ impl<N: Float> TorusCurve<N> {
         Some(crossed)
     }
 
-    /// The same of a circle of another surface: where it meets the torus. None where that surface is
-    /// not the one in which the curve meets the torus, to rounding: one that holds the curve within
-    /// the resolution may meet the torus elsewhere.
+    /// The crossings with a circle of another surface, where that surface intersects the torus.
+    /// `None` unless the surface is, to rounding, the one whose intersection with the torus is the
+    /// curve: a surface that contains the curve within the resolution only may intersect the torus
+    /// elsewhere.
     pub fn across_circle(
         &self,
         circle: &Circle<N>,
@@ -79,20 +80,20 @@ impl<N: Float> TorusCurve<N> {
         Some(crossed)
     }
 
-    /// Where the curve passes a point of F = 0, which is off by `slack` of an angle: at most once, next
-    /// to no singular point.
+    /// The parameter at which the curve passes through a point of F = 0, whose angles have the
+    /// error `slack`. It does so at most once. `None` close to singular points.
     fn passes(&self, angles: [N; 2], slack: N) -> Option<Option<N>> {
         let count = self.segments.len();
         let mut passed: Option<(usize, N)> = None;
         for (i, s) in self.segments.iter().enumerate() {
             let tau = match self.place(s, angles, slack) {
                 Place::On(tau) => tau,
-                Place::Beside => continue,
+                Place::NotOn => continue,
                 Place::Unclear => return None,
             };
             match passed {
                 None => passed = Some((i, tau)),
-                // The end of one segment is the next one's beginning.
+                // The end of a segment is the start of the next.
                 Some((before, _)) if before + 1 == i => {}
                 Some((0, _)) if self.closed && i + 1 == count => {}
                 Some(_) => return None,
@@ -101,7 +102,7 @@ impl<N: Float> TorusCurve<N> {
         Some(passed.map(|(i, tau)| N::whole(i as u32) + tau))
     }
 
-    /// Where a point of F = 0 lies with respect to a segment.
+    /// The position of a point of F = 0 relative to a segment.
     fn place(&self, s: &TorusCurveSegment<N>, [theta, phi]: [N; 2], slack: N) -> Place<N> {
         let slack = slack * (N::ONE + s.steep);
         let x = self.folded(s, theta, phi);
@@ -111,18 +112,18 @@ impl<N: Float> TorusCurve<N> {
             let reach = b - a;
             return match x >= a - reach && x <= b + reach {
                 true => Place::Unclear,
-                false => Place::Beside,
+                false => Place::NotOn,
             };
         }
         let before = (s.from.min(s.to) - x).max(x - s.from.max(s.to));
         if before > slack {
-            return Place::Beside;
+            return Place::NotOn;
         }
         let [_, y] = arrange(s.axis, theta, phi);
         let rough = wrap(s.hermite(x) - y).abs();
         if rough > N::TWO * s.steep.max(N::ONE) * length.abs() + N::from_f64(CLEARLY_APART) * slack
         {
-            return Place::Beside;
+            return Place::NotOn;
         }
         let tau = ((x - s.from) / length).clamp(N::ZERO, N::ONE);
         let [a, b] = self.angles_on(s, tau);
@@ -130,7 +131,7 @@ impl<N: Float> TorusCurve<N> {
         if away <= slack {
             Place::On(tau)
         } else if away > N::from_f64(CLEARLY_APART) * slack {
-            Place::Beside
+            Place::NotOn
         } else {
             Place::Unclear
         }
@@ -146,15 +147,15 @@ mod tests {
     use crate::geometry::trace::trace;
     use nalgebra::{Point3, Vector3};
 
-    /// The branches in which a torus meets a cylinder next to its axis and tilted.
-    fn branches(minor: f64, beside: f64, radius: f64) -> Vec<TorusCurve> {
+    /// The branches in which a torus intersects a tilted cylinder offset its axis.
+    fn branches(minor: f64, offset: f64, radius: f64) -> Vec<TorusCurve> {
         let torus = Torus {
             frame: Frame::world(),
             major: 2.0,
             minor,
         };
         let axis = Vector3::new(0.1, 0.2, 1.0).normalize();
-        let frame = Frame::about(Point3::new(beside, 0.1, 0.0), axis);
+        let frame = Frame::about(Point3::new(offset, 0.1, 0.0), axis);
         let other = Surface::Cylinder(Cylinder { frame, radius });
         let form = BivariateTrigPoly::interpolate(|theta, phi| {
             let p = Surface::Torus(torus).point(theta, phi);
@@ -163,7 +164,7 @@ mod tests {
         trace(&torus, &form, 1e-11).unwrap().branches
     }
 
-    /// How often one angle along a curve changes from one side of a value to the other.
+    /// The number of times that one angle crosses a value along a curve.
     fn changes(curve: &TorusCurve, which: usize, value: f64) -> usize {
         let count = 200 * curve.segments.len();
         let sides = (0..=count).map(|k| {
@@ -178,8 +179,8 @@ mod tests {
     #[test]
     fn circles_are_crossed_where_the_angle_changes_side() {
         let mut crossed = 0;
-        for (minor, beside, radius) in [(0.5, 0.3, 2.1), (1.2, 1.5, 0.8), (0.7, 1.9, 1.1)] {
-            for curve in branches(minor, beside, radius) {
+        for (minor, offset, radius) in [(0.5, 0.3, 2.1), (1.2, 1.5, 0.8), (0.7, 1.9, 1.1)] {
+            for curve in branches(minor, offset, radius) {
                 for k in 0..24 {
                     let angle = 0.05 + 0.26 * f64::from(k);
                     for (which, fixed) in [(0, TorusParameter::Around), (1, TorusParameter::Tube)] {
@@ -207,7 +208,7 @@ mod tests {
         let frame = Frame::about(Point3::new(0.3, 0.1, 0.0), axis);
         let radius = 2.1;
         let other = Surface::Cylinder(Cylinder { frame, radius });
-        let beside = Surface::Cylinder(Cylinder {
+        let adjacent = Surface::Cylinder(Cylinder {
             frame,
             radius: radius + 1e-9,
         });
@@ -230,7 +231,7 @@ mod tests {
                     assert!(away.abs() < 1e-10, "{up} at {t}: {away:e}");
                 }
                 crossed += found.len();
-                assert!(curve.across_circle(&circle, &beside, 1e-11).is_none());
+                assert!(curve.across_circle(&circle, &adjacent, 1e-11).is_none());
             }
         }
         assert!(crossed > 20, "{crossed}");
@@ -238,7 +239,7 @@ mod tests {
 
     #[test]
     fn a_circle_that_is_touched_is_not_plainly_crossed() {
-        // Where the angle about the axis is greatest along a small oval.
+        // The maximum of the angle about the axis along a small oval.
         let curve = branches(0.5, 2.0, 0.3).remove(0);
         let count = 4000 * curve.segments.len();
         let at = |k: usize| wrap(curve.angles(curve.length() * (k as f64 / count as f64))[0].v);

@@ -1,4 +1,4 @@
-//! Cells of the parameter torus, and the first grid of them.
+//! Cells of the parameter torus, and the initial grid.
 
 use crate::geometry::torus_curve::wrap;
 use crate::number::float::Float;
@@ -6,14 +6,14 @@ use crate::number::float::Float;
 /// A rectangle of angles.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell<N: Float = f64> {
-    /// The least angles.
+    /// The minimum of each angle.
     pub lo: [N; 2],
-    /// The greatest angles.
+    /// The maximum of each angle.
     pub hi: [N; 2],
 }
 
 impl<N: Float> Cell<N> {
-    /// The angles in the middle.
+    /// The angles of the centre.
     pub fn centre(&self) -> [N; 2] {
         [
             N::HALF * (self.lo[0] + self.hi[0]),
@@ -29,19 +29,19 @@ impl<N: Float> Cell<N> {
         ]
     }
 
-    /// Whether f64 values tell of it as much as more digits do: what a form's terms differ by over it is
-    /// far more than they are rounded by.
+    /// Whether f64 describes the form on it as well as extended precision does: its terms vary over
+    /// the cell by far more than their rounding.
     pub fn is_coarse(&self) -> bool {
         self.half().into_iter().all(|h| h.rounded() > COARSE)
     }
 
-    /// The same in f64.
+    /// The cell rounded to f64.
     pub fn to_f64(self) -> Cell {
         let [lo, hi] = [self.lo, self.hi].map(|angles| angles.map(N::rounded));
         Cell { lo, hi }
     }
 
-    /// Both halves across one angle.
+    /// The two halves, split across one angle.
     pub fn halves(&self, across: usize) -> [Cell<N>; 2] {
         let c = self.centre()[across];
         let (mut low, mut high) = (*self, *self);
@@ -51,29 +51,29 @@ impl<N: Float> Cell<N> {
     }
 }
 
-/// Half the side of the least cell that is coarse: its square is far more than f64 values are rounded by.
+/// Half the side of the smallest coarse cell. Its square is far larger than the rounding of f64.
 const COARSE: f64 = 1.0 / (1 << 16) as f64;
 
-/// The cells of the first grid along each angle.
+/// The number of cells of the initial grid along each angle.
 const GRID: usize = 10;
 
-/// Where the first grid starts along each angle, so that symmetric curves do not meet its lines in
-/// special points, nor run through its corners.
+/// The start of the initial grid along each angle. It is irregular, so that symmetric curves
+/// neither cross its lines at special points nor pass through its corners.
 const START: [f64; 2] = [0.061_803_4, 0.041_421_4];
 
-/// Where the lines of the first grid lie: they are free, but for a curve that runs through a corner.
+/// The position of the grid lines. It is arbitrary, except that no curve may pass through a corner.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout<N: Float = f64> {
-    /// The size of a zone, as a part of the greatest.
+    /// The size of a zone, relative to the largest.
     pub shrink: N,
-    /// How far the sides of a zone lie from its point, as parts of its size: low and high, along
+    /// The distance of a zone's sides from its point, relative to its size: low and high, along
     /// both angles.
     pub skew: [[N; 2]; 2],
-    /// Where the lines start along each angle.
+    /// The first line along each angle.
     pub start: [N; 2],
 }
 
-/// The sides of zones: unequal, so that a curve of a simple slope misses the corners.
+/// The sides of zones. They are unequal, so that a curve with a simple slope misses the corners.
 const SKEWS: [[[f64; 2]; 2]; 3] = [
     [[0.913_7, 1.0], [0.871_3, 0.761_9]],
     [[0.731_1, 0.653_7], [1.0, 0.941_7]],
@@ -81,7 +81,7 @@ const SKEWS: [[[f64; 2]; 2]; 3] = [
 ];
 
 impl<N: Float> Layout<N> {
-    /// One after the other: every skew, then with smaller zones.
+    /// The layout of an attempt: first every skew, then the same with smaller zones.
     pub fn new(attempt: usize) -> Self {
         let n = attempt as i32;
         let skews = SKEWS.len() as i32;
@@ -93,15 +93,15 @@ impl<N: Float> Layout<N> {
     }
 }
 
-/// The cells of the first grid, without singular points.
+/// The cells of the initial grid, without singular points.
 pub fn regular_grid<N: Float>() -> Vec<Cell<N>> {
     let layout = Layout::new(0);
     let [xs, ys] = [0, 1].map(|angle| lines(angle, &[], &layout));
     grid(&xs, &ys)
 }
 
-/// The lines of the first grid along one `angle`, by its index: even ones, but none through a zone,
-/// and the sides of the zones, given as (centre, size).
+/// The grid lines along one `angle`, given by its index: evenly spaced lines outside the zones, and
+/// the sides of the zones, given as (centre, size).
 pub fn lines<N: Float>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Vec<N> {
     let (start, skew) = (layout.start[angle], layout.skew[angle]);
     let mut all: Vec<N> = (0..GRID)
@@ -130,10 +130,10 @@ pub fn lines<N: Float>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Ve
     all
 }
 
-/// Lines nearer than this part of a zone are one.
+/// Lines closer than this fraction of a zone are one.
 const SAME: f64 = 1.0 / (1 << 20) as f64;
 
-/// What lies within this part of a zone is inside.
+/// A line within this fraction of a zone counts as inside.
 const WITHIN: f64 = 0.999;
 
 /// The cells between lines of both angles.

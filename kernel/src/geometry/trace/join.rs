@@ -1,5 +1,5 @@
-//! The pieces of the curve in the cells, joined to closed branches through the roots on the sides
-//! of the cells and through the singular points.
+//! Joins the pieces of the curve in the cells to closed branches, through the roots on the cells'
+//! sides and through the singular points.
 
 use super::grid::{Cell, Layout, grid, lines};
 use super::{Leaf, Singular, Traced, Tracer, Unresolved};
@@ -13,18 +13,18 @@ use crate::number::float::Float;
 use crate::number::interval::Interval;
 use std::collections::{BTreeMap, HashMap};
 
-/// A root on a side, by the angles there.
+/// A root on a side; roots are identified by their angles.
 type RootId = usize;
 
-/// The roots on all sides, shared by the cells on both sides of them.
+/// The roots on all sides. Each side is shared by two cells.
 #[derive(Default)]
 struct Sides<N: Float = f64> {
     roots: Vec<[N; 2]>,
     known: HashMap<(usize, Name, Name, Name), Vec<RootId>>,
 }
 
-/// The zones along one angle, by its index, as (centre, size): those that lie over one another have
-/// their lines in common, and the size of the least.
+/// The zones along one angle, given by its index, as (centre, size). Zones that overlap along the
+/// angle share their lines and have the size of the smallest.
 fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, N)> {
     let size = |p: &SingularPoint<N>| {
         let over = |q: &&SingularPoint<N>| wrap(p.angles[k] - q.angles[k]).abs() <= p.zone + q.zone;
@@ -37,16 +37,16 @@ fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, 
         .collect()
 }
 
-/// What tells a number from all others.
+/// A bit pattern that identifies a number.
 type Name = [u64; 4];
 
-/// A line's name: lines a period apart are the same.
+/// The name of a line; lines one period from each other are the same.
 fn key<N: Float>(x: N, first: N) -> Name {
     let y = if x >= first + N::TAU { first } else { x };
     y.bits()
 }
 
-/// A piece of the curve in one cell: the roots or the singular point it joins.
+/// A piece of the curve in one cell, between two roots or a root and a singular point.
 struct Piece<N: Float = f64> {
     ends: [End; 2],
     segment: TorusCurveSegment<N>,
@@ -55,7 +55,7 @@ struct Piece<N: Float = f64> {
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum End {
     Root(RootId),
-    /// A pass through a singular point: (point, which of its branches).
+    /// The passage through a singular point: (point, index of its branch).
     Pass(usize, usize),
 }
 
@@ -101,7 +101,7 @@ impl<N: Float> Tracer<'_, N> {
         chain(torus, self.form, points, pieces)
     }
 
-    /// The roots around a cell: (id, angles next to the cell).
+    /// The roots around a cell, as (id, angles close to the cell).
     fn around(
         &self,
         cell: &Cell<N>,
@@ -167,7 +167,7 @@ impl<N: Float> Tracer<'_, N> {
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
                 chart: None,
             };
-            // Next to a point that is nearly singular F is all rounding, and so are its roots.
+            // Close to a nearly singular point F is all rounding, and its roots are meaningless.
             if !segment.keeps_its_slope() {
                 return Err(Unresolved::at(cell.centre()));
             }
@@ -215,11 +215,11 @@ impl<N: Float> Tracer<'_, N> {
     }
 }
 
-/// A root on the side of a singular point's zone in the coordinates of a branch.
+/// A root on the side of a singular point's zone, in the coordinates of a branch.
 struct Reached<N: Float = f64> {
     sigma: N,
     kappa: N,
-    /// How far it is from the branch's leading term.
+    /// The distance from the branch's leading term.
     miss: N,
 }
 
@@ -241,7 +241,7 @@ impl<N: Float> Reached<N> {
     }
 }
 
-/// The graph of κ from a singular point to a root around it; none where it is not known to be the
+/// The graph of κ from a singular point to a root around it; `None` if it is not proven to be the
 /// only one.
 fn node_segment<N: Float>(
     index: usize,
@@ -257,7 +257,7 @@ fn node_segment<N: Float>(
     let slopes = [slope(N::ZERO, from), slope(end.sigma, to)];
     let run = Interval::new(N::ZERO, end.sigma);
     let steepest = slopes[0].abs().max(slopes[1].abs());
-    // A bracket that the graph cannot leave with the slopes that it has in there.
+    // A bracket that the graph cannot leave with the slopes that are possible inside.
     let mut margin = (to - from).abs().max(steepest * end.sigma.abs());
     for _ in 0..BRACKETS {
         margin = N::TWO * margin + N::ROUNDING.sqrt();
@@ -280,13 +280,13 @@ fn node_segment<N: Float>(
                 chart: Some(index),
             });
         }
-        // What is known of the slopes may be much more than they are.
+        // The bounds of the slopes may be much larger than the slopes.
         margin = margin.max(reach);
     }
     None
 }
 
-/// How often a wider bracket is tried.
+/// The number of times that a wider bracket is tried.
 const BRACKETS: u32 = 6;
 
 /// The corners of cells on every line of the grid.

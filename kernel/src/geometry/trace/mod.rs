@@ -1,10 +1,10 @@
-//! The branches of F(θ, φ) = 0 on the parameter torus, all of them, with their singular points.
+//! Traces all branches of F(θ, φ) = 0 on the parameter torus, with their singular points.
 //!
-//! The square of both angles is divided until in every cell F has no zero, or one of its partial
+//! The square of both angles is subdivided until in every cell F has no zero, or one of its partial
 //! derivatives dominates the other, so that the curve in the cell is a graph of bounded slope
-//! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor's with bounds of the third
-//! derivatives over the cell. Cells are joined through the roots on their sides. Singular points, where F
-//! and its gradient vanish within the resolution, are found first and stand in cells of their own.
+//! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor bounds with third derivatives
+//! bounded over the cell. Cells are joined through the roots on their sides. Singular points, where
+//! F and its gradient vanish within the resolution, are found first and get cells of their own.
 
 pub(super) mod grid;
 mod join;
@@ -19,12 +19,13 @@ use crate::number::roots::{RootKind, Roots, isolate};
 use grid::{Cell, Layout};
 use std::cell::Cell as Counter;
 
-/// A point where the curve crosses or touches itself, by its angles.
+/// A point where the curve crosses itself, is tangent to itself or has a cusp, or an isolated
+/// point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singular<N: Float = f64> {
     /// (θ, φ).
     pub angles: [N; 2],
-    /// Where the branches pass: (index of the branch, parameter). Empty for an isolated point.
+    /// The branches through it, as (index of the branch, parameter); empty for an isolated point.
     pub on: Vec<(usize, N)>,
 }
 
@@ -35,11 +36,11 @@ pub struct Traced<N: Float = f64> {
     pub branches: Vec<TorusCurve<N>>,
     /// The singular points.
     pub singular: Vec<Singular<N>>,
-    /// The critical points of F, by their angles, that are singular points or nearly so.
+    /// The angles of the critical points of F that are singular points or near misses.
     pub close: Vec<[N; 2]>,
 }
 
-/// The curve has a singular point of a kind that is not known, or branches too close to be distinguished.
+/// The curve has a singular point of an unknown kind, or branches too close to be separated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("a curve on a torus could not be resolved near the angles ({:.6}, {:.6})", angles[0], angles[1])]
 pub struct Unresolved {
@@ -55,24 +56,24 @@ impl Unresolved {
     }
 }
 
-/// Taylor's bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
+/// Taylor bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
 pub(super) struct Bounds<N: Float = f64> {
-    /// The least |F|; below zero where F may vanish.
+    /// The lower bound of |F|; negative where F may vanish.
     pub least: N,
-    /// The least and the greatest |F_x|.
+    /// The lower and upper bound of |F_x|.
     pub x: [N; 2],
-    /// The least and the greatest |F_y|.
+    /// The lower and upper bound of |F_y|.
     pub y: [N; 2],
-    /// At the centre.
+    /// The values at the centre.
     pub at: Partials<N>,
-    /// The angle along which the form bends more over the cell.
+    /// The angle along which the second derivative is larger over the cell.
     pub wide: usize,
 }
 
-/// What a cell holds of the curve.
+/// The part of the curve in a cell.
 enum Holds {
     Nothing,
-    /// A graph over an angle, and a bound of its slope.
+    /// A graph over one angle, with a bound of its slope.
     Graph {
         axis: TorusParameter,
         steep: f64,
@@ -102,7 +103,7 @@ impl<N: Float> Bounds<N> {
 /// A cell in which the curve is a graph.
 struct Leaf<N: Float = f64> {
     cell: Cell<N>,
-    /// The angle that the graph runs over.
+    /// The angle over which the graph runs.
     axis: TorusParameter,
     /// A bound of its slope.
     steep: f64,
@@ -115,15 +116,16 @@ pub(super) struct Tracer<'a, N: Float = f64> {
     /// A bound of the rounding error of the form.
     pub slop: N,
     pub resolution: N,
-    /// The form in f64, of one of more digits.
+    /// The form rounded to f64, for extended precision.
     f64_form: Option<Box<BivariateTrigPoly>>,
-    /// How many cells may still be looked at.
+    /// The number of cells that may still be examined.
     cells: Counter<u32>,
 }
 
-/// How many cells of one form are looked at, in all layouts: branches that lie next to one another all
-/// along, nearer than a millionth, would take more than anyone waits for. A cell takes some hundred
-/// times longer in extended precision, where the curves of all named cases take up to 2,200 cells.
+/// The number of cells of one form that are examined, in all layouts together. Branches closer to
+/// each other than a millionth over their whole length would need impractically many. A cell takes
+/// some hundred times longer in extended precision, where the curves of all named cases take up to
+/// 2,200 cells.
 fn cell_limit<N: Float>() -> u32 {
     match N::IS_DOUBLE {
         true => 1 << 17,
@@ -136,17 +138,17 @@ fn slop<N: Float>(form: &BivariateTrigPoly<N>) -> N {
     form.bound() * N::EPSILON * N::from_f64(64.0)
 }
 
-/// The depth at which a cell that is still undecided is given up: where its sides are next to the
-/// root of the numbers' precision, in f64 1e-7 radians.
+/// The depth at which an undecided cell is given up. Its sides are then about the square root of
+/// the precision, in f64 1e-7 radians.
 pub(super) fn deepest<N: Float>() -> u32 {
     let bits = -N::EPSILON.rounded().log2();
     bits as u32 - SPARED
 }
 
-/// How many bits stay beyond the deepest cells.
+/// The number of bits that remain below the deepest cells.
 const SPARED: u32 = 4;
 
-/// A graph's slope is at most this in an accepted cell.
+/// The largest slope of a graph in an accepted cell.
 const STEEP: f64 = 2.0;
 
 impl<'a, N: Float> Tracer<'a, N> {
@@ -162,20 +164,20 @@ impl<'a, N: Float> Tracer<'a, N> {
         }
     }
 
-    /// Counts a cell that is looked at; an error where they were too many.
+    /// Counts an examined cell. Fails if there were too many.
     pub(super) fn look_at(&self, cell: &Cell<N>) -> Result<(), Unresolved> {
         let left = self.cells.get().checked_sub(1);
         self.cells.set(left.ok_or(Unresolved::at(cell.centre()))?);
         Ok(())
     }
 
-    /// The form in f64, of one of more digits, and how far it is off.
+    /// The form rounded to f64, for extended precision, and its rounding error.
     pub(super) fn f64_form(&self) -> Option<(&BivariateTrigPoly, f64)> {
         let form = self.f64_form.as_deref()?;
         Some((form, slop(form)))
     }
 
-    /// The same in f64, of a form of more digits: what it bounds holds, but may tell less.
+    /// A tracer in f64, for a form in extended precision. Its bounds are valid but may be looser.
     pub(super) fn to_f64(&self) -> Option<Tracer<'_>> {
         let (form, slop) = self.f64_form()?;
         Some(Tracer {
@@ -191,7 +193,7 @@ impl<'a, N: Float> Tracer<'a, N> {
     pub(super) fn bounds(&self, cell: &Cell<N>) -> Bounds<N> {
         let [hx, hy] = cell.half();
         let (p, thirds) = (self.form).partials_about(cell.centre(), cell.half(), &self.reaches);
-        // What the third derivatives add to the second ones over the cell.
+        // The change of the second derivatives over the cell, from the third ones.
         let [xx, xy, yy] = thirds.seconds([hx, hy]);
         let third = xx * hx * hx + N::TWO * xy * hx * hy + yy * hy * hy;
         let bent = p.xx.abs() * hx * hx + N::TWO * p.xy.abs() * hx * hy + p.yy.abs() * hy * hy;
@@ -209,7 +211,7 @@ impl<'a, N: Float> Tracer<'a, N> {
         }
     }
 
-    /// The cells that hold a piece of the curve, as graphs.
+    /// The cells that contain a piece of the curve, as graphs.
     fn leaves(&self, cells: Vec<Cell<N>>) -> Result<Vec<Leaf<N>>, Unresolved> {
         let mut leaves = Vec::new();
         let mut stack: Vec<(Cell<N>, u32)> = cells.into_iter().map(|c| (c, 0)).collect();
@@ -218,7 +220,7 @@ impl<'a, N: Float> Tracer<'a, N> {
             self.look_at(&cell)?;
             let f64_form = rounded_f64.as_ref().map(|f| f.bounds(&cell.to_f64()));
             let (holds, wide) = match f64_form.map(|b| (b.contains(), b.wide)) {
-                Some(told) if cell.is_coarse() || !matches!(told.0, Holds::Unknown) => told,
+                Some(bounds) if cell.is_coarse() || !matches!(bounds.0, Holds::Unknown) => bounds,
                 _ => {
                     let b = self.bounds(&cell);
                     (b.contains(), b.wide)
@@ -236,7 +238,8 @@ impl<'a, N: Float> Tracer<'a, N> {
         Ok(leaves)
     }
 
-    /// The roots of F on a side of a cell: the angle that is `fixed` on it, and its ends.
+    /// The roots of F on a side of a cell; the side has one angle `fixed`, at the value `at`, and
+    /// the other in [lo, hi].
     fn roots_on(&self, fixed: usize, at: N, lo: N, hi: N) -> Option<Vec<N>> {
         let f = Trigonometric::new(&self.form.section(fixed == 0, at).0);
         match isolate(&f, &[lo, hi], self.slop) {
@@ -252,8 +255,7 @@ pub(super) fn near<N: Float>(a: &[N; 2], b: &[N; 2], reach: N) -> bool {
     wrap(a[0] - b[0]).abs() <= reach && wrap(a[1] - b[1]).abs() <= reach
 }
 
-/// All branches of `form` = 0 on the torus, where `form` is a distance to first order and `resolution`
-/// the resolution.
+/// All branches of `form` = 0 on the torus. `form` is a distance to first order.
 pub fn trace<N: Float>(
     torus: &Torus<N>,
     form: &BivariateTrigPoly<N>,
@@ -275,7 +277,7 @@ pub fn trace<N: Float>(
     Err(failed.unwrap_or(Unresolved::at(angles)))
 }
 
-/// How many layouts are tried.
+/// The number of layouts tried.
 const ATTEMPTS: usize = 24;
 
 #[cfg(test)]
@@ -359,9 +361,10 @@ mod tests {
         );
     }
 
-    /// A cylinder that touches a torus (12/5, 1) from inside at φ with cos φ = 3/5, where the
-    /// torus's curvatures are 1 and 1/5; its axis halves the angle between their directions. With
-    /// the radius ρ the curvatures differ by a form of determinant (1/5) - (3/5)/ρ.
+    /// A cylinder that is tangent to a torus (12/5, 1) from inside at φ with cos φ = 3/5. The
+    /// torus's curvatures there are 1 and 1/5, and the cylinder's axis bisects the angle between
+    /// their directions. For a radius ρ the curvatures differ by a form of determinant (1/5) -
+    /// (3/5)/ρ.
     fn touching_cylinder(radius: f64) -> Surface {
         let (p, n) = (Point3::new(3.0, 0.0, 0.8), Vector3::new(0.6, 0.0, 0.8));
         let axis = Vector3::new(-0.8, 1.0, 0.6).normalize();
@@ -386,7 +389,8 @@ mod tests {
         let frame = Frame::about(Point3::origin(), Vector3::x());
         let c = Surface::Cylinder(Cylinder { frame, radius: 0.5 });
         assert_eq!(traced(&c, 3.0, 1.0).branches.len(), 4);
-        // Parallel to the axis, as wide as the tube and centred on the spine: nodes on both equators.
+        // Parallel to the axis, as wide as the tube and centred on the spine: nodes on both
+        // equators.
         let frame = Frame::about(Point3::new(5.0, 0.0, 0.0), Vector3::z());
         let c = Surface::Cylinder(Cylinder { frame, radius: 1.5 });
         assert_eq!(traced(&c, 5.0, 1.5).singular.len(), 2);

@@ -1,20 +1,20 @@
-//! Sines and angles of 237 bits: what is most often asked of these numbers.
+//! Sines, cosines and angles of 237-bit numbers, their most frequent functions.
 //!
-//! An angle is brought to within an eighth turn of a quarter turn, and to within 2^-10 of a place of a
-//! table; what is left has a short series. An angle of a tangent is that in f64, and the rest,
-//! whose sine is known.
+//! The argument is reduced by multiples of a quarter turn to at most an eighth turn, then by the
+//! nearest entry of a table to at most 2^-10. A short Taylor series gives the rest. An arctangent
+//! is the f64 angle plus a remainder, which has a short series in its tangent.
 
 use super::{F237, Float, SHARES, scaled};
 use dashu::integer::UBig;
 use std::sync::LazyLock;
 
-/// Places of the table, from one to the next.
+/// The distance between the arguments of consecutive table entries.
 const STEP: f64 = 1.0 / 512.0;
 
-/// How many places there are up to an eighth turn.
+/// The number of table entries, up to an eighth turn.
 const PLACES: usize = 403;
 
-/// The sines and cosines of the places.
+/// The sines and cosines of the table's arguments.
 static TABLE: LazyLock<[(F237, F237); PLACES]> = LazyLock::new(|| {
     std::array::from_fn(|k| {
         let (sin, cos) = F237::from_f64(STEP * k as f64).0.sin_cos();
@@ -22,7 +22,7 @@ static TABLE: LazyLock<[(F237, F237); PLACES]> = LazyLock::new(|| {
     })
 });
 
-/// A quarter turn as a number of few bits, so that its multiples are exact, and the rest of it.
+/// A quarter turn: a number of few bits, whose multiples are exact, and the remainder.
 static QUARTER: LazyLock<[F237; 2]> = LazyLock::new(|| {
     let quarter = quarter_turn();
     let upper = &quarter >> LOW_BITS;
@@ -33,10 +33,11 @@ static QUARTER: LazyLock<[F237; 2]> = LazyLock::new(|| {
     ]
 });
 
-/// So many bits of a quarter turn are known after the point.
+/// The number of bits of a quarter turn that are computed after the binary point.
 const TURN_BITS: isize = 512;
 
-/// The upper part leaves so many of them to the rest, which keeps all but the last.
+/// The number of bits below the upper part. The remainder keeps all but the last `CUT_BITS` of
+/// them.
 const LOW_BITS: usize = 352;
 const CUT_BITS: usize = 100;
 
@@ -60,7 +61,7 @@ fn quarter_turn() -> UBig {
     (arctan(5) * UBig::from(8u32) - arctan(239) * UBig::from(2u32)) >> spare
 }
 
-/// More quarter turns than that leave fewer digits.
+/// The greatest number of quarter turns. Above it the reduction loses digits.
 const MOST_TURNS: f64 = 65536.0;
 
 /// The sine and the cosine.
@@ -84,7 +85,7 @@ pub(super) fn sin_cos(x: F237) -> (F237, F237) {
     }
 }
 
-/// The sine and the cosine of an angle within an eighth turn, but for rounding.
+/// The sine and the cosine of an angle of at most an eighth turn, except for rounding.
 fn within_eighth(x: F237) -> (F237, F237) {
     let place = (x.rounded() / STEP).round();
     if place == 0.0 {
@@ -96,13 +97,13 @@ fn within_eighth(x: F237) -> (F237, F237) {
     (sin * c + cos * s, cos * c - sin * s)
 }
 
-/// Powers that count in the series.
+/// The highest power used in the series.
 const TERMS: usize = 20;
 
-/// The sine and the cosine of an angle of no more than 2^-10, by Taylor's series.
+/// The sine and the cosine of an angle of at most 2^-10, by Taylor series.
 fn series(x: F237) -> (F237, F237) {
     let square = x * x;
-    // One over the factorials of first, first + 2, ..., with signs in turn.
+    // 1 / n! for n = first, first + 2, ..., with alternating signs.
     let sum = |first: usize| {
         let shares = SHARES[..TERMS].iter().skip(first - 1).step_by(2).rev();
         shares.fold(F237::ZERO, |sum, &share| share - sum * square)
@@ -110,17 +111,17 @@ fn series(x: F237) -> (F237, F237) {
     (x * sum(1), F237::ONE - square * sum(2))
 }
 
-/// The angle of a direction; none where f64 values do not know it nearly.
+/// The angle of the direction (`along`, `side`); `None` if the f64 angle is not close enough.
 pub(super) fn angle(side: F237, along: F237) -> Option<F237> {
     let across = Float::abs(side);
     let near = across.rounded().atan2(along.rounded());
     let start = F237::from_f64(near);
     let (sin, cos) = sin_cos(start);
     let rest = (across * cos - along * sin) / (along * cos + across * sin);
-    // Of the series of the arctangent the fifth power is beyond all digits.
+    // The fifth power of the arctangent series is below the precision.
     let third = rest * rest * rest / F237::from_f64(3.0);
     (rest.rounded().abs() < NEAR).then(|| (start + (rest - third)).copysign(side))
 }
 
-/// How near a start has to be.
+/// The greatest error of the f64 start.
 const NEAR: f64 = 1.0 / (1_u64 << 50) as f64;

@@ -39,7 +39,7 @@ fn sines_are_their_series() {
             "{x} {back:?}"
         );
     }
-    // Far off, the library's.
+    // For large arguments the library's function is used.
     let x = F237::from_f64(123_456.75);
     let y = F237::from_f64(1_000_000.5);
     for x in [x, y] {
@@ -74,8 +74,8 @@ fn functions_have_all_digits() {
     assert!(near(third * F237::from_f64(3.0), F237::ONE));
 }
 
-/// Where the functions of f64 values and of wide numbers are held against each other: special
-/// values, and ordinary ones.
+/// The arguments at which the functions of f64 and of F237 are compared: special values, and
+/// ordinary ones.
 const PLACES: [f64; 17] = [
     0.0, 1e-300, 1e-20, 1e-9, 0.25, 0.5, 0.7, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 10.0, 700.0, 1e9,
 ];
@@ -152,7 +152,7 @@ fn small_angles_are_those_of_their_series() {
         let x = F237::from_f64(1.3) * F237(f256::TWO).powi(n);
         let x2 = x * x;
         let terms = |first: i32| {
-            // The terms of a series of alternating powers over factorials.
+            // The terms of an alternating series of powers over factorials.
             let mut term = F237::ONE;
             (0..20).fold(F237::ZERO, |sum, k| {
                 let now = sum + term;
@@ -174,7 +174,7 @@ fn small_angles_are_those_of_their_series() {
 fn sinc_is_smooth_where_its_series_ends() {
     let [a, b] = [0.499_999_999_9, 0.500_000_000_1].map(F237::from_f64);
     for i in 0..2 {
-        // The mean of the derivative at both ends is the slope between, to the third order.
+        // The mean of the derivatives at both ends is the slope in between, to third order.
         let rise = sinc_jet(b)[i] - sinc_jet(a)[i];
         let mean = F237::HALF * (sinc_jet(a)[i + 1] + sinc_jet(b)[i + 1]);
         let off = Float::abs(rise / (b - a) - mean);

@@ -1,4 +1,4 @@
-//! Who decides by the part's one resolution.
+//! Classification of distances by the part's one resolution.
 
 use super::{CLOSE, CertifiedDistance, CloseCall, CoincidencePolicy, DecisionStats, Side};
 use crate::number::float::Float;
@@ -7,10 +7,10 @@ use crate::number::rational_interval::RationalInterval;
 use dashu::base::BitTest;
 use std::cell::RefCell;
 
-/// The precisions that are tried, in bits.
+/// The precisions tried in turn, in bits.
 const PRECISIONS: [usize; 4] = [128, 256, 512, 1024];
 
-/// Zeros that would take more bits are not proven.
+/// The largest number of bits spent on proving a zero.
 const PROVABLE: usize = 1 << 17;
 
 /// How a decision was reached.
@@ -18,16 +18,16 @@ const PROVABLE: usize = 1 << 17;
 enum Effort {
     Filter,
     MoreBits,
-    /// By the bits from which on it can be nothing but zero.
+    /// The separation bound proves that the value is zero.
     Proof,
-    /// A construction says so, which is proven where it is used.
+    /// The value comes from a construction, which is proven where it is used.
     Construction,
-    /// No more than that is known.
+    /// The value is within the resolution; nothing more is known.
     Assumption,
 }
 
-/// The side of a distance in [lo, hi], where the range tells: `resolution` and `below` are the two edges of
-/// the resolution.
+/// The side of a distance in [lo, hi], or `None` if the range is inconclusive. The resolution is
+/// [below, resolution].
 fn side_of<N: PartialOrd>(lo: N, hi: N, resolution: N, below: N) -> Option<Side> {
     if lo > resolution {
         Some(Side::Outside)
@@ -40,7 +40,8 @@ fn side_of<N: PartialOrd>(lo: N, hi: N, resolution: N, below: N) -> Option<Side>
     }
 }
 
-/// The side of a distance within the resolution: on it only if it is zero, where that can be determined.
+/// The side of a distance within the resolution: `On` only if it is zero, where that can be
+/// determined.
 fn proven_side(distance: &impl CertifiedDistance) -> (Side, Effort) {
     let Some(bits) = distance.separation() else {
         return (Side::On, Effort::Construction);
@@ -57,15 +58,15 @@ fn proven_side(distance: &impl CertifiedDistance) -> (Side, Effort) {
     }
 }
 
-/// Whether a number that is not negative is less than 2 to the power of -`bits`.
+/// Whether a non-negative number is less than 2^-`bits`.
 fn is_below(x: &Rational, bits: usize) -> bool {
     x.is_zero() || x.numerator().bit_len() + bits < x.denominator().bit_len()
 }
 
-/// The bits beyond a bound that rounding may take.
+/// The bits beyond a separation bound that rounding may use up.
 const GUARD: usize = 128;
 
-/// Decides by the part's one resolution, and keeps count.
+/// Classifies distances by the part's one resolution, and counts the decisions.
 #[derive(Debug)]
 pub struct Predicates {
     resolution: f64,
@@ -75,7 +76,7 @@ pub struct Predicates {
 }
 
 impl Predicates {
-    /// A judge whose resolution is `resolution`, a distance in the part's unit.
+    /// The predicates with a resolution, a distance in the part's unit.
     pub fn new(resolution: f64) -> Self {
         Self {
             resolution,
@@ -85,7 +86,7 @@ impl Predicates {
         }
     }
 
-    /// A judge who has what lies within `resolution` proven to be zero.
+    /// The predicates that require a proof of zero for what lies within `resolution`.
     pub fn exact(resolution: f64) -> Self {
         Self {
             zeros: CoincidencePolicy::Exact,
@@ -93,7 +94,7 @@ impl Predicates {
         }
     }
 
-    /// Whether zeros are proven.
+    /// Whether zeros must be proven.
     pub fn is_exact(&self) -> bool {
         self.zeros == CoincidencePolicy::Exact
     }
@@ -103,13 +104,14 @@ impl Predicates {
         N::from_f64(self.resolution)
     }
 
-    /// What is no further apart than this coincides, or is a close call: only what is further apart
-    /// need not be asked about.
+    /// The close-call distance, 100 times the resolution. Pairs farther apart neither coincide nor
+    /// are close calls, so they need no decision.
     pub fn reach<N: Float>(&self) -> N {
         N::from_f64(self.resolution * CLOSE)
     }
 
-    /// The side on which the signed `distance` lies; `place` is where it was measured.
+    /// The side on which the signed `distance` lies; `place` is where it was measured. Lists a
+    /// close call.
     pub fn classify(
         &self,
         question: &'static str,
@@ -121,7 +123,8 @@ impl Predicates {
         side
     }
 
-    /// The same of a point that the two things may have in common: it concerns nothing else.
+    /// Classifies as [`Self::classify`] does, for a point that two things may share. A close call
+    /// concerns that point only.
     pub fn classify_at_point(
         &self,
         question: &'static str,
@@ -137,8 +140,8 @@ impl Predicates {
         side
     }
 
-    /// The side, and the close call that it may be, counted but not yet listed: for who knows
-    /// whether anything depends on it.
+    /// The side, and the close call if it is one. The decision is counted, but the close call is
+    /// not listed: the caller determines whether anything depends on it.
     pub fn decide(
         &self,
         question: &'static str,
@@ -175,7 +178,7 @@ impl Predicates {
         self.decisions.borrow_mut().close_calls.push(call);
     }
 
-    /// Another judge of the same resolution, who has decided nothing yet.
+    /// New predicates with the same resolution and no decisions.
     pub fn another(&self) -> Self {
         Self {
             zeros: self.zeros,
@@ -183,7 +186,7 @@ impl Predicates {
         }
     }
 
-    /// Notes what lies within the resolution and is proven to be apart.
+    /// Records a pair within the resolution that is proven not to coincide.
     pub fn record_unproven(&self, question: &'static str, place: [f64; 3], distance: f64) {
         self.doubts.borrow_mut().push(CloseCall {
             question,
@@ -193,22 +196,22 @@ impl Predicates {
         });
     }
 
-    /// The first of what lies within the resolution and is proven to be apart.
+    /// The first recorded pair within the resolution that is proven not to coincide.
     pub fn first_unproven(&self) -> Option<CloseCall> {
         self.doubts.borrow().first().cloned()
     }
 
-    /// Counts zeros that were proven.
+    /// Adds to the count of proven zeros.
     pub fn count_proven(&self, zeros: u64) {
         self.decisions.borrow_mut().exact += zeros;
     }
 
-    /// Counts zeros of which no more is known than the resolution.
+    /// Adds to the count of zeros known to the resolution only.
     pub fn count_assumed(&self, zeros: u64) {
         self.decisions.borrow_mut().coincident += zeros;
     }
 
-    /// Takes over what another judge has counted, and gives the close calls, not yet listed.
+    /// Adds the counts of `other` and returns its close calls, not yet listed.
     pub fn take(&self, other: Self) -> Vec<CloseCall> {
         self.doubts.borrow_mut().extend(other.doubts.into_inner());
         let other = other.decisions.into_inner();
@@ -230,8 +233,8 @@ impl Predicates {
         self.classify(question, distance, place) == Side::On
     }
 
-    /// The side by more bits. What cannot be distinguished from the edge of the resolution lies on it, and
-    /// coincides.
+    /// The side by more bits. A distance that cannot be distinguished from the edge of the
+    /// resolution counts as coincident.
     fn refined_side(&self, distance: &impl CertifiedDistance) -> Side {
         let Some(resolution) = from_f64(self.resolution) else {
             return Side::On;
@@ -249,14 +252,14 @@ impl Predicates {
         Side::On
     }
 
-    /// Whether `distance` is within the resolution, without counting it: for searches that ask many
-    /// times before one decision is made.
+    /// Whether `distance` is within the resolution, without counting: for searches that evaluate
+    /// many candidates before one decision.
     pub fn within<N: Float>(&self, distance: N) -> bool {
         distance.abs() <= self.resolution()
     }
 
-    /// Whether a decision made on `distance` would be a close call, or coincide: for a search that
-    /// may look elsewhere.
+    /// Whether `distance` would coincide or be a close call: for searches that can choose another
+    /// candidate.
     pub fn is_close<N: Float>(&self, distance: N) -> bool {
         distance.abs() < self.reach()
     }
@@ -272,7 +275,7 @@ impl Predicates {
         }
     }
 
-    /// The decisions so far; the close calls of one question at one place stand once.
+    /// The decisions so far. Close calls of the same question at the same place are listed once.
     pub fn decisions(&self) -> DecisionStats {
         let mut decisions = self.decisions.borrow().clone();
         let mut kept: Vec<CloseCall> = Vec::new();

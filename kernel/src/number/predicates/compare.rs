@@ -1,11 +1,11 @@
-//! What is asked of one number, by those who decide.
+//! Comparison of computed numbers.
 
 use crate::number::float::Float;
 
-/// The questions about a number that a construction computed: it is taken at its word, as the
-/// [`CertifiedDistance`](super::CertifiedDistance) is that it makes.
+/// Comparisons of a number that a construction computed. The number is taken as exact, as it is as
+/// a [`CertifiedDistance`](super::CertifiedDistance).
 ///
-/// What is not a number answers no to each of them.
+/// Every comparison with NaN is false.
 pub trait Compare: Float {
     /// Whether it is greater than zero.
     #[inline]
@@ -19,20 +19,20 @@ pub trait Compare: Float {
         self < Self::ZERO
     }
 
-    /// Whether it is the very same number: a value that was handed on, or nothing left to divide by.
-    /// It says nothing of what coincides.
+    /// Whether it is the identical number: a value that was passed on, or a zero divisor. This says
+    /// nothing about coincidence.
     #[inline]
     fn is_exactly(self, other: Self) -> bool {
         self == other
     }
 
-    /// Whether a distance, of either sign, is no more than `reach`.
+    /// Whether its absolute value is at most `reach`.
     #[inline]
     fn is_within(self, reach: Self) -> bool {
         self.abs() <= reach
     }
 
-    /// Whether it is more than `limit`.
+    /// Whether it is greater than `limit`.
     #[inline]
     fn is_beyond(self, limit: Self) -> bool {
         self > limit
@@ -44,25 +44,25 @@ pub trait Compare: Float {
         self < limit
     }
 
-    /// Whether it is `limit` or more.
+    /// Whether it is at least `limit`.
     #[inline]
     fn reaches(self, limit: Self) -> bool {
         self >= limit
     }
 
-    /// Whether it is `limit` or less.
+    /// Whether it is at most `limit`.
     #[inline]
     fn is_at_most(self, limit: Self) -> bool {
         self <= limit
     }
 
-    /// Whether a parameter lies in a range, its ends included.
+    /// Whether a parameter lies in a closed range.
     #[inline]
     fn lies_in(self, [lo, hi]: [Self; 2]) -> bool {
         lo <= self && self <= hi
     }
 
-    /// Whether a parameter lies between the ends of a range.
+    /// Whether a parameter lies in an open range.
     #[inline]
     fn lies_between(self, [lo, hi]: [Self; 2]) -> bool {
         lo < self && self < hi
@@ -104,8 +104,8 @@ mod tests {
     fn a_limit_belongs_to_what_is_within_it() {
         let is = |x: f64| {
             assert_eq!(all(x), all(F237::from_f64(x)));
-            let told = all(x).map(|yes| if yes { '1' } else { '0' });
-            told.into_iter().collect::<String>()
+            let answers = all(x).map(|yes| if yes { '1' } else { '0' });
+            answers.into_iter().collect::<String>()
         };
         assert_eq!(is(-1.0), "0101010100");
         assert_eq!(is(0.0), "0001010100");

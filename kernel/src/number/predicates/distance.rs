@@ -1,4 +1,4 @@
-//! Distances, and to how many digits they are known.
+//! Signed distances with certified ranges.
 
 use crate::number::float::Float;
 use crate::number::interval::Interval;
@@ -6,22 +6,22 @@ use crate::number::rational::{Rational, to_f64};
 use crate::number::rational_interval::RationalInterval;
 use crate::number::separation_bound::SeparationBound;
 
-/// A signed distance between geometric things, in the part's unit.
+/// A signed distance between geometric objects, in the part's unit.
 pub trait CertifiedDistance {
     /// A certified range, in f64.
     fn range(&self) -> Interval;
 
-    /// A certified range computed to so many bits; none where no more is known.
+    /// A certified range computed to so many bits; `None` if no more is known.
     fn refined(&self, bits: usize) -> Option<RationalInterval>;
 
-    /// The number of bits after the point from which on a distance that is still zero is zero; none
-    /// where no such bound is known.
+    /// The separation bound: the number of bits after the binary point that prove a value to be
+    /// zero. `None` if no bound is known.
     fn separation(&self) -> Option<usize> {
         None
     }
 }
 
-/// A distance that is a construction's: taken at its word.
+/// A distance computed by a construction: it is taken as exact.
 impl<N: Float> CertifiedDistance for N {
     fn range(&self) -> Interval {
         Interval::point(self.rounded())
@@ -32,7 +32,7 @@ impl<N: Float> CertifiedDistance for N {
     }
 }
 
-/// A distance that is known without rounding.
+/// An exact distance.
 impl CertifiedDistance for &Rational {
     fn range(&self) -> Interval {
         let nearest = to_f64(self);

@@ -1,17 +1,16 @@
-//! The one place that decides signs and coincidence.
+//! The predicates: the only place that decides signs and coincidence.
 //!
-//! Every question that shapes topology ends here as a distance between geometric things, in the
-//! part's unit, and leaves as an enum. What lies within the resolution of the part's one resolution
-//! coincides; what lies outside is apart, by its certified sign. A distance within a hundred times
-//! the resolution on either side of it is a close call and is listed.
+//! Every question that shapes topology is put as a distance between geometric objects, in the
+//! part's unit, and is answered by an enum. Distances within the part's one resolution coincide.
+//! Distances outside it are classified by their certified sign. A distance within a factor of 100
+//! of the resolution, on either side, is a close call and is listed.
 //!
-//! A relation between two surfaces is a [`CertifiedDistance`] that is known to more than one precision: its
-//! range in f64 tells nearly always; where the edge of the resolution lies in the range, ranges of
-//! growing precision do.
+//! A relation between two surfaces is a [`CertifiedDistance`], which can be evaluated to several
+//! precisions. Its f64 range nearly always decides. Where the edge of the resolution lies in that
+//! range, ranges of growing precision decide.
 //!
-//! What is asked of a number that a construction computed, of its sign, or whether it exceeds a
-//! limit, is asked by the words of [`Compare`] and [`Side::new`]: nothing that decides compares numbers
-//! by operators of its own.
+//! Signs and limits of computed numbers are tested by [`Compare`] and [`Side::new`]. Code that
+//! decides never compares numbers by operators.
 
 mod classify;
 mod compare;
@@ -26,20 +25,20 @@ use super::float::Float;
 /// The factor on either side of the resolution within which a decision is a close call.
 pub(crate) const CLOSE: f64 = 100.0;
 
-/// The default resolution: this times the size of the part.
+/// The default resolution, relative to the part's size.
 pub const RELATIVE_RESOLUTION: f64 = 1e-11;
 
-/// The finest resolution of numbers of 237 bits, in terms of the part's size: of what a description
-/// says in numbers of a few dozen digits, what lies nearer is one.
+/// The finest resolution of 237-bit numbers, relative to the part's size. Descriptions give numbers
+/// to a few dozen digits, so closer objects are one.
 pub const FINEST_RESOLUTION: f64 = 1e-45;
 
 /// The relative rounding error allowed to a short chain of operations on f64 values.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The side of something that a point lies on.
+/// The side of a surface on which a point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Side {
-    /// Within the surface: the negative side.
+    /// Inside the surface: the negative side.
     Inside,
     /// On the surface, within the resolution.
     On,
@@ -48,8 +47,8 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side of a signed distance, where what is no more than `within` is on the surface, and so
-    /// is what is not a number.
+    /// The side of a signed distance. A distance of at most `within` is on the surface, and so is
+    /// NaN.
     #[inline]
     pub fn new<N: Float>(distance: N, within: N) -> Self {
         if distance > within {
@@ -61,7 +60,7 @@ impl Side {
         }
     }
 
-    /// The side seen with the surface turned over.
+    /// The side with the surface's orientation reversed.
     pub fn flipped(self) -> Self {
         match self {
             Self::Inside => Self::Outside,
@@ -74,37 +73,37 @@ impl Side {
 /// What counts as zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CoincidencePolicy {
-    /// What lies within the resolution.
+    /// A value within the resolution.
     #[default]
     ByResolution,
-    /// What is zero, and nothing else.
+    /// Only a value that is zero.
     Exact,
 }
 
-/// A decision that was closer than a hundred to one.
+/// A decision within a factor of 100 of the resolution.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct CloseCall {
-    /// What was asked.
+    /// The question.
     pub question: &'static str,
     /// Where, in the part's frame and unit.
     pub place: [f64; 3],
-    /// The distance that decided, in the part's unit.
+    /// The distance on which the decision was made, in the part's unit.
     pub distance: f64,
-    /// Whether it concerns nothing but the place: else all of what was asked about.
+    /// Whether it concerns this place only, rather than the two objects as a whole.
     pub local: bool,
 }
 
-/// How the decisions of one evaluation were made.
+/// Statistics of the decisions of one evaluation.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct DecisionStats {
-    /// Settled by intervals of f64 values.
+    /// Decided by f64 intervals.
     pub filtered: u64,
-    /// Settled with more bits than f64 values have, either way.
+    /// Decided with more bits than f64 has, whatever the result.
     pub refined: u64,
-    /// Settled by an exact zero test.
+    /// Decided by an exact zero test.
     pub exact: u64,
-    /// Taken as coincident by the resolution.
+    /// Counted as coincident by the resolution.
     pub coincident: u64,
-    /// Closer than a hundred to one, in the order met.
+    /// Decisions within a factor of 100 of the resolution, in order of occurrence.
     pub close_calls: Vec<CloseCall>,
 }

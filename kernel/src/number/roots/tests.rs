@@ -27,17 +27,17 @@ fn what_nearly_touches_is_told_once() {
         let above = misses(|t| t * t + k(near), breaks);
         assert_eq!(above.len(), 1, "{above:?}");
         assert!((above[0] - near).abs() < 1e-15);
-        // What leads on to a root is no miss, however slowly it does.
+        // A slow descent to a root is not a near miss.
         let flat = misses(|t| t * t * t * t, breaks);
         assert!(flat.is_empty(), "{flat:?}");
     }
-    // Nor is a short piece of it that is hardly steeper than level.
+    // Nor is a short piece of it that is hardly steeper than a constant.
     let flat = misses(|t| t * t * t * t, &[-1.0, 2e-3, 2.005e-3, 1.0]);
     assert!(flat.is_empty(), "{flat:?}");
-    // Between two roots the greatest value is told.
+    // The maximum between two roots is reported.
     let between = misses(|t| t * t - k(near), &[-1.0, 1.0]);
     assert_eq!(between, [-near]);
-    // A closed curve may start at its nearest.
+    // A closed curve may start at its closest point.
     assert_eq!(misses(|t| t * t + k(near), &[0.0, 1.0]), [near]);
     assert_eq!(misses(|t| t * k(0.0) + k(near), &[0.0, 4.0]), [near]);
     assert!(misses(|t| t - k(near), &[-1.0, 0.0, 1.0]).is_empty());
@@ -81,7 +81,7 @@ fn roots_apart_by_more_than_the_band_stay_apart() {
 
 #[test]
 fn rounding_at_the_edge_of_the_band_makes_no_roots() {
-    // A triple root, and noise of a thousandth of the resolution.
+    // A triple root, with noise of a thousandth of the resolution.
     let noise = |t: Interval| Interval::point(1e-14 * (t.mid() * 1e9).sin());
     let f = |t: Interval| {
         let x = Jet::variable(t) - k(0.3);
@@ -107,8 +107,8 @@ fn trigonometric_roots_and_a_zero_function() {
 
 #[test]
 fn a_crossing_lies_in_its_cluster() {
-    // Flat next to 0, where it touches; the crossing is where it has long bent away again, and
-    // the pieces next to it are within the resolution.
+    // Flat at 0, where it touches zero. The crossing is far from there, and the pieces close to it
+    // are within the resolution.
     let f = |t: Jet<Interval>| t.square() * t.square() * (k(1.0) - t).scale(1e-8);
     let r = roots(f, &[0.0, 0.5, 1.0 - 1e-4, 1.0 + 1e-4, 1.5]);
     let [touch, crossing] = r.as_slice() else {
@@ -126,8 +126,8 @@ fn a_root_at_the_very_end_is_kept() {
     assert!((r[0].t - 1.0).abs() < 1e-11);
 }
 
-/// Next to zero, and known to no better than a little more than the resolution at every point: halved down
-/// to the last digit it would be told in millions of pieces.
+/// A function close to zero, known at every point only to slightly more than the resolution.
+/// Halving to the last digit would need millions of pieces.
 #[test]
 fn what_rounding_hides_is_told_in_few_pieces() {
     let asked = std::cell::Cell::new(0);
@@ -153,8 +153,8 @@ fn what_rounding_hides_is_told_in_few_pieces() {
     assert!(asked.get() < 10_000, "{}", asked.get());
 }
 
-/// Along a curve that is solved for ranges are far wider than values. What runs along zero by 1e-20 all
-/// over a piece is distinguished from the polynomial that it is, not by halving down to where it starts.
+/// Along a curve whose points are solved for, ranges are far wider than values. A function that is
+/// 1e-20 over a whole piece is distinguished from zero by a polynomial model, not by halving.
 #[test]
 fn what_runs_along_zero_is_told_at_once() {
     struct Along<'a>(&'a Cell<usize>);

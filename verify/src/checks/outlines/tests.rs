@@ -7,7 +7,7 @@ use premio_csg::tree::Tree;
 use premio_visibility::contours;
 use premio_visibility::contours::{Contour, ContourKind, ContourPiece};
 
-/// Limbs before and behind, creases, a smooth edge, a blind hole, a torus with cusps.
+/// Limbs in front and behind, creases, a smooth edge, a blind hole, a torus with cusps.
 const PARTS: [&str; 4] = [
     "P = SPH(R=2) UN CYL(R=1, H=4) AT (MOVX=0.5)",
     "P = BLO(X=4, Y=3, Z=2) DIF CYL(R=1, H=2) AT (MOVX=1.5, MOVY=1.4, MOVZ=0.5) \
@@ -71,7 +71,7 @@ impl Part {
     }
 }
 
-/// A line across the window meets a curve as long as its radius once in three times.
+/// A line across the window crosses a curve as long as its radius with probability one third.
 const LONG: f64 = 0.6;
 
 const VIEWS: [&str; 3] = ["perspective 2", "perspective 5", "orthographic 1"];
@@ -91,7 +91,7 @@ fn every_change_has_its_contour() {
 
 #[test]
 fn a_wall_narrower_than_the_last_interval_has_its_contours() {
-    // It leans by 2e-7, and what is behind it begins and ends in its image.
+    // It leans by 2e-7, and the bodies behind it begin and end in its image.
     let part = Part::new(
         "A = CYL(R=1, H=3)\n\
          B = BLO(X=4, Y=4, Z=8) AT (MOVY=-2, MOVZ=-4, ROTY=0.00001, MOVX=0.3)\n\
@@ -160,8 +160,8 @@ fn a_visible_piece_that_is_said_to_be_hidden_is_missed() {
     assert!(marked > 20, "{marked}");
 }
 
-/// Two cones touch along a ruling, in the plane of a third one's base: which of them is met next to
-/// it is not to be told.
+/// Two cones are tangent along a ruling in the plane of a third one's base. Which of them is hit
+/// close to it is ambiguous.
 #[test]
 fn surfaces_that_touch_are_not_told_apart() {
     let part =

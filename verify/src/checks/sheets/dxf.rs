@@ -1,4 +1,4 @@
-//! The strokes of a sheet that was written as DXF.
+//! Reads the strokes of a sheet written as DXF.
 
 use super::Placing;
 use nalgebra::{Point2, Vector2};
@@ -11,7 +11,7 @@ type Group<'t> = (u32, &'t str);
 
 /// The strokes of the views on a sheet, in the coordinates of the drawing.
 pub(super) fn read(text: &str, sheet: &Sheet, paper: &Placing) -> Result<Vec<Stroke>, String> {
-    // The part has its true size: a millimetre on paper is this many units.
+    // The part is at true size: a millimetre on paper is this many units.
     let unit = match sheet.scale {
         Some(_) => sheet.factor,
         None => 1.0,
@@ -49,7 +49,8 @@ pub(super) fn read(text: &str, sheet: &Sheet, paper: &Placing) -> Result<Vec<Str
     Ok(strokes)
 }
 
-/// What a layer of the document shows; none of the frame and the title block.
+/// The layer of the drawing that a layer of the document shows; none for the frame and the title
+/// block.
 fn layer(name: &str) -> Option<(Layer, bool)> {
     let (kind, seen) = name.rsplit_once('_')?;
     let mut all = Layer::ALL.into_iter();
@@ -83,7 +84,7 @@ impl Entity<'_> {
         self.paper.back(x * self.unit, y * self.unit)
     }
 
-    /// The point of the group `code`, whose y is ten on.
+    /// The point of the group `code`; its y has the code plus ten.
     fn point(&self, code: u32) -> Result<Point2<f64>, String> {
         Ok(self.place(self.number(code)?, self.number(code + 10)?))
     }
@@ -127,7 +128,7 @@ impl Entity<'_> {
     }
 }
 
-/// How far an arc runs; a whole turn where it ends where it starts.
+/// The angle of an arc; a whole turn if it ends where it starts.
 fn sweep(from: f64, to: f64) -> f64 {
     let sweep = (to - from).rem_euclid(TAU);
     if sweep > 0.0 { sweep } else { TAU }

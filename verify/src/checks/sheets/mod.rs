@@ -1,9 +1,9 @@
-//! Whether a sheet shows what it should: written as SVG and as DXF, it is read back and held against
-//! the contours.
+//! Checks that a sheet shows what it should: it is written as SVG and as DXF, read back and
+//! compared with the contours.
 //!
-//! Every stroke lies on a contour of its kind and visibility, every drawn contour on a stroke, a
-//! visible one on a visible stroke; no two strokes share a stretch; and both formats have the same
-//! lengths.
+//! Every stroke must lie on a contour of its kind and visibility. Every drawn contour must lie on a
+//! stroke, and a visible one on a visible stroke. No two strokes may overlap. Both formats must
+//! have the same lengths.
 
 mod dxf;
 mod svg;
@@ -21,78 +21,79 @@ use premio_visibility::camera::projection::Projection;
 use premio_visibility::contours::ImageCurve;
 use std::fmt;
 
-/// Where on a stroke it is held against contours and other strokes. Not in the middle: there others
-/// cross what is symmetric.
+/// The fractions of a stroke at which it is compared with contours and other strokes. The middle is
+/// avoided: there others cross a symmetric stroke.
 const ON_STROKES: [f64; 10] = [
     0.003, 0.031, 0.08, 0.17, 0.31, 0.57, 0.79, 0.92, 0.963, 0.996,
 ];
-/// Where on a piece of a contour it is held against strokes.
+/// The fractions of a contour's piece at which it is compared with strokes.
 const ON_PIECES: [f64; 5] = [0.07, 0.23, 0.47, 0.71, 0.94];
-/// Where curves touch they are within the tolerance over a stretch of this many times the root of the
-/// tolerance and the size: they part by the square of the way.
+/// The length over which touching curves are within the tolerance, in multiples of the square root
+/// of tolerance times size: their distance grows quadratically.
 const TOUCHING: f64 = 4.0;
-/// Lines that fall on one another do so by much less than the drawing's tolerance, of which this is a
-/// part: lines that are nearly so are two where their ends are farther apart than that.
+/// Lines that coincide do so within this fraction of the drawing's tolerance. Lines that nearly
+/// coincide are two if their ends are farther from each other than that.
 const TOGETHER: f64 = 1.0 / 64.0;
-/// How many strokes are looked at, at the most.
+/// The largest number of strokes examined.
 const MOST: usize = 600;
-/// How far polylines may be off their curves here, as a part of the drawing's size.
+/// The deviation of polylines from their curves here, relative to the drawing's size.
 const FINE: f64 = 1.0 / (1u32 << 24) as f64;
-/// Digits of lengths on paper, in millimetres.
+/// The resolution of lengths on paper, in millimetres.
 const DIGITS: f64 = 1.0 / 8192.0;
-/// How many faults are named.
+/// The number of faults that are reported individually.
 const NAMED: usize = 5;
 
-/// What is wrong on a sheet.
+/// A fault of a sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SheetFault {
     /// A stroke lies on no contour of its kind.
     Stray(Point2<f64>),
-    /// A contour that is drawn is on no stroke, or a visible one on hidden strokes only.
+    /// A drawn contour is on no stroke, or a visible one on hidden strokes only.
     Undrawn(Point2<f64>),
-    /// Two strokes share a stretch.
+    /// Two strokes overlap.
     Twice(Point2<f64>),
-    /// What is read back has another length than what was drawn.
+    /// The length read back differs from the one drawn.
     Length {
         /// The format.
         format: &'static str,
-        /// What was drawn.
+        /// The length drawn.
         drawn: f64,
-        /// What was read back.
+        /// The length read back.
         read: f64,
     },
-    /// What is written is not read back.
+    /// The sheet cannot be read back.
     Unreadable(String),
 }
 
-/// What was found on a sheet.
+/// The result for a sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SheetReport {
-    /// How many places of strokes and contours are right.
+    /// The number of points of strokes and contours that are right.
     pub right: usize,
-    /// What is wrong.
+    /// The faults.
     pub faults: Vec<SheetFault>,
 }
 
-/// How near is near on a sheet, in the image.
+/// The tolerances on a sheet, in image units.
 struct Scale {
-    /// How far what is written may be off.
+    /// The error of written coordinates.
     tolerance: f64,
-    /// How far lines are apart that are certainly two; none where too few digits are written to tell.
+    /// The distance from which on two lines are certainly distinct; none if too few digits are
+    /// written.
     apart: Option<f64>,
     /// The drawing's size.
     size: f64,
 }
 
-/// Where a stroke was found on a sheet, in the drawing's coordinates.
+/// The position of a stroke's view on a sheet, to convert to the drawing's coordinates.
 struct Placing {
     at: Point2<f64>,
     factor: f64,
 }
 
 impl SheetReport {
-    /// Draws contours on a sheet, with and without smooth edges, and reads it back. `size` is that of
-    /// the drawing.
+    /// Draws contours on a sheet, with and without smooth edges, and reads it back. `size` is that
+    /// of the drawing.
     pub fn new(seen: &Contours, bounds: &Aabb, size: f64) -> Self {
         let mut report = Self::default();
         for smooth in [false, true] {
@@ -152,7 +153,7 @@ impl SheetReport {
         }
     }
 
-    /// Whether as much was read back as was drawn.
+    /// Compares the lengths read back with those drawn.
     fn lengths(
         &mut self,
         drawing: &Drawing,
@@ -221,7 +222,7 @@ impl SheetReport {
             };
             let passing = places.each_ref().map(others);
             for (k, row) in passing.windows(3).enumerate() {
-                // Three times in a row they do not only cross or touch.
+                // Three consecutive points exclude a mere crossing or touching.
                 let all = row[0]
                     .iter()
                     .any(|j| row[1..].iter().all(|r| r.contains(j)));
@@ -233,7 +234,7 @@ impl SheetReport {
         self.pieces(seen, &projection, &strokes, tolerance, read);
     }
 
-    /// Whether every piece that is drawn is on a stroke.
+    /// Whether every drawn piece is on a stroke.
     fn pieces(
         &mut self,
         seen: &Contours,
@@ -308,7 +309,7 @@ fn connected(pieces: Vec<UndrawnPiece>) -> Vec<Vec<UndrawnPiece>> {
     groups
 }
 
-/// How many rounded points a shape is written by.
+/// The number of rounded points by which a shape is written.
 fn corners(shape: &StrokeShape) -> usize {
     match shape {
         StrokeShape::Path(points) => points.len(),
@@ -319,7 +320,7 @@ fn corners(shape: &StrokeShape) -> usize {
 }
 
 impl Placing {
-    /// The point of the drawing that lies at a point of the paper, y up.
+    /// The point of the drawing at a point of the paper, y up.
     fn back(&self, x: f64, y: f64) -> Point2<f64> {
         Point2::new((x - self.at.x) / self.factor, (y - self.at.y) / self.factor)
     }
@@ -363,7 +364,7 @@ mod tests {
     use super::*;
     use crate::checks::fixture::{FrontView, front_view};
 
-    /// What is found of the strokes of a block with a blind hole from the front, after a change.
+    /// The report on a changed front view of a block with a blind hole.
     fn report(change: impl Fn(&mut Vec<Stroke>)) -> SheetReport {
         let block = "P = BLO(X=60,Y=40,Z=20) DIF CYL(R=8,H=20) AT (MOVX=30,MOVY=20,MOVZ=8)";
         let FrontView {

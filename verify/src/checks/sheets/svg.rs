@@ -1,11 +1,11 @@
-//! The strokes of a sheet that was written as SVG.
+//! Reads the strokes of a sheet written as SVG.
 
 use super::Placing;
 use nalgebra::{Point2, Vector2};
 use premio_drawing::{Layer, Stroke, StrokeShape};
 use std::f64::consts::TAU;
 
-/// The strokes of the views on a sheet of a height, in the coordinates of the drawing.
+/// The strokes of the views on a sheet of the given height, in the drawing's coordinates.
 pub(super) fn read(text: &str, height: f64, paper: &Placing) -> Result<Vec<Stroke>, String> {
     let mut strokes = Vec::new();
     for tag in text.split("<path ").skip(1) {
@@ -43,8 +43,8 @@ fn attribute<'t>(tag: &'t str, name: &str) -> Option<&'t str> {
     Some(&tag[from..from + length])
 }
 
-/// The shapes of a course: a line, a polyline, or arcs of an ellipse, which are one where there are
-/// two.
+/// The shapes of a path: a line, a polyline, or arcs of an ellipse. Two arcs of one ellipse are
+/// merged.
 fn shapes(
     course: &str,
     place: &dyn Fn([f64; 2]) -> Point2<f64>,
@@ -66,7 +66,7 @@ fn shapes(
             ('A', &[rx, ry, turn, 0.0, 0.0, x, y]) => {
                 let from = *points.last().ok_or("an arc without a start")?;
                 let ends = [place(from), place([x, y])];
-                // The page's y is down.
+                // The page's y points down.
                 arcs.push(arc(ends, [rx / factor, ry / factor], -turn.to_radians()));
                 points.push([x, y]);
             }

@@ -1,4 +1,4 @@
-//! Curves as a STEP file has them, with the parameters that a reader finds.
+//! Curves as represented in a STEP file, with the parameters that a reader computes.
 
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
@@ -28,13 +28,13 @@ impl Placement {
 #[derive(Clone, Debug)]
 pub struct StepSpline<const D: usize> {
     pub degree: usize,
-    /// Every knot as often as it counts.
+    /// The knots, repeated by their multiplicity.
     pub knots: Vec<f64>,
     pub points: Vec<[f64; D]>,
 }
 
 impl<const D: usize> StepSpline<D> {
-    /// Whether there are as many knots as degree and control points ask for, in order.
+    /// Whether the knots are ordered and as many as degree and control points require.
     pub fn is_sound(&self) -> bool {
         self.degree > 0
             && self.points.len() > self.degree
@@ -100,7 +100,7 @@ impl StepCurve {
         matches!(self, Self::Ellipse { .. })
     }
 
-    /// The parameter that a reader gives to a point of the curve; of a spline it is an end's.
+    /// The parameter that a reader assigns to a point of the curve; for a spline that of an end.
     pub fn parameter(&self, p: &Point3<f64>, is_start: bool) -> f64 {
         match self {
             Self::Line { origin, direction } => {
@@ -146,7 +146,7 @@ impl StepCurve {
         }
     }
 
-    /// Parameters between which the curve is smooth and bends little, from `lo` to `hi`.
+    /// Parameters from `lo` to `hi` between which the curve is smooth and has little curvature.
     pub fn stops(&self, [lo, hi]: [f64; 2]) -> Vec<f64> {
         let mut stops = match self {
             Self::Spline(spline) => {
@@ -165,5 +165,5 @@ impl StepCurve {
     }
 }
 
-/// Into how many pieces a curve of a formula is divided.
+/// The number of pieces into which a curve with a formula is divided.
 const PIECES: u32 = 8;

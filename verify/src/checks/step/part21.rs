@@ -1,32 +1,33 @@
-//! The clear text of ISO 10303-21, as far as the project writes it: instances with their parameters.
+//! The clear text of ISO 10303-21, as far as this project writes it: instances with their
+//! parameters.
 
 use std::collections::HashMap;
 
 /// A parameter of an instance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StepValue {
-    /// A number, whole or not.
+    /// A number, integral or not.
     Number(f64),
     /// Another instance.
     Instance(u32),
-    /// A string, as it is written between its quotes.
+    /// A string, as written between its quotes.
     Text(String),
-    /// A name between points.
+    /// A name between full stops.
     Enumeration(String),
-    /// Values in brackets.
+    /// Values in parentheses.
     List(Vec<StepValue>),
     /// `$` or `*`.
     Absent,
 }
 
-/// An instance: its entity and the parameters; of a complex instance every part with its own.
+/// An instance: its entity and parameters. A complex instance has several entities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepInstance {
     /// The entities with their parameters.
     pub parts: Vec<(String, Vec<StepValue>)>,
 }
 
-/// What is wrong with a file.
+/// Why a file cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepReadError {
     /// The text breaks the grammar.
@@ -34,17 +35,17 @@ pub enum StepReadError {
     Grammar {
         /// The line, from 1.
         line: usize,
-        /// What stands there.
+        /// What was found.
         found: String,
-        /// What should.
+        /// What was expected.
         expected: &'static str,
     },
-    /// An instance has not what its entity has.
+    /// An instance does not have the form of its entity.
     #[error("#{id}: expected {expected}")]
     Instance {
         /// The number of the instance.
         id: u32,
-        /// What it should be or have.
+        /// What was expected.
         expected: &'static str,
     },
 }
@@ -76,7 +77,7 @@ pub fn read(text: &str) -> Result<Instances, StepReadError> {
     Ok(instances)
 }
 
-/// A place in a line.
+/// A position in a line.
 struct Cursor<'t> {
     line: &'t str,
     at: usize,
@@ -106,7 +107,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// What comes while characters are of a kind.
+    /// The characters up to the first that is not of a kind.
     fn while_is(&mut self, is: impl Fn(char) -> bool) -> String {
         let rest = self.rest();
         let end = rest.find(|c| !is(c)).unwrap_or(rest.len());
@@ -164,7 +165,7 @@ impl Cursor<'_> {
                 Ok(StepValue::Absent)
             }
             'A'..='Z' => {
-                // A typed value stands for the value.
+                // A typed value is replaced by its value.
                 let (_, mut values) = self.part()?;
                 values.pop().ok_or_else(|| self.error("a value"))
             }
@@ -196,7 +197,7 @@ impl Cursor<'_> {
             self.take('\'', "a string")?;
             text += &self.while_is(|c| c != '\'');
             self.take('\'', "the end of a string")?;
-            // Two quotes are one in the string.
+            // Two quotes represent one in the string.
             if !self.rest().starts_with('\'') {
                 return Ok(StepValue::Text(text));
             }

@@ -1,4 +1,4 @@
-//! The rules that hold for the solids of a STEP file.
+//! The rules for the solids of a STEP file.
 
 use super::curve::StepCurve;
 use super::shape::{StepEdge, StepEdgeUse, StepFace, StepShape};
@@ -13,46 +13,47 @@ use std::fmt;
 pub struct Known {
     /// The part's resolution.
     pub resolution: f64,
-    /// How far curves may be off surfaces.
+    /// The allowed distance of curves from surfaces.
     pub accuracy: f64,
-    /// The diagonal of its box.
+    /// The diagonal of its bounding box.
     pub size: f64,
-    /// The middle of its box.
+    /// The centre of its bounding box.
     pub middle: Point3<f64>,
     pub volume: f64,
     pub area: f64,
 }
 
-/// A rule that is broken, with a place.
+/// A broken rule, with a location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broken {
     pub rule: StepRule,
     pub place: Point3<f64>,
 }
 
-/// The rules.
+/// A rule, with the value that breaks it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepRule {
-    /// Vertices lie on their curves; an edge's points are off its curve by this.
+    /// Vertices lie on their curves; the distance of an edge's point from its curve.
     VertexOnCurve(f64),
-    /// An edge is longer than the resolution; one is so long.
+    /// An edge is longer than the resolution; its length.
     EdgeLength(f64),
-    /// Where an edge with two ends starts, rounding cannot make a whole period of its parameter.
+    /// At the start of an edge with two ends, rounding cannot turn the parameter into a whole
+    /// period.
     StartParameter(f64),
-    /// Edges lie on their surfaces; one is off by this.
+    /// Edges lie on their surfaces; the distance of an edge.
     EdgeOnSurface(f64),
-    /// An edge's curve in the parameters of a surface is the curve; it is off by this.
+    /// An edge's curve in the parameters of a surface equals the curve in space; their distance.
     ParametricCurve(f64),
-    /// Edges of a loop follow one another.
+    /// Consecutive edges of a loop are connected.
     Chain,
-    /// A loop closes in the parameters of the surface; it is open by so many units of length or turns.
+    /// A loop closes in the parameters of the surface; the gap in units of length or turns.
     ClosedLoop([f64; 2]),
-    /// In a shell every edge is used twice, with opposite senses; one has so many uses, and a sum of
-    /// senses.
+    /// In a shell every edge is used twice, with opposite senses; the number of uses and the sum of
+    /// their senses.
     TwoUses(usize, i32),
-    /// Outer shells enclose material, voids do not; a shell encloses so much.
+    /// Outer shells enclose material, voids do not; the volume that a shell encloses.
     Orientation(f64),
-    /// The volume by the file's curves and surfaces is the boundary's; it is this.
+    /// The volume by the file's curves and surfaces is the boundary's; that volume.
     Volume(f64),
 }
 
@@ -81,19 +82,19 @@ impl fmt::Display for Broken {
     }
 }
 
-/// What was measured.
+/// The measured values.
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
     pub broken: Vec<Broken>,
-    /// The volume; none where an edge runs through a pole, so that angles do not tell.
+    /// The volume; `None` if an edge passes through a pole, so that angles are inconclusive.
     pub volume: Option<f64>,
-    /// How far curves are off surfaces, and off those in parameters, at most.
+    /// The largest distance of curves from surfaces, and from the curves in parameters.
     pub off: f64,
     pub edges: usize,
     pub faces: usize,
 }
 
-/// Holds a shape against all rules.
+/// Checks a shape by all rules.
 pub fn measure(shape: &StepShape, known: &Known) -> Measured {
     let mut measured = Measured {
         edges: shape.edges.len(),
@@ -114,7 +115,7 @@ pub fn measure(shape: &StepShape, known: &Known) -> Measured {
                 let flow = measured.add_face(shape, face, known);
                 enclosed = enclosed.zip(flow).map(|(a, b)| a + b);
             }
-            // What encloses next to nothing is not told.
+            // A shell that encloses almost nothing is not judged.
             let least = known.size.powi(3) * QUADRATURE;
             if let Some(enclosed) = enclosed
                 && enclosed.abs() > least
@@ -128,7 +129,7 @@ pub fn measure(shape: &StepShape, known: &Known) -> Measured {
         }
     }
     measured.volume = volume;
-    // Curves may be off over the whole surface, and quadrature is good to so many digits.
+    // Curves may deviate over the entire surface, and quadrature has a limited precision.
     let allowed = known.area * known.accuracy + known.size.powi(3) * QUADRATURE;
     if let Some(volume) = volume
         && (volume - known.volume).abs() > allowed
@@ -140,13 +141,13 @@ pub fn measure(shape: &StepShape, known: &Known) -> Measured {
     measured
 }
 
-/// The relative error that quadrature is allowed.
+/// The allowed relative error of quadrature.
 const QUADRATURE: f64 = 1.0 / (1u64 << 33) as f64;
 
-/// The same of a piece of an edge.
+/// The allowed relative error for a piece of an edge.
 const FINE: f64 = 1.0 / (1u64 << 42) as f64;
 
-/// A start closer to a period than this may be taken for its end.
+/// The distance from a period within which a start may be taken for its end.
 const PERIOD: f64 = 1.0 / (1u64 << 26) as f64;
 
 fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
@@ -169,8 +170,8 @@ fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
     let points: Vec<Point3<f64>> = steps.map(|t| edge.curve.at(t).0).collect();
     let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let is_open = edge.ends[0] != edge.ends[1];
-    // Of a turn between two vertices next to each other no reader can determine whether it is a turn or
-    // nothing; between two in the very same place it is a turn.
+    // Between two vertices close to each other no reader can distinguish a full turn from an edge
+    // of length zero. Between two coincident vertices it is a full turn.
     let chord = (to - from).norm();
     let shortest = match is_open && edge.curve.is_periodic() && chord > 0.0 {
         true => length.min(chord),
@@ -188,7 +189,7 @@ fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
     broken
 }
 
-/// Edges of a shell that are not used twice, with opposite senses.
+/// Edges of a shell that are not used twice with opposite senses.
 fn misused(shape: &StepShape, shell: &[StepFace]) -> Vec<Broken> {
     let mut uses: HashMap<u32, (usize, i32)> = HashMap::new();
     for used in shell.iter().flat_map(|face| &face.loops).flatten() {
@@ -205,32 +206,32 @@ fn misused(shape: &StepShape, shell: &[StepFace]) -> Vec<Broken> {
         .collect()
 }
 
-/// A place in the parameters of a surface that moves along a loop.
+/// A position in the parameters of a surface that moves along a loop.
 struct Walk<'s> {
     surface: &'s StepSurface,
     about: Point3<f64>,
-    /// u and v, followed without leaps; none at a pole before the first edge.
+    /// u and v, continued without jumps; `None` at a pole before the first edge.
     at: Option<[f64; 2]>,
     first: Option<[f64; 2]>,
     /// Minus the integral of P du.
     flow: f64,
-    /// The pole that the last edge ended in, with u there, and the edge.
+    /// The pole at which the last edge ended, the u there, and the edge.
     pole: Option<(Pole, f64, StepEdgeUse)>,
     first_pole: Option<(Pole, StepEdgeUse)>,
-    /// A pole at which two edges meet, and u there. Where they have the same direction, or turn away
-    /// from it at once, a turn more or less may lie between them.
+    /// A pole at which two edges meet, and the u there. If they have the same direction, or turn
+    /// away from it at once, one more or one less turn may lie between them.
     cusp: Option<(Pole, f64)>,
-    /// Whether loops are run counterclockwise as the surface's normal sees them.
+    /// Whether loops are counterclockwise as seen along the surface's normal.
     along: bool,
-    /// What is closer to a pole is on it.
+    /// The distance from a pole within which a point is at the pole.
     tolerance: f64,
-    /// How far a piece's integral may be off.
+    /// The allowed error of a piece's integral.
     fine: f64,
     is_clear: bool,
 }
 
 impl Measured {
-    /// Holds a face's loops against the rules; what flows out of it, where that is told.
+    /// Checks the loops of a face. Returns the flow out of it, if it is determined.
     fn add_face(&mut self, shape: &StepShape, face: &StepFace, known: &Known) -> Option<f64> {
         let surface = &shape.surfaces[&face.surface];
         let mut flow = 0.0;
@@ -280,7 +281,7 @@ impl Measured {
         is_clear.then_some(flow)
     }
 
-    /// Holds an edge against a surface on which it lies.
+    /// Compares an edge with a surface on which it lies.
     fn hold(&mut self, edge: &StepEdge, id: u32, surface: &StepSurface, known: &Known) {
         let mut off: f64 = 0.0;
         let mut off_parametric: f64 = 0.0;
@@ -316,13 +317,13 @@ impl Measured {
     }
 }
 
-/// At how many places a piece of a curve is held against surfaces.
+/// The number of samples at which a piece of a curve is compared with surfaces.
 const PLACES: u32 = 11;
 
-/// What is closer to a pole than this part of the size is on it.
+/// The distance from a pole, relative to the size, within which a point is at the pole.
 const POLE: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Loops may be open by this part: vertices and curves are f64 values, and splines are followed.
+/// The relative gap allowed in loops: vertices and curves are f64, and splines approximate.
 const GAP: f64 = 1.0 / 1024.0;
 
 fn tail(shape: &StepShape, used: &StepEdgeUse) -> (u32, Point3<f64>) {
@@ -337,19 +338,19 @@ fn head(shape: &StepShape, used: &StepEdgeUse) -> (u32, Point3<f64>) {
     (edge.ends[k], edge.points[k])
 }
 
-/// Gauss's rule of five points: places and weights but for the middle.
+/// Gauss's five-point rule: nodes and weights without the middle one.
 const GAUSS: [[f64; 2]; 2] = [
     [0.538_469_310_105_683_1, 0.478_628_670_499_366_47],
     [0.906_179_845_938_664, 0.236_926_885_056_189_08],
 ];
-/// The weight of its middle.
+/// The weight of the middle node.
 const CENTRE: f64 = 128.0 / 225.0;
 
-/// How often a piece is halved.
+/// The number of times that a piece is halved.
 const HALVED: u32 = 12;
 
 impl Walk<'_> {
-    /// Goes along an edge.
+    /// Moves along an edge.
     fn add(&mut self, edge: &StepEdge, used: StepEdgeUse) {
         let along = used.along;
         let mut stops = edge.curve.stops(edge.range);
@@ -362,7 +363,7 @@ impl Walk<'_> {
         };
         let poles = [start, end].map(|p| self.surface.pole(&p, self.tolerance));
         for (k, pair) in stops.windows(2).enumerate() {
-            // Between the ends, so that no angle is requested at a pole.
+            // Between the ends, so that no angle is evaluated at a pole.
             let (is_first, is_last) = (k == 0, k + 2 == stops.len());
             let inner = (pair[1] - pair[0]) * INNER;
             let from = if is_first && poles[0].is_some() {
@@ -384,7 +385,7 @@ impl Walk<'_> {
         self.pole = ended.map(|(pole, at)| (pole, at[0], used));
     }
 
-    /// Comes to the start of an edge.
+    /// Moves to the start of an edge.
     fn enter(&mut self, curve: &StepCurve, t: f64, pole: Option<(Pole, StepEdgeUse)>) {
         let (p, _) = curve.at(t);
         let there = self.surface.parameters(&p);
@@ -394,7 +395,7 @@ impl Walk<'_> {
             self.first_pole = pole;
             return;
         };
-        let mut next = self.beside(there, at);
+        let mut next = self.nearest_equivalent(there, at);
         if let (Some((pole, u, last)), Some((_, used))) = (self.pole, pole) {
             next[0] = self.around_pole(pole, [u, there[0]], is_seam(last, used));
             next[1] = there[1];
@@ -402,8 +403,8 @@ impl Walk<'_> {
         self.at = Some(next);
     }
 
-    /// The angle at which a loop leaves a pole: before the one at which it came to it, as seen with
-    /// the pole above; a whole turn where a seam comes back.
+    /// The angle at which a loop leaves a pole: before the angle at which it arrived, as seen with
+    /// the pole above. For a returning seam it is a whole turn.
     fn around_pole(&mut self, pole: Pole, [from, to]: [f64; 2], is_seam: bool) -> f64 {
         let down = self.down(pole);
         let mut turned = (down * (to - from)).rem_euclid(TAU);
@@ -415,7 +416,7 @@ impl Walk<'_> {
         self.pass_pole(pole, from, down * turned)
     }
 
-    /// Into which direction of u a loop turns at a pole.
+    /// The direction of u in which a loop turns at a pole.
     fn down(&self, pole: Pole) -> f64 {
         match (pole == Pole::North) == self.along {
             true => -1.0,
@@ -429,8 +430,8 @@ impl Walk<'_> {
         to
     }
 
-    /// The same parameters next to others.
-    fn beside(&self, mut there: [f64; 2], at: [f64; 2]) -> [f64; 2] {
+    /// The equivalent parameters closest to others.
+    fn nearest_equivalent(&self, mut there: [f64; 2], at: [f64; 2]) -> [f64; 2] {
         use super::surface::SurfaceForm;
         let periodic = [
             self.surface.has_angle(),
@@ -444,7 +445,7 @@ impl Walk<'_> {
         there
     }
 
-    /// Goes along a piece of a curve: in halves, until each of them turns little and quadrature of
+    /// Moves along a piece of a curve. It is halved until it turns little and the quadrature of
     /// both halves agrees with that of the whole.
     fn piece(&mut self, curve: &StepCurve, range: [f64; 2], halvings: u32) {
         let Some(at) = self.at else { return };
@@ -470,7 +471,8 @@ impl Walk<'_> {
         self.piece(curve, [middle, to], halvings - 1);
     }
 
-    /// The integral of P du along a piece that starts at parameters, and the parameters at its end.
+    /// The integral of P du along a piece that starts at given parameters, and the parameters at
+    /// its end.
     fn integral(&self, curve: &StepCurve, [a, b]: [f64; 2], mut at: [f64; 2]) -> (f64, [f64; 2]) {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let [[inner, inner_weight], [outer, outer_weight]] = GAUSS;
@@ -484,15 +486,18 @@ impl Walk<'_> {
         let mut sum = 0.0;
         for (x, weight) in places {
             let (p, d) = curve.at(middle + half * x);
-            at = self.beside(self.surface.parameters(&p), at);
+            at = self.nearest_equivalent(self.surface.parameters(&p), at);
             let flow = self.surface.flow(at, &self.about);
             sum += weight * flow * self.surface.u_speed(&p, &d);
         }
         let (p, _) = curve.at(b);
-        (half * sum, self.beside(self.surface.parameters(&p), at))
+        (
+            half * sum,
+            self.nearest_equivalent(self.surface.parameters(&p), at),
+        )
     }
 
-    /// Comes back to the start: how far off that is in both parameters.
+    /// Returns to the start, and gives the gap in both parameters.
     fn close(&mut self) -> [f64; 2] {
         let (Some(first), Some(mut at)) = (self.first, self.at) else {
             return [0.0; 2];
@@ -513,11 +518,11 @@ impl Walk<'_> {
     }
 }
 
-/// Whether a loop comes to a pole along an edge and leaves it along the same edge, which is a seam. An edge
-/// from the pole back to it, alone in its loop, is run in one sense only.
+/// Whether a loop arrives at a pole along an edge and leaves it along the same edge, which is a
+/// seam. A single edge from the pole back to it has one sense only.
 fn is_seam(last: StepEdgeUse, next: StepEdgeUse) -> bool {
     last.edge == next.edge && last.along != next.along
 }
 
-/// How far from a pole an edge is asked first, as a part of its first piece.
+/// The distance from a pole at which an edge is first evaluated, relative to its first piece.
 const INNER: f64 = 1.0 / (1 << 20) as f64;

@@ -16,11 +16,11 @@ pub struct StepEdge {
     pub curve: StepCurve,
     /// The curves in the parameters of surfaces, by the number of the surface.
     pub on: Vec<(u32, StepSpline<2>)>,
-    /// The parameters of its ends, as a reader finds them.
+    /// The parameters of its ends, as a reader computes them.
     pub range: [f64; 2],
 }
 
-/// An edge as a loop runs along it.
+/// The use of an edge by a loop.
 #[derive(Clone, Copy, Debug)]
 pub struct StepEdgeUse {
     pub edge: u32,
@@ -37,7 +37,7 @@ pub struct StepFace {
     pub loops: Vec<Vec<StepEdgeUse>>,
 }
 
-/// What a file holds.
+/// The contents of a file.
 #[derive(Clone, Debug, Default)]
 pub struct StepShape {
     pub edges: HashMap<u32, StepEdge>,
@@ -74,7 +74,7 @@ struct Reader<'i> {
     shape: StepShape,
 }
 
-/// An instance with its number: where errors are.
+/// An instance with its number, for error messages.
 #[derive(Clone, Copy)]
 struct Entity<'i> {
     id: u32,

@@ -1,9 +1,9 @@
-//! Surfaces as a STEP file has them, and what flows through them.
+//! Surfaces as represented in a STEP file, and the flow through them.
 //!
-//! For a surface S(u, v) with F = S · (S_u × S_v) / 3 the volume that a face encloses with the
-//! origin is the integral of F over the face, and by Green's theorem that of -P du along its loops,
-//! where P is the integral of F by v. Cones count v from the apex, spheres from the south pole, so that
-//! P is zero there.
+//! For a surface S(u, v) with F = S · (S_u × S_v) / 3, the volume between a face and the origin is
+//! the integral of F over the face. By Green's theorem that is the integral of -P du along its
+//! loops, where P is the integral of F by v. For cones v is measured from the apex, for spheres
+//! from the south pole, so that P is zero there.
 
 use super::curve::Placement;
 use nalgebra::{Point3, Vector3};
@@ -16,7 +16,7 @@ pub struct StepSurface {
     pub form: SurfaceForm,
 }
 
-/// What kind of surface, with its sizes.
+/// The form of a surface, with its sizes.
 #[derive(Clone, Copy, Debug)]
 pub enum SurfaceForm {
     Plane,
@@ -37,7 +37,7 @@ pub enum SurfaceForm {
     },
 }
 
-/// A point on which angles about the axis are not defined.
+/// A point at which the angle about the axis is undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pole {
     /// An apex, or a sphere's south pole.
@@ -67,7 +67,7 @@ impl StepSurface {
         !matches!(self.form, SurfaceForm::Plane)
     }
 
-    /// The point with the parameters that ISO 10303-42 gives to a surface.
+    /// The point with given parameters, in the parameterisation of ISO 10303-42.
     pub fn point(&self, [u, v]: [f64; 2]) -> Point3<f64> {
         let Placement { origin, x, y, z } = self.place;
         let about = x * u.cos() + y * u.sin();
@@ -82,7 +82,7 @@ impl StepSurface {
         }
     }
 
-    /// The pole at a point next to it, if there is one.
+    /// The pole close to a point, if there is one.
     pub fn pole(&self, p: &Point3<f64>, tolerance: f64) -> Option<Pole> {
         let q = self.place.local(p);
         let is_on_axis = q.x.hypot(q.y) <= tolerance;
@@ -99,7 +99,7 @@ impl StepSurface {
         }
     }
 
-    /// u and v of a point, angles between -pi and pi.
+    /// u and v of a point, with angles between -pi and pi.
     pub fn parameters(&self, p: &Point3<f64>) -> [f64; 2] {
         let q = self.place.local(p);
         let rho = q.x.hypot(q.y);
@@ -112,7 +112,7 @@ impl StepSurface {
         }
     }
 
-    /// How u grows with the parameter of a curve that moves by `d` at a point.
+    /// The derivative of u along a curve that moves by `d` at a point.
     pub fn u_speed(&self, p: &Point3<f64>, d: &Vector3<f64>) -> f64 {
         let (q, d) = (self.place.local(p), self.place.turned(d));
         match self.form {
@@ -121,7 +121,7 @@ impl StepSurface {
         }
     }
 
-    /// P at a place, about a point of reference.
+    /// P at given parameters, relative to a reference point.
     pub fn flow(&self, [u, v]: [f64; 2], about: &Point3<f64>) -> f64 {
         let o = self.place.turned(&(self.place.origin - about));
         let (sin_u, cos_u) = u.sin_cos();
@@ -149,7 +149,7 @@ impl StepSurface {
         three / 3.0
     }
 
-    /// The integral of P du at a pole, from an angle to another.
+    /// The integral of P du at a pole, from one angle to another.
     pub fn flow_at_pole(&self, pole: Pole, [from, to]: [f64; 2], about: &Point3<f64>) -> f64 {
         let (SurfaceForm::Sphere { radius }, Pole::North) = (self.form, pole) else {
             return 0.0;

@@ -1,16 +1,16 @@
-//! Chains of operations: every level puts one primitive to all that is below.
+//! Chains of operations: every level adds one primitive to everything below.
 
 use crate::generator::model::{
     ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, PartModel,
 };
 use crate::generator::random::RandomChoices;
 
-/// What sets this profile's numbers apart.
+/// The random stream of this profile.
 const PURPOSE: u64 = 3;
 
-/// A chain of 100 to 250 levels as a rule, one in 20 of up to 1000, one in 200 of up to 3000. A level
-/// adds a primitive of up to a unit in a lattice, or takes it away; some have the chain as a later
-/// child, cut it with a block, take it from one, or move it.
+/// Usually a chain of 100 to 250 levels, one in 20 of up to 1000, one in 200 of up to 3000. A level
+/// adds or subtracts a primitive of up to a unit in a lattice. Some have the chain as a later
+/// child, cut it with a block, subtract it from one, or move it.
 pub(super) fn model(seed: u64) -> PartModel {
     let random = &mut RandomChoices::apart(seed, PURPOSE);
     let levels = match random.below(200) {
@@ -18,7 +18,7 @@ pub(super) fn model(seed: u64) -> PartModel {
         1..10 => random.between(250, 1000),
         _ => random.between(100, 250),
     };
-    // The lattice's side, so that one cell in three is met.
+    // The lattice's side, such that one cell in three is used.
     let side = (1.5 * (levels as f64).cbrt()).ceil() as usize;
     let mut model = PartModel::default();
     let mut chain = small(random, &mut model, side);
@@ -65,7 +65,7 @@ fn level(
     }
 }
 
-/// A block about the lattice, by up to two halves wider.
+/// A block around the lattice, larger by up to two halves.
 fn block(
     random: &mut RandomChoices,
     model: &mut PartModel,

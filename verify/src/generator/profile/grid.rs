@@ -1,11 +1,11 @@
-//! Random trees on a half-unit grid: coplanar, tangent and coaxial cases abound.
+//! Random trees on a half-unit grid, with many coplanar, tangent and coaxial cases.
 
 use crate::generator::model::{
     ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, PartModel,
 };
 use crate::generator::random::{RandomChoices, halves};
 
-/// 2 to 8 primitives with lengths and places on a half-unit grid, turned about the axes by
+/// 2 to 8 primitives with lengths and positions on a half-unit grid, rotated about the axes by
 /// multiples of 90, by 45, 30 and 17 degrees.
 pub(super) fn model(seed: u64) -> PartModel {
     let random = &mut RandomChoices::new(seed);
@@ -81,7 +81,7 @@ fn size(random: &mut RandomChoices) -> [f64; 3] {
     [0; 3].map(|_| random.half(1, 8))
 }
 
-/// A turn, perhaps, and a shift.
+/// An optional rotation, and a translation.
 pub(super) fn motion(random: &mut RandomChoices) -> Vec<ModelStep> {
     let mut steps = Vec::new();
     let axis = ModelAxis::any(random);

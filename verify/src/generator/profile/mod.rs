@@ -1,4 +1,4 @@
-//! Profiles: kinds of random trees, each hard in a way of its own.
+//! Profiles: kinds of random trees, each difficult in its own way.
 
 mod deep;
 mod grid;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// A kind of random trees. A profile and a seed are one tree, on every machine.
+/// A kind of random trees. A profile and a seed determine one tree, on every machine.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Profile {
@@ -26,7 +26,8 @@ pub enum Profile {
     Deep,
     /// One operation on 8 to 1500 primitives, most in a lattice.
     Wide,
-    /// A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing.
+    /// A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a
+    /// bearing.
     Parts,
 }
 
@@ -136,12 +137,12 @@ mod tests {
         }
     }
 
-    /// Seeds are cited: a change of a generator makes other trees of them.
+    /// Seeds are cited; a changed generator would give other trees for them.
     #[test]
     fn a_seed_stays_the_tree_that_it_is() {
         let texts = Profile::ALL.map(|p| write(&p.model(3), Format::Padl));
         insta::assert_snapshot!("small", texts[..3].join("\n"));
-        // Of the large ones only a sum.
+        // For the large ones only a checksum.
         let sum = |text: &String| {
             text.bytes().fold(7u64, |sum, b| {
                 sum.wrapping_mul(31).wrapping_add(u64::from(b))

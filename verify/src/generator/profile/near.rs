@@ -1,5 +1,5 @@
-//! Trees of the grid in which some primitives are moved, turned or grown a little, so that what
-//! coincided is missed by all orders of magnitude, above the resolution and below.
+//! Trees of the grid in which some primitives are moved, rotated or enlarged slightly. Coincidences
+//! are missed by all orders of magnitude, above and below the resolution.
 
 use super::grid;
 use crate::generator::model::{
@@ -7,12 +7,12 @@ use crate::generator::model::{
 };
 use crate::generator::random::RandomChoices;
 
-/// What sets this profile's numbers apart.
+/// The random stream of this profile.
 const PURPOSE: u64 = 1;
 
-/// The tree of the grid for the same seed, of which one to three primitives are disturbed: moved
-/// along an axis or in space by a length, turned about an axis by an angle in degrees, or their
-/// lengths grown; by 2^-10 to 2^-60, or by 1e-4 to 1e-9, either way.
+/// The grid tree of the same seed, with one to three primitives disturbed. A primitive is moved
+/// along an axis or in space by a length, rotated about an axis by an angle in degrees, or
+/// enlarged; by 2^-10 to 2^-60, or by 1e-4 to 1e-9, of either sign.
 pub(super) fn model(seed: u64) -> PartModel {
     let random = &mut RandomChoices::apart(seed, PURPOSE);
     let mut model = grid::model(seed);
@@ -47,7 +47,7 @@ fn disturb(random: &mut RandomChoices, model: &mut PartModel, leaf: ModelNodeId)
     }
 }
 
-/// A small number, of any order of magnitude.
+/// A small number of any order of magnitude.
 fn little(random: &mut RandomChoices) -> f64 {
     match random.once_in(3) {
         true => 10f64.powi(-(random.between(4, 9) as i32)),
@@ -55,7 +55,7 @@ fn little(random: &mut RandomChoices) -> f64 {
     }
 }
 
-/// With radii or edges longer by a little; a part of it below the last digit is lost.
+/// The primitive with radii or edges increased slightly; the part below the last digit is lost.
 fn grown(primitive: &ModelPrimitive, by: f64) -> ModelPrimitive {
     match *primitive {
         ModelPrimitive::Block(size) => ModelPrimitive::Block(size.map(|x| x + by)),

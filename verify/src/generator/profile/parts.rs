@@ -1,7 +1,7 @@
 //! Parts that a person would model: plates, brackets, flanges, shafts, housings, bearings.
 //!
-//! What touches, lies in one plane or has one axis does so exactly, as it is drawn; then about half
-//! of the parts are turned about odd axes and moved.
+//! Faces that touch, are coplanar or coaxial are so exactly, as drawn. Then about half of the parts
+//! are rotated about odd axes and moved.
 
 mod draft;
 mod flat;
@@ -13,10 +13,10 @@ use crate::generator::model::{ModelAxis, ModelNodeId, ModelStep, PartModel};
 use crate::generator::random::RandomChoices;
 use draft::PartDraft;
 
-/// What sets this profile's numbers apart.
+/// The random stream of this profile.
 const PURPOSE: u64 = 5;
 
-/// The kinds of parts, those with many variants more often.
+/// The kinds of parts; those with many variants occur more often.
 const KINDS: [fn(&mut PartDraft<'_>) -> ModelNodeId; 20] = [
     flat::plate,
     flat::plate,
@@ -40,7 +40,7 @@ const KINDS: [fn(&mut PartDraft<'_>) -> ModelNodeId; 20] = [
     hollow::elbow,
 ];
 
-/// A part of 2 to 60 primitives with lengths of 0 to 3 decimals, all of one part of as many.
+/// A part of 2 to 60 primitives. All its lengths have the same number of decimals, 0 to 3.
 pub(super) fn model(seed: u64) -> PartModel {
     let random = &mut RandomChoices::apart(seed, PURPOSE);
     let kind = random.choose(&KINDS);
@@ -57,7 +57,7 @@ pub(super) fn model(seed: u64) -> PartModel {
     model
 }
 
-/// One to three turns by whole degrees or tenths of them, and a shift as a rule.
+/// One to three rotations by whole degrees or tenths of degrees, and usually a translation.
 fn placement(random: &mut RandomChoices) -> Vec<ModelStep> {
     let mut steps = Vec::new();
     for _ in 0..random.between(1, 3) {

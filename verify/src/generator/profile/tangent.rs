@@ -1,8 +1,8 @@
 //! Pairs of primitives that touch by construction.
 //!
-//! A port is a point of a primitive's boundary with its normal. Two primitives are put so that the
-//! ports of both lie at the origin, with normals that are opposite (they touch from outside) or the
-//! same (from inside).
+//! A port is a point of a primitive's boundary with its normal. Two primitives are placed so that
+//! the ports of both lie at the origin. Their normals are opposite, for contact from outside, or
+//! equal, for contact from inside.
 
 use super::grid;
 use crate::generator::model::{
@@ -10,21 +10,22 @@ use crate::generator::model::{
 };
 use crate::generator::random::RandomChoices;
 
-/// What sets this profile's numbers apart.
+/// The random stream of this profile.
 const PURPOSE: u64 = 2;
 
-/// A point of a boundary, and the normal there, or one between the normals of an edge's faces.
+/// A point of a boundary with the normal there, or with one between the normals of an edge's faces.
 #[derive(Clone, Copy, Debug)]
 struct Port {
     at: [f64; 3],
-    /// By how many degrees about z the normal is turned out of the x-z plane.
+    /// The rotation of the normal about z out of the x-z plane, in degrees.
     yaw: f64,
-    /// The normal's angle from x towards z, in degrees, without that turn.
+    /// The angle of the normal from x towards z, in degrees, before that rotation.
     tilt: f64,
 }
 
-/// Two primitives that touch at a point or along a line or a face, joined by an operation; up to two
-/// more, half of them with a port at that point; all turned about an odd axis and moved, as a rule.
+/// Two primitives that touch at a point or along a line or a face, joined by an operation, and up
+/// to two more, half of them with a port at that point. Usually all are rotated about an odd axis
+/// and moved.
 pub(super) fn model(seed: u64) -> PartModel {
     let random = &mut RandomChoices::apart(seed, PURPOSE);
     let mut model = PartModel::default();
@@ -56,7 +57,7 @@ fn join(random: &mut RandomChoices, model: &mut PartModel, parts: [ModelNodeId; 
     model.operation(op, parts.to_vec(), Vec::new())
 }
 
-/// A primitive that touches the plane z = 0 at the origin, from above or below, turned about z.
+/// A primitive that touches the plane z = 0 at the origin, from above or below, rotated about z.
 fn touching(random: &mut RandomChoices, model: &mut PartModel) -> ModelNodeId {
     let primitive = grid::primitive(random);
     let Port { at, yaw, tilt } = port(random, &primitive);
@@ -79,7 +80,7 @@ fn touching(random: &mut RandomChoices, model: &mut PartModel) -> ModelNodeId {
     model.leaf(primitive, steps)
 }
 
-/// A place on one of the primitive's faces, edges or corners.
+/// A random port on one of the primitive's faces, edges or corners.
 fn port(random: &mut RandomChoices, primitive: &ModelPrimitive) -> Port {
     let port = |at, tilt| Port { at, yaw: 0.0, tilt };
     let part = random.choose(&[0.25, 0.5, 0.5, 0.75]);
@@ -135,7 +136,7 @@ fn on_wedge(random: &mut RandomChoices, [x, y, z]: [f64; 3], part: f64) -> Port 
     }
 }
 
-/// On a cylinder or a frustum of two radii and a height.
+/// A port on a cylinder or a frustum with two radii and a height.
 fn on_profile(random: &mut RandomChoices, [r1, r2, h]: [f64; 3], part: f64) -> Port {
     let port = |at, tilt| Port { at, yaw: 0.0, tilt };
     let slope = (r1 - r2).atan2(h).to_degrees();

@@ -5,21 +5,21 @@ use crate::generator::model::{
 };
 use crate::generator::random::RandomChoices;
 
-/// What sets this profile's numbers apart.
+/// The random stream of this profile.
 const PURPOSE: u64 = 4;
 
-/// How primitives are dealt to the cells of a lattice.
+/// The distribution of primitives over the cells of a lattice.
 struct Lattice {
     cells: [usize; 3],
-    /// From cell to cell, in units.
+    /// The distance between cells, in units.
     pitch: f64,
-    /// One primitive for all cells; a new one for each where there is none.
+    /// The primitive for all cells; if none, each cell gets its own.
     common: Option<ModelPrimitive>,
 }
 
-/// A union of primitives in a lattice, a block with such a lattice taken away, or the intersection
-/// of large primitives about the middle. 10 to 60 as a rule, one in 10 of up to 300, one in 100 of
-/// up to 1500; 8 to 24 that intersect.
+/// A union of primitives in a lattice, a block minus such a lattice, or the intersection of large
+/// primitives about the centre. Usually there are 10 to 60 primitives, one in 10 models has up to
+/// 300, one in 100 up to 1500; intersections have 8 to 24.
 pub(super) fn model(seed: u64) -> PartModel {
     let random = &mut RandomChoices::apart(seed, PURPOSE);
     match random.below(8) {
@@ -59,7 +59,7 @@ fn lattice(random: &mut RandomChoices, op: ModelOperation) -> PartModel {
     model
 }
 
-/// The sides of a lattice of about so many cells: in a row, in a plane, or in space.
+/// The dimensions of a lattice of about so many cells: a row, a plane, or a block.
 fn cells(random: &mut RandomChoices, count: usize) -> [usize; 3] {
     let count = count as f64;
     match random.below(8) {
@@ -100,7 +100,7 @@ fn in_cell(
     model.leaf(primitive, steps)
 }
 
-/// A primitive that reaches its neighbours in a lattice, stays away from them, or overlaps.
+/// A primitive that touches its neighbours in a lattice, keeps a distance, or overlaps them.
 fn small(random: &mut RandomChoices) -> ModelPrimitive {
     let r = random.choose(&[0.25, 0.375, 0.5, 0.5, 0.625]);
     let h = random.half(1, 3);
@@ -121,7 +121,7 @@ fn small(random: &mut RandomChoices) -> ModelPrimitive {
     }
 }
 
-/// Large primitives, each of which holds the middle.
+/// Large primitives that all contain the centre.
 fn intersection(random: &mut RandomChoices) -> PartModel {
     let mut model = PartModel::default();
     let children = (0..random.between(8, 24))

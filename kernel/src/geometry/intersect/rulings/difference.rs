@@ -1,11 +1,11 @@
-//! The other quadric less the base, in the base's frame.
+//! The difference of the equations of the other quadric and the base, in the base's frame.
 //!
-//! On the base it is the other's equation. Where the two lie nearly along one another it is small,
-//! and from the exact coefficients it has all its digits still.
+//! On the base it equals the other's equation. Where the two surfaces nearly coincide it is small,
+//! but computed from the exact coefficients it keeps all its digits.
 //!
-//! Notation: d is the base's direction, f the other's, o and s their points and sizes; a quadric is
-//! (p - o)ᵀ (I - e f fᵀ/f²) (p - o) = r², with e = 1, r = s of a cylinder, e = 1 + s², r = 0 of a
-//! cone, e = 0, r = s of a sphere.
+//! Notation: d is the base's direction, f the other's; o and s are their points and sizes. A
+//! quadric is (p - o)ᵀ (I - e f fᵀ/f²) (p - o) = r², with e = 1, r = s for a cylinder, e = 1 + s²,
+//! r = 0 for a cone, e = 0, r = s for a sphere.
 
 use crate::geometry::surface::Surface;
 use crate::geometry::surface_pair::{Coefficients, SurfacePair};
@@ -22,14 +22,15 @@ pub(super) struct Difference<N: Float = f64> {
     pub c: N,
 }
 
-/// Directions that lie apart by less than this are computed with more bits.
+/// The sine of the angle between directions below which more bits are used.
 const LEAN: f64 = 1.0 / (1 << 10) as f64;
 
-/// To so many bits.
+/// The precision in bits.
 const BITS: usize = 256;
 
 impl<N: Float> Difference<N> {
-    /// Of a pair, the first the base: to first order twice the distance times a length.
+    /// The difference for a pair whose first is the base. To first order it is twice the distance
+    /// times a length.
     pub fn new(pair: &SurfacePair<'_, N>) -> Self {
         let surfaces = [pair.a.surface, pair.b.surface];
         let [a, b] = [pair.a, pair.b].map(|c| c.numbers());
@@ -45,15 +46,15 @@ impl<N: Float> Difference<N> {
     }
 }
 
-/// What the difference is made of, over any number.
+/// The terms of the difference, over any number type.
 struct Parts<R> {
-    /// f/|f|: its part across d, and its component along d.
+    /// f/|f|: its component perpendicular to d, and that along d.
     lean: [R; 3],
     along: R,
-    /// e of the other, and A's component along d.
+    /// e of the other, and the component of A along d.
     bulge: R,
     rise: R,
-    /// b: its part across d, and its component along d.
+    /// b: its component perpendicular to d, and that along d.
     across: [R; 3],
     up: R,
     /// c.
@@ -92,20 +93,20 @@ impl<R: Enclosable> Parts<R> {
         let [bulge, square] = shape(surfaces[1], &other.size);
         let (dd, ff) = (dot(d, d), dot(f, f));
         let turned = dot(d, f).over(dd.clone());
-        let aside = less(f, &turned, d);
+        let perpendicular = less(f, &turned, d);
         let away = less(&base.point, &R::constant(1.0), &other.point);
         let high = dot(&away, d).over(dd.clone());
-        let beside = less(&away, &high, d);
+        let lateral = less(&away, &high, d);
         // (f·δ)/f²
         let reach = dot(f, &away).over(ff.clone());
         let pull = bulge.clone() * reach.clone();
-        let across = less(&beside, &pull, &aside);
+        let across = less(&lateral, &pull, &perpendicular);
         let climb = high - pull.clone() * turned.clone();
         let level = dot(&away, &away) - pull * reach * ff.clone() - square + own_square;
         let (length, size) = (dd.sqrt(), ff.clone().sqrt());
-        let tilt = dot(&aside, &aside).over(ff);
+        let tilt = dot(&perpendicular, &perpendicular).over(ff);
         Self {
-            lean: aside.map(|x| x.over(size.clone())),
+            lean: perpendicular.map(|x| x.over(size.clone())),
             along: (turned * length.clone()).over(size),
             rise: own - bulge.clone() + bulge.clone() * tilt,
             bulge,
@@ -129,7 +130,8 @@ impl<R: Enclosable> Parts<R> {
 }
 
 impl<N: Float> Parts<N> {
-    /// In the base's frame; a cone's equation is a distance times a length with the cosine's square.
+    /// The difference in the base's frame. For a cone the equation is scaled by cos², so that it is
+    /// a distance times a length.
     fn difference(&self, [base, other]: [&Surface<N>; 2]) -> Difference<N> {
         let f = base.frame();
         let scale = match other {

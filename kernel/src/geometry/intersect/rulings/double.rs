@@ -1,9 +1,11 @@
-//! Two points on each ruling where Δ is positive: two conics where Δ is a square, else the quartic.
+//! The general case: two points of the curve on each ruling where Δ is positive. The curve is two
+//! conics if Δ is a square, otherwise a quartic.
 //!
-//! The number and kind of the zeros of Δ tell everything: a double zero means a node, none a pair
-//! of closed branches. A zero is decided as the distance of the ruling from the other surface.
+//! The number and kind of the zeros of Δ determine the structure. A double zero is a node; without
+//! zeros there is a pair of closed branches. Each zero is classified by the distance of the ruling
+//! from the other surface.
 
-use super::{Rulings, apart, asked_rulings};
+use super::{Rulings, apart, sampled_rulings};
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
 use crate::geometry::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
@@ -14,7 +16,7 @@ use crate::number::bisection::bisect;
 use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
 
-/// Where a curve passes the nodes: (the angle of the node, the parameter).
+/// The nodes on a curve, as (angle of the node, parameter of the curve).
 type Passes<N> = Vec<(N, N)>;
 
 impl<N: Float> Rulings<'_, N> {
@@ -33,7 +35,7 @@ impl<N: Float> Rulings<'_, N> {
         Ok(meeting)
     }
 
-    /// The s of degree one with Δ = s², if within the resolution there is one.
+    /// The s of degree one with Δ = s² within the resolution, if there is one.
     fn square_root(&self, predicates: &Predicates) -> Option<Trig1<N>> {
         let [a0, c1, s1, c2, s2] = self.radicand;
         let rho = (N::TWO * c2.hypot(s2)).sqrt();
@@ -53,15 +55,16 @@ impl<N: Float> Rulings<'_, N> {
         is_one.then_some(root)
     }
 
-    /// Whether no point in which a ruling meets the other surface is lost where Δ is taken for s²:
-    /// next to a cone's apex one conic may be told as closely as can be, and the other not at all.
+    /// Whether the conics with Δ = s² contain every intersection of a ruling with the other
+    /// surface. Close to a cone's apex one conic may be accurate and the other lost.
     fn conics_hold_all(&self, root: &Trig1<N>) -> bool {
-        let is_held = |exact: N, told: N| !self.is_on_base(exact) || self.is_about_base(told);
-        let mut met = asked_rulings().filter(|&u| self.delta(u) > N::ZERO);
-        met.all(|u| {
+        let is_held =
+            |exact: N, approximate: N| !self.is_on_base(exact) || self.is_about_base(approximate);
+        let mut crossed = sampled_rulings().filter(|&u| self.delta(u) > N::ZERO);
+        crossed.all(|u| {
             let at = u.sin_cos();
             let linear = trig1(&self.linear, at);
-            // Of these sums the one does not cancel, and the product of the heights is known.
+            // One of the two sums does not cancel, and the product of the heights is known.
             let sums = |root: N| [root, -root].map(|r| -linear - r.copysign(r * linear));
             let [sum, _] = sums(self.delta(u).sqrt());
             let [first, second] = sums(trig1(root, at).abs()).map(|sum| sum / self.lead);
@@ -80,7 +83,7 @@ impl<N: Float> Rulings<'_, N> {
             let part = |i: usize| (sign * root[i] - self.linear[i]) / self.lead;
             [part(0), part(1), part(2)]
         };
-        // Tangent all along where both conics are one.
+        // If both conics coincide, the surfaces are tangent along them.
         let gap = (0..8)
             .map(|i| N::TAU * N::whole(i) / N::from_f64(8.0))
             .map(|u| (u, self.middle(u)))
@@ -92,7 +95,7 @@ impl<N: Float> Rulings<'_, N> {
         }
         self.add_conic(&w(N::ONE), false, predicates, meeting);
         self.add_conic(&w(-N::ONE), false, predicates, meeting);
-        // Where they cross, s vanishes.
+        // The conics cross where s vanishes.
         let whole = [root[0], root[1], root[2], N::ZERO, N::ZERO];
         for (u, _) in zeros_of(&whole) {
             let m = self.middle(u);
@@ -161,7 +164,7 @@ impl<N: Float> Rulings<'_, N> {
             let (mid, half) = (N::HALF * (a + b), N::HALF * (b - a));
             let mut at = Vec::new();
             if let Some(n) = node {
-                // rest = K sin²((u - n)/2): only K is wanted.
+                // rest = K sin²((u - n)/2); only K is needed.
                 rest = [N::TWO * rest[0], N::ZERO, N::ZERO];
                 let t = ((mid - n) / half).clamp(-N::ONE, N::ONE).acos();
                 at = vec![(n, t), (n, N::TAU - t)];
@@ -180,7 +183,7 @@ impl<N: Float> Rulings<'_, N> {
         Ok(())
     }
 
-    /// Adds a branch, as far as it lies on the base's nappe and on the other's.
+    /// Adds a branch, clipped to the base's nappe and the other surface's.
     fn add_clipped(
         &self,
         q: QuadricCurve<N>,
@@ -226,9 +229,9 @@ impl<N: Float> Rulings<'_, N> {
         }
     }
 
-    /// The ranges of a closed branch over a cone that lie on the cone's nappe within reach. It leaves
-    /// these where k w² + 2 B w + C is zero for the least w: the height itself divides by k, which may
-    /// be next to nothing.
+    /// The ranges of a closed branch over a cone that lie on the cone's nappe and within the
+    /// extent. At their ends k w² + 2 B w + C is zero for the smallest w. The height itself is not
+    /// used, because it divides by k, which may be close to zero.
     fn nappe_ranges(&self, q: &QuadricCurve<N>, period: N) -> Vec<[N; 2]> {
         let least = N::ONE / self.reach();
         let mut limit = self.constant;
@@ -247,7 +250,8 @@ impl<N: Float> Rulings<'_, N> {
         let inside: Vec<bool> = (0..marks.len())
             .map(|i| is_inside([marks[i], next(&marks, i)]))
             .collect();
-        // Of two points of a ruling one may be at the limit, and the other pass.
+        // Of the two points of a ruling, one may be at the limit while the curve passes through the
+        // other.
         let n = marks.len();
         let ends = (0..n).filter(|&i| inside[i] != inside[(i + n - 1) % n]);
         let (ends, starts): (Vec<N>, Vec<bool>) = ends.map(|i| (marks[i], inside[i])).unzip();
@@ -263,7 +267,7 @@ impl<N: Float> Rulings<'_, N> {
         begun.map(|i| [ends[i], next(&ends, i)]).collect()
     }
 
-    /// The zeros of Δ by kind.
+    /// The zeros of Δ, by kind.
     fn structure(&self, predicates: &Predicates) -> Result<Structure<N>, IntersectionError> {
         let slope = harmonic_slope(&self.radicand);
         let flat = slope.iter().map(|c| c.abs()).sum::<N>() <= N::ROUNDING * self.scale;
@@ -310,12 +314,12 @@ impl<N: Float> Rulings<'_, N> {
     }
 }
 
-/// The zeros of Δ by kind.
+/// The zeros of Δ, by kind.
 #[derive(Default)]
 struct Structure<N: Float = f64> {
-    /// Δ is nowhere negative.
+    /// Whether Δ is positive everywhere.
     positive: bool,
-    /// The arcs of angles between simple zeros on which Δ is positive.
+    /// The intervals of angles, between simple zeros, on which Δ is positive.
     arcs: Vec<[N; 2]>,
     /// Double zeros with Δ positive on both sides.
     nodes: Vec<N>,

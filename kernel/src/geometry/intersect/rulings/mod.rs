@@ -1,8 +1,8 @@
-//! A quadric along the rulings of a cylinder or a cone.
+//! Intersection of a quadric with the rulings of a cylinder or a cone.
 //!
-//! Notation as in [`quartic`](crate::geometry::quartic): along the rulings of the base, the other
-//! quadric less the base is k w² + 2 B(u) w + C(u), and Δ = B² − k C. Where k = 0 a ruling has a single point of
-//! it, else two, none or a double one.
+//! Notation as in [`quadric_curve`](crate::geometry::quadric_curve): along the rulings of the base,
+//! the difference of the other quadric and the base is k w² + 2 B(u) w + C(u), and Δ = B² − k C. If
+//! k = 0 a ruling has a single intersection; otherwise it has two, none or a double one.
 
 mod difference;
 mod double;
@@ -23,12 +23,12 @@ use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
 use nalgebra::{Point3, Vector3};
 
-/// The rulings over which it is asked whether curves are conics.
-fn asked_rulings<N: Float>() -> impl Iterator<Item = N> {
+/// The rulings at which candidate conics are tested.
+fn sampled_rulings<N: Float>() -> impl Iterator<Item = N> {
     (0..24).map(|i| N::TAU * (N::whole(i) + N::from_f64(0.3)) / N::from_f64(24.0))
 }
 
-/// The distance of a point from the whole quadric of a surface: a cone with both nappes.
+/// The distance of a point from the whole quadric of a surface; a cone has both nappes.
 pub(super) fn apart<N: Float>(surface: &Surface<N>, p: &Point3<N>) -> N {
     match surface {
         Surface::Cone(c) => {
@@ -60,11 +60,11 @@ fn surface_of<N: Float>(base: &Ruled<N>) -> Surface<N> {
 }
 
 impl<'a, N: Float> Rulings<'a, N> {
-    /// Over the rulings of the pair's first.
+    /// The quadric over the rulings of the pair's first surface.
     pub(super) fn new(base: Ruled<N>, pair: &SurfacePair<'a, N>) -> Self {
         let q = Difference::new(pair);
         let (a, b) = (&q.a, &q.b);
-        // The ruling's point is m (cos, sin, 0) + ... with m the radius or the slope.
+        // The ruling's point is m (cos, sin, 0) + ..., with m the radius or the slope.
         let (lead, linear, constant) = match &base {
             Ruled::Cylinder(s) => {
                 let r = s.radius;
@@ -125,7 +125,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         surface_of(&self.base).frame().point(p.x, p.y, p.z)
     }
 
-    /// The height of the point of a ruling that is next to the other surface.
+    /// The height of the ruling's point that is closest to the other surface.
     fn middle(&self, u: N) -> N {
         -trig1(&self.linear, u.sin_cos()) / self.lead
     }
@@ -142,7 +142,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         }
     }
 
-    /// Whether a height lies on the base and in the extent, or not far beyond that.
+    /// Whether a height lies on the base and in an extent twice as large.
     fn is_about_base(&self, w: N) -> bool {
         match &self.base {
             Ruled::Cylinder(_) => true,
@@ -150,18 +150,18 @@ impl<'a, N: Float> Rulings<'a, N> {
         }
     }
 
-    /// The greatest absolute height that can lie in the extent.
+    /// The greatest absolute height in the extent.
     fn reach(&self) -> N {
         let f = *surface_of(&self.base).frame();
         (f.origin - self.extent.centre).dot(&f.z).abs() + self.extent.radius
     }
 
-    /// Whether Δ is positive, zero or negative at an angle, decided as the signed distance of the
-    /// ruling from the other surface.
+    /// Whether Δ is positive, zero or negative at an angle. The decision is made on the signed
+    /// distance of the ruling from the other surface.
     fn state(&self, u: N, predicates: &Predicates) -> Side {
         let w = self.middle(u);
         if !self.is_on_base(w) {
-            // The decision concerns the other nappe or lies far off: the plain sign will do.
+            // The point lies on the other nappe or far away; the sign of Δ suffices.
             return if self.delta(u) >= N::ZERO {
                 Side::Inside
             } else {
@@ -177,7 +177,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         predicates.classify_at_point("ruling on quadric", signed, place(&self.world(u, w)))
     }
 
-    /// The planar conic w = plane(u), where it lies on the base and on the other surface.
+    /// Adds the planar conic w = plane(u), clipped to the base and to the other surface.
     fn add_conic(
         &self,
         w: &Trig1<N>,
@@ -226,7 +226,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         }
     }
 
-    /// The parts of a curve that lie on the other surface's own nappe, where it is a cone.
+    /// The parts of a curve that lie on the other surface; for a cone, on its one nappe.
     fn on_other_nappe(
         &self,
         curve: &Curve<N>,
@@ -239,18 +239,18 @@ impl<'a, N: Float> Rulings<'a, N> {
     /// Whether the heights that `conics` gives over each ruling lie on the other surface.
     fn meets_in_conics(&self, predicates: &Predicates, conics: impl Fn(N) -> Vec<N>) -> bool {
         let mut worst: N = N::ZERO;
-        let mut asked = false;
-        for u in asked_rulings() {
+        let mut tested = false;
+        for u in sampled_rulings() {
             for w in conics(u).into_iter().filter(|&w| self.is_on_base(w)) {
-                asked = true;
+                tested = true;
                 worst = worst.max(apart(self.other, &self.world(u, w)));
             }
         }
         let o = surface_of(&self.base).frame().origin;
-        asked && predicates.coincide("quadrics meeting in conics", worst, place(&o))
+        tested && predicates.coincide("quadrics meeting in conics", worst, place(&o))
     }
 
-    /// The apexes through which branches pass: singular points.
+    /// Adds the apexes through which branches pass; they are singular points.
     fn add_apexes(&self, predicates: &Predicates, meeting: &mut SurfaceIntersection<N>) {
         let surface = surface_of(&self.base);
         for (s, o) in [(&surface, self.other), (self.other, &surface)] {

@@ -1,4 +1,5 @@
-//! One point on each ruling: the other quadric holds the direction of the rulings, or the apex.
+//! The case of one intersection on each ruling: the rulings are a direction of the other quadric,
+//! or pass through its apex.
 
 use super::{Rulings, apart, surface_of};
 use crate::geometry::curve::{Curve, Line};
@@ -12,7 +13,7 @@ use crate::number::predicates::Predicates;
 use nalgebra::{Point3, Vector3};
 
 impl<N: Float> Rulings<'_, N> {
-    /// k = 0: one point on each ruling, w = -C/(2B).
+    /// The curve for k = 0: one point on each ruling, w = -C/(2B).
     pub(in crate::geometry::intersect) fn single(
         &self,
         predicates: &Predicates,
@@ -47,14 +48,14 @@ impl<N: Float> Rulings<'_, N> {
         Ok(meeting)
     }
 
-    /// w = -C/(2B) where that is of degree one: a planar conic.
+    /// w = -C/(2B) if it is of degree one, which is a planar conic.
     fn single_conic(&self, predicates: &Predicates) -> Option<Trig1<N>> {
         let w = divide(&self.constant, &self.linear).map(|q| -N::HALF * q);
         self.meets_in_conics(predicates, |u| vec![trig1(&w, u.sin_cos())])
             .then_some(w)
     }
 
-    /// The curve w = -C/(2B), as far as it lies on both surfaces.
+    /// Adds the curve w = -C/(2B), clipped to both surfaces.
     fn add_single(
         &self,
         quartic: QuadricCurve<N>,
@@ -77,7 +78,7 @@ impl<N: Float> Rulings<'_, N> {
         }
     }
 
-    /// The ruling that lies on both surfaces, where k = 0: a common zero of B and C.
+    /// The ruling that lies on both surfaces for k = 0: a common zero of B and C.
     fn shared_ruling(&self, predicates: &Predicates) -> Option<N> {
         if let Ruled::Cylinder(_) = self.base {
             let Surface::Cone(c) = self.other else {
@@ -101,7 +102,7 @@ impl<N: Float> Rulings<'_, N> {
         (w.is_finite() && on).then_some(u)
     }
 
-    /// Whether the surfaces touch all along the ruling u0 that lies on both.
+    /// Whether the surfaces are tangent along all of the common ruling u0.
     fn touches_along(&self, u0: N, predicates: &Predicates) -> bool {
         let surface = surface_of(&self.base);
         let Surface::Cone(cone) = self.other else {
@@ -112,14 +113,14 @@ impl<N: Float> Rulings<'_, N> {
             Ruled::Cylinder(c) => c.frame.z,
             Ruled::Cone(c) => (p - c.frame.origin).unit(),
         };
-        // Square to the ruling, in the plane of it and the axis.
+        // The vector perpendicular to the ruling in the plane of the ruling and the axis.
         let axis = cone.frame.z;
         let normal = (axis - along * axis.dot(&along)).unit();
         let drift = surface.normal(&p).cross(&normal).length() * self.extent.radius;
         predicates.coincide("tangent along a ruling", drift, place(&p))
     }
 
-    /// w = -C/(2B), where both have a double zero at u0: that is of degree one.
+    /// w = -C/(2B), which is of degree one if B and C have a double zero at u0.
     fn without_contact(&self, u0: N) -> Height<N> {
         let factor = [N::ONE, -u0.cos(), -u0.sin()];
         let [a, b, c] = divide(&self.constant, &factor);
@@ -131,9 +132,9 @@ impl<N: Float> Rulings<'_, N> {
         }
     }
 
-    /// The ranges of u over which the single point of a ruling is on the base within reach.
+    /// The ranges of u over which the single point of a ruling is on the base and within `reach`.
     fn bounded_ranges(&self, q: &QuadricCurve<N>, shared: Option<N>, reach: N) -> Vec<[N; 2]> {
-        // |w| = reach, w = 1/reach and the poles, as signs of N - x D with w = N/D.
+        // The limits |w| = reach, w = 1/reach and the poles, as signs of N - x D with w = N/D.
         let quotient = |u: N| q.height_at(u);
         let inside = |u: N| match &self.base {
             Ruled::Cylinder(_) => quotient(u).abs() <= reach,
@@ -180,7 +181,7 @@ impl<N: Float> Rulings<'_, N> {
         for m in marks.windows(2) {
             if inside(N::HALF * (m[0] + m[1])) {
                 match ranges.last_mut() {
-                    // The shared ruling is no end of the curve: it passes over it.
+                    // The curve does not end at the shared ruling but crosses it.
                     Some(last) if last[1] == m[0] && shared.is_some_and(|s| same_turn(s, m[0])) => {
                         last[1] = m[1];
                     }
@@ -191,7 +192,8 @@ impl<N: Float> Rulings<'_, N> {
         ranges
     }
 
-    /// The ruling common to both surfaces, with the point where the rest of the curve crosses it.
+    /// Adds the ruling common to both surfaces, with the point where the rest of the curve crosses
+    /// it.
     fn add_shared(
         &self,
         u0: N,
@@ -232,7 +234,7 @@ impl<N: Float> Rulings<'_, N> {
         }
         let crossing = Point3::from(q.at(u0));
         let is_near = (crossing - self.extent.centre).length() <= self.extent.radius;
-        // It may lie on the other nappe of either.
+        // The crossing may lie on the other nappe of either surface.
         let mut both = [&surface, self.other].into_iter();
         if is_near && both.all(|s| predicates.within(s.distance(&crossing))) {
             meeting.nodes.push(Node {

@@ -1,4 +1,4 @@
-//! A part as it is put together: lengths, primitives in common positions, operations.
+//! A part under construction: lengths, primitives in common positions, operations.
 
 use crate::generator::model::{
     ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, Notation, PartModel,
@@ -11,14 +11,14 @@ pub type PartLength = i64;
 /// The unit of length.
 pub const UNIT: PartLength = 10_000;
 
-/// A place.
+/// A position.
 pub type PlanePoint = [PartLength; 3];
 
-/// A part in the making.
+/// A part under construction.
 pub struct PartDraft<'r> {
-    /// The numbers that it is made by.
+    /// The random choices.
     pub random: &'r mut RandomChoices,
-    /// What is made.
+    /// The model so far.
     pub model: PartModel,
     /// The smallest step of a length.
     step: PartLength,
@@ -33,7 +33,7 @@ pub struct Range {
     pub max: PartLength,
 }
 
-/// The part of a length from one percentage to another.
+/// The range of a length between two percentages.
 pub fn percent(of: PartLength, from: PartLength, to: PartLength) -> Range {
     Range {
         min: of * from / 100,
@@ -46,7 +46,7 @@ fn number(length: PartLength) -> f64 {
 }
 
 impl<'r> PartDraft<'r> {
-    /// Nothing yet; lengths will have 0 to 3 decimals.
+    /// An empty part; its lengths will have 0 to 3 decimals.
     pub fn new(random: &'r mut RandomChoices) -> Self {
         let step = random.choose(&[UNIT, UNIT, UNIT / 10, UNIT / 10, UNIT / 100, UNIT / 1000]);
         let model = PartModel::with_notation(Notation::Decimal);
@@ -57,7 +57,7 @@ impl<'r> PartDraft<'r> {
         }
     }
 
-    /// A length in units from one to another.
+    /// A random length between two numbers of units.
     pub fn length(&mut self, min: PartLength, max: PartLength) -> PartLength {
         self.between(Range {
             min: min * UNIT,
@@ -65,7 +65,7 @@ impl<'r> PartDraft<'r> {
         })
     }
 
-    /// A length between bounds, with more decimals only where there is none with the part's own.
+    /// A random length between bounds. It has more decimals than the part's only if necessary.
     pub fn between(&mut self, Range { min, max }: Range) -> PartLength {
         let mut step = self.step;
         loop {
@@ -82,12 +82,12 @@ impl<'r> PartDraft<'r> {
         }
     }
 
-    /// The part of a length from one percentage to another.
+    /// A random length between two percentages of another.
     pub fn part_of(&mut self, of: PartLength, from: PartLength, to: PartLength) -> PartLength {
         self.between(percent(of, from, to))
     }
 
-    /// True once in `n` times.
+    /// True with probability 1/n.
     pub fn once_in(&mut self, n: usize) -> bool {
         self.random.once_in(n)
     }
@@ -104,17 +104,18 @@ impl<'r> PartDraft<'r> {
         self.model.leaf(primitive, steps)
     }
 
-    /// A block with its lowest corner at a place.
+    /// A block with its lowest corner at a position.
     pub fn block(&mut self, size: PlanePoint, at: PlanePoint) -> ModelNodeId {
         self.leaf(ModelPrimitive::Block(size.map(number)), Vec::new(), at)
     }
 
-    /// A block with x and y centred about a place, its base there.
+    /// A block with x and y centred about a position, on which its base lies.
     pub fn centred(&mut self, [x, y, z]: PlanePoint, at: PlanePoint) -> ModelNodeId {
         self.block([x, y, z], [at[0] - x / 2, at[1] - y / 2, at[2]])
     }
 
-    /// A wedge with its right-angled edge along y through a place, turned about z by right angles.
+    /// A wedge with its right-angled edge along y through a position, rotated about z by right
+    /// angles.
     pub fn wedge(&mut self, size: PlanePoint, right_angles: usize, at: PlanePoint) -> ModelNodeId {
         let steps = match right_angles % 4 {
             0 => Vec::new(),
@@ -123,7 +124,7 @@ impl<'r> PartDraft<'r> {
         self.leaf(ModelPrimitive::Wedge(size.map(number)), steps, at)
     }
 
-    /// A cylinder from the middle of its base at a place, in the direction of an axis.
+    /// A cylinder from the centre of its base at a position, in the direction of an axis.
     pub fn cylinder(
         &mut self,
         axis: ModelAxis,
@@ -135,7 +136,7 @@ impl<'r> PartDraft<'r> {
         self.leaf(ModelPrimitive::Cylinder { r, h }, along(axis), at)
     }
 
-    /// A frustum about z, or a cylinder where both radii are the same.
+    /// A frustum about z, or a cylinder if both radii are equal.
     pub fn frustum(
         &mut self,
         r1: PartLength,
@@ -150,12 +151,12 @@ impl<'r> PartDraft<'r> {
         self.leaf(ModelPrimitive::Frustum { r1, r2, h }, Vec::new(), at)
     }
 
-    /// A sphere about a place.
+    /// A sphere about a position.
     pub fn sphere(&mut self, r: PartLength, at: PlanePoint) -> ModelNodeId {
         self.leaf(ModelPrimitive::Sphere(number(r)), Vec::new(), at)
     }
 
-    /// A torus about a place, with its axis in the direction of an axis.
+    /// A torus about a position, with its axis in the direction of a coordinate axis.
     pub fn torus(
         &mut self,
         axis: ModelAxis,
@@ -167,7 +168,7 @@ impl<'r> PartDraft<'r> {
         self.leaf(ModelPrimitive::Torus { major, minor }, along(axis), at)
     }
 
-    /// What is in any of these.
+    /// The union of nodes.
     pub fn union(&mut self, of: Vec<ModelNodeId>) -> ModelNodeId {
         match of.as_slice() {
             &[only] => only,
@@ -175,7 +176,7 @@ impl<'r> PartDraft<'r> {
         }
     }
 
-    /// What is in the first and in none of the tools.
+    /// The difference of a node and tools.
     pub fn difference(&mut self, of: ModelNodeId, tools: Vec<ModelNodeId>) -> ModelNodeId {
         if tools.is_empty() {
             return of;
@@ -186,13 +187,13 @@ impl<'r> PartDraft<'r> {
             .operation(ModelOperation::Difference, all, Vec::new())
     }
 
-    /// What is in both.
+    /// The intersection of two nodes.
     pub fn intersection(&mut self, a: ModelNodeId, b: ModelNodeId) -> ModelNodeId {
         self.model
             .operation(ModelOperation::Intersection, vec![a, b], Vec::new())
     }
 
-    /// Turns a node about z.
+    /// Rotates a node about z.
     pub fn turn_about_z(&mut self, node: ModelNodeId, degrees: f64) -> ModelNodeId {
         if let (true, Some(node)) = (degrees != 0.0, self.model.node_mut(node)) {
             node.steps.push(ModelStep::Turn(ModelAxis::Z, degrees));
@@ -200,7 +201,7 @@ impl<'r> PartDraft<'r> {
         node
     }
 
-    /// As many as wanted about z, evenly, each made at the angle zero.
+    /// Copies spaced evenly about z, each created at the angle zero.
     pub fn circle(
         &mut self,
         count: usize,
@@ -216,8 +217,8 @@ impl<'r> PartDraft<'r> {
             .collect()
     }
 
-    /// A hole of radius `r` through `depth`: plain, blind, counterbored or countersunk to the radius
-    /// `wide`.
+    /// A hole of radius `r` through `depth`: simple, blind, counterbored or countersunk to the
+    /// radius `wide`.
     pub fn hole(&mut self, r: PartLength, wide: PartLength, depth: PartLength) -> Hole {
         let form = match self.random.below(6) {
             0 => Form::Blind {
@@ -237,14 +238,14 @@ impl<'r> PartDraft<'r> {
         Hole { r, depth, form }
     }
 
-    /// The tools that make a hole down from a place: they stand out above, and below if they go
-    /// through.
+    /// The tools that cut a hole downwards from a position. They protrude above, and below for a
+    /// through hole.
     pub fn drill(&mut self, hole: &Hole, [x, y, top]: PlanePoint) -> Vec<ModelNodeId> {
         let Hole { r, depth, form } = *hole;
         if let Form::Blind { deep, pointed } = form {
             let floor = top - deep;
             let mut tools = vec![self.cylinder(ModelAxis::Z, r, deep + UNIT, [x, y, floor])];
-            // As the drill leaves it.
+            // The conical end that a drill leaves.
             let point = (r / 2).min((depth - deep) / 2);
             if pointed && point > 0 {
                 tools.push(self.frustum(0, r, point, [x, y, floor - point]));
@@ -266,7 +267,7 @@ impl<'r> PartDraft<'r> {
     }
 }
 
-/// A hole that is made in one place or many.
+/// A hole that is cut at one or several positions.
 #[derive(Clone, Copy, Debug)]
 pub struct Hole {
     r: PartLength,
@@ -274,7 +275,7 @@ pub struct Hole {
     form: Form,
 }
 
-/// What a hole is like below its rim.
+/// The form of a hole below its rim.
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Plain,
@@ -283,7 +284,7 @@ enum Form {
     Countersunk { wide: PartLength, deep: PartLength },
 }
 
-/// From the direction of z to that of an axis.
+/// The rotation from the direction of z to that of an axis.
 fn along(axis: ModelAxis) -> Vec<ModelStep> {
     match axis {
         ModelAxis::X => vec![ModelStep::Turn(ModelAxis::Y, 90.0)],

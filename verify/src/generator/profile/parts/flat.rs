@@ -34,7 +34,7 @@ pub fn plate(d: &mut PartDraft<'_>) -> ModelNodeId {
         _ => {}
     }
     if d.once_in(4) {
-        // A pocket, with corners rounded by the mill.
+        // A pocket whose corners are rounded by the mill.
         let size = [x / 3, y / 5, z];
         let deep = d.part_of(z, 30, 60);
         let r = d.part_of(y / 5, 20, 40);
@@ -43,12 +43,12 @@ pub fn plate(d: &mut PartDraft<'_>) -> ModelNodeId {
     d.difference(body, tools)
 }
 
-/// The middles of circles in the corners of a plate.
+/// The centres of circles in the corners of a plate.
 fn corners([x, y, _]: PlanePoint, r: PartLength) -> [[PartLength; 2]; 4] {
     [[r, r], [x - r, r], [r, y - r], [x - r, y - r]]
 }
 
-/// A plate with corners of a radius: two blocks and four cylinders.
+/// A plate with rounded corners: two blocks and four cylinders.
 pub fn rounded_plate(
     d: &mut PartDraft<'_>,
     size: PlanePoint,
@@ -66,7 +66,7 @@ pub fn rounded_plate(
     d.union(all)
 }
 
-/// A slot along x with round ends, about a place; its length is from axis to axis.
+/// A slot along x with round ends, about a position; its length is measured between the axes.
 fn slot(d: &mut PartDraft<'_>, [long, wide, deep]: PlanePoint, at: PlanePoint) -> Vec<ModelNodeId> {
     let end = |x: PartLength| [at[0] + x, at[1], at[2]];
     vec![

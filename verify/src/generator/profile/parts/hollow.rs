@@ -47,7 +47,7 @@ pub fn housing(d: &mut PartDraft<'_>) -> ModelNodeId {
             body = d.union(all);
         }
         1 => {
-            // One amid the floor, through it.
+            // One in the middle of the floor, through it.
             let boss = d.cylinder(ModelAxis::Z, boss, up.min(z / 2), [x / 2, y / 2, t]);
             body = d.union(vec![body, boss]);
             let hole = d.part_of(x.min(y), 3, 6);
@@ -73,7 +73,7 @@ pub fn housing(d: &mut PartDraft<'_>) -> ModelNodeId {
     d.difference(body, tools)
 }
 
-/// A bend of a pipe, a quarter of a torus, with straight ends, flanges and a bore along all.
+/// A pipe bend, a quarter of a torus, with straight ends, flanges and a bore through everything.
 pub fn elbow(d: &mut PartDraft<'_>) -> ModelNodeId {
     let r = d.length(6, 20);
     let bend = r + d.part_of(r, 30, 150);
@@ -93,7 +93,7 @@ pub fn elbow(d: &mut PartDraft<'_>) -> ModelNodeId {
     d.difference(body, vec![tool])
 }
 
-/// A pipe that comes along y at x = `bend`, and goes on along x at y = `bend`.
+/// A pipe along y at x = `bend` that continues along x at y = `bend`.
 fn pipe(
     d: &mut PartDraft<'_>,
     bend: PartLength,

@@ -47,7 +47,7 @@ pub fn flange(d: &mut PartDraft<'_>) -> ModelNodeId {
     d.difference(body, tools)
 }
 
-/// Steps about one axis, with chamfers, grooves, a cross hole, a keyway and centres.
+/// Steps about one axis, with chamfers, grooves, a cross hole, a keyway and centre holes.
 pub fn shaft(d: &mut PartDraft<'_>) -> ModelNodeId {
     let mut body = Vec::new();
     let mut tools = Vec::new();
@@ -71,7 +71,7 @@ pub fn shaft(d: &mut PartDraft<'_>) -> ModelNodeId {
         body.push(d.cylinder(ModelAxis::Z, r, top - low, [0, 0, low]));
         match d.random.below(8) {
             0 => {
-                // A groove of a rectangle's section.
+                // A groove of rectangular section.
                 let (wide, deep) = (d.part_of(h, 15, 30), d.part_of(r, 10, 25));
                 let at = [0, 0, up + (h - wide) / 2];
                 let ring = d.cylinder(ModelAxis::Z, r + UNIT, wide, at);
@@ -128,7 +128,7 @@ pub fn shaft(d: &mut PartDraft<'_>) -> ModelNodeId {
             tools.extend(d.drill(&hole, [0, 0, up]));
         }
         1 => {
-            // The hole for a centre.
+            // A centre hole.
             let r = d.part_of(last, 20, 40);
             tools.push(d.frustum(0, r, r, [0, 0, up - r]));
         }
@@ -175,14 +175,14 @@ pub fn bearing(d: &mut PartDraft<'_>) -> ModelNodeId {
     let tube = d.torus(ModelAxis::Z, pitch, groove, [0; 3]);
     parts.push(d.difference(solid, vec![hole, tube]));
     if groove > ball {
-        // As many as there is room for, up to twelve.
+        // As many as fit, up to twelve.
         let most = (6 * pitch / (2 * ball + UNIT)).clamp(3, 12) as usize;
         let count = d.random.between(3, most);
         parts.extend(d.circle(count, |d| d.sphere(ball, [pitch, 0, 0])));
     }
     match d.random.below(6) {
         0 => {
-            // One ring alone.
+            // A single ring.
             let both = d.union(parts);
             let inside = d.cylinder(ModelAxis::Z, pitch - gap, wide, [0, 0, low]);
             d.intersection(both, inside)

@@ -9,7 +9,7 @@ use super::dispersion::{ACRYLIC, ALUMINIUM, CELLULOSE, COPPER, Dispersion, IRON}
 use super::{Constants, Material, Optics, SpecularForm};
 use std::ops::RangeInclusive;
 
-/// The wavelength in nanometres of a light that tells none: green.
+/// The wavelength in nanometres of a light that specifies none: green.
 pub const GREEN: f64 = 550.0;
 
 /// The names of the library.

@@ -1,4 +1,5 @@
-//! A surface as many small mirrors: how they lie, and how much of each is in the light and in sight.
+//! Microfacets: a surface as many small mirrors, with the distribution of their normals and their
+//! masking and shadowing.
 
 /// Beckmann's distribution D = exp(−(tan α/m)²)/(m² cos⁴α) of the facets' normals.
 ///

@@ -9,7 +9,7 @@ pub struct Optics {
     pub k: f64,
 }
 
-/// The shares of the intensity that a smooth plane reflects, each from 0 to 1.
+/// The reflected shares of the intensity at a smooth plane, each from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflectivity {
     /// Of light whose electric field lies in the plane of incidence: ρ∥.

@@ -296,7 +296,7 @@ impl<'s> EdgeRef<'s> {
         self.brep.topology.edge(self.id).ends.is_none()
     }
 
-    /// Whether two faces meet along the edge and their normals agree.
+    /// Whether the edge is smooth: it has two faces, whose normals agree along it.
     ///
     /// # Examples
     ///

@@ -1,17 +1,17 @@
-//! Samples as they are in a picture's file, and their grey levels.
+//! Samples of a picture's file, and their grey levels.
 
 /// The samples of a picture, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
     /// Width and height.
     pub size: [usize; 2],
-    /// What the samples of a pixel are.
+    /// The channels of a pixel.
     pub channels: Channels,
     /// The samples.
     pub samples: Samples,
 }
 
-/// What the samples of a pixel are.
+/// The channels of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
     /// A grey level.
@@ -36,7 +36,7 @@ impl Channels {
     }
 }
 
-/// Samples of 8 or 16 bits, from 0 to the largest number of so many bits.
+/// Samples of 8 or 16 bits, from 0 to the largest number of that width.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
     /// 8 bits each.

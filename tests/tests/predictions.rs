@@ -473,7 +473,7 @@ fn what_cannot_be_is_told() {
     assert!(away.contains("behind the camera"), "{away}");
     let lateral =
         told("[camera]\neye = [9, 7, 8]\ntarget = [9, 0, 8]\n[[light]]\nposition = [9, 9, 9]\n");
-    assert!(lateral.contains("falls on"), "{lateral}");
+    assert!(lateral.contains("projects to"), "{lateral}");
     let face = told(&format!(
         "{camera}[[light]]\nposition = [9, 9, 9]\n[[surface]]\nfaces = [0, 99]\nmaterial = \"steel\"\n"
     ));

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// What stands for anything in an output.
+/// The wildcard of an output.
 const ANYTHING: char = '…';
 
 /// A page of Markdown.
@@ -211,7 +211,7 @@ fn premio(folder: &Path, words: &[String]) -> Output {
 }
 
 impl Example<'_> {
-    /// What is wrong with it in a folder.
+    /// The error of the command in a folder.
     fn failure(&self, folder: &Path) -> Option<String> {
         let mut words = self.words.clone();
         if self.parse_only {
@@ -254,7 +254,7 @@ fn files(pages: &[Page]) -> BTreeMap<String, String> {
     files
 }
 
-/// What is wrong with the examples of a page, run in their order in a folder with all files.
+/// The errors of the examples of a page, run in their order in a folder with all files.
 fn failures(page: &Page, files: &BTreeMap<String, String>) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {

@@ -123,8 +123,8 @@ Exit status: 0 no answer is wrong; 1 some are; 130 interrupted."
 /// The description, and how it is read and evaluated.
 #[derive(Debug, Default, Args)]
 pub struct DescriptionOptions {
-    /// The description: .padl, .csg (OpenSCAD's flattened output), .json, .asc (BRL-CAD's database as
-    /// text) or .pov (POV-Ray's scene)
+    /// The description: .padl, .csg (OpenSCAD's flattened output), .json, .asc (BRL-CAD's database
+    /// as text) or .pov (POV-Ray's scene)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Points nearer than this coincide, in the part's unit [default: 1e-11 of its size]

@@ -1,9 +1,11 @@
-//! The README and the book: their commands run and print what is shown, their references are complete.
+//! The README and the book: their commands run and print what is shown, their references are
+//! complete.
 //!
 //! A block with the language `console` or `sh` is an example. A line that begins with `premio ` or
 //! `$ premio ` is a command. The lines after `$ premio` are its output, in which `…` stands for
-//! anything. `parse-only` in the info string only parses the command; `status=N` expects another exit
-//! status. A block after a line that ends with the name of a file, as in "`plate.padl`:", is that file.
+//! anything. `parse-only` in the info string only parses the command; `status=N` expects another
+//! exit status. A block after a line that ends with the name of a file, as in "`plate.padl`:", is
+//! that file.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod common;

@@ -6,7 +6,8 @@ use nalgebra::{Matrix3, Point2, Vector2};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-/// An ellipse: centre + cos s major + sin s minor, the minor half axis to the left of the major one.
+/// An ellipse: centre + cos s major + sin s minor, the minor half axis to the left of the major
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageEllipse {
     /// The centre.

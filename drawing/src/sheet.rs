@@ -42,8 +42,8 @@ impl StandardView {
         }
     }
 
-    /// The camera of the view of a part about its middle, which is the origin of the image; `size` is
-    /// any length of the part's order.
+    /// The camera of the view of a part about its middle, which is the origin of the image; `size`
+    /// is any length of the part's order.
     pub fn camera(self, middle: Point3<f64>, size: f64) -> Result<ViewCamera, CameraError> {
         let (from, up) = match self {
             Self::Front => (-Vector3::y(), Vector3::z()),

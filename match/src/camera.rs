@@ -78,12 +78,12 @@ pub enum PinholeError {
     },
 }
 
-/// The focal lengths of cameras, in the picture's longer side. Lenses that keep lines straight see 130
-/// degrees at most: the least ratio admits them, and rejects focal lengths in millimetres.
+/// The focal lengths of cameras, in the picture's longer side. Lenses that keep lines straight see
+/// 130 degrees at most: the least ratio admits them, and rejects focal lengths in millimetres.
 const FOCALS: [f64; 2] = [0.1, 1000.0];
 
-/// The most that fx and fy differ by, as a quotient: pixels of video fields and of anamorphic lenses
-/// are twice as long one way.
+/// The most that fx and fy differ by, as a quotient: pixels of video fields and of anamorphic
+/// lenses are twice as long one way.
 const ASPECT: f64 = 2.5;
 
 /// The most skew, in focal lengths: six degrees.

@@ -61,8 +61,8 @@ impl Camera {
         }
     }
 
-    /// Parallel projection from a direction: the vector points from the solid to the eye. The length
-    /// does not count.
+    /// Parallel projection from a direction: the vector points from the solid to the eye. The
+    /// length does not count.
     ///
     /// # Examples
     ///

@@ -51,12 +51,12 @@ pub enum ExpressionError {
 
 /// A solid as an expression of primitives, set operations and motions.
 ///
-/// Operators make larger expressions: `+` is the union, `-` the difference, `&` the intersection. All
-/// three are regularised, so that no face or edge hangs loose. A clone is cheap. An expression is
-/// `Send` and `Sync`.
+/// Operators make larger expressions: `+` is the union, `-` the difference, `&` the intersection.
+/// All three are regularised, so that no face or edge hangs loose. A clone is cheap. An expression
+/// is `Send` and `Sync`.
 ///
-/// Numbers are exact, see [`ExactNumber`]. What is wrong with a number or a primitive becomes an error
-/// in [`Expression::evaluate`], so that expressions need no `?`.
+/// Numbers are exact, see [`ExactNumber`]. What is wrong with a number or a primitive becomes an
+/// error in [`Expression::evaluate`], so that expressions need no `?`.
 ///
 /// # Examples
 ///
@@ -281,11 +281,11 @@ impl Expression {
         self.rotate([0, 0, 1], degrees)
     }
 
-    /// Rotates the solid about an axis through the origin, by degrees, right-handed. The axis may have
-    /// any length but zero.
+    /// Rotates the solid about an axis through the origin, by degrees, right-handed. The axis may
+    /// have any length but zero.
     ///
-    /// The motion is exactly orthogonal. Where the angle has no rational sine and cosine, a rational
-    /// rotation next to it is taken, as by the readers of descriptions.
+    /// The motion is exactly orthogonal. Where the angle has no rational sine and cosine, a
+    /// rational rotation next to it is taken, as by the readers of descriptions.
     ///
     /// # Examples
     ///

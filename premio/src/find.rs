@@ -19,7 +19,8 @@ use std::time::Instant;
 
 /// Finds a solid in pictures.
 ///
-/// A finder prepares the solid once: edges, symmetries, chains. It then takes any number of pictures.
+/// A finder prepares the solid once: edges, symmetries, chains. It then takes any number of
+/// pictures.
 ///
 /// # Examples
 ///

@@ -3,7 +3,8 @@
 mod run;
 mod shard;
 
-/// Shards of a model: the observations of a range of setups in a file, for runs on several machines.
+/// Shards of a model: the observations of a range of setups in a file, for runs on several
+/// machines.
 ///
 /// [`Model::train`](crate::Model::train) needs none of this.
 pub mod shards {

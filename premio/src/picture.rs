@@ -31,7 +31,8 @@ use std::path::Path;
 /// ```
 pub const MAX_PIXELS: u64 = 100_000_000;
 
-/// Reads a grey picture: PNG, PGM or JPEG; a picture in colours by its luma. Levels are from 0 to 255.
+/// Reads a grey picture: PNG, PGM or JPEG; a picture in colours by its luma. Levels are from 0 to
+/// 255.
 ///
 /// # Errors
 /// The file cannot be read, is not a complete picture, or has more than [`MAX_PIXELS`] pixels.
@@ -147,7 +148,8 @@ fn check_size([width, height]: [usize; 2], limit: u64) -> Result<(), PictureErro
     }
 }
 
-/// Reads the picture in a file's bytes. The format's checksums and codes must show no loss or damage.
+/// Reads the picture in a file's bytes. The format's checksums and codes must show no loss or
+/// damage.
 fn decode(bytes: &[u8], limit: u64) -> Result<Raster, PictureError> {
     if bytes.starts_with(png::SIGNATURE) {
         png::check_chunks(bytes)?;
@@ -246,8 +248,8 @@ pub fn encode_picture(
     encode(&raster, format)
 }
 
-/// Writes a grey picture of up to 256 levels as PNG or PGM, by the file's ending. It appears whole or
-/// not at all.
+/// Writes a grey picture of up to 256 levels as PNG or PGM, by the file's ending. It appears whole
+/// or not at all.
 ///
 /// # Errors
 /// The ending names no format, the picture has no pixels, or the file cannot be written.

@@ -282,8 +282,8 @@ impl Solid {
         &self.0.evaluation.decisions
     }
 
-    /// Runs every self-check: the rules of the boundary, the volume and the box by rays, the pieces and
-    /// contours of several views, their drawings, and the files, read back.
+    /// Runs every self-check: the rules of the boundary, the volume and the box by rays, the pieces
+    /// and contours of several views, their drawings, and the files, read back.
     ///
     /// `rays` rays measure the volume; the program uses 20 000.
     ///
@@ -319,8 +319,8 @@ impl Solid {
         View::new(self, camera)
     }
 
-    /// The topological object model: solids, shells, faces, boundaries, arcs and their relations. It is
-    /// what `premio export --format json` writes.
+    /// The topological object model: solids, shells, faces, boundaries, arcs and their relations.
+    /// It is what `premio export --format json` writes.
     ///
     /// # Examples
     ///

@@ -269,8 +269,8 @@ impl View {
         whole_file(path.as_ref(), self.to_dxf())
     }
 
-    /// Writes the view in the format that the file's ending names: `.svg`, `.dxf` or `.json`. The file
-    /// appears whole or not at all.
+    /// Writes the view in the format that the file's ending names: `.svg`, `.dxf` or `.json`. The
+    /// file appears whole or not at all.
     ///
     /// # Errors
     /// The ending names no format, or the file cannot be written.

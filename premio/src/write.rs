@@ -212,8 +212,8 @@ impl Solid {
         whole_file(path, self.to_step(&ExportSettings::for_path(path))?)
     }
 
-    /// Writes a file in the format that its ending names: `.step`, `.stl`, `.obj`, `.glb`, `.3mf` or
-    /// `.json`. It appears whole or not at all.
+    /// Writes a file in the format that its ending names: `.step`, `.stl`, `.obj`, `.glb`, `.3mf`
+    /// or `.json`. It appears whole or not at all.
     ///
     /// # Errors
     /// As [`Solid::to_bytes`]; the ending names no format, or the file cannot be written.

@@ -1,5 +1,5 @@
-//! The pose of a circle of known radius from the conic of its image (D. Forsyth et al., PAMI 13, 1991;
-//! Q. Chen, H. Wu, T. Wada, ECCV 2004).
+//! The pose of a circle of known radius from the conic of its image (D. Forsyth et al., PAMI 13,
+//! 1991; Q. Chen, H. Wu, T. Wada, ECCV 2004).
 //!
 //! Notation: C is the centre of the circle, r its radius, n its unit normal, x a line of sight, δ =
 //! n·C, c = C/δ and ρ = r/δ.

@@ -39,7 +39,8 @@ pub fn poses(points: &[Point3<f64>; 3], rays: &[Vector3<f64>; 3]) -> Vec<Isometr
     found.iter().filter_map(pose).collect()
 }
 
-/// The equations of the depths, one for each side of the triangle: k is that from point k to the next.
+/// The equations of the depths, one for each side of the triangle: k is that from point k to the
+/// next.
 struct Equations {
     rays: [Vector3<f64>; 3],
     /// The squared distances a.

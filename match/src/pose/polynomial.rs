@@ -23,7 +23,8 @@ fn slope(k: &[f64]) -> Vec<f64> {
     terms.map(|(i, c)| c * i as f64).collect()
 }
 
-/// Where a polynomial changes its sign between two ends; `k[i]` is the coefficient of the i-th power.
+/// Where a polynomial changes its sign between two ends; `k[i]` is the coefficient of the i-th
+/// power.
 pub fn crossings(k: &[f64], ends: [f64; 2]) -> Vec<f64> {
     if k.len() < 2 {
         return Vec::new();

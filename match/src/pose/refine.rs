@@ -1,5 +1,5 @@
-//! Least squares on SE(3): Levenberg-Marquardt with a robust loss over distances along normals in the
-//! image, in pixels.
+//! Least squares on SE(3): Levenberg-Marquardt with a robust loss over distances along normals in
+//! the image, in pixels.
 
 use crate::camera::Pinhole;
 use nalgebra::{Isometry3, Matrix6, Point2, Point3, UnitQuaternion, Vector2, Vector3, Vector6};

@@ -20,8 +20,8 @@ const MOST_TUPLES: usize = 1 << 16;
 pub(super) const MAX_PAIRED: usize = 256;
 /// How often a feature has to be found in an aspect before others are matched to it.
 const LEARNT: u64 = 3;
-/// The least variances of the attributes: a hundredth of the part's radius, of its logarithm, and of
-/// the cosine and the sine.
+/// The least variances of the attributes: a hundredth of the part's radius, of its logarithm, and
+/// of the cosine and the sine.
 pub const FLOOR: [f64; ATTRIBUTES] = [0.0001, 0.0001, 0.0025, 0.0025, 0.0025];
 
 /// The counts of a feature in total and in every aspect.

@@ -62,8 +62,8 @@ impl Reflectivity {
 }
 
 impl Optics {
-    /// The reflectivity for light that comes at the angle θ to the normal, given by its cosine, which
-    /// is held to 0 to 1.
+    /// The reflectivity for light that comes at the angle θ to the normal, given by its cosine,
+    /// which is held to 0 to 1.
     ///
     /// The form without complex numbers (Siegel and Howell, Thermal Radiation Heat Transfer, 1981;
     /// Cook and Torrance, 1982, appendix): with c = n² − k² − sin²θ, a² and b² are

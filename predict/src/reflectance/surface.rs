@@ -50,7 +50,8 @@ impl SurfaceFinish {
         self.specular > 0.0
     }
 
-    /// The diffuse part `d R_d` of the bidirectional reflectance, in 1/sr: the same for all directions.
+    /// The diffuse part `d R_d` of the bidirectional reflectance, in 1/sr: the same for all
+    /// directions.
     pub fn diffuse(&self) -> f64 {
         self.diffuse
     }

@@ -109,8 +109,8 @@ impl Sensor {
         0.25 * PI * aperture * aperture * cosine.powi(4)
     }
 
-    /// Grey levels for each unit of radiance on the optical axis, where lights of this strength, I_l
-    /// dω_l together, expose a white surface.
+    /// Grey levels for each unit of radiance on the optical axis, where lights of this strength,
+    /// I_l dω_l together, expose a white surface.
     pub fn gain(&self, strength: f64) -> f64 {
         // The radiance of a white diffuse surface is its irradiance over π.
         self.white * PI / strength

@@ -117,7 +117,8 @@ impl Viewpoint {
     }
 }
 
-/// OpenCV's matrices: image = K (R x + t), in pixels, the centre of the first pixel at (0, 0), y down.
+/// OpenCV's matrices: image = K (R x + t), in pixels, the centre of the first pixel at (0, 0), y
+/// down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrices {
     /// K, the camera matrix.

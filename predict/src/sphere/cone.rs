@@ -82,8 +82,8 @@ impl Cap {
     }
 }
 
-/// Two unit vectors perpendicular to a unit vector and to one another, right-handed with it; of z, x
-/// and y.
+/// Two unit vectors perpendicular to a unit vector and to one another, right-handed with it; of z,
+/// x and y.
 fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     // Duff et al., Journal of Computer Graphics Techniques 6, 2017.
     let sign = 1.0_f64.copysign(axis.z);

@@ -19,11 +19,12 @@ pub const MAX_POINTS: usize = 1 << 22;
 #[serde(rename_all = "lowercase")]
 pub enum Lattice {
     /// A spiral, each point turned on from the last by the golden angle (Vogel, 1979; González,
-    /// Mathematical Geosciences 42, 2010): any number of points, each with the same area of its own.
+    /// Mathematical Geosciences 42, 2010): any number of points, each with the same area of its
+    /// own.
     #[default]
     Fibonacci,
-    /// The vertices of an icosahedron whose faces are divided evenly and lifted to the sphere, 10f² + 2
-    /// for the frequency f: six neighbours to a point, and areas that differ by up to a half.
+    /// The vertices of an icosahedron whose faces are divided evenly and lifted to the sphere, 10f²
+    /// + 2 for the frequency f: six neighbours to a point, and areas that differ by up to a half.
     Icosahedral,
 }
 

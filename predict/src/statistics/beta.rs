@@ -159,8 +159,8 @@ fn below(a: f64, b: f64, x: f64, y: f64) -> f64 {
 }
 
 /// The probability that Beta(a, b) is below x, where y is 1 − x, by the approximation of Peizer and
-/// Pratt (Journal of the American Statistical Association 63, 1968): to 2e-7 for a and b of at least 100
-/// and 10,000 together.
+/// Pratt (Journal of the American Statistical Association 63, 1968): to 2e-7 for a and b of at
+/// least 100 and 10,000 together.
 fn of_many(a: f64, b: f64, x: f64, y: f64) -> f64 {
     // The chance of less than b successes in n trials that each succeed by the chance y.
     let n = a + b - 1.0;

@@ -31,14 +31,14 @@ pub struct DependenceNode<const K: usize> {
     pub information: f64,
     /// The probability of each of its states.
     pub marginal: [f64; K],
-    /// The probability of each of its states where the parent is in a state: by the parent's, then by
-    /// its own. Of the root every row is the marginal.
+    /// The probability of each of its states where the parent is in a state: by the parent's, then
+    /// by its own. Of the root every row is the marginal.
     pub table: [[f64; K]; K],
 }
 
 /// The spanning tree of most mutual information (Chow and Liu, IEEE Transactions on Information
-/// Theory 14, 1968): of all distributions in which each feature depends on one other, the one nearest
-/// to the counts.
+/// Theory 14, 1968): of all distributions in which each feature depends on one other, the one
+/// nearest to the counts.
 ///
 /// It is computed from counts; only counts can be merged. The root is the feature with the most
 /// information about all others together. Among alternatives within 2^-40 nats, the feature of the

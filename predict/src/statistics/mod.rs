@@ -1,7 +1,7 @@
 //! The statistics of many predictions.
 //!
-//! Each sum can be merged with another of its kind. It is kept in whole numbers, so that the result is
-//! the same bit for bit, however the samples were split and in whatever order they came.
+//! Each sum can be merged with another of its kind. It is kept in whole numbers, so that the result
+//! is the same bit for bit, however the samples were split and in whatever order they came.
 
 mod beta;
 mod chow_liu;

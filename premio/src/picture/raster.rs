@@ -49,8 +49,8 @@ pub enum Samples {
 const LUMINANCES: [f32; 3] = [0.212_647_84, 0.715_179_2, 0.072_173_04];
 
 impl Raster {
-    /// The grey levels from 0 to 255. A colour becomes its luma, rounded to 16 bits. Opacities do not
-    /// count.
+    /// The grey levels from 0 to 255. A colour becomes its luma, rounded to 16 bits. Opacities do
+    /// not count.
     pub fn into_levels(self) -> Vec<f32> {
         let count = self.channels.count();
         let is_grey = matches!(self.channels, Channels::Grey | Channels::GreyAlpha);

@@ -81,8 +81,8 @@ pub fn facing(scene: &Scene<'_>, coedge: CoedgeId, t: f64) -> Facing {
     }
 }
 
-/// Whether all of a surface is seen edge-on: a plane along the line of sight, or a cylinder with its
-/// axis along parallel sight.
+/// Whether all of a surface is seen edge-on: a plane along the line of sight, or a cylinder with
+/// its axis along parallel sight.
 pub fn is_edge_on(scene: &Scene<'_>, surface: &Surface) -> bool {
     match (surface, scene.projection.sight) {
         (Surface::Plane(s), _) => scene.edge_on(&s.frame.origin, &s.frame.z),

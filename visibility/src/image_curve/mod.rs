@@ -25,8 +25,8 @@ use std::f64::consts::TAU;
 pub enum Basis {
     /// cos t, sin t, 1.
     Circular,
-    /// x(t), t, 1 of a conic about a point of it: (2 κ m², 2 m, 1 + 2 β m + κ α m²), up to a factor,
-    /// over its chord m.
+    /// x(t), t, 1 of a conic about a point of it: (2 κ m², 2 m, 1 + 2 β m + κ α m²), up to a
+    /// factor, over its chord m.
     Graph(Conic),
     /// cosh t, sinh t, 1.
     Hyperbolic,
@@ -281,7 +281,8 @@ impl Image {
                 let half = (k0 / size).acos();
                 [middle - half, middle + half]
             }
-            // With s = 1 - β t - α x: f' g - f g' = x/s, f' = (κ t + β x)/s, g' = 1; a quadratic in m.
+            // With s = 1 - β t - α x: f' g - f g' = x/s, f' = (κ t + β x)/s, g' = 1; a quadratic in
+            // m.
             Basis::Graph(c) => {
                 let t = |m: f64| c.end_of_chord(m).unwrap_or(f64::NAN);
                 let square = 2.0 * (k0 + c.shear * k1) - c.flatness * k2;

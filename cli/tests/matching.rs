@@ -103,7 +103,7 @@ fn a_part_is_found_by_its_description_and_by_its_model() {
         assert_eq!(report["schema"], "premio.match/1");
         assert_eq!(report["found"], true, "{report:#}");
         assert!(schema.is_valid(&report), "{report:#}");
-        // And it can tell: a feature's state is one of three.
+        // The schema is effective: a feature's state is one of three.
         let mut wrong = report.clone();
         wrong["features"][0]["state"] = "seen".into();
         assert!(!schema.is_valid(&wrong));

@@ -274,8 +274,8 @@ fn close_calls(name: &str, resolution: f64, calls: &[CloseCall]) -> String {
         text += &format!("\n  and {} more", calls.len() - LISTED);
     }
     if calls.iter().any(|call| call.distance.abs() <= resolution) {
-        text += "\n  what is no farther apart than the resolution was taken for one: \
-                 `--resolution D` sets another, `--exact` none";
+        text += "\n  points within the resolution of each other were merged: \
+                 `--resolution D` sets another resolution, `--exact` none";
     }
     text
 }

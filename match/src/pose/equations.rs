@@ -10,7 +10,7 @@ const SOLVED: f64 = 1.0 / (1u64 << 42) as f64;
 const ROUNDED: f64 = 1.0 / (1u64 << 51) as f64;
 /// The factor by which rounding may change a residual.
 const NOISE: f64 = 4.0;
-/// Unknowns farther apart than this are never the same.
+/// Unknowns with a greater difference than this are never the same.
 pub const DISTINCT: f64 = 1.0 / (1 << 10) as f64;
 /// Steps of Newton's method: at a double root each gains one binary digit.
 const ROUNDS: usize = 64;

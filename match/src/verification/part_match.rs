@@ -192,8 +192,8 @@ impl PartMatch {
         accepted.then(other.weight().total_cmp(&self.weight()))
     }
 
-    /// The share of the visible length in the image whose features are missed
-    /// ([`FeaturePair::is_missed`]).
+    /// The share of the visible length in the image whose features are missed, or whose edges
+    /// only run next to them.
     pub fn missed(&self) -> f64 {
         let missed = self.pairs.iter().filter(|p| p.is_missed());
         let missed: f64 = missed.map(|p| p.length).sum();
